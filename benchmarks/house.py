@@ -1,4 +1,4 @@
-"""The house in numbers: lines, files, conditions on the kind of a scene, circles, imports.
+"""The house in numbers: lines, files, imports, names, circles, words, conditions on a scene's kind.
 
     python -m benchmarks.house              # of this checkout
     python -m benchmarks.house FOLDER       # of another, such as one at c015253c
@@ -9,6 +9,7 @@ comprehensions that name what makes the kind of a scene: `is_free`, `free`, `ela
 """
 
 import ast
+import re
 import sys
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
@@ -18,6 +19,8 @@ from tests.recorded.recording import PACKAGES, ROOT
 
 KIND = {"is_free", "free", "elastic", "with_forces"}
 LECTURES = "lectures"
+LEAST_LINES = 60
+"""Shorter files are entries of a registry, or names of the public face."""
 
 
 def files(root: Path) -> dict[str, str]:
@@ -81,6 +84,14 @@ def circles(arrows: Mapping[str, set[str]]) -> list[set[str]]:
     return [set(ring) for ring in rings if len(ring) > 1]
 
 
+def docstrings(tree: ast.AST) -> Iterator[str]:
+    """The texts that stand as statements: docstrings, also those of attributes and constants."""
+    for node in ast.walk(tree):
+        for each in body if isinstance(body := getattr(node, "body", None), list) else ():
+            if isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant):
+                yield str(each.value.value)
+
+
 def show(root: Path) -> None:
     """Print them."""
     texts = files(root)
@@ -106,6 +117,11 @@ def show(root: Path) -> None:
     )
     print(f"{sum(count > 1 for count in names.values())} class names that mean several things")
     print(f"{len(circles(arrows))} circles of files")
+    short = [file for file, count in lines.items() if 1 < count < LEAST_LINES]
+    print(f"{len(short)} files of less than {LEAST_LINES} lines: {', '.join(short)}")
+    words = [word.lower() for tree in trees.values() for text in docstrings(tree)
+             for word in re.findall(r"[A-Za-z][A-Za-z'-]*", text)]  # fmt: skip
+    print(f"{1e4 * words.count('what') / len(words):.0f} of 10,000 words of docstrings are 'what'")
     into = [f"{a} -> {b}" for a in arrows for b in sorted(arrows[a])
             if LECTURES in b.split("/") and LECTURES not in a.split("/")]  # fmt: skip
     print(f"{len(into)} imports of lectures from elsewhere: {', '.join(into)}")

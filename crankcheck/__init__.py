@@ -8,16 +8,15 @@ and `crankcheck.engine`, for engines of your own: docs/how-to/add-an-engine.md. 
 class and function is private, and may change from one version to the next without a word in
 CHANGELOG.md.
 
-It is the same in a checkout and where the wheel is installed. Importing it costs next to nothing:
-what stands behind a name is loaded when the name is first used. Where it is the command that
-begins, Ctrl-C is heard from here on.
+It is the same in a checkout and where the wheel is installed. Importing it costs next to nothing: a
+name is loaded when it is first used. Where the command begins, Ctrl-C is handled from here on.
 """
 
 import sys
 
 
 def _interrupted(*_: object) -> None:
-    """End the process as the command ends it for Ctrl-C; there is nothing to be undone yet."""
+    """End the process as the command does for Ctrl-C; there is nothing to undo yet."""
     import os
 
     os.write(2, b"crankcheck: interrupted\n")
@@ -37,7 +36,7 @@ def _end_on_ctrl_c() -> None:
 
 
 def _is_command(program: str) -> bool:
-    """Whether that is the program of `crankcheck`, or `python -m crankcheck` is being looked up."""
+    """True if the program is `crankcheck`, or `python -m crankcheck` is being looked up."""
     if program == "-m":
         return not {"crankcheck", "-mcrankcheck"}.isdisjoint(sys.orig_argv)
     return program.replace("\\", "/").rpartition("/")[2].removesuffix(".exe") == "crankcheck"
@@ -46,7 +45,7 @@ def _is_command(program: str) -> bool:
 if _is_command((getattr(sys, "argv", None) or [""])[0]):
     _end_on_ctrl_c()
 TYPE_CHECKING = False
-"""As that of `typing`, whose import would take longer than all else here."""
+"""The constant of `typing`, whose import would take longer than all else here."""
 
 if TYPE_CHECKING:
     from models.errors import (
@@ -128,7 +127,7 @@ __all__ = [
 if not TYPE_CHECKING:  # a type checker refuses every other name
 
     def __getattr__(name: str) -> object:
-        """What stands behind a name, imported now."""
+        """Import and return the object of a public name."""
         match name:
             case "CrankcheckError" | "EngineError" | "ReachError" | "SceneError" | "StructureError":
                 from models import errors as home

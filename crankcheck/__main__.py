@@ -6,7 +6,7 @@ from crankcheck import _end_on_ctrl_c
 
 
 def main() -> None:
-    """The command, imported once Ctrl-C can do no harm."""
+    """Run the command, imported once Ctrl-C can do no harm."""
     _end_on_ctrl_c()
     from reports.workers import one_thread
 

@@ -1,4 +1,4 @@
-"""For an engine of your own: all that an adapter is made of.
+"""Parts of an adapter for an engine of your own.
 
 ::
 
@@ -6,12 +6,12 @@
 
     ENGINE = cc.Engine("mine", profiles, version, check, open)
 
-An adapter opens a session at a state, steps it, and says what it holds and what has moved, as
-`Poses`; everything after that is crankcheck's. docs/how-to/add-an-engine.md shows one from top to
-bottom; ``crankcheck engines check package.module:ENGINE`` says what one still does wrong.
+An adapter opens a session at a state, steps it, and reports its model, as `Facts`, and its motion,
+as `Poses`; everything after that is crankcheck's. docs/how-to/add-an-engine.md shows an adapter
+from top to bottom; ``crankcheck engines check package.module:ENGINE`` lists its remaining faults.
 
-What stands here is public. ``drive`` says what the crank is to be told at each step,
-``load_magnitudes`` how large the loads of a scene are meanwhile, and ``tree`` lays out a mechanism
+All names here are public. ``drive`` gives the command of the crank at each step,
+``load_magnitudes`` the sizes of the loads of a scene meanwhile, and ``tree`` lays out a mechanism
 for an engine with joint coordinates, whose motion `body_poses` turns into poses.
 """
 

@@ -1,4 +1,4 @@
-"""For your own tests: fail where a linkage is not where the closed form has it.
+"""Assertion for your own tests: fail where a linkage is not where the closed form has it.
 
 ::
 

@@ -1,4 +1,4 @@
-"""The command itself: how it begins, and every way in which it may end."""
+"""The command itself: its start, and all of its endings."""
 
 import contextlib
 import dataclasses
@@ -34,11 +34,11 @@ TRACEBACK = "CRANKCHECK_TRACEBACK"
 
 
 class Request(Protocol):
-    """What is asked of a command: a frozen dataclass, whose fields are annotated with the
+    """A request of a command: a frozen dataclass, whose fields are annotated with the
     `typer.Argument` or `typer.Option` of each."""
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it, and print what comes of it; returns the exit code."""
+        """Answer the request, and print the answer; return the exit code."""
         ...
 
 
@@ -58,12 +58,12 @@ class Late(TyperCommand):
         return cast(TyperCommand, typer.main.get_command(alone))
 
     def make_context(self, info_name: str | None, args: list[str], *more: Any, **extra: Any) -> Any:
-        """As of the command itself: with its options."""
+        """The context of the loaded command, with its options."""
         return self.loaded.make_context(info_name, args, *more, **extra)
 
 
 class CommandGroup(TyperGroup):
-    """The commands that begin with the name of the group, or all, before the groups in it."""
+    """The commands of the group, or of all, before its subgroups."""
 
     def __init__(self, **attributes: Any) -> None:
         super().__init__(**attributes)
@@ -100,7 +100,7 @@ app.add_typer(
 
 
 def main() -> None:
-    """The entry of the command `crankcheck`."""
+    """Entry of the command `crankcheck`."""
     try:
         try:
             with guarded():
@@ -118,13 +118,13 @@ def main() -> None:
                     sys.stdout.flush()
         finally:
             finish()
-    except Stopped as stopped:  # it came while another end was told, or before all was finished
+    except Stopped as stopped:  # during the message of another end, or before all was finished
         _end(stopped.code, stopped.word)
 
 
 @contextmanager
 def guarded() -> Iterator[None]:
-    """Every end but a verdict: one line, and an exit code that tells whose fault it is."""
+    """Turn every end but a verdict into one line and an exit code that says whose fault it is."""
     try:
         yield
     except CrankcheckError as error:
@@ -160,7 +160,7 @@ def guarded() -> Iterator[None]:
 
 def _typed(request: type[Request]) -> Callable[..., None]:
     """A function with an argument or option for each field of a request, as typer reads it, that
-    ends with the exit code of what it does. What is not given keeps the field's default."""
+    ends with the exit code of the request. Fields that are not given keep their default."""
 
     def typed(**options: object) -> None:
         given = {name: value for name, value in options.items() if value is not None}
@@ -181,7 +181,7 @@ def _typed(request: type[Request]) -> Callable[..., None]:
 
 
 def _end_with(request: Request) -> NoReturn:
-    """Do what is asked, and end with its exit code."""
+    """Answer a request, and end with its exit code."""
     with guarded():
         code = request.run(terminal(), terminal(stderr=True))
     raise typer.Exit(code)
@@ -201,7 +201,7 @@ def _parameter(field: dataclasses.Field[Any], note: object) -> inspect.Parameter
 
 
 def _end(code: int, text: str) -> NoReturn:
-    """The last line, where it can be written, and the exit code; a signal goes before all else."""
+    """End with a last line, where it can be written, and an exit code; a signal comes first."""
     if stopped := seen():
         code, text = stopped.code, stopped.word
     with contextlib.suppress(OSError):
@@ -246,12 +246,12 @@ def _engines(
 
 
 HOME = Path(__file__).parents[2]
-"""The folder of our packages."""
+"""The folder of crankcheck's packages."""
 
 
 def broken_package(error: Exception) -> str:
-    """The package, not one of ours, in whose import an error was raised; empty where it was not in
-    one, as a fault in what we do with it."""
+    """The foreign package in whose import an error was raised; empty for an error elsewhere, such
+    as a fault in our use of it."""
     for frame, _ in walk_tb(error.__traceback__):
         place = Path(frame.f_code.co_filename)
         ours = place.is_relative_to(HOME) and "site-packages" not in place.relative_to(HOME).parts

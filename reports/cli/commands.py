@@ -1,6 +1,6 @@
-"""The commands by their words: what is asked of each, in a room beside this, and its help.
+"""The commands by their words: the request of each, in a room beside this, and its help.
 
-None is loaded before it is called. Those of one word are listed in this order, and then the groups.
+None is loaded before it is called. Commands of one word come in this order, then the groups.
 """
 
 from collections.abc import Mapping

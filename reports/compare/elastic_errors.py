@@ -16,7 +16,8 @@ from reports.compare.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, Errors, LinkFacts, MotionFacts
 from reports.compare.tracks import length
-from reports.quantities import BENDING, QUANTITIES, named
+from reports.quantities import QUANTITIES, named
+from reports.quantities.limits import BENDING
 from reports.quantities.quantity import Tolerance
 
 BENT = (

@@ -7,7 +7,8 @@ from functools import cached_property
 from typing import ClassVar, Literal
 
 from analytic.forces.late_impulses import ON_TIME, LateImpulses
-from reports.quantities import DEFAULTS, named
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import BodyKind, Source, Tolerance, tolerance_name
 
 

@@ -14,8 +14,9 @@ from models.motion import Motion
 from models.scene import GROUND, Scene
 from reports.compare.errors import Error, Errors, MotionFacts
 from reports.compare.free_truth import FreeBeside
-from reports.quantities import FREE, named
+from reports.quantities import named
 from reports.quantities.by_kind import ENERGY, MOMENTUM
+from reports.quantities.limits import FREE
 from reports.quantities.quantity import Quantity, Tolerance
 
 MOST_GROWTH = 1e3

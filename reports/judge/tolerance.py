@@ -72,7 +72,8 @@ from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
 from reports.judge.three_steps import AT_ROUNDING
-from reports.quantities import BENDING, EVERY, FREE, named
+from reports.quantities import named
+from reports.quantities.limits import BENDING, EVERY, FREE
 from reports.quantities.places import WITHIN_A_STEP
 from reports.quantities.quantity import Tolerance
 

@@ -1,1 +1,1 @@
-"""Commands that lecturers use, on top of all the rest; nothing imports them, a table names them."""
+"""Commands for lecturers, on top of all the rest; no room imports them, a table names them."""

@@ -3,7 +3,7 @@
 A new quantity is an entry here. Its columns, rows, limit, rule and diagrams follow from it.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
 from reports.quantities.by_kind import (
     DEFLECTION,
@@ -24,7 +24,7 @@ from reports.quantities.places import (
     POSITION,
     VELOCITY,
 )
-from reports.quantities.quantity import Quantity, Role, Tolerance, tolerance_name
+from reports.quantities.quantity import Quantity, Role
 
 QUANTITIES: dict[str, Quantity] = {
     entry.name: entry
@@ -44,31 +44,3 @@ def named(*roles: Role) -> tuple[str, ...]:
 
 MOVES: Collection[Role] = ("drive", "place", "closure", "derived")
 """The roles of the quantities compared in every run."""
-
-
-_OWN = {
-    tolerance_name(name, each.source): (entry.role, each)
-    for name, entry in QUANTITIES.items()
-    for each in entry.criteria
-}
-DRIVEN = (*MOVES, "force")
-DEFAULTS: Mapping[str, Tolerance] = {
-    name: each.tolerance for name, (role, each) in _OWN.items() if role in DRIVEN
-}
-"""Tolerances of a driven mechanism."""
-BENDING: Mapping[str, Tolerance] = {
-    name: each.tolerance for name, (role, each) in _OWN.items() if role == "elastic"
-}
-"""Tolerances of elastic links themselves."""
-ELASTIC = {**DEFAULTS, **BENDING}
-"""Tolerances of a mechanism whose links bend."""
-FREE: Mapping[str, Tolerance] = {
-    name: limit
-    for name, (role, each) in _OWN.items()
-    if (limit := each.tolerance if role == "free" else each.free_motion)
-}
-"""Tolerances of free motion: its errors at the same time are over the sensitivity of the motion."""
-FREE_ELASTIC = {**FREE, **BENDING}
-"""Tolerances of free motion of links that bend."""
-EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
-"""Names of all tolerances."""

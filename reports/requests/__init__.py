@@ -1,1 +1,1 @@
-"""What can be asked of crankcheck: a frozen dataclass each, with what answers it."""
+"""Requests of crankcheck: a frozen dataclass each, with its answer."""

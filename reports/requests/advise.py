@@ -1,4 +1,4 @@
-"""`crankcheck advise`: what engines reach at a frame time, and the sub-steps to a target."""
+"""`crankcheck advise`: errors of engines at a frame time, and the sub-steps to a target."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,12 +27,12 @@ from reports.workers.progress import progress_bar
 from sim.registry import engine
 
 USUAL_SCENES = ("fourbar-lecture-1", "slider-crank-central")
-"""What is advised on where no scene is named: a loop of pins, and one with a slider."""
+"""Scenes that advice is on where none is named: a loop of pins, and a loop with a slider."""
 
 
 @dataclass(frozen=True)
 class AdviseRequest:
-    """What `advise` was asked for, as given."""
+    """Arguments of `advise`, as given."""
 
     dt_s: Annotated[
         float, option("Frame time of your program, as 1/60.", "--dt SECONDS", parser=seconds)
@@ -51,9 +51,9 @@ class AdviseRequest:
     json: Annotated[Path | None, "Write all of it as JSON."] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0 where some settings reach the target, 1 where none do, 2
-        where none could be run. Raises CrankcheckError for what can be told of the request before
-        anything runs."""
+        """Answer, and return the exit code: 0 where some settings reach the target, 1 where none
+        do, 2 where none could be run. Raises CrankcheckError for a faulty request before any
+        run."""
         read = [*find_scenes(self.scenes), *stored_files(self.study)]
         outputs = Outputs({"--json": self.json})
         outputs.check(read)
@@ -80,7 +80,7 @@ class AdviseRequest:
 
 
 def _study(request: AdviseRequest) -> Stored | None:
-    """The study that was given. Raises CrankcheckError for a folder that is none."""
+    """The given study. Raises CrankcheckError for a folder without one."""
     if request.study is None:
         return None
     stored = read_store(request.study)
@@ -91,7 +91,7 @@ def _study(request: AdviseRequest) -> Stored | None:
 def _scenes(
     request: AdviseRequest, stored: Stored | None
 ) -> tuple[Sequence[Scene], Mapping[str, str]]:
-    """The scenes that were named, else those of the study, else the usual ones; their texts."""
+    """The named scenes, else those of the study, else the usual ones; their texts."""
     if stored is not None and not request.scenes:
         texts = stored_scenes(stored)
         return [parse_scene(text, f"{stored.folder}: {n}") for n, text in texts.items()], texts

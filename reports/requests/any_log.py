@@ -1,4 +1,4 @@
-"""What a user hands in to be judged, as a log: a file, a frame, arrays by name, or a motion."""
+"""Logs of the user to be judged: a file, a frame, arrays by name, or a motion."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 LogLike: TypeAlias = "str | PathLike[str] | pd.DataFrame | Mapping[str, Sequence[float]] | Motion"
 """A log: a file, a frame, columns by name, or a motion."""
 MapLike = str | PathLike[str] | Mapping[str, Any] | None
-"""What columns mean: a file, or what would stand in it."""
+"""Meaning of columns: a file, or a mapping with its content."""
 
 
 def _told(map_: MapLike) -> Map:
-    """What a user says of columns. Raises CrankcheckError with every fault of it."""
+    """The user's meanings of columns. Raises CrankcheckError with every fault of them."""
     if map_ is None:
         return Map()
     if isinstance(map_, Mapping):
@@ -46,8 +46,7 @@ def _told(map_: MapLike) -> Map:
 
 
 def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = False) -> OwnLog:
-    """A log of a scene, of whatever kind, its ``forces`` as well where that is asked. Raises
-    CrankcheckError."""
+    """Read a log of any kind, with its ``forces`` where requested. Raises CrankcheckError."""
     told = _told(map_)
     if isinstance(log, Motion):
         _refuse_map(map_, "a motion")
@@ -79,8 +78,8 @@ def refuse_other_scene(scene: Scene, run: Run) -> None:
 
 
 def scene_of_run(scene: Scene, run: Run) -> Scene:
-    """The scene as the run has it: let go where that was, with the torque of its controller if it
-    has elastic links and one."""
+    """The scene as the run has it: in free motion where the run was, with the torque of its
+    controller if it has elastic links and one."""
     return way_of(scene, run.drive).released(scene)
 
 
@@ -106,7 +105,7 @@ def _refuse_empty(columns: Collection[object], source: str) -> None:
 
 
 def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
-    """A frame, its times among its columns, and what it is called. Raises CrankcheckError."""
+    """A frame, its times among its columns, and its name in messages. Raises CrankcheckError."""
     import pandas as pd
 
     from reports.logs.time_columns import time_of
@@ -138,9 +137,9 @@ TIME = "time_s"
 
 def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> OwnLog:
     """The log of a motion; a series that is NaN throughout, as of an engine that does not report
-    it, is none.
+    it, is left out.
 
-    Raises CrankcheckError for times that do not go on; bodies that the scene has not; series of
+    Raises CrankcheckError for times that do not increase; bodies that the scene has not; series of
     another shape than the times, or with samples that are not finite; nothing that moves.
     """
     raw = {TIME: samples(motion.time_s, f"{source}: time_s")}
@@ -164,7 +163,7 @@ def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> O
 
 
 def _series(scene: Scene, motion: Motion, source: str) -> Iterator[tuple[Kind, str, object]]:
-    """What a motion says of bodies that move. Raises CrankcheckError for one that is not there."""
+    """The series of the moving bodies. Raises CrankcheckError for a body that the scene has not."""
     points = [*scene.pins, *(slider.point for slider in scene.sliders.values())]
     there = {"link": [*scene.links], "point": points, "slider": [*scene.sliders]}
     there |= {"elastic": [*scene.elastic]} if scene.elastic else {}
@@ -184,7 +183,7 @@ def _series(scene: Scene, motion: Motion, source: str) -> Iterator[tuple[Kind, s
 
 
 def _fitting(series: object, kind: Kind, time_s: Array, what: str) -> Array:
-    """A series (T,) of a body. Raises CrankcheckError for one of another shape."""
+    """A series (T,) of a body. Raises CrankcheckError for another shape."""
     found = numbers(series, what)  # type: ignore[arg-type]  # whatever it is, it is looked at there
     shape = time_s.shape if kind.axis is None else (*time_s.shape, 2)
     if found.shape != shape:

@@ -1,4 +1,4 @@
-"""The arguments of a call, checked before anything is done; and what is said of mistakes there."""
+"""Arguments of a call, checked before anything is done, and the messages on mistakes there."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from models.files.reading import every_shipped, load_scene
 from models.scene import KEPT, Scene
 from reports.output.numbers import listed
 from reports.plan.steps import positive
-from reports.quantities import EVERY
+from reports.quantities.limits import EVERY
 from sim.engine import SettingValue
 from sim.engine.settings import profile_of, resolved
 from sim.registry import FIRST, engine
@@ -35,7 +35,7 @@ SceneLike = Scene | str | PathLike[str]
 
 
 def scene_of(scene: SceneLike) -> Scene:
-    """The scene that was meant. Raises CrankcheckError as `load_scene`, and for what is none."""
+    """The scene of an argument. Raises CrankcheckError as `load_scene`, and for other values."""
     if isinstance(scene, Scene):
         return scene
     if isinstance(scene, str) and scene in every_shipped():
@@ -50,12 +50,12 @@ def scene_of(scene: SceneLike) -> Scene:
 
 @lru_cache(maxsize=KEPT)
 def _shipped(name: str) -> Scene:
-    """A shipped scene, the same one every time: what was worked out for it is kept."""
+    """A shipped scene, the same object every time, so that its cached results are kept."""
     return load_scene(name)
 
 
 def kind_of(value: object) -> str:
-    """What was found in place of something else: itself where it is short, else its kind."""
+    """The wrong value as named in a message: itself where it is short, else its type."""
     if isinstance(value, str | int | float | bytes | None):
         return shown(value)
     name = type(value).__qualname__
@@ -70,7 +70,7 @@ def text_of(value: object, name: str, such_as: str) -> str:
 
 
 def one_of(value: object, name: str, choices: Iterable[str]) -> str:
-    """One of some words. Raises CrankcheckError that lists them."""
+    """Return a value that is among ``choices``. Raises CrankcheckError that lists them."""
     every = list(choices)
     if isinstance(value, str) and value in every:
         return value
@@ -92,9 +92,9 @@ def is_true(value: object, name: str) -> bool:
 
 
 def path_of(value: object, name: str) -> Path:
-    """A path. Raises CrankcheckError for what is none."""
+    """A path. Raises CrankcheckError for anything else."""
     try:
-        text = fspath(value)  # type: ignore[call-overload]  # that is what is asked
+        text = fspath(value)  # type: ignore[call-overload]  # checked here
     except TypeError:
         text = None
     if isinstance(text, str) and text and "\0" not in text:
@@ -103,7 +103,7 @@ def path_of(value: object, name: str) -> Path:
 
 
 def engine_of(name: object, profile: object, settings: object) -> tuple[str, str]:
-    """Engine and profile, with what overrides its settings, once all of it is known to be there.
+    """Engine and profile, with its settings overridden, once all of them are known to exist.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def settings_of(settings: object) -> dict[str, SettingValue]:
 
 
 def setting_of(name: object, value: object) -> SettingValue:
-    """The value of a setting, a plain one. Raises CrankcheckError for what is no number or text."""
+    """A setting's value, as a plain one. Raises CrankcheckError for neither number nor text."""
     if isinstance(value, str) and not isinstance(value, bool):
         return str(value)
     if isinstance(value, Real) and not isinstance(value, bool):
@@ -148,8 +148,8 @@ def tolerances_of(tolerance: object, option: str) -> dict[str, float]:
     Raises
     ------
     CrankcheckError
-        No mapping, a name that is no quantity (the message suggests near ones), a number that is
-        not above 0.
+        No mapping, an unknown quantity (the message suggests near ones), a number that is not above
+        0.
     """
     if tolerance is None:
         return {}
@@ -169,7 +169,7 @@ def tolerances_of(tolerance: object, option: str) -> dict[str, float]:
 
 
 def each_of(values: object) -> list[Any]:
-    """One value, or those of a list or an array."""
+    """A value as a list, or the values of a list or an array."""
     if isinstance(values, np.ndarray):
         values = values.tolist()
     several = isinstance(values, Iterable) and not isinstance(values, str | bytes | Mapping)
@@ -196,17 +196,17 @@ SAME = (
     "jobs limit-s memory-gb delta key branch engine profile"
 )
 ARGUMENTS = RENAMED | {f"--{name}": name.replace("-", "_") for name in SAME.split()}
-"""Options of the commands, and what they are called in a call."""
+"""Arguments of the Python functions, by the option of the command."""
 OTHERS: Mapping[str, str] = {"engine": "engines", "profile": "profiles", "output": "folder"}
-"""What functions call them that have no argument of that name."""
+"""Names of the arguments in functions that have none of the first name."""
 OPTION = re.compile(rf"(?<![\w./-])({'|'.join(sorted(ARGUMENTS, key=len, reverse=True))})(?![\w-])")
 
 
 def told_at_the_call(
     function: Callable[Parameters, Result],
 ) -> Callable[Parameters, Result]:
-    """The function, whose CrankcheckErrors name arguments in place of options, and come from here:
-    what lies deeper is none of the caller's business."""
+    """Wrap a function so that its CrankcheckErrors name arguments in place of options, and have a
+    traceback that ends here: deeper frames are none of the caller's business."""
     arguments = _arguments_of(function)
 
     @functools.wraps(function)
@@ -224,7 +224,7 @@ def told_at_the_call(
 
 
 def _arguments_of(function: Callable[..., object]) -> Mapping[str, str]:
-    """Options, and what this function calls them."""
+    """The arguments of this function, by option."""
     own = inspect.signature(function).parameters
     return {
         option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name
@@ -233,13 +233,13 @@ def _arguments_of(function: Callable[..., object]) -> Mapping[str, str]:
 
 
 def in_python(text: str, arguments: Mapping[str, str] = ARGUMENTS) -> str:
-    """A text of the command that names arguments in place of options."""
+    """A text of the command, with arguments in place of options."""
     return OPTION.sub(lambda hit: arguments[hit[1]], text)
 
 
 def parts_in_python(judged: Checked | JudgedLog, tolerance: str = "tolerance") -> dict[str, Any]:
-    """The fields of what was judged, whose words name arguments in place of options; ``tolerance``
-    is the one by which tolerances were given."""
+    """The fields of a judged run or log, with arguments in place of options in their words;
+    ``tolerance`` is the argument that gave the tolerances."""
 
     def told(text: str) -> str:
         return in_python(text, {**ARGUMENTS, "--tol": tolerance})

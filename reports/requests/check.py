@@ -40,11 +40,11 @@ DRIVES = ("prescribed", "servo")
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class CellVerdict(Shown, Checked):
-    """A scene in an engine with what came of it.
+    """Verdict on a scene in an engine.
 
-    ``verdict`` is "within", "out" or "unsupported"; ``findings`` is what every rule says, those of
-    ``failures`` make the verdict, and those of ``advice`` are worth knowing; ``errors`` are the
-    numbers, and ``limits`` what they are held to; ``facts`` says where they come from.
+    ``verdict`` is "within", "out" or "unsupported"; ``findings`` are the answers of all rules,
+    ``failures`` those that make the verdict, and ``advice`` those worth knowing; ``errors`` are the
+    numbers, ``limits`` their tolerances; ``facts`` says where they come from.
     """
 
     facts: Mapping[str, str]
@@ -54,8 +54,8 @@ class CellVerdict(Shown, Checked):
         return self.cell.scene
 
     def frame(self) -> pd.DataFrame:
-        """One row per quantity, body, source and kind of error, with the limit in force; ``unit``
-        is that of ``maximum``, ``rms`` and ``final``."""
+        """Table of errors: a row per quantity, body, source and kind, with the limit in force;
+        ``unit`` is that of ``maximum``, ``rms`` and ``final``."""
         from reports.judge.rows import error_frame
 
         return error_frame([self])
@@ -86,25 +86,25 @@ def check(
     segments: int | None = None,
     springs: str | None = None,
 ) -> CellVerdict:
-    """Run a scene in an engine and hold it to the closed form, as `crankcheck verify` does.
+    """Run a scene in an engine and compare it with the closed form, as `crankcheck verify` does.
 
     Parameters
     ----------
     scene, engine, profile, steps_per_turn, dt_s, turns, drive, settings, segments, springs
-        As of `run`.
+        As in `run`.
     tolerance : Mapping or None
-        Largest errors by quantity, as pure numbers, such as ``{"angle": 1e-4}``, in place of those
-        of the scene or of the budget that follows from the step.
+        Largest errors by quantity, as pure numbers, such as ``{"angle": 1e-4}``, in place of the
+        scene's or of the budget that follows from the step.
     converge : bool
-        Run it at half and quarter step too, and say what the error does.
+        Run it at half and quarter step too, and report how the error changes.
     forces : bool
-        Hold the reactions and the driving torque to kinetostatics as well.
+        Compare the reactions and the driving torque with kinetostatics as well.
 
     Raises
     ------
     CrankcheckError
-        An argument that is none; a scene that can not follow its driver, or through a position in
-        which its motion is not determined.
+        An invalid argument; a scene that can not follow its driver, or that passes a position where
+        its motion is not determined.
     """
     scene = scene_of(scene)
     refuse_giving_way(scene, "`run` runs it, and `judge` judges that run")
@@ -133,7 +133,7 @@ def check(
 
 
 def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> CellVerdict:
-    """The verdict on a run that was made before; it is run at no other step."""
+    """The verdict on an existing run, without runs at other steps."""
     check_names(scene)
     way_of(scene, run.drive).refuse_made(Planned(scene, run.dt_s, run.steps))
     cell = Cell(
@@ -154,6 +154,6 @@ def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> Ce
 
 
 def _with_facts(checked: Checked, tolerance: str = "tolerance") -> CellVerdict:
-    """What was checked, now, with these versions, by tolerances of the argument of that name."""
+    """The verdict, with facts of now and of these versions; ``tolerance`` names the argument."""
     engines = {checked.cell.engine: checked.version} if checked.version else {}
     return CellVerdict(**parts_in_python(checked, tolerance), facts=provenance(engines))

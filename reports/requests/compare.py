@@ -1,4 +1,4 @@
-"""`compare`: how far a run or a log is from the closed form, without a verdict."""
+"""`compare`: the errors of a run or a log against the closed form, without a verdict."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ LOG_DRIVES = ("scene", "fitted", "logged")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Shown):
-    """How far something is from the closed form: an error for each quantity, body and source.
+    """Errors of a run or a log against the closed form, for each quantity, body and source.
 
-    ``source`` says what was compared.
+    ``source`` names the run or log.
     """
 
     scene: Scene
@@ -50,13 +50,13 @@ class Comparison(Shown):
     def worst(self, quantity: str) -> Error | None:
         """The largest error of a quantity as a pure number; None where there is none.
 
-        Raises CrankcheckError for a name that is no quantity.
+        Raises CrankcheckError for an unknown quantity.
         """
         return self.errors.worst(one_of(quantity, "quantity", QUANTITIES))
 
     def frame(self) -> pd.DataFrame:
-        """One row per quantity, body, source and kind; ``unit`` is that of ``maximum``, ``rms`` and
-        ``final``, and ``maximum_pure`` a multiple of the scene's own size and speed."""
+        """Errors, a row per quantity, body, source and kind; ``unit`` is that of ``maximum``,
+        ``rms`` and ``final``, and ``maximum_pure`` a multiple of the scene's own size and speed."""
         import pandas as pd
 
         from reports.judge.rows import error_row
@@ -83,30 +83,30 @@ def compare(
     segments: int | None = None,
     springs: str | None = None,
 ) -> Comparison:
-    """How far a run, a motion or a log is from the closed form.
+    """Compare a run, a motion or a log with the closed form.
 
     Parameters
     ----------
     scene : Scene, str or path
         A shipped name, the path of a scene file, or a scene.
     what : Run, Motion, path, DataFrame or Mapping
-        What `run` gives, a motion, or a log: a file, a frame, or columns by name.
+        A result of `run`, a motion, or a log: a file, a frame, or columns by name.
     step_s : float or None
         Of a log: the step of its solver [s]; with one, its places are differenced as well.
     drive : str
-        Of a log: what moves the closed form, as of `judge`.
+        Of a log: the motion of the closed form's driver, as in `judge`.
     map : path, Mapping or None
-        Of a log: what its columns mean, as of `judge`.
+        Of a log: the meaning of its columns, as in `judge`.
     forces : bool
-        Of a log: its columns of forces and torque as well. Those of a run are compared where it was
-        asked for them.
+        Of a log: compare its columns of forces and torque as well. Forces of a run are compared
+        where it logged them.
     segments, springs : int or None, str or None
-        Of a log: what elastic links were given to the solver as, as of `run`.
+        Of a log: the solver's model of elastic links, as in `run`.
 
     Raises
     ------
     CrankcheckError
-        What can not be read or is of another scene; a run that logged nothing.
+        A log that can not be read or is of another scene; a run that logged nothing.
     """
     scene = scene_of(scene)
     check_names(scene)
@@ -139,7 +139,7 @@ def compare(
 
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:
-    """The truth of a scene as a run has it. Raises CrankcheckError."""
+    """The reference of a scene for a run. Raises CrankcheckError."""
     scene = scene_of_run(scene, run)
     given = GivenAs(getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain"))
     way, planned = way_of(scene, run.drive), Planned(scene, run.dt_s, run.steps, given)
@@ -148,7 +148,7 @@ def _truth_of_run(scene: Scene, run: Run) -> Truth:
 
 
 def refuse_without_forces(run: Run, *, forces: bool) -> None:
-    """Refuse forces of a run that was not asked for them. Raises CrankcheckError."""
+    """Refuse forces of a run that did not log them. Raises CrankcheckError."""
     if forces and not run.with_forces:
         raise CrankcheckError(
             f"forces: the run in {run.engine} was not asked for them; run it with forces=True"
@@ -156,7 +156,7 @@ def refuse_without_forces(run: Run, *, forces: bool) -> None:
 
 
 def refuse_segments(run: Run, segments: int | None, springs: str | None) -> None:
-    """Refuse what a run knows of its elastic links itself. Raises CrankcheckError."""
+    """Refuse options of elastic links that a run knows itself. Raises CrankcheckError."""
     for option, given in (("--segments", segments), ("--springs", springs)):
         if given is not None:
             raise CrankcheckError(
@@ -172,7 +172,7 @@ def refuse_options(
     map: MapLike,
     require: tuple[str, ...] = (),
 ) -> None:
-    """Refuse what is asked of logs alone. Raises CrankcheckError."""
+    """Refuse options of logs alone. Raises CrankcheckError."""
     given = {
         "--step": step_s is not None,
         "--drive": one_of(drive, "--drive", LOG_DRIVES) != "scene",
@@ -192,7 +192,7 @@ PARTS: Mapping[ErrorKind, str] = {
     "start": "at the start",
     "passage": "change points",
 }
-"""What sets a row apart: at the logged angle of the crank, first samples, near change points."""
+"""Special kinds of rows: at the logged angle of the crank, first samples, near change points."""
 
 
 def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> None:

@@ -1,4 +1,4 @@
-"""`crankcheck diff`: two stored runs, and what became of every cell."""
+"""`crankcheck diff`: two stored runs, and the change of every cell."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +19,7 @@ from reports.store.manifest import MANIFEST, TABLES
 
 
 def stored_files(*folders: Path | None) -> list[Path]:
-    """What is read of the folders of sweeps and verifications; some of it may not be there."""
+    """The files read from folders of sweeps and verifications; some of them may not exist."""
     return [
         path
         for folder in filter(None, folders)
@@ -35,11 +35,11 @@ FORMATS = ("text", "md")
 
 @dataclass(frozen=True)
 class DiffRequest:
-    """What `diff` was asked for, as given.
+    """Arguments of `diff`, as given.
 
     ``old`` and ``new`` are folders of `sweep -o` or of `verify -o`, in any combination: a profile
-    is the variant of its name. ``format`` is what is printed, or what goes to ``output``, which
-    is Markdown in any case.
+    is the variant of its name. ``format`` is that of the printed text; ``output`` is Markdown in
+    any case.
     """
 
     old: Annotated[Path, argument("OLD", "Folder of sweep -o or verify -o.")]
@@ -55,18 +55,18 @@ class DiffRequest:
     junit: Annotated[Path | None, "Write JUnit XML, a case per cell."] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code.
+        """Answer, and return the exit code.
 
         0: nothing is worse. 1: some error grew past the factor, or a cell that ended well does not
         any more; with ``strict`` also where a cell of the old run is missing, or its scene changed.
-        Without it those are told and are no fault: a run that failed is a row with its status, so a
-        cell is missing only where it was not asked for. Times of steps are shown and never count.
+        Without it these are reported and are no fault: a run that failed is a row with its status,
+        so a cell is missing only where it was not requested. Step times are shown and never count.
 
         Raises
         ------
         CrankcheckError
             A folder that holds no run, two runs with nothing in common, an option that makes no
-            sense; a damaged run that may have lost a cell which the other one has.
+            sense; a damaged run that may have lost a cell of the other.
         """
         if self.format not in FORMATS:
             raise CrankcheckError(f"--format {self.format!r}: unknown; use {' or '.join(FORMATS)}")

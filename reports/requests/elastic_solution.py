@@ -1,5 +1,4 @@
-"""`solve` of a scene with elastic links: how they bend, beside the same mechanism with rigid
-ones."""
+"""`solve` of a scene with elastic links: their bending, beside rigid links."""
 
 from __future__ import annotations
 
@@ -51,9 +50,9 @@ if TYPE_CHECKING:
 class ElasticSolution(Solution):
     """The motion of a scene with elastic links.
 
-    As `Solution`, with ``elastic``: how far each elastic link is bent in its middle, and stretched
+    As `Solution`, with ``elastic``: deflection of each elastic link at its middle, and extension
     [m]. Its bound is None: `certainty` says how far it is to be trusted. ``vibration`` is the whole
-    of it (`analytic.elastic.elastic_motion.DrivenElasticMotion`, or `ReleasedElasticMotion`).
+    motion (`analytic.elastic.elastic_motion.DrivenElasticMotion`, or `ReleasedElasticMotion`).
     """
 
     vibration: ElasticHistory
@@ -65,13 +64,12 @@ class ElasticSolution(Solution):
 
     @cached_property
     def certainty(self) -> list[str]:
-        """What it may be off by, in sentences."""
+        """Possible errors of the motion, in sentences."""
         return certainty(self.vibration)
 
     def frame(self) -> pd.DataFrame:
-        """As of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
-        links, what rigid ones would have, ``rocker_theta_rigid_rad``, and the energies of what is
-        let go."""
+        """Table of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
+        links, rigid angles, ``rocker_theta_rigid_rad``, and the energies of free motion."""
 
         rigid = self.rigid if self.forces is not None else replace(self.rigid, forces=None)
         energy = energy_columns(self.vibration, self.time_s)
@@ -103,12 +101,12 @@ class ElasticSolution(Solution):
 def elastic_solution(
     scene: Scene, time_s: Array, wanted: Selection, choice: ElasticChoice, *, forces: bool
 ) -> ElasticSolution:
-    """The motion of a scene with elastic links at times [s] from 0 on; of ``wanted`` alone.
+    """The motion of a scene with elastic links at times [s] from 0 on; ``wanted`` bodies alone.
 
     Raises
     ------
     CrankcheckError
-        Times before the start, what `ElasticChoice` refuses, and motions that are not found.
+        Times before the start, choices that `ElasticChoice` refuses, motions that are not found.
     """
     until_s = max(float(np.max(time_s)), 0.0) or scene.driver.law.period_s
     vibration = choice.motion(scene, until_s)
@@ -138,8 +136,8 @@ def _show(
     *,
     forces: bool,
 ) -> None:
-    """Print the mechanism, the samples that are ``shown``, and the largest of a motion closely
-    sampled, ``fine``."""
+    """Print the mechanism, the samples that are ``shown``, and the largest values of a motion
+    closely sampled, ``fine``."""
     scene = motion.scene
     facts = elastic_facts(scene, motion.by, stiffened=motion.stiffened)
     say(console, _heading(scene) + "\n".join(facts) + "\n")
@@ -157,7 +155,7 @@ def _show(
 
 
 def _heading(scene: Scene) -> str:
-    """What the mechanism is; of one of more freedoms, or of no dyads, its start."""
+    """Heading of the mechanism; with more freedoms than one, or without dyads, its start alone."""
     try:
         return heading(scene, analyse(scene))
     except StructureError:
@@ -165,7 +163,7 @@ def _heading(scene: Scene) -> str:
 
 
 class ElasticSolving(Solving):
-    """Of scenes whose driver follows a law, with links that bend."""
+    """Solving of scenes whose driver follows a law, with links that bend."""
 
     of_links = " with elastic links"
 
@@ -213,7 +211,7 @@ class ElasticSolving(Solving):
 
 
 class ReleasedElasticSolving(LetGo, ElasticSolving):
-    """Of scenes that are let go, with links that bend."""
+    """Solving of free motion, with links that bend."""
 
     def solution(self, scene: Scene, asked: Asked) -> ElasticSolution:
         self.refuse_forces(scene, asked)

@@ -19,12 +19,12 @@ from sim.registry import available, brought, engine
 
 @dataclass(frozen=True)
 class EnginesRequest:
-    """What `engines` was asked for, as given."""
+    """Arguments of `engines`, as given."""
 
     settings: bool = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """The engines: version, or the command that installs them; profiles, also with settings."""
+        """List engines: version, or the command to install; profiles, also with settings."""
         for entry in (*available(), *brought()):
             state = entry.version or entry.broken or f"not installed: {entry.install}"
             console.print(Text(f"{entry.name}  {state}", "bold" if entry.version else "yellow"))
@@ -43,12 +43,12 @@ class EnginesRequest:
 
 
 MEMORY_GB = 4.0
-"""What a clause may take: far more than any session does."""
+"""Memory limit of a clause: far more than any session needs."""
 
 
 @dataclass(frozen=True)
 class EngineCheckRequest:
-    """What `engines check` was asked for, as given."""
+    """Arguments of `engines check`, as given."""
 
     name: Annotated[str, argument("ENGINE", "A name, or one of your own, package.module:ENGINE.")]
     clauses: Annotated[
@@ -58,9 +58,9 @@ class EngineCheckRequest:
     jobs: Jobs = 0
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0 where every clause that can be tried is held, 1 where one
-        is broken, 2 where nothing can be tried. Raises CrankcheckError for an engine that is not
-        there, or none, and for an unknown clause."""
+        """Answer, and return the exit code: 0 where every clause that can be tried is held, 1 where
+        one is broken, 2 where none can be tried. Raises CrankcheckError for an engine that does not
+        exist or is no engine, and for an unknown clause."""
         limits = checked_limits(self.limit_s, MEMORY_GB)
         for clause in self.clauses:
             if clause not in CLAUSES:

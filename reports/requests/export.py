@@ -33,7 +33,7 @@ from sim.run import check_steps
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """What `export` was asked for, as given."""
+    """Arguments of `export`, as given."""
 
     scene: SceneName
     output: Annotated[Path | None, output_option("Write an .xml file.")] = None
@@ -42,8 +42,8 @@ class ExportRequest:
     ] = ()
 
     def run(self, console: Console, progress: Console) -> int:
-        """The MJCF of a scene, assembled at its start, into a file or to the terminal; an elastic
-        link is the chain of segments that the engine is given.
+        """Write the MJCF of a scene, assembled at its start, into a file or to the terminal; an
+        elastic link is the chain of segments that the engine is given.
 
         Loops are closed at the pins of ``close``, the others where `models.mjcf.tree` says.
         """
@@ -61,7 +61,7 @@ class ExportRequest:
 
 @dataclass(frozen=True)
 class ForceRecipeRequest:
-    """What `recipe forces` was asked for, as given."""
+    """Arguments of `recipe forces`, as given."""
 
     engine: Annotated[str, "Engine."]
     scene: Annotated[str, option("A shipped name, or a scene file.", "SCENE")] = "fourbar-lecture-1"
@@ -70,7 +70,7 @@ class ForceRecipeRequest:
     output: Annotated[Path | None, output_option("Write a .py file.")] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """The program, into a file or to the terminal."""
+        """Write the program into a file or to the terminal."""
         if self.output is not None:
             check_file(self.output, "-o", (".py",), inputs=[find_scene(self.scene)])
         if not (math.isfinite(self.steps_per_turn) and self.steps_per_turn > 0.0):
@@ -97,7 +97,7 @@ PICTURES = (".gif", ".png")
 
 @dataclass(frozen=True)
 class ViewRequest:
-    """What `view` was asked for, as given."""
+    """Arguments of `view`, as given."""
 
     scene: SceneName
     output: Annotated[
@@ -108,8 +108,7 @@ class ViewRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Show a scene; the viewer draws no forces of ours, so that these go into a file.
 
-        Raises CrankcheckError for a scene or a file that can not be used, or forces that there are
-        none of.
+        Raises CrankcheckError for a scene or a file that can not be used, or for lack of forces.
         """
         output = self.output
         read = [find_scene(self.scene)]
@@ -134,7 +133,7 @@ class ViewRequest:
 
 
 def has_screen() -> bool:
-    """Whether a window can be opened here."""
+    """True if a window can be opened here."""
     if sys.platform in ("darwin", "win32"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
@@ -142,10 +141,10 @@ def has_screen() -> bool:
 
 @dataclass(frozen=True)
 class ScenesRequest:
-    """What `scenes` was asked for: nothing in particular."""
+    """Request of `scenes`, which has no arguments."""
 
     def run(self, console: Console, progress: Console) -> int:
-        """The shipped scenes by kind: structure, driver and source."""
+        """List the shipped scenes by kind: structure, driver and source."""
         for kind in kinds():
             console.print(Text(_heading(kind), "bold"))
             table = plain_table(gap=2)
@@ -159,7 +158,7 @@ class ScenesRequest:
 
 
 def _groups(scene: Scene) -> str:
-    """The Assur groups of a scene in solving order, a dash for one that is none of dyads."""
+    """The Assur groups of a scene in solving order, a dash for groups other than dyads."""
     try:
         parts = analyse(scene).order
         return " + ".join(part.kind for part in parts if not isinstance(part, Bridge))
@@ -168,6 +167,6 @@ def _groups(scene: Scene) -> str:
 
 
 def _heading(kind: str) -> str:
-    """A kind, and how to ask for all its scenes."""
+    """A kind of scenes, and the words that name all of them."""
     by_name = f"all of them by `{kind}`, as in `crankcheck verify {kind}`"
     return f"{kind}: {'all of them where no scene is named' if kind == KINEMATICS else by_name}"

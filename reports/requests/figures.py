@@ -35,7 +35,7 @@ Drawn = Callable[[], Figure | None]
 
 @dataclass(frozen=True)
 class FiguresRequest:
-    """What `figures` was asked for, as given."""
+    """Arguments of `figures`, as given."""
 
     folder: Annotated[Path, argument("DIR", "Folder of a sweep.")]
     output: Annotated[Path, output_option("Folder for the figures.")]
@@ -81,7 +81,7 @@ class FiguresRequest:
 
 
 def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dict[str, Drawn]:
-    """What is drawn into which file, by the file's name without its ending."""
+    """The figures to draw, by the name of their file without its ending."""
     chosen = _chosen(scenes, report.scenes, "--scene", "scene")
     if strange := next((scene for scene in chosen if not re.fullmatch(NAME, scene)), None):
         raise CrankcheckError(
@@ -107,7 +107,7 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
 
 
 def _whole(report: Report, drawing: Drawing) -> Report | None:
-    """What of a store a figure over all scenes shows: what was driven, where there is any."""
+    """The part of a store for a figure over all scenes: driven scenes, where there are any."""
     if report.driven is not None:
         return report.driven if "driven" in drawing.drives else report
     alike = len({line.way.name for line in report.lines}) < 2
@@ -115,7 +115,7 @@ def _whole(report: Report, drawing: Drawing) -> Report | None:
 
 
 def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
-    """What of a store a figure of a scene shows; None for a scene of the other kind."""
+    """The part of a store that a figure of a scene shows; None for a scene of the other kind."""
     driven = report.driven
     if driven is not None and scene in driven.scenes and "driven" in drawing.drives:
         return driven
@@ -124,7 +124,7 @@ def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
 
 
 def _chosen(asked: Sequence[str], names: Iterable[str], option: str, noun: str) -> list[str]:
-    """The names that were asked for, each once; all where none was."""
+    """The requested names, each once; all where none was given."""
     every = list(names)
     for name in asked:
         if name not in every:

@@ -1,4 +1,4 @@
-"""`solve` of a scene that is let go: its free motion, integrated, with what it is sure to."""
+"""`solve` of free motion: integrated, with the bound of its error."""
 
 from __future__ import annotations
 
@@ -41,23 +41,23 @@ Bodies = TypeVar("Bodies", Motion, Bound)
 class FreeSolution(Solution):
     """The free motion of a scene, with a bound of its own error at every sample.
 
-    As `Solution`; ``free`` is the whole of it, dense (`analytic.free.free_motion.FreeMotion`).
+    As `Solution`; ``free`` is the whole motion, dense (`analytic.free.free_motion.FreeMotion`).
     """
 
     free: FreeMotion
 
     @property
     def sensitivity(self) -> Array:
-        """By how much a small change of the start has grown by each sample, (T,)."""
+        """Growth of a small change of the start by each sample, (T,)."""
         return self.free.sensitivity(self.time_s)
 
     @property
     def error_rad(self) -> Array:
-        """What the driver's angle may be off by at each sample [rad], (T,)."""
+        """Bound of the error of the driver's angle at each sample [rad], (T,)."""
         return self.free.error_rad(self.time_s)
 
     def frame(self) -> pd.DataFrame:
-        """As of `Solution`, with the energies, the sensitivity and the error beside."""
+        """Table of `Solution`, with the energies, the sensitivity and the error beside."""
         return super().frame().assign(**free_columns(self.free, self.time_s))
 
     def show(self, console: Console) -> None:
@@ -72,12 +72,12 @@ class FreeSolution(Solution):
 
 
 def free_solution(scene: Scene, time_s: Array, wanted: Selection, *, bound: bool) -> FreeSolution:
-    """The free motion of a scene at times [s] from 0 on; of ``wanted`` alone.
+    """The free motion of a scene at times [s] from 0 on; the bodies of ``wanted`` alone.
 
     Raises
     ------
     CrankcheckError
-        Times before the start, and as `analytic.free.release.release`.
+        Times before the start, and the errors of `analytic.free.release.release`.
     """
     law = scene.driver.law
     free = release(scene, float(np.max(time_s)) if np.max(time_s) > 0.0 else law.period_s)
@@ -88,7 +88,7 @@ def free_solution(scene: Scene, time_s: Array, wanted: Selection, *, bound: bool
 
 
 def _chosen(of: Bodies, wanted: Selection) -> Bodies:
-    """The links, points and sliders that were asked for."""
+    """The wanted links, points and sliders."""
     return replace(
         of,
         links={name: of.links[name] for name in wanted.links},
@@ -114,7 +114,7 @@ def show_free(console: Console, whole: FreeMotion, motion: Motion) -> None:
 
 
 def _without_dyads(whole: FreeMotion) -> str:
-    """What a mechanism of other freedoms than one, or of other groups than dyads, is."""
+    """Heading of a mechanism with several freedoms, or with groups other than dyads."""
     scene = whole.scene
     return (
         f"{scene.name}: {scene.source}\nmobility {whole.freedoms}; driver {scene.driver.link}, "
@@ -123,7 +123,7 @@ def _without_dyads(whole: FreeMotion) -> str:
 
 
 class LetGo(Solving):
-    """What is asked of scenes that are let go, with rigid links or elastic ones."""
+    """Solving of free motion, with rigid links or elastic ones."""
 
     def refuse(self, scene: Scene, request: SolveOptions) -> None:
         of_driver = "at_deg at_m turns steps_per_turn clockwise along forces"
@@ -135,7 +135,7 @@ class LetGo(Solving):
         refuse_samples(request)
 
     def instants(self, scene: Scene, request: SolveOptions) -> Array:
-        """From 0 to the end, both included [s]. Raises CrankcheckError."""
+        """Times from 0 to the end, both included [s]. Raises CrankcheckError."""
         until_s = scene.driver.law.period_s if request.duration is None else request.duration
         if not (math.isfinite(until_s) and until_s > 0.0):
             raise CrankcheckError(f"--duration {until_s:g}: give seconds above 0")
@@ -150,13 +150,13 @@ class LetGo(Solving):
         return np.linspace(0.0, until_s, steps + 1)
 
     def refuse_forces(self, scene: Scene, asked: Asked) -> None:
-        """Refuse forces that nothing drives. Raises CrankcheckError."""
+        """Refuse forces, which need a driving torque. Raises CrankcheckError."""
         if is_true(asked.forces, "forces"):
             raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")
 
 
 class FreeSolving(LetGo):
-    """Of scenes in free motion, with rigid links."""
+    """Solving of free motion, with rigid links."""
 
     def solution(self, scene: Scene, asked: Asked) -> FreeSolution:
         asked.choice.refuse_of_rigid(scene)

@@ -38,7 +38,7 @@ FILES = ("history.csv", "history.md")
 
 @dataclass(frozen=True)
 class HistoryRequest:
-    """What `history` was asked for, as given; as of `verify` where the names are the same."""
+    """Arguments of `history`, as given; as in `verify` where the names are the same."""
 
     engine: Annotated[str, argument("ENGINE", "Engine, such as mujoco.")]
     versions: Annotated[Sequence[str], argument("VERSION", "Released versions of it.")]
@@ -61,8 +61,8 @@ class HistoryRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0 when every version has a result, 2 when one has none.
-        Raises CrankcheckError for what can be told of the request before installing."""
+        """Answer, and return the exit code: 0 when every version has a result, 2 when one has none.
+        Raises CrankcheckError for a faulty request before installing."""
         _refuse_own(self.engine)
         versions = wanted(self.engine, self.versions)
         if not versions:
@@ -99,8 +99,8 @@ class HistoryRequest:
 
 
 def _refuse_own(name: str) -> None:
-    """Refuse an engine that no registry has versions of. Raises CrankcheckError, with the near
-    names of one that is unknown."""
+    """Refuse an engine without versions in a registry. Raises CrankcheckError, which suggests near
+    names for an unknown engine."""
     if name not in ENGINES:
         own = engine(name).name
         raise CrankcheckError(
@@ -110,7 +110,7 @@ def _refuse_own(name: str) -> None:
 
 
 def _verification(request: HistoryRequest) -> VerifyRequest:
-    """The verification that each version is put to."""
+    """The verification that is run with each version."""
     return VerifyRequest(
         scenes=request.scenes,
         engines=(request.engine,),
@@ -146,8 +146,7 @@ def _measured(
     uv: str | None,
     tell: Callable[..., None],
 ) -> VersionResult:
-    """The result of one version in ``folder``, kept from before or made now; or the reason why
-    there is none."""
+    """The result of one version in ``folder``, kept or made now; or the reason for none."""
     lock = cache / "locks" / f"{asked.name}.lock"
     try:
         with alone(lock, lambda: tell("waiting for another crankcheck")):
@@ -179,7 +178,7 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
 
 
 def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:
-    """The verification of each version in a folder of its own, and the history of all."""
+    """Write the verification of each version into a folder of its own, and the history of all."""
     if request.folder is None:
         return
     for result in results:

@@ -1,4 +1,4 @@
-"""`judge`: a log of the user's own, or a run, held to the closed form."""
+"""`judge`: a log of the user's own, or a run, compared with the closed form."""
 
 from __future__ import annotations
 
@@ -65,23 +65,23 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Target = float | Mapping[str, float] | None
-"""The largest error as a pure number: one for all quantities, or one each."""
+"""The largest error as a pure number, for all quantities together or for each."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LogVerdict(Shown, JudgedLog):
-    """A log of your own with what came of it.
+    """Verdict on a log of your own.
 
-    ``verdict`` is "within" or "out"; ``findings`` is what every rule says, and those of
-    ``failures`` make the verdict; ``causes`` explain what is out of tolerance, and say
-    what is late within it; ``not_judged`` is what the scene has and the log has not; ``facts``
-    says where the numbers come from.
+    ``verdict`` is "within" or "out"; ``findings`` are the answers of all rules, and ``failures``
+    those that make the verdict; ``causes`` explain errors out of tolerance, and delays within it;
+    ``not_judged`` are quantities of the scene that the log lacks; ``facts`` says where the numbers
+    come from.
     """
 
     facts: Mapping[str, str]
 
     def frame(self) -> pd.DataFrame:
-        """One row per error that is held to a limit, with the columns that it was read from."""
+        """Table of errors: a row per error with a limit, with the columns that it was read from."""
         import pandas as pd
 
         return pd.DataFrame(row_table(self))
@@ -140,38 +140,38 @@ def judge(
     segments: int | None = None,
     springs: str | None = None,
 ) -> CellVerdict | LogVerdict:
-    """Hold a log of your own to the closed form, as `crankcheck judge` does.
+    """Compare a log of your own with the closed form, as `crankcheck judge` does.
 
     Parameters
     ----------
     scene : Scene, str or path
         A shipped name, the path of a scene file, or a scene.
     log : path, DataFrame, Mapping, Motion or Run
-        A file (.csv, .tsv, .txt, .parquet, .xlsx), a frame, columns by name, or a motion; of a run
+        A file (.csv, .tsv, .txt, .parquet, .xlsx), a frame, columns by name, or a motion; for a run
         the verdict is that of `check` without other steps.
     target : float, Mapping or None
-        The largest error as a pure number (rad; lengths over that of the longest link): one for
-        all quantities, or one each.
+        The largest error as a pure number (rad; lengths over that of the longest link), for all
+        quantities together or for each.
     step_s : float or None
         The step of the solver [s], from which a budget follows. One of the two is needed.
     drive : str
-        ``scene``: the scene's driver moves the truth; ``fitted``: speed and start are fitted to the
-        log; ``logged``: the geometry alone is judged, at the logged angle of the driver.
+        ``scene``: the reference follows the scene's driver; ``fitted``: speed and start are fitted
+        to the log; ``logged``: the geometry alone is judged, at the logged angle of the driver.
     map : path, Mapping or None
-        What columns mean, where their names do not say it: a TOML file, or what would stand in it.
+        Meaning of columns whose names do not say it: a TOML file, or a mapping with its content.
     require : str or Iterable[str]
         Quantities or bodies that have to be in the log.
     forces : bool
-        Judge its columns of forces and torque as well; of a run, those that it was asked for.
+        Judge its columns of forces and torque as well; of a run, the forces that it logged.
     free : bool
-        The log is of a driven scene that was let go at time 0; of a run this is known.
+        The log is of a driven scene, released at time 0; of a run this is known.
     segments, springs : int or None, str or None
-        What elastic links were given to the solver as, as of `run`; of a run this is known.
+        The solver's model of elastic links, as in `run`; of a run this is known.
 
     Raises
     ------
     CrankcheckError
-        A log that can not be read, or of which nothing is of the scene; no target and no step.
+        A log that can not be read, or has nothing of the scene; no target and no step.
     """
     options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
     options |= {"forces": is_true(forces, "forces"), "free": is_true(free, "free")}
@@ -193,7 +193,7 @@ def judged(
     segments: int | None = None,
     springs: str | None = None,
 ) -> CellVerdict | LogVerdict:
-    """As `judge`, of either kind, within limits by quantity, that of all others under `EVERY`."""
+    """Judge a log or a run within limits by quantity; `EVERY` has the limit of all others."""
     scene = scene_of(scene)
     check_names(scene)
     required = names_in(require, "--require")
@@ -228,13 +228,13 @@ def judged(
 
 
 def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
-    """Refuse targets of what the scene has not. Raises CrankcheckError."""
+    """Refuse targets of quantities that the scene has not. Raises CrankcheckError."""
     of_some = [*target.keys() - {EVERY}]
     refuse_of_other_kinds("--target", of_some, [way_of(scene).limits])
 
 
 def _refuse_few_steps(scene: Scene, run: Run) -> None:
-    """Refuse a free run that has hardly begun, whose drift and order are those of its start."""
+    """Refuse a free run so short that its drift and order are those of its start."""
     if run.steps < (least := way_of(scene).least_judged):
         raise CrankcheckError(
             f"{scene.name}: the run has {run.steps} steps; free motion is judged from "
@@ -243,7 +243,7 @@ def _refuse_few_steps(scene: Scene, run: Run) -> None:
 
 
 def target_of(target: Target) -> dict[str, float]:
-    """The target by quantity, that for all of them under `EVERY`. Raises CrankcheckError."""
+    """The target by quantity; `EVERY` has the target of all. Raises CrankcheckError."""
     if target is None or isinstance(target, Mapping):
         return tolerances_of(target, "--target")
     return {EVERY: positive("--target", target, "pure numbers, such as 1e-3")}
@@ -254,7 +254,7 @@ FORMATS = ("text", "md")
 
 @dataclass(frozen=True)
 class JudgeRequest:
-    """What `judge` was asked for, as given."""
+    """Arguments of `judge`, as given."""
 
     scene: SceneName
     log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
@@ -285,8 +285,8 @@ class JudgeRequest:
     springs: SpringKind = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0 within, 1 out. Raises CrankcheckError for what can not be
-        read or asked, before anything is written."""
+        """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
+        can not be read and for a faulty request, before anything is written."""
         scene = load_scene(self.scene)
         if self.free:
             scene = loosened(scene)
@@ -311,7 +311,7 @@ class JudgeRequest:
 
 
 def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
-    """What the log is to be judged by. Raises CrankcheckError for what can be told before."""
+    """The request for the judgement. Raises CrankcheckError for a fault that shows beforehand."""
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
     if request.write_map is not None:

@@ -15,7 +15,7 @@ from reports.own_log.table import suite
 
 
 def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
-    """Write the map of a log, or a form of it to be filled in; returns what that is.
+    """Write the map of a log, or a form of it to be filled in; return a description of it.
 
     Raises CrankcheckError for a log that no map alone can mend.
     """
@@ -41,7 +41,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
 
 
 def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[[], str]]:
-    """What there is to write, by option."""
+    """The contents of the files, by option."""
     return {
         "--json": lambda: _json(judged, facts),
         "--junit": lambda: junit(suite(judged, facts)),
@@ -57,7 +57,7 @@ def _page(judged: JudgedLog, facts: Mapping[str, str]) -> str:
 
 
 def _json(judged: JudgedLog, facts: Mapping[str, str]) -> str:
-    """Facts, verdict, findings, causes and errors; what is not finite is null."""
+    """Facts, verdict, findings, causes and errors; numbers that are not finite are null."""
     fit = judged.fit
     document = {
         "facts": facts,

@@ -1,4 +1,4 @@
-"""Options that several requests have."""
+"""Options that several requests share."""
 
 import dataclasses
 from collections.abc import Iterator, Sequence
@@ -14,7 +14,7 @@ from models.errors import CrankcheckError, shown
 
 
 def seconds(text: str) -> float:
-    """A number of seconds, such as 0.02 or 1/60. Raises typer.BadParameter for what is none."""
+    """Parse a number of seconds, such as 0.02 or 1/60. Raises typer.BadParameter for other text."""
     number, slash, parts = text.partition("/")
     try:
         return float(number) / float(parts) if slash else float(number)
@@ -25,33 +25,33 @@ def seconds(text: str) -> float:
 
 
 def argument(metavar: str, help: str) -> Any:
-    """The note of a field that the command line takes by its place."""
+    """Annotation of a field that is a positional argument of the command line."""
     return typer.Argument(metavar=metavar, help=help)
 
 
 def option(help: str, usage: str = "", **more: Any) -> Any:
-    """The note of a field that is an option, whose ``usage`` has the names that are not its own,
-    and how the value is called: ``--dt SECONDS``. Of one that needs none, the note is its help."""
+    """Annotation of a field that is an option. ``usage`` has names other than the field's, and the
+    name of the value: ``--dt SECONDS``. A field that needs neither is annotated with its help."""
     names = [word for word in usage.split() if word.startswith("-")]
     value = next((word for word in usage.split() if not word.startswith("-")), None)
     return typer.Option(*names, help=help, metavar=value, **more)
 
 
 def output_option(help: str) -> Any:
-    """The note of what is written."""
+    """Annotation of an output file."""
     return option(help, "-o --output")
 
 
 def note_of(field: str, kind: object, note: object, default: object) -> Any:
-    """The note of a field as typer takes it; a truth that is not usual has no option that denies
-    it."""
+    """The annotation of a field as typer takes it; a flag that is False by default has no
+    denial."""
     if not isinstance(note, str):
         return note
     return option(note, name_of(field) * (kind is bool and not default))
 
 
 def name_of(field: str) -> str:
-    """The option that has the name of a field."""
+    """The option named as a field."""
     return f"--{field.replace('_', '-')}"
 
 
@@ -78,7 +78,7 @@ PaperSize = Annotated[str, option("A5, A4, A3, A2, or WIDTHxHEIGHT in mm.", "SIZ
 
 
 def option_of(request: type, field: str) -> str:
-    """What the command line calls a field of a request."""
+    """The name of a request's field on the command line."""
     note = get_type_hints(request, include_extras=True)[field].__metadata__[0]
     if isinstance(note, typer.models.ArgumentInfo):
         return str(note.metavar)
@@ -88,7 +88,7 @@ def option_of(request: type, field: str) -> str:
 
 
 def given(request: Any, *fields: str) -> Iterator[str]:
-    """The options of those of some fields that do not keep their default."""
+    """The options of the ``fields`` that do not have their default."""
     defaults = {each.name: each.default for each in dataclasses.fields(request)}
     for field in fields:
         value, default = getattr(request, field), defaults[field]
@@ -103,14 +103,14 @@ LIVE_SHEET = "lectures.drawing.workbook.live_workbook:live_sheet"
 
 
 def named(place: str) -> Any:
-    """What has that place, ``room.module:name``, in a room beside this one; loaded now."""
+    """The object at ``room.module:name``, in a room beside this; loaded now."""
     module, _, name = place.partition(":")
     return getattr(import_module(f"..{module}", __package__), name)
 
 
 @dataclass(frozen=True)
 class SolveOptions:
-    """Options of `solve`, whatever the kind of the scene."""
+    """Options of `solve` for scenes of any kind."""
 
     answered_by: ClassVar[str] = "requests.solve:SolveRequest"
     scene: SceneName
@@ -161,7 +161,7 @@ class SolveOptions:
 
     @property
     def at_place(self) -> str:
-        """The option by which one position was asked for; "" where a motion was."""
+        """The option that requests one position; "" for a motion."""
         if self.at_deg is None and self.at_m is None:
             return ""
         return f"--at-m {self.at_m:g}" if self.at_deg is None else f"--at-deg {self.at_deg:g}"
@@ -173,7 +173,7 @@ of_model = partial(option, rich_help_panel="A model of your own")
 
 @dataclass(frozen=True)
 class VerifyOptions:
-    """Options of `verify`, of scenes and of a model of the user's own; ``baseline`` is the folder
+    """Options of `verify`, for scenes and for a model of the user's own; ``baseline`` is the folder
     of an earlier run, whose errors may grow by ``factor``."""
 
     answered_by: ClassVar[str] = "requests.verify:VerifyRequest"
@@ -241,11 +241,11 @@ class VerifyOptions:
 
 
 OF_MODELS = ["speed_rad_s", "key", "start_deg", "branch", "write_scene", "limit_s", "memory_gb"]
-"""Fields of a model of the user's own alone."""
+"""Fields for a model of the user's own alone."""
 
 
 def refuse_of_models(request: VerifyOptions) -> None:
-    """Refuse what says nothing of scenes. Raises CrankcheckError."""
+    """Refuse options that do not apply to scenes. Raises CrankcheckError."""
     for given_option in given(request, *OF_MODELS):
         raise CrankcheckError(
             f"{given_option}: it is of a model of your own; name that with --mjcf FILE, or leave "

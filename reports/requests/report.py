@@ -27,7 +27,7 @@ ENDINGS: Mapping[Format, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Made:
-    """A report, and what it is of, in words."""
+    """A report, with a description of its content."""
 
     text: str
     content: str
@@ -36,8 +36,8 @@ class Made:
 def report_of(folder: Path, format: Format) -> Made:
     """The report of the store in ``folder``, or of the hard cases alone.
 
-    What is damaged in the store is told, and the rest is reported. Raises CrankcheckError for no
-    store there, or none of which a cell can be read.
+    Damage to the store is reported beside its sound cells. Raises CrankcheckError for no store
+    there, or a store without a readable cell.
     """
     try:
         swept = any((folder / table).exists() for table in TABLES)
@@ -70,7 +70,7 @@ def report_of(folder: Path, format: Format) -> Made:
 
 
 def _beside(folder: Path) -> Matrix | None:
-    """The hard cases that were run into the folder of a sweep; told, where they are damaged."""
+    """The hard cases in the folder of a sweep; None, with a message, where they are damaged."""
     try:
         return read_matrix(folder)
     except CrankcheckError as error:
@@ -79,7 +79,7 @@ def _beside(folder: Path) -> Matrix | None:
 
 
 def format_of(text: str) -> Format:
-    """A format by its name. Raises CrankcheckError for one that there is not."""
+    """A format by its name. Raises CrankcheckError for an unknown name."""
     for name in ENDINGS:
         if text.lower() == name:
             return name
@@ -88,7 +88,7 @@ def format_of(text: str) -> Format:
 
 @dataclass(frozen=True)
 class ReportRequest:
-    """What `report` was asked for, as given."""
+    """Arguments of `report`, as given."""
 
     folder: Annotated[Path, argument("DIR", "Folder of a sweep, or of hard cases.")]
     output: Annotated[
@@ -97,16 +97,15 @@ class ReportRequest:
     format: Annotated[str, option("A page, or text in Markdown.", "html|md")] = "html"
 
     def run(self, console: Console, progress: Console) -> int:
-        """Write the report of the store in ``folder``, or of the hard cases alone; returns the exit
-        code, 0.
+        """Write the report of the store in ``folder``, or of the hard cases alone; return 0.
 
         Without ``output`` a page goes to ``report.html`` in the working folder, and text to the
-        terminal. What is damaged in the store is told, and the rest is reported.
+        terminal. Damage to the store is reported beside its sound cells.
 
         Raises
         ------
         CrankcheckError
-            No store there, none of which a cell can be read, or a file that can not be written.
+            No store there, a store without a readable cell, or a file that can not be written.
         """
         output, format = self.output, format_of(self.format)
         if output is None and format == "html":
@@ -132,9 +131,9 @@ def report(
     Parameters
     ----------
     folder : str, path or Sweep
-        The folder of a sweep, or of hard cases, or what `sweep` gave.
+        The folder of a sweep or of hard cases, or a result of `sweep`.
     output : str or path
-        The file, whose ending says which of the two.
+        The file, whose ending chooses the format.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""`crankcheck rotatability`: what turns fully, on which circuit, between which dead points."""
+"""`crankcheck rotatability`: links that turn fully, circuits, and dead points."""
 
 import json
 import math
@@ -26,7 +26,7 @@ Row = Mapping[str, object]
 
 @dataclass(frozen=True)
 class RotatabilityRequest:
-    """What `rotatability` was asked for, as given."""
+    """Arguments of `rotatability`, as given."""
 
     scene: SceneName
     position: Annotated[
@@ -40,12 +40,12 @@ class RotatabilityRequest:
     json: Annotated[bool, "As JSON, not as tables."] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show it; the exit code. Raises CrankcheckError for what can not be asked."""
+        """Show the answer; return the exit code. Raises CrankcheckError for a faulty request."""
         scene = load_scene(self.scene)
         try:
             circuits = circuits_of(scene)
         except StructureError as error:
-            analyse(scene)  # which says what is no mechanism at all
+            analyse(scene)  # which refuses whatever is no mechanism
             if self.position:
                 raise
             document = _of_own_branch(scene, str(error))
@@ -67,7 +67,7 @@ class RotatabilityRequest:
 
 
 def _position(circuits: Circuits, text: str) -> Position:
-    """A position as written. Raises CrankcheckError."""
+    """Parse a position. Raises CrankcheckError."""
     degrees, colon, written = text.partition(":")
     signs = circuits.signed.signs
     try:
@@ -86,7 +86,7 @@ def _position(circuits: Circuits, text: str) -> Position:
 
 
 def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
-    """All of it, angles in degrees, as JSON has it."""
+    """The whole answer, angles in degrees, as JSON has it."""
     turning = rotations(scene, circuits.own[1])
     dyads, merit = transmissions(circuits)
     grashof, (number, own) = grashof_of(scene), circuits.own
@@ -134,7 +134,7 @@ def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
 
 
 def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
-    """What is told of a mechanism whose circuits are not found: the branch that it is on."""
+    """The answer for a mechanism whose circuits are not found: the branch that it is on."""
     arc = own_arc(scene)
     scale = driver_scale(scene) if scene.driver.slider is not None else math.degrees(1.0)
     return {
@@ -154,7 +154,7 @@ def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
 
 
 def _show_own_branch(console: Console, document: Mapping[str, Any]) -> None:
-    """The same in words and a table."""
+    """Print the answer of `_of_own_branch` in words and a table."""
     say(console, f"{document['scene']}: the branch that it is on alone")
     show_rows(console, document["rotations"], TABLES["rotations"].split())
     say(console, "")
@@ -173,7 +173,7 @@ def _print_json(console: Console, document: Mapping[str, object]) -> None:
 
 
 def rotation_row(one: Rotation, *, is_limited: bool) -> Row:
-    """What a link does over a branch; the swing is that of one which does not turn fully."""
+    """The rotation of a link over a branch as a row; only a link without full turns has a swing."""
     low, high = (math.degrees(each) for each in (one.low_rad, one.high_rad))
     swings = one.turns == 0
     return {
@@ -189,7 +189,7 @@ def rotation_row(one: Rotation, *, is_limited: bool) -> Row:
 
 
 def _extreme(name: str, extreme: AngleExtreme | None) -> Row:
-    """An extreme angle and where the driver stands, both in degrees."""
+    """An extreme angle and the driver's angle there, both in degrees."""
     if extreme is None:
         return {name: None}
     at = math.degrees(extreme.driver_rad)
@@ -207,7 +207,7 @@ TABLES = {
 
 
 def _show(console: Console, document: Mapping[str, Any]) -> None:
-    """The same in words and tables."""
+    """Print the answer of `_document` in words and tables."""
     kind = "no four-bar or slider-crank driven at its crank, so of no Grashof type"
     if document["type"] is not None:
         kind = f"{document['type']}, margin {document['margin_m']:.6g} m"

@@ -1,4 +1,4 @@
-"""`run`: a scene in an engine, logged, and not judged."""
+"""`run`: a scene in an engine, logged and not judged."""
 
 from __future__ import annotations
 
@@ -56,10 +56,10 @@ DRIVES = ("prescribed", "servo", "free")
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Simulation(Shown, Run):
-    """A run of a scene in an engine: how it moved and ended, with which settings (`Run`).
+    """A run of a scene in an engine: its motion, ending and settings (`Run`).
 
-    ``mechanism`` is the scene, let go where the run was, and ``scene`` its name. Its elastic links
-    were given to the engine as so many ``segments`` each, with ``springs`` of a kind between them.
+    ``mechanism`` is the scene, in free motion where the run was, and ``scene`` its name. Elastic
+    links were given to the engine as so many ``segments`` each, with ``springs`` between.
     """
 
     mechanism: Scene
@@ -67,8 +67,8 @@ class Simulation(Shown, Run):
     springs: Springs = "plain"
 
     def frame(self) -> pd.DataFrame:
-        """The log: one row per sample, columns as those of `Solution.frame`, with the gaps of pins
-        (``C_gap_m``); what the engine does not report is left out.
+        """The log: one row per sample, columns as in `Solution.frame`, with the gaps of pins
+        (``C_gap_m``); series that the engine does not report are left out.
 
         Where velocities or accelerations belong to other instants than the places,
         ``velocity_time_s`` and ``acceleration_time_s`` have these.
@@ -93,7 +93,7 @@ class Simulation(Shown, Run):
             say(console, f"warning: {warning}", "yellow")
 
     def _heading(self) -> str:
-        """What was run."""
+        """Heading of the run: scene, engine, profile, drive and step."""
         logged = "" if self.every == 1 else f", logged every {self.every} steps"
         return (
             f"{self.scene}: {self.engine} {self.version}, profile {self.profile}, drive "
@@ -101,13 +101,13 @@ class Simulation(Shown, Run):
         )
 
     def _length(self) -> str:
-        """How long it is: in turns of what drives it, or in time."""
+        """Length of the run: in turns of its driver, or in time."""
         way = way_of(self.mechanism)
         per_turn = way.turn_s(self.mechanism) / self.dt_s
         return way.clock.long(self.dt_s, self.steps, per_turn)
 
     def ending(self) -> str:
-        """What came of it, in a line."""
+        """The ending of the run, in a line."""
         reason = f": {self.reason}" if self.reason else ""
         widest = max((float(gap.max()) for gap in self.gaps.values() if gap.size), default=0.0)
         gaps = f"; pins open by at most {widest:.2g} m" if self.gaps else ""
@@ -120,7 +120,7 @@ class Simulation(Shown, Run):
 
 @dataclass(frozen=True)
 class RunRequest:
-    """What `run` was asked for, as given; ``settings`` in Python alone."""
+    """Arguments of `run`, as given; ``settings`` in Python alone."""
 
     scene: SceneName
     engine: Annotated[str | None, "Engine; the first of `crankcheck engines` if none."] = None
@@ -142,7 +142,7 @@ class RunRequest:
     settings: Mapping[str, SettingValue] | None = None
 
     def answer(self) -> Simulation:
-        """The run, logged. Raises CrankcheckError for what can be told before."""
+        """The run, logged. Raises CrankcheckError for a faulty request, before the run."""
         scene = under_control(scene_of(self.scene))
         engine = FIRST if self.engine is None else self.engine
         name, profile = engine_of(engine, self.profile, self.settings)
@@ -177,11 +177,10 @@ class RunRequest:
         )
 
     def run(self, console: Console, progress: Console) -> int:
-        """Run it, and show or write the log; returns the exit code: 0, or 1 for a run that did not
-        end well, whose log goes as far as it did.
+        """Run the scene, and show or write the log; return the exit code: 0, or 1 for a run that
+        did not end well, whose log ends there.
 
-        Raises CrankcheckError for what can be told before, and for a scene that the engine can not
-        hold.
+        Raises CrankcheckError for a faulty request, and for a scene that the engine can not hold.
         """
         if self.output is not None:
             check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
@@ -198,7 +197,7 @@ class RunRequest:
 
 
 def _origin(done: Simulation) -> dict[str, str]:
-    """Where a log comes from."""
+    """Origin of a log: scene, engine, settings and step."""
     facts = {"scene": done.scene, "source": done.mechanism.source, "engine": done.engine}
     facts |= {"version": done.version, "profile": done.profile, "drive": done.drive}
     facts |= {"dt_s": repr(done.dt_s), "steps": str(done.steps), "every": str(done.every)}
@@ -206,7 +205,7 @@ def _origin(done: Simulation) -> dict[str, str]:
 
 
 def _written(request: RunRequest, done: Simulation) -> str:
-    """What was written, what came of the run, and how the log is judged, where it is."""
+    """The written file, the ending of the run, and the command to judge the log, if any."""
     assert done.motion is not None
     told = (
         f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
@@ -247,46 +246,46 @@ def run(
     engine, profile : str
         As `crankcheck engines` lists them.
     steps_per_turn, dt_s : float or None
-        The step, by one of the two: steps in a turn of the driver (720), or seconds; of a run that
-        is let go in seconds alone (a millisecond, or a 5000th of what the scene says).
+        The step, by one of the two: steps in a turn of the driver (720), or seconds; in free motion
+        in seconds alone (a millisecond, or a 5000th of the scene's duration).
     turns : float or None
-        Turns (periods) of the driver (2), where one drives it.
+        Turns (periods) of the driver (2), where the scene is driven.
     duration_s : float or None
-        Of a run that is let go: for how long (what the scene says; 10 turns of a driven one's law;
-        with elastic links five swings of the slowest).
+        Duration of free motion (the scene's; 10 turns of the law of a driven scene; with elastic
+        links five periods of the slowest vibration).
     every : int
         Log every so many steps.
     drive : str or None
         ``prescribed``: the driver follows its law exactly; ``servo``: a motor of limited gain
-        drives it; ``free``: nothing does, after its start, as of `verify --free`. None: ``free``
-        for a scene that is let go, which has no other, and ``prescribed`` for one that is driven.
+        drives it; ``free``: no drive after the start, as in `verify --free`. None: ``free`` for a
+        scene of free motion, which has no other, and ``prescribed`` for a driven scene.
     settings : Mapping or None
         Settings of the engine in place of the profile's.
     forces : bool
         Log the reactions and the driving torque as well, in ``motion.forces``.
     segments, springs : int or None, str or None
-        What elastic links are given to the engine as: so many rigid segments each (16), with
-        springs between them that are ``plain``, or ``corrected`` for the sag of the beam; or, with
-        ``beam``, as many elements of a beam of the engine's own.
+        Engine's model of elastic links: so many rigid segments each (16), with springs between them
+        that are ``plain``, or ``corrected`` for the sag of the beam; or, with ``beam``, as many
+        elements of the engine's own beam.
 
     Returns
     -------
     Simulation
-        Also for a scene that the engine can not hold, and for a run that came apart: ``status``
-        and ``reason`` say so.
+        Also for a scene that the engine can not hold, and for a run that came apart, as ``status``
+        and ``reason`` say.
 
     Raises
     ------
     CrankcheckError
-        An argument that is none; an EngineError for an engine, profile or setting; a ReachError
-        for a scene that can not be assembled at its start.
+        An invalid argument; an EngineError for an engine, profile or setting; a ReachError for a
+        scene that can not be assembled at its start.
     """
     return RunRequest(**locals()).answer()
 
 
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
-    """Refuse a length that the run has no use for: turns of a scene that has no law, a duration of
-    what is driven, or both. Raises CrankcheckError."""
+    """Refuse a length that does not apply to the run: turns of a scene without a law, a duration of
+    a driven scene, or both. Raises CrankcheckError."""
     for name in given(request, "turns", "steps_per_turn"):
         if name not in way_of(scene).lengths_by:
             raise CrankcheckError(
@@ -306,7 +305,7 @@ def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> Non
 
 
 def _drive(scene: Scene, drive: str | None) -> Drive:
-    """What drives a scene. Raises CrankcheckError for a drive of what is let go: it has no law."""
+    """The drive of a run. Raises CrankcheckError for a drive of free motion, which has no law."""
     chosen = way_of(scene)
     if drive is None:
         return chosen.drive

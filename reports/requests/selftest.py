@@ -1,4 +1,4 @@
-"""`crankcheck selftest`: plant faults, see which rule catches each, show, write."""
+"""`crankcheck selftest`: plant faults, find the rule that catches each, show, write."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -37,7 +37,7 @@ IN_FOLDER = {"selftest.csv": "--csv", "selftest.json": "--json"}
 
 @dataclass(frozen=True)
 class SelftestRequest:
-    """What `selftest` was asked for, as given."""
+    """Arguments of `selftest`, as given."""
 
     engines: Annotated[
         Sequence[str], option("Engine; may be repeated; all if none.", "--engine")
@@ -54,8 +54,8 @@ class SelftestRequest:
     elastic: Annotated[bool, "Plant faults of elastic links instead."] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes or
-        plants nothing, and where nothing is planted of what need not be seen. Raises
+        """Answer, and return the exit code: 0 where every fault is caught; 1 where one escapes or
+        changes nothing, or where a fault that need not be seen changes nothing. Raises
         CrankcheckError for an unknown engine or fault, and an output that can not be written."""
         engines, kind = chosen_engines(self.engines), _kind(self)
         faults = chosen_faults(self.faults, engines, kind)
@@ -86,7 +86,7 @@ class SelftestRequest:
 
 
 def _kind(request: SelftestRequest) -> RunKind:
-    """What runs the faults are planted in, where none is named. Raises CrankcheckError."""
+    """Kind of runs to plant faults in, where none is named. Raises CrankcheckError."""
     given = {"forces": request.forces, "free": request.free, "elastic": request.elastic}
     asked = [kind for kind in KINDS_ASKED if given[kind]]
     if len(asked) > 1:
@@ -98,7 +98,7 @@ def _kind(request: SelftestRequest) -> RunKind:
 
 
 def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:
-    """How long the runs are, and at which step; free ones by their scene."""
+    """Lengths and steps of the runs; free runs by their scene."""
     kinds = {one.fault.kind for one in verdicts}
     own = (runs.settings.items() for kind, runs in RUNS.items() if kind in kinds)
     return {"profile": PROFILE, **{name: value for items in own for name, value in items}}
@@ -111,7 +111,7 @@ def _json(
     rows: Sequence[Mapping[str, object]],
     facts: Mapping[str, str],
 ) -> str:
-    """Facts, settings, the runs without a fault, every fault in every place, and what passes."""
+    """Facts, settings, the sound runs, every fault in every place, and the faults that pass."""
     content = {
         "provenance": dict(facts),
         "settings": _settings(verdicts),

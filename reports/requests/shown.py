@@ -1,7 +1,6 @@
-"""What all results have: the text that the command prints, and a picture of it for notebooks.
+"""Base of all results: the text that the command prints, and a picture of it for notebooks.
 
-The HTML stands on its own, without scripts and style sheets, and has the colours of the notebook
-around it, light or dark.
+The HTML needs no scripts or style sheets, and has the colours of the notebook, light or dark.
 """
 
 from __future__ import annotations
@@ -27,15 +26,15 @@ if TYPE_CHECKING:
 class Shown:
     """A result that is printed as its table, and that a notebook shows with its mechanism.
 
-    It is one thing, equal to itself alone: its series are not compared.
+    A result equals itself alone: its series are not compared.
     """
 
     def show(self, console: Console) -> None:
-        """Print it as the command does."""
+        """Print the result as the command does."""
         raise NotImplementedError
 
     def _drawn(self) -> str:
-        """The mechanism as SVG; "" where there is none to be drawn."""
+        """The mechanism as SVG; "" where there is none to draw."""
         return ""
 
     def __str__(self) -> str:
@@ -57,7 +56,7 @@ Print = Callable[[Console], None]
 WIDE = 200
 """Columns of a page: room for every column of a table."""
 COLOURS = {"red": "#d9596b", "yellow": "#b97f1f", "green": "#459150", "cyan": "#15889a"}
-"""Those of a terminal, as they are read on white and on black."""
+"""Colours of a terminal, readable on white and on black."""
 CELL = "padding:1px 12px 1px 0;vertical-align:top;border:none;background:none"
 HEAD = "font-weight:600;vertical-align:bottom"
 TABLE = (
@@ -67,10 +66,9 @@ TABLE = (
 
 
 def as_text(show: Print) -> str:
-    """What is printed where nobody looks on a terminal, without spaces at the ends of lines.
+    """The printed text as outside a terminal, without spaces at the ends of lines.
 
-    Without ``force_jupyter`` rich would show it in the notebook that this runs in, and write
-    nothing.
+    Without ``force_jupyter`` rich would show it in the notebook around, and write nothing.
     """
     console = Console(file=io.StringIO(), width=TABLE_WIDTH, color_system=None, force_jupyter=False)
     show(console)
@@ -79,7 +77,7 @@ def as_text(show: Print) -> str:
 
 
 def as_html(drawn: str, show: Print) -> str:
-    """A drawing, and below it what is printed, each table as a table."""
+    """A drawing, and below it the printed parts, each table as a table."""
     collector = Collector()
     show(collector)
     parts = "".join(collector.parts)
@@ -90,21 +88,21 @@ def as_html(drawn: str, show: Print) -> str:
 
 
 class Collector(Console):
-    """A console that keeps what is printed as HTML."""
+    """A console that keeps printed objects as HTML."""
 
     def __init__(self) -> None:
         super().__init__(file=io.StringIO(), width=WIDE, force_jupyter=False)
         self.parts: list[str] = []
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Keep it; nothing is written."""
+        """Keep the objects; nothing is written."""
         style = options.get("style") or ""
         for each in objects:
             self.parts += _html(each, style, plain=options.get("markup") is False)
 
 
 def _html(printed: object, style: Style | str, *, plain: bool) -> Iterable[str]:
-    """What was printed, as elements of a page."""
+    """A printed object, as elements of a page."""
     if isinstance(printed, Group):
         for each in printed.renderables:
             yield from _html(each, style, plain=plain)
@@ -122,7 +120,7 @@ def _text(text: str, *, plain: bool) -> Text:
 
 
 def _table(table: Table) -> str:
-    """A table with its title and heads, if it has any; a grid is one without."""
+    """A table with its title and heads, if it has any; a grid has none."""
     looks = [
         f"{CELL};text-align:{column.justify}{';white-space:nowrap' * column.no_wrap}"
         for column in table.columns
@@ -159,7 +157,7 @@ def _cell(cell: object) -> str:
 
 
 def _spans(text: Text) -> str:
-    """A text with what is coloured or bold in it."""
+    """A text with its colours and bold parts."""
     found = f"<span{_attribute(text.style)}>"
     ends = {0, len(text.plain), *(at for span in text.spans for at in (span.start, span.end))}
     places = sorted(ends)
@@ -177,7 +175,7 @@ def _attribute(style: Style | str) -> str:
 
 
 def _css(style: Style | str) -> str:
-    """A style of a terminal in CSS; what is not known is left out."""
+    """A style of a terminal in CSS; unknown colours are left out."""
     parsed = Style.parse(style) if isinstance(style, str) else style
     colour = COLOURS.get(parsed.color.name, "") if parsed.color else ""
     return (

@@ -47,27 +47,27 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ROWS = 13
-"""Samples that are printed."""
+"""Number of printed samples."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Solution(Shown, Motion):
     """The motion of a scene in closed form, with a bound of its own error at every sample.
 
-    ``links``, ``points`` and ``sliders`` are what moves, by name (`Motion`); ``forces`` what that
-    asks of joints and drive, where they were asked for (`Forces`).
+    ``links``, ``points`` and ``sliders`` are the moving bodies, by name (`Motion`); ``forces`` the
+    reactions and driving torque, where requested (`Forces`).
     """
 
     scene: Scene
 
     @cached_property
     def efficiency(self) -> Efficiency | None:
-        """What friction takes over a cycle of the scene, at its instants and as a whole, and where
-        it locks; None without friction. Raises CrankcheckError for a driver that speeds up."""
+        """Loss by friction over a cycle of the scene, at its instants and as a whole, and places of
+        locking; None without friction. Raises CrankcheckError for a driver that speeds up."""
         return efficiency(self.scene) if self.scene.friction else None
 
     def frame(self) -> pd.DataFrame:
-        """One row per sample, columns with their units: ``rocker_theta_rad``, ``C_x_m``."""
+        """Table of samples, a row each, with units: ``rocker_theta_rad``, ``C_x_m``."""
         from reports.describe.motion_tables import motion_frame
 
         return motion_frame(self)
@@ -121,8 +121,8 @@ def show_solution(
     *,
     clockwise: bool = False,
 ) -> None:
-    """Print what the mechanism is, its extreme speeds, and those samples of its motion that are
-    ``few``, or its only one in full, with what is ``left`` out, and where there is ``more``."""
+    """Print the mechanism, its extreme speeds, and the ``few`` samples of its motion, or its only
+    sample in full; ``left`` says what is left out, ``more`` where to find it."""
     scene, acting = motion.scene, motion.forces is not None
     speeds = speed_facts(scene, along, clockwise=clockwise)
     say(console, heading(scene, analyse(scene), along))
@@ -149,7 +149,7 @@ def show_solution(
 
 
 def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> str:
-    """What the mechanism is, and what the theory says of it as a whole."""
+    """Heading of the mechanism: structure, driver, groups, and facts of the whole."""
     groups = ", ".join(
         f"{part.kind} ({', '.join(part.bodies)})"
         for part in structure.order
@@ -165,7 +165,7 @@ def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> 
 
 
 def _show_position(console: Console, scene: Scene, motion: Motion) -> None:
-    """Print a single position in full, and how certain it is."""
+    """Print a single position in full, with its certainty."""
     for table in position_tables(scene, cleaned(motion)):
         console.print(table, "")
     told = [certainty(motion)]

@@ -41,7 +41,7 @@ from reports.requests.solving import (
 )
 
 SAMPLES = 361
-"""Instants of a period, both ends included, where none are given: as in a file of the command."""
+"""Instants of a period, both ends included, by default: as in a file of the command."""
 
 
 @told_at_the_call
@@ -60,8 +60,8 @@ def solve(
     shape: str | None = None,
     linear: bool = False,
 ) -> Solution:
-    """The motion of a scene at some times, in closed form; of one that is let go, its free motion,
-    integrated (`FreeSolution`); of one with elastic links, how these bend (`ElasticSolution`).
+    """Solve the motion of a scene at some times, in closed form; free motion is integrated
+    (`FreeSolution`); elastic links bend (`ElasticSolution`).
 
     Parameters
     ----------
@@ -70,25 +70,25 @@ def solve(
     time_s : ArrayLike or None
         Times [s], shape (T,), in any order; 361 over a period of the driver for None.
     links, points, sliders : str, Iterable[str] or None
-        What to return, by one name or several; None is all, () is none.
+        Bodies to return, by one name or several; None is all, () is none.
     bound : bool
         Carry error bounds (about three times the work).
     forces : bool
-        Have the reactions and the driving torque as well; NaN in dead points of the driver.
+        Solve the reactions and the driving torque as well; NaN in dead points of the driver.
     modes, axial_modes, elements : int or None
         Of elastic links: sines across and along each, or beam elements.
     shape : str or None
-        What elastic links start with: ``periodic``, ``quasi-static`` or ``straight``; None is what
-        the scene says.
+        Start of elastic links: ``periodic``, ``quasi-static`` or ``straight``; None: the scene's
+        own.
     linear : bool
         Leave out that a bent link is shorter.
 
     Raises
     ------
     CrankcheckError
-        A scene, times or names that are none; a StructureError for a mechanism without a closed
-        form, a ReachError for a driver angle that it can not be assembled in. Of forces: a scene
-        without mass and load, or no instant outside of dead points.
+        An invalid scene, time or name; a StructureError for a mechanism without a closed form, a
+        ReachError for a driver angle that it can not be assembled in. Of forces: a scene without
+        mass and load, or no instant outside of dead points.
     """
     scene = scene_of(scene)
     choice = ElasticChoice(modes, axial_modes, elements, shape, linear)
@@ -135,7 +135,7 @@ def solve_driven(
     time_s : ArrayLike or None
         Times [s] that label the samples, and nothing else.
     scene, links, points, sliders, bound, forces
-        As of `solve`; forces need the whole motion.
+        As in `solve`; forces need the whole motion.
 
     Raises
     ------
@@ -159,10 +159,10 @@ def solve_driven(
 
 @dataclass(frozen=True)
 class SolveRequest(SolveOptions):
-    """What `solve` was asked for, as given."""
+    """Arguments of `solve`, as given."""
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or write the reference. Raises CrankcheckError for what can not be asked."""
+        """Show or write the reference. Raises CrankcheckError for a faulty request."""
         if self.output is not None:
             endings = (*ENDINGS, PAGE) if self.family is None else FAMILY_ENDINGS
             check_file(self.output, "-o", endings, inputs=[find_scene(self.scene)])
@@ -175,7 +175,7 @@ class SolveRequest(SolveOptions):
 
 
 class DrivenSolving(Solving):
-    """Of scenes whose driver follows a law, with rigid links: in closed form, also at one place."""
+    """Solving of driven scenes with rigid links: in closed form, also at one place."""
 
     def solution(self, scene: Scene, asked: Asked) -> Solution:
         asked.choice.refuse_of_rigid(scene)
@@ -214,7 +214,7 @@ class DrivenSolving(Solving):
     def answer(self, scene: Scene, request: SolveOptions, choice: ElasticChoice) -> Solution:
         for text in request.along:
             _along(scene, text)
-        analyse(scene)  # which says what is no mechanism at all
+        analyse(scene)  # which refuses whatever is no mechanism
         if not request.at_place:
             motion = kinematics.solve(scene, instants_of(scene, request))
         else:  # moving as the law of the driver moves it there
@@ -263,7 +263,7 @@ class DrivenSolving(Solving):
 def _with_forces(
     scene: Scene, motion: Motion, *, forces: bool, by_law: bool = True, bound: bool = True
 ) -> Solution:
-    """The motion with its forces, if these are asked for. Raises CrankcheckError."""
+    """The motion, with its forces if requested. Raises CrankcheckError."""
     if is_true(forces, "forces"):
         motion = with_forces(scene, motion, by_law=by_law, bound=bound)
     return Solution(**vars(motion), scene=scene)

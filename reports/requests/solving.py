@@ -1,4 +1,4 @@
-"""How `solve` answers, shows and writes the reference of scenes of a kind: what all kinds share."""
+"""Answering, showing and writing in `solve`: the part that all kinds of scenes share."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 
 
 MOST_MODES, MOST_ELEMENTS = 20, 12
-"""More change nothing but the time that they take: the stiffest of them follow nothing."""
+"""Limits: more modes or elements only take time, as the stiffest of them do not respond."""
 STARTS_AS = "quasi-static"
-"""What a scene starts with that does not say."""
+"""Default shape of elastic links at time 0."""
 
 
 @dataclass(frozen=True)
 class ElasticChoice:
-    """What was asked for, each None where it was not: so many sines across and along each link, or
+    """Options of elastic links, each None by default: so many sines across and along each link, or
     so many elements; the shape at time 0; ``linear`` leaves the shortening of bent links out."""
 
     modes: int | None = None
@@ -51,7 +51,7 @@ class ElasticChoice:
 
     @property
     def options(self) -> list[str]:
-        """Those that were given."""
+        """The given options."""
         given = {
             "--modes": self.modes,
             "--axial-modes": self.axial_modes,
@@ -62,7 +62,7 @@ class ElasticChoice:
         return [name for name, value in given.items() if value is not None]
 
     def refuse_of_rigid(self, scene: Scene) -> None:
-        """Raises CrankcheckError where anything was asked for of a scene without elastic links."""
+        """Refuse options of elastic links for a scene without them. Raises CrankcheckError."""
         for option in self.options:
             raise CrankcheckError(
                 f"{option}: {scene.name} has no elastic links; give it a table [elastic.LINK], or "
@@ -70,7 +70,7 @@ class ElasticChoice:
             )
 
     def discretisation(self, scene: Scene) -> Discretisation:
-        """Raises CrankcheckError for numbers that are none, and for those that go together."""
+        """The modes or elements. Raises CrankcheckError for invalid numbers or combinations."""
         from analytic.elastic.discretisation import REFERENCE, Elements, Modes
 
         usual = Modes()
@@ -103,7 +103,7 @@ class ElasticChoice:
         )
 
     def start(self, scene: Scene) -> Shape:
-        """The shape at time 0. Raises CrankcheckError for a periodic motion of what is not."""
+        """The shape at time 0. Raises CrankcheckError for a periodic shape that can not be."""
         asked = self.shape or scene.start.shape or STARTS_AS
         chosen = cast(Shape, one_of(asked, "--shape", get_args(Shape)))
         law = scene.driver.law
@@ -117,9 +117,9 @@ class ElasticChoice:
         return chosen
 
     def motion(self, scene: Scene, until_s: float) -> ElasticHistory:
-        """The motion of a scene from 0 to a time [s], whatever its driver does.
+        """The motion of a scene from 0 to a time [s], for any law of its driver.
 
-        Raises CrankcheckError for what can not be asked, and what it does not allow.
+        Raises CrankcheckError for invalid options, and for options that the scene does not allow.
         """
         from analytic.elastic.control import elastic_history
 
@@ -142,13 +142,13 @@ ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
 ENDLESS = 10**15
-"""Steps beyond which a float does not count them."""
+"""Number of steps beyond which a float does not count them."""
 Names = str | Iterable[str] | None
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of a scene; ``wanted`` are links, points and sliders, None for all of them."""
+    """A request for a solution; ``wanted`` are links, points and sliders, None for all of them."""
 
     time_s: ArrayLike
     wanted: tuple[Names, Names, Names] = (None, None, None)
@@ -158,10 +158,10 @@ class Asked:
 
 
 class Solving(ABC):
-    """How scenes of a kind are solved; of a motion that is let go, or bends, over time alone."""
+    """Solving of scenes of a kind; free motion and elastic links are solved over time alone."""
 
     of_links = ""
-    """What is said of the links of a scene after its name."""
+    """Words on the links of a scene, after its name."""
 
     @abstractmethod
     def solution(self, scene: Scene, asked: Asked) -> Solution:
@@ -169,14 +169,14 @@ class Solving(ABC):
 
     @abstractmethod
     def refuse(self, scene: Scene, request: SolveOptions) -> None:
-        """Refuse what can not be asked of the scene. Raises CrankcheckError."""
+        """Refuse a request that the scene does not allow. Raises CrankcheckError."""
 
     @abstractmethod
     def figure_files(self) -> Sequence[str]:
         """The names of the figures."""
 
     def instants(self, scene: Scene, request: SolveOptions) -> Array:
-        """The times that the command has samples at [s]. Raises CrankcheckError."""
+        """The times of the command's samples [s]. Raises CrankcheckError."""
         return instants_of(scene, request)
 
     def answer(self, scene: Scene, request: SolveOptions, choice: ElasticChoice) -> Solution:
@@ -186,26 +186,26 @@ class Solving(ABC):
 
     @abstractmethod
     def show(self, console: Console, solution: Any, request: SolveOptions) -> None:
-        """Print an answer, and where there is more of it."""
+        """Print an answer, and where to find more of it."""
 
     @abstractmethod
     def drawn(self, solution: Any, folder: Path) -> str:
-        """Draw figures into a folder; returns what was written."""
+        """Draw figures into a folder; return a line on them."""
 
     @abstractmethod
     def page(self, solution: Any) -> tuple[str, str]:
-        """The page of an answer, and what it is."""
+        """The page of an answer, and its description."""
 
     def more(
         self, solution: Solution, columns: list[str], request: SolveOptions
     ) -> tuple[str, Callable[[Any], None] | None]:
-        """What a workbook has beside the table, in words and as what puts it there."""
+        """Extras of a workbook beside the table: description, and function that writes them."""
         return "", None
 
     def run(
         self, scene: Scene, request: SolveOptions, choice: ElasticChoice, console: Console
     ) -> None:
-        """Show or write. Raises CrankcheckError for what can not be asked."""
+        """Show or write the answer. Raises CrankcheckError for a faulty request."""
         self.refuse(scene, request)
         if request.figures is not None:
             check_folder(request.figures, "--figures", self.figure_files())
@@ -216,7 +216,7 @@ class Solving(ABC):
             say_whole(console, *self._written(solution, request))
 
     def _written(self, solution: Solution, request: SolveOptions) -> Iterator[str]:
-        """Write what was asked for; what that is, a line each."""
+        """Write the requested files; yield a line on each."""
         path, scene = request.output, solution.scene
         if request.figures is not None:
             yield self.drawn(solution, request.figures)
@@ -234,31 +234,30 @@ class Solving(ABC):
 
 
 def solving_of(scene: Scene) -> Solving:
-    """How a scene is solved."""
+    """The solving of the scene's kind."""
     return cast(Solving, way_of(scene).part("solving"))
 
 
 def refuse_samples(request: SolveOptions) -> None:
-    """Refuse samples of a page of a motion, which has its own. Raises CrankcheckError."""
+    """Refuse a number of samples for a page, which has its own. Raises CrankcheckError."""
     for name in given(request, "steps_per_turn", "steps") if is_page(request) else ():
         raise CrankcheckError(f"-o {request.output}: a page has its own samples; leave out {name}")
 
 
 def is_page(request: SolveOptions) -> bool:
-    """Whether a page is to be written."""
+    """True if the output is a page."""
     return request.output is not None and request.output.suffix.lower() == PAGE
 
 
 def elastic_choice(request: SolveOptions) -> ElasticChoice:
-    """What was asked for of elastic links."""
+    """The options of elastic links."""
     return ElasticChoice(
         request.modes, request.axial_modes, request.elements, request.shape, request.linear
     )
 
 
 def refuse_times(scene: Scene, request: SolveOptions) -> None:
-    """Refuse what is asked of free motion alone, of a scene that is driven. Raises
-    CrankcheckError."""
+    """Refuse options of free motion for a driven scene. Raises CrankcheckError."""
     for option, value in (("--duration", request.duration), ("--steps", request.steps)):
         if value is not None:
             raise CrankcheckError(
@@ -268,7 +267,7 @@ def refuse_times(scene: Scene, request: SolveOptions) -> None:
 
 
 def instants_of(scene: Scene, request: SolveOptions) -> Array:
-    """Those of whole turns, the last sample included [s]. Raises CrankcheckError."""
+    """Times of whole turns, the last sample included [s]. Raises CrankcheckError."""
     turns = 1.0 if request.turns is None else request.turns
     steps = request.steps_per_turn
     if steps is None:
@@ -291,6 +290,6 @@ def instants_of(scene: Scene, request: SolveOptions) -> Array:
 
 
 def most_samples(request: SolveOptions) -> int:
-    """That a file of its kind has room for."""
+    """Largest number of samples in a file of the output's kind."""
     is_workbook = request.output is not None and request.output.suffix.lower() == WORKBOOK
     return SHEET_ROWS if is_workbook else MOST_SAMPLES

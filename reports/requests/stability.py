@@ -1,4 +1,4 @@
-"""`crankcheck stability`: hard cases, graded by rules, with the value up to which each is held."""
+"""`crankcheck stability`: hard cases, graded by rules, with the limit up to which each is held."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -29,12 +29,12 @@ from reports.workers.progress import progress_bar
 from sim.registry import engine
 
 KINDS = {"free": "case of free motion", "elastic": "elastic link in it"}
-"""Of hard cases, that are run where they are asked for; and what others have not."""
+"""Kinds of hard cases that run only on request, each with the words on its absence."""
 
 
 @dataclass(frozen=True)
 class StabilityRequest:
-    """What the user asked for; ``at`` is one value of one case."""
+    """Arguments of `stability`, as given; ``at`` is one value of one case."""
 
     cases: Annotated[Sequence[str], argument("CASE", "Hard cases; all if none.")] = ()
     engines: Engines = ()
@@ -49,7 +49,7 @@ class StabilityRequest:
     elastic: Annotated[bool, "Those of elastic links, which are not among all."] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0, or for one value 1 where it is not held.
+        """Answer, and return the exit code: 0, or for one value 1 where it is not held.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class StabilityRequest:
 
 
 def _cases(names: Sequence[str], asked: Mapping[str, bool]) -> list[Case]:
-    """The named cases, or all of the way that is asked for, or those that are driven and rigid."""
+    """The named cases, or all cases of the requested way, or those that are driven and rigid."""
     kinds = [kind for kind, given in asked.items() if given]
     if len(kinds) > 1:
         both = " with ".join(f"--{kind}" for kind in kinds)
@@ -110,7 +110,7 @@ def _cases(names: Sequence[str], asked: Mapping[str, bool]) -> list[Case]:
 
 
 def _keep_others(folder: Path, wanted: set[str]) -> None:
-    """Refuse to put a few cases in the place of a matrix that holds others as well."""
+    """Refuse to replace a stored matrix that holds further cases. Raises CrankcheckError."""
     try:
         stored = {case.name for case in read_matrix(folder).cases}
     except CrankcheckError:
@@ -130,7 +130,7 @@ def _single(
     limits: Limits,
     console: Console,
 ) -> int:
-    """One value of one case, in full."""
+    """Show one value of one case, in full; return the exit code."""
     value = request.at
     assert value is not None
     if len(cases) != 1:

@@ -66,21 +66,21 @@ Values = float | int | str | Sequence[float | int | str]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Shown):
-    """Cells in a folder: so many were asked for, and ``done`` is what was run now."""
+    """Cells in a folder: ``cells`` were requested, ``done`` is the work of this call."""
 
     folder: Path
     cells: int
     done: Done
 
     def frame(self) -> pd.DataFrame:
-        """One row per cell of the folder, with its errors, verdict and cost."""
+        """Table of cells, a row per cell of the folder, with its errors, verdict and cost."""
         from reports.store.reader import read_store
 
         return read_store(self.folder).cells
 
     @property
     def verdict(self) -> Literal["within", "out"]:
-        """Whether all gated cells of the folder are within tolerance."""
+        """Verdict: "within" where all gated cells of the folder are within tolerance."""
         cells = self.frame()
         gated = cells[cells["gated"].astype(bool)]
         return "within" if bool((gated["verdict"] == "within").all()) else "out"
@@ -116,9 +116,9 @@ def sweep(
     segments: int | Iterable[int] = (),
     springs: str | Iterable[str] = (),
 ) -> Sweep:
-    """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep`.
+    """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep` does.
 
-    Cells run in processes apart; what the folder has already is not run again.
+    Cells run in separate processes; cells that the folder holds are not run again.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def sweep(
     jobs : int
         Processes; 0 for one per processor.
     limit_s, memory_gb : float
-        What a cell may take.
+        Limits of time and memory of a cell.
     timing : bool
         Time the cells afterwards.
     keep_trajectories : bool
@@ -147,22 +147,22 @@ def sweep(
     again : bool
         Run cells again that timed out or crashed.
     progress : bool
-        Tell on standard error how far it is.
+        Show the progress on standard error.
     forces : bool
         Compare reactions and torque as well, of engines that report them.
     free : bool
-        Let the scenes go; those of free motion for ().
+        Release the scenes; () takes those of free motion.
     dt_s : float or Iterable[float]
         Steps of free motion [s], which has no turns.
     duration_s : float or None
-        Of free motion [s]; that of the scene for None.
+        Duration of free motion [s]; the scene's for None.
     segments, springs : int or Iterable[int], str or Iterable[str]
-        What elastic links are given to engines as, as of `run`; () for those of the study.
+        Engines' model of elastic links, as in `run`; () for those of the study.
 
     Raises
     ------
     CrankcheckError
-        What can be told of the arguments before running; a folder that is not to be written.
+        Faults of the arguments, before anything runs; a folder that can not be written.
     """
     from reports.output.console import terminal
     from reports.sweep.running import swept
@@ -199,7 +199,7 @@ def sweep(
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """What `sweep` was asked for, as given."""
+    """Arguments of `sweep`, as given."""
 
     folder: Annotated[Path, output_option("Folder of the results.")]
     scenes: Annotated[
@@ -232,11 +232,10 @@ class SweepRequest:
     springs: SpringKind = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do what of the study is not done yet; returns the exit code, 0.
+        """Run the cells of the study that are not done yet; return the exit code, 0.
 
-        A cell that failed is a row with its status and reason, and no failure of the sweep. What is
-        damaged in the store is mended, and told. Raises CrankcheckError for what can be told of the
-        request before running.
+        A cell that failed is a row with its status and reason, and no failure of the sweep. Damage
+        to the store is mended and reported. Raises CrankcheckError for a faulty request.
         """
         from reports.sweep.running import Manner, show_sweep, swept
 
@@ -266,7 +265,7 @@ class SweepRequest:
 
 
 def asked(request: SweepRequest) -> Study:
-    """The study of the file, or the shipped one, with what the command line says in its place."""
+    """The study of the file, or the shipped one, with options of the command line in its place."""
     study = load_study(request.study)
     engines = study_engines(study, request.engines)
     choice = StudyChoice(
@@ -293,7 +292,7 @@ def asked(request: SweepRequest) -> Study:
 def _overrides(
     texts: Sequence[str], engines: Sequence[str]
 ) -> dict[str, dict[str, StudyValue | list[StudyValue]]]:
-    """`mujoco.iterations=2,10` and the like, by engine."""
+    """Parse `mujoco.iterations=2,10` and the like, by engine."""
     overrides: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
     for text in texts:
         name, equals, values = text.partition("=")
@@ -310,7 +309,7 @@ def _overrides(
 
 
 def _segments(text: str | None) -> list[int]:
-    """`4,8,16` as whole numbers."""
+    """Parse `4,8,16` as whole numbers."""
     try:
         return [] if text is None else [chosen_segments(int(part)) for part in text.split(",")]
     except ValueError:
@@ -320,7 +319,7 @@ def _segments(text: str | None) -> list[int]:
 
 
 def _steps(option: str, text: str | None, such_as: str) -> list[float]:
-    """`90,180,360` as numbers."""
+    """Parse `90,180,360` as numbers."""
     try:
         return [] if text is None else [float(part) for part in text.split(",")]
     except ValueError:

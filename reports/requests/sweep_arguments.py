@@ -1,4 +1,4 @@
-"""What a sweep is asked for in Python, as the command takes it."""
+"""Arguments of a sweep in Python, in the form of the command."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MOST_JOBS = 1024
 
 
 def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
-    """Refuse lists and the like without anything in them: () alone leaves what the study has.
+    """Refuse empty lists and the like: () alone keeps the values of the study.
 
     Raises CrankcheckError that names the argument.
     """
@@ -50,7 +50,7 @@ def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
 
 
 def _is_empty(value: object) -> bool:
-    """Whether it has nothing in it; a number that numpy has made an array is no list."""
+    """True if a value has no elements; a number in an array of numpy is no list."""
     try:
         return isinstance(value, Sized) and len(value) == 0
     except TypeError:
@@ -66,7 +66,7 @@ def manner_of(
     keep_trajectories: bool,
     again: bool,
 ) -> Manner:
-    """How cells are run. Raises CrankcheckError for what can not be asked."""
+    """The manner of running cells. Raises CrankcheckError for invalid arguments."""
     limits = checked_limits(
         positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
     )
@@ -85,9 +85,9 @@ def manner_of(
 
 
 def scene_names(scenes: object, kept: ExitStack) -> list[str]:
-    """Names and paths of scenes; one that is neither is written into a file, which is ``kept``.
+    """Names and paths of scenes; any other scene is written into a file, which is ``kept``.
 
-    Raises CrankcheckError for what is no scene.
+    Raises CrankcheckError for values that are no scene.
     """
     names: list[str] = []
     for each in each_of(scenes):
@@ -107,12 +107,12 @@ def scene_names(scenes: object, kept: ExitStack) -> list[str]:
 def numbers_of(
     values: float | Iterable[float], option: str, unit: str = "steps, such as 720"
 ) -> list[float]:
-    """One number or several, above 0. Raises CrankcheckError."""
+    """One number or several, above 0, as a list. Raises CrankcheckError."""
     return [positive(option, value, unit) for value in each_of(values)]
 
 
 def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
-    """Settings by engine. Raises CrankcheckError for what is not said as engine.setting."""
+    """Settings by engine. Raises CrankcheckError for names that are not engine.setting."""
     if settings is None:
         return {}
     cure = "give a dict such as {'ENGINE.iterations': [2, 10]}"
@@ -132,7 +132,7 @@ def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
 
 
 def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
-    """The command that does the same, which a store tells to mend it."""
+    """The equivalent command, which a store names to mend it."""
     several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
     options = [
         *(("--study", study) if study is not None else ()),

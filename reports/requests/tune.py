@@ -36,13 +36,13 @@ from sim.registry import engine, offering
 from sim.registry.offers import SearchSpace, search_space, snippet
 
 PROFILE = "tuned"
-"""The profile that is searched around, and compared with."""
+"""The profile that is the start of the search, and compared with its result."""
 MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
 
 
 @dataclass(frozen=True)
 class TuneRequest:
-    """What `tune` was asked for, as given."""
+    """Arguments of `tune`, as given."""
 
     scenes: Annotated[Sequence[str], argument("SCENE", "Shipped names or scene files.")]
     engine: Annotated[str, "Engine whose settings are searched."]
@@ -55,8 +55,8 @@ class TuneRequest:
     timing: Annotated[bool, "Time what was found beside the profile."] = True
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0 when settings reach the target, 1 when none do. Raises
-        CrankcheckError for what can be told of the request before the search."""
+        """Answer, and return the exit code: 0 when settings reach the target, 1 when none do.
+        Raises CrankcheckError for a faulty request before the search."""
         goal = _goal(self)
         if note := left_out_note(self.scenes):
             say_whole(progress, note)
@@ -99,7 +99,7 @@ class TuneRequest:
 def _how(
     request: TuneRequest, trials: Sequence[Attempt], tried: Sequence[Attempt], around: int
 ) -> str:
-    """How many trials and runs it took; ``around`` are the runs before and after the search."""
+    """Number of trials and runs; ``around`` are the runs before and after the search."""
     after = sum(each.runs for each in tried)
     late = sum(each.timed_out for each in (*trials, *tried))
     lost = (
@@ -114,7 +114,7 @@ def _how(
 
 
 def _goal(request: TuneRequest) -> Goal:
-    """What is asked for, checked."""
+    """The goal of the search, checked. Raises CrankcheckError."""
     target, budget, seed = request.target, request.budget, request.seed
     if not AT_ROUNDING <= target < COARSEST:
         raise CrankcheckError(
@@ -152,7 +152,7 @@ def _goal(request: TuneRequest) -> Goal:
 def _searched(
     request: TuneRequest, bench: Bench, space: SearchSpace, base: Settings, progress: Console
 ) -> list[Attempt]:
-    """All trials; where they are cut short, what is kept is said."""
+    """All trials; an interrupted search says how many are kept."""
     with study_in(request.output, _asked(request, bench, space, base)) as study:
         done = min(len(attempts(study)), request.budget)
         try:
@@ -172,7 +172,7 @@ def _searched(
 def _asked(
     request: TuneRequest, bench: Bench, space: SearchSpace, base: Settings
 ) -> dict[str, object]:
-    """All that the results of the trials depend on, as plain values."""
+    """All facts that the results of the trials depend on, as plain values."""
     goal = bench.goal
     texts = [read_text(path) for path in find_scenes(request.scenes)]
     return {
@@ -203,7 +203,7 @@ def _rows(bench: Bench, of: Attempt) -> list[Row]:
 
 
 def _unreached(goal: Goal, nearest: Attempt) -> str:
-    """What came nearest."""
+    """Words on the nearest attempt, where none reaches the target."""
     if nearest.reason:
         return f"NOTHING REACHES {goal.target:g}; {nearest.reason}"
     if math.isinf(nearest.error):

@@ -57,16 +57,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class VerifyRequest(VerifyOptions):
-    """What `verify` was asked for, as given."""
+    """Arguments of `verify`, as given."""
 
     @property
     def names(self) -> Sequence[str]:
-        """The scenes by name, also where free ones are meant and none is named."""
+        """The scenes by name; with ``free`` the scenes of free motion where none is named."""
         return free_names(self.scenes) if self.free else self.scenes
 
     def run(self, console: Console, progress: Console) -> int:
-        """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2
-        not to be run. Raises CrankcheckError for what can be told of the request before running."""
+        """Answer, and return the exit code: 0 within, 1 out of tolerance or worse than the
+        baseline, 2 not to be run. Raises CrankcheckError for a faulty request before running."""
         if self.mjcf is not None:
             from reports.requests.verify_model import verify_model
 
@@ -100,7 +100,7 @@ class VerifyRequest(VerifyOptions):
 
 
 def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:
-    """The exit code; names the gated cells that could not be run."""
+    """The exit code; the gated cells that could not be run are printed."""
     gated = [one for one in checked if one.cell.gated]
     missing = [one for one in gated if one.verdict == "unsupported"]
     for one in missing:
@@ -112,8 +112,8 @@ def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> i
 
 
 def plan(request: VerifyOptions) -> list[Cell]:
-    """The cells that the request asks for; with forces, engines that report none are run without
-    unless they are named. Raises CrankcheckError for what can not be run."""
+    """The cells of the request; with forces, engines that report none run without them unless they
+    are named. Raises CrankcheckError for cells that can not be run."""
     tolerance = parse(request.tolerance)
     if not request.forces:
         refuse_forces_unasked("--tol", tolerance)
@@ -150,8 +150,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
 
 
 def _scenes(request: VerifyOptions) -> list[Scene]:
-    """The scenes, those that are to be let go with a driver that is, as those that are given way
-    to by a controller."""
+    """The scenes: with ``free`` in free motion; else under their controller, if any."""
     if request.free:
         return scenes_of(request.scenes, free=True)
 
@@ -164,7 +163,7 @@ def _scenes(request: VerifyOptions) -> list[Scene]:
 
 
 def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
-    """Refuse what the scenes have no use for. Raises CrankcheckError."""
+    """Refuse options that do not apply to the scenes. Raises CrankcheckError."""
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(
             f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
@@ -181,8 +180,8 @@ def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
 
 
 def passages(cells: Sequence[Cell]) -> list[str]:
-    """What is to be said of change points, and of elastic links that are let go for a part of their
-    time, once for every scene and duration of the cells."""
+    """Notes on change points, and on elastic links in free motion that is cut short, once for every
+    scene and duration of the cells."""
     runs = {(cell.scene.name, cell.dt_s * cell.steps): cell for cell in cells}
     notes = (cell.way.note(cell.scene, duration_s) for (_, duration_s), cell in runs.items())
     return [note for note in dict.fromkeys(notes) if note]
@@ -191,8 +190,8 @@ def passages(cells: Sequence[Cell]) -> list[str]:
 def _baseline(
     request: VerifyOptions, cells: Sequence[Cell], digests: Mapping[str, str]
 ) -> StoredRun | None:
-    """The cells of the baseline that are to be run now, read before anything is written over it.
-    Raises CrankcheckError for no stored run, and for nothing to compare with."""
+    """The cells of the baseline that will run now, read before anything is written over it. Raises
+    CrankcheckError for no stored run, and for nothing to compare with."""
     if request.baseline is None:
         return None
     from reports.results.changes import compare
@@ -207,8 +206,8 @@ def _baseline(
 
 
 def _spare_baseline(files: Mapping[str, Path | None], baseline: Path) -> None:
-    """Raises CrankcheckError for an output that is a file of the baseline, which ``-o`` may go on
-    from."""
+    """Refuse an output that is a file of the baseline, which ``-o`` may go on from. Raises
+    CrankcheckError."""
     from reports.requests.diff import stored_files
 
     check_outputs(files, inputs=stored_files(baseline))
@@ -230,7 +229,7 @@ def _changes(
     digests: Mapping[str, str],
     factor: float,
 ) -> Diff:
-    """What changed since the baseline."""
+    """The changes since the baseline."""
     from reports.results.changes import compare
     from reports.results.runs import run_of
 
@@ -251,8 +250,8 @@ def contents(
     digests: Mapping[str, str],
     diff: Diff | None,
 ) -> dict[str, Callable[[], bytes | str]]:
-    """What there is to write: of cells, where they come from, the digests of the texts of their
-    scenes, and what changed since the baseline."""
+    """Contents of the files: cells, their origin, digests of the texts of their scenes, and changes
+    since the baseline."""
     return {
         "verify.csv": lambda: csv(cell_frame(checked)),
         "verify.json": lambda: _json(checked, facts, digests),
@@ -262,7 +261,7 @@ def contents(
 
 
 def _suites(diff: Diff | None) -> Iterator[Element]:
-    """The suite of what changed, if that is known."""
+    """The suite of the changes, if they are known."""
     if diff is not None:
         from reports.diff.document import suite as diff_suite
 
@@ -270,7 +269,7 @@ def _suites(diff: Diff | None) -> Iterator[Element]:
 
 
 def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> str:
-    """Facts, digests of scenes, and cells with their findings; what is not finite is null."""
+    """Facts, digests of scenes, and cells with their findings; null for numbers not finite."""
     cells = [
         cell_row(one)
         | {

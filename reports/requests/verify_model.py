@@ -45,27 +45,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ModelVerdict(Shown, JudgedModel):
-    """A model of your own with what came of it.
+    """Verdict on a model of your own.
 
-    ``verdict`` is that on the model as written, "within", "out" or "unsupported", ``findings`` is
-    what every rule says of that, and those of ``failures`` make the verdict; ``lines`` are as
-    written, without each of what can disturb it, and recommended; ``scene`` is what it was read as,
-    and ``patch`` the recommended settings as a diff of the file. ``facts`` says where the numbers
-    come from.
+    ``verdict`` is that on the model as written, "within", "out" or "unsupported"; ``findings`` are
+    the answers of all rules on it, ``failures`` those that make the verdict; ``lines`` are as
+    written, without each possible disturbance, and recommended; ``scene`` is the scene read from
+    the model, and ``patch`` the recommended settings as a diff of the file. ``facts`` says where
+    the numbers come from.
     """
 
     facts: Mapping[str, str]
 
     def frame(self) -> pd.DataFrame:
-        """One row per line (``profile``), quantity, body, source and kind of error; ``unit`` is
-        that of ``maximum``, ``rms`` and ``final``."""
+        """Table of errors: a row per line (``profile``), quantity, body, source and kind; ``unit``
+        is that of ``maximum``, ``rms`` and ``final``."""
         return error_frame(self.lines)
 
     def show(self, console: Console) -> None:
         show(console, self, self.facts)
 
     def _drawn(self) -> str:
-        """Over what was run, as it may have no whole turn."""
+        """The mechanism over the time of the run, which may be less than a turn."""
         from reports.drawing.svg import svg
 
         return svg(self.scene, most_s=self.account.dt_s * self.account.steps)
@@ -88,7 +88,7 @@ def check_model(
     limit_s: float = LIMIT_S,
     memory_gb: float = MEMORY_GB,
 ) -> ModelVerdict:
-    """Run a MuJoCo model of your own as it is, and hold it to the closed form of the linkage in it,
+    """Run a MuJoCo model of your own as it is, and compare it with the closed form of its linkage,
     as `crankcheck verify --mjcf` does.
 
     Parameters
@@ -102,21 +102,21 @@ def check_model(
     key : str or None
         The keyframe to start from; the pose as drawn for None.
     start_rad : float or None
-        What the driven joint reads at the start [rad], in place of that.
+        Reading of the driven joint at the start [rad], in place of ``key``.
     branch : Mapping or None
         The assembly, 1 or -1 by name, where the pose does not say it.
     dt_s, steps_per_turn : float or None
         The step; the model's own where neither is given.
     turns, tolerance, converge
-        As of `check`.
+        As in `check`.
     limit_s, memory_gb : float
-        What reading it, and each line, may take, in a process apart.
+        Limits of reading the model, and of each line, in a separate process.
 
     Raises
     ------
     CrankcheckError
         A file that can not be read, or is no planar linkage with one driver and a closed form; an
-        argument that is none.
+        invalid argument.
     """
     request = ModelRequest(
         path=path_of(model, "model"),
@@ -148,7 +148,7 @@ def _number(value: object, name: str, unit: str) -> float:
 
 
 def _branch(branch: object) -> dict[str, int]:
-    """Assemblies by name. Raises CrankcheckError for no mapping of names."""
+    """Assemblies by name. Raises CrankcheckError for anything but a mapping of names."""
     if branch is None:
         return {}
     if not isinstance(branch, Mapping):
@@ -180,12 +180,12 @@ NOT_OF_MODELS = [
     "free",
     "duration_s",
 ]
-"""Fields of scenes alone."""
+"""Fields that apply to scenes alone."""
 
 
 def verify_model(request: VerifyOptions, console: Console, progress: Console) -> int:
-    """Do it; returns the exit code: 0 within as written, 1 out, 2 not to be run. Raises
-    CrankcheckError for what can not be read, or is no planar linkage with one driver, before
+    """Answer, and return the exit code: 0 within as written, 1 out, 2 not to be run. Raises
+    CrankcheckError for a file that can not be read, or is no planar linkage with one driver, before
     anything is written."""
     asked = _asked(request)
     limits = checked_limits(request.limit_s, request.memory_gb)
@@ -208,7 +208,7 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
 
 
 def _asked(request: VerifyOptions) -> ModelRequest:
-    """What the model is asked for. Raises CrankcheckError for what does not go with it."""
+    """The request for the model. Raises CrankcheckError for options that do not apply to it."""
     assert request.mjcf is not None
     for option in given(request, *NOT_OF_MODELS):
         raise CrankcheckError(
@@ -232,7 +232,7 @@ def _asked(request: VerifyOptions) -> ModelRequest:
 
 
 def _branch_of(texts: Sequence[str]) -> dict[str, int]:
-    """NAME=1 or NAME=-1, each."""
+    """Parse NAME=1 or NAME=-1, each. Raises CrankcheckError."""
     branch = {}
     for text in texts:
         name, equals, sign = text.partition("=")
@@ -245,7 +245,7 @@ def _branch_of(texts: Sequence[str]) -> dict[str, int]:
 def _contents(
     judged: JudgedModel, facts: Mapping[str, str]
 ) -> dict[str, Callable[[], bytes | str]]:
-    """What there is to write, by name."""
+    """The contents of the files, by name."""
     return {
         "verify.csv": lambda: csv(cell_frame(judged.lines)),
         "verify.json": lambda: document(judged, facts),

@@ -8,7 +8,7 @@ from typing import Any
 
 from models.errors import CrankcheckError, shown, suggestion
 from reports.plan.steps import positive
-from reports.quantities import DEFAULTS
+from reports.quantities.limits import DEFAULTS
 from reports.requests.any_log import LogLike, MapLike
 from reports.requests.arguments import SceneLike, is_true, told_at_the_call
 from reports.requests.check import CellVerdict
@@ -37,9 +37,9 @@ def assert_within(
     Parameters
     ----------
     scene, log, step_s, drive, map, require, forces
-        As of `judge`.
+        As in `judge`.
     target : float, Mapping or None
-        As of `judge`, for the quantities that are not named.
+        As in `judge`, for the quantities that are not named.
     **tolerances : float
         The same for one quantity each: ``angle=1e-4``, ``velocity_differenced=1e-3``; that of
         quantity drive is ``target={"drive": 1e-6}``.
@@ -47,14 +47,14 @@ def assert_within(
     Returns
     -------
     CellVerdict or LogVerdict
-        What `judge` gives, where it is within tolerance.
+        The result of `judge`, where it is within tolerance.
 
     Raises
     ------
     AssertionError
-        It is not: the message is the table that the command prints, with what is out and why.
+        Out of tolerance: the message is the table of the command, with errors and reasons.
     CrankcheckError
-        As of `judge`; a tolerance of what is no quantity, whose message suggests the near ones.
+        As in `judge`; a tolerance of an unknown quantity, whose message suggests near names.
     """
     __tracebackhide__ = True  # the line that asserts is the caller's
     _refuse_number(drive)
@@ -68,7 +68,7 @@ def assert_within(
 
 
 def _quantity(argument: str) -> str:
-    """The quantity of an argument. Raises CrankcheckError for one that is none."""
+    """The quantity of an argument. Raises CrankcheckError for an unknown one."""
     if argument in BY_ARGUMENT:
         return BY_ARGUMENT[argument]
     hint = suggestion(argument, BY_ARGUMENT, "use one of", 2, 0.6)
@@ -81,7 +81,7 @@ def _limit(argument: str, number: float) -> float:
 
 
 def _refuse_number(drive: object) -> None:
-    """Refuse a tolerance in the place of what moves the truth. Raises CrankcheckError."""
+    """Refuse a tolerance in the place of the drive. Raises CrankcheckError."""
     if isinstance(drive, Real):
         raise CrankcheckError(
             f"drive: found {shown(drive)}; give scene, fitted or logged; the tolerance of quantity "

@@ -1,1 +1,1 @@
-"""How a kind of scene is run and compared: the seam, and which kinds there are."""
+"""The way of a kind of scene, to run it and compare it: the seam, and the list of kinds."""

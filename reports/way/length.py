@@ -1,4 +1,4 @@
-"""How long a run is, and by which steps, as it was requested."""
+"""Length and step of a run, as requested."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -9,21 +9,21 @@ from reports.compare.beside import SETTLING
 from reports.output.numbers import duration
 
 Springs = Literal["plain", "corrected", "beam"]
-"""Between segments: those of the beam's stiffness over a segment, or those that give the chain the
-sag of the beam; or none, where the engine has beams of its own, as many elements long."""
+"""Springs between segments: with the beam's stiffness over a segment, or such that the chain has
+the sag of the beam; or none, where the engine has beams of its own, as many elements long."""
 SEGMENTS = 16
-"""Of an elastic link, unless another number is asked for."""
+"""Default number of segments of an elastic link."""
 
 
 LEAST_STEPS = 2 * SETTLING
-"""Of a verification. Measured: of the shipped scenes none fails for shortness alone in a run of so
-many steps."""
+"""Least steps of a verification. Measured: no shipped scene fails for shortness alone in a run of
+so many steps."""
 
 
 @dataclass(frozen=True)
 class GivenAs:
-    """What the elastic links of a scene are given to engines as; ``words`` tell the lines of a
-    sweep apart, and are empty of a rigid scene."""
+    """Engines' model of the elastic links of a scene; ``words`` distinguish lines of a sweep, and
+    are empty for a rigid scene."""
 
     segments: int = SEGMENTS
     springs: Springs = "plain"
@@ -32,8 +32,8 @@ class GivenAs:
 
 @dataclass(frozen=True)
 class Length:
-    """The step [s], or the steps in a turn, and turns or a duration [s]; each None where it is left
-    to the scene. Every ``every``-th step is logged, and there are at least ``least``."""
+    """The step [s], or the steps in a turn, and turns or a duration [s]; None leaves each to the
+    scene. Every ``every``-th step is logged, and there are at least ``least``."""
 
     dt_s: float | None = None
     steps_per_turn: float | None = None
@@ -61,8 +61,8 @@ class Planned:
 
 @dataclass(frozen=True)
 class Clock:
-    """The unit of time of a drive; ``per`` is what stands behind numbers of it, "" for turns,
-    ``unit`` behind lengths of runs."""
+    """The unit of time of a drive; ``per`` follows numbers of it, "" for turns, ``unit`` follows
+    lengths of runs."""
 
     name: str
     per: str
@@ -73,7 +73,7 @@ class Clock:
         return f"{steps_per_turn:g} a turn"
 
     def long(self, dt_s: float, steps: int, steps_per_turn: float) -> str:
-        """How long a run of so many steps is, in words."""
+        """The length of a run of so many steps, in words."""
         turns = steps / steps_per_turn
         return f"{steps_per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
 
@@ -82,20 +82,20 @@ class Clock:
         return f"{row['steps_per_turn']:g}"
 
     def lasts(self, turns: float) -> str:
-        """How long a run is, in words behind its name."""
+        """The length of a run, in words that follow its name."""
         return f", {turns:g} turn{'' if turns == 1.0 else 's'}"
 
     def words(self, dt_s: float, steps_per_turn: float, turns: float) -> tuple[str, str]:
-        """The step of a run and how long it is, in words."""
+        """The step and the length of a run, in words."""
         return f"{steps_per_turn:.4g} steps a turn", f"{turns:.4g} turns"
 
     def period_s(self, driver_s: float) -> float:
-        """The period [s], where the driver has one of ``driver_s``."""
+        """The period [s], for a driver whose period is ``driver_s``."""
         return driver_s
 
 
 class Seconds(Clock):
-    """As of `Clock`: what nothing drives has no turns."""
+    """The clock of free motion, which has no turns."""
 
     def short(self, dt_s: float, steps_per_turn: float) -> str:
         return f"dt {dt_s:g} s"
@@ -121,10 +121,10 @@ _CLOCKS = {"free": SECONDS}
 
 
 def clock_of(drive: str) -> Clock:
-    """That of a drive."""
+    """The clock of a drive."""
     return _CLOCKS.get(drive, TURNS)
 
 
 def common_clock(drives: Iterable[str]) -> Clock:
-    """That of several drives: turns where one has them."""
+    """The clock of several drives: turns where one drive has them."""
     return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS

@@ -1,4 +1,4 @@
-"""A way: how scenes of a kind are run and compared with the reference.
+"""The way of a kind of scene: its run, and its comparison with the reference.
 
 A kind of scene is a folder of the room `ways`, found by its name, with a value ``WAY``; to add one,
 add the folder and its name in `WAYS`.
@@ -21,18 +21,18 @@ from reports.way.length import Clock, GivenAs, Length, Planned, Springs, clock_o
 from sim.engine import Drive
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
-"""Errors of place [rad, or of the longest link]."""
+"""Target errors of place [rad, or of the longest link]."""
 
 
 @dataclass(frozen=True)
 class ResultKind:
     """Words and targets of stored cells.
 
-    ``unit`` is that of the error that they are compared by, ``axis`` its name on diagrams and
-    ``promise`` in a recommendation; ``targets`` are those of recommendations, ``kept`` what keeps
-    one, ``head`` its column, and ``notes`` stand over settings to be copied. ``error`` explains the
-    error on a page, in the place ``stands`` among other kinds;
-    where several are drawn together the axis is that of the kind that ``leads``, the lowest.
+    ``unit`` is that of the compared error, ``axis`` its name on diagrams and ``promise`` in a
+    recommendation; ``targets`` are those of recommendations, ``kept`` names the items kept within
+    one, ``head`` its column, and ``notes`` precede settings to be copied. ``error`` explains the
+    error on a page, in the place ``stands`` among other kinds; a common axis is that of the kind
+    with the lowest ``leads``.
     """
 
     error: str
@@ -53,7 +53,7 @@ that of a package elsewhere."""
 
 
 class StudyLengths(Protocol):
-    """What a study says of the lengths of runs."""
+    """The lengths of runs in a study."""
 
     steps_per_turn: list[float]
     turns: float
@@ -63,17 +63,17 @@ class StudyLengths(Protocol):
 
 
 class StudyLinks(Protocol):
-    """What a study says of elastic links."""
+    """The models of elastic links in a study."""
 
     segments: list[int]
     springs: list[Springs]
 
 
 class Way(Protocol):
-    """How scenes of a kind are run and compared.
+    """The way to run and compare scenes of a kind.
 
-    Its parts are modules in its folder, or in one of a way that it builds on, each loaded where it
-    is needed; the value of a module has its name, in capitals; the footer is one more of the
+    Its parts are modules in its folder, or in that of a way that it builds on, each loaded where
+    needed; the value of a module has its name, in capitals; the footer is a second value of the
     table's module. A way without columns of its own has those of all cells alone.
 
     ========== ===============================================================================
@@ -82,44 +82,44 @@ class Way(Protocol):
     footer     the lines under the table, `reports.verify.table.Part` each, also there
     faults     the faults that are planted in its runs, a `reports.selftest.fault.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
-    series     what hard runs are compared with, by name (`reports.stability.case.Yardstick`)
+    series     the references of hard runs, by name (`reports.stability.case.Yardstick`)
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)
-    log        how its logs are judged, a `reports.own_log.log_limits.LogKind`
-    solving    how its scenes are solved, a `reports.requests.solving.Solving`
+    log        the judging of its logs, a `reports.own_log.log_limits.LogKind`
+    solving    the solving of its scenes, a `reports.requests.solving.Solving`
     ========== ===============================================================================
     """
 
     name: str
     drive: Drive
-    """Of a run of such a scene, where none is named."""
+    """Default drive of a run of such a scene."""
     kinds: Sequence[str]
-    """What its cells are, in words: figures show those of some."""
+    """Kinds of its cells, in words: a figure shows some kinds."""
     closed_form: bool
-    """Whether the reference is solved at each instant by itself, with bounds that cost time."""
+    """True if the reference is solved at each instant by itself, with bounds that cost time."""
 
     limits: Mapping[str, Tolerance]
     """The tolerances of its runs, by name."""
     roles: Set[Role]
-    """The roles of the quantities that its cells have columns of, forces apart."""
+    """The roles of the quantities with columns in its cells, without forces."""
     placed: Sequence[str]
-    """The quantities whose largest error is that of place."""
+    """The quantities whose largest error is the error of place."""
     unlogged: Sequence[str]
-    """Quantities of the whole run that no column of a log has."""
+    """Quantities of the whole run that have no column in a log."""
 
     noted: bool
-    """Whether the notes of its comparison stand under the tables."""
+    """True if the notes of its comparison appear under the tables."""
     units: str
     """The units of the numbers of its cells, in words."""
     no_case: str
-    """The sentence on a hard case that is none of such scenes."""
+    """Words on the absence of hard cases of such scenes."""
     results: ResultKind
-    """What is said of its stored cells."""
+    """Words and targets of its stored cells."""
     over_g: Sequence[str]
-    """What of its errors is over the sensitivity of the motion, in words."""
+    """Errors that are divided by the sensitivity of the motion, in words."""
 
     def part(self, name: str) -> object:
-        """The part of that name."""
+        """The part named ``name``."""
         return _part(type(self).__mro__, name)
 
     def roles_of(self, *, with_forces: bool) -> Set[Role]:
@@ -127,16 +127,15 @@ class Way(Protocol):
         return {*self.roles, *(("force",) if with_forces else ())}
 
     def stored(self, row: Mapping[Any, Any]) -> bool:
-        """Whether a row of a store is a cell of the kind, or of one that builds on it."""
+        """True if a row of a store is a cell of the kind, or of a kind that builds on it."""
         ...
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
-        """Whether a run of the scene with that drive is of this kind."""
+        """True if a run of the scene with that drive is of this kind."""
         ...
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
-        """Step [s] and number of steps of a run. Raises CrankcheckError for a length that can not
-        be run."""
+        """Step [s] and number of steps of a run. Raises CrankcheckError where it has none."""
         ...
 
     def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
@@ -149,96 +148,94 @@ class Way(Protocol):
 
     @property
     def clock(self) -> Clock:
-        """What steps and lengths of its runs are counted over."""
+        """The unit of the steps and lengths of its runs."""
         return clock_of(self.drive)
 
     def turn_s(self, scene: Scene) -> float:
-        """What lengths of runs are multiples of [s]: a turn of the driver, or a second."""
+        """The unit of the lengths of runs [s]: a turn of the driver, or a second."""
         return self.clock.period_s(scene.driver.law.period_s)
 
     def every(self, steps: int, steps_per_turn: float) -> int:
-        """How many steps are taken from sample to sample of the log."""
+        """Number of steps from sample to sample of the log."""
         return 1
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
-        """The scene that an engine is given: of elastic links, the segments."""
+        """The scene that an engine is given: elastic links as segments."""
         return scene
 
     def note(self, scene: Scene, duration_s: float) -> str:
-        """What is said of a run of that duration [s] beside its numbers; "" for nothing."""
+        """A note on a run of that duration [s], beside its numbers; "" for none."""
         ...
 
     def truth(self, run: Planned) -> Truth:
-        """The reference of a run. Raises CrankcheckError for a scene that has none."""
+        """The reference of a run. Raises CrankcheckError for a scene without one."""
         ...
 
     drives: tuple[Drive, ...]
-    """By which it may be run."""
+    """Possible drives of its runs."""
     lengths_by: tuple[str, ...]
-    """Options of a length that say something of it."""
+    """Options of a length that apply to it."""
     over: str
-    """What is drawn of it, in words."""
+    """The drawn time of the motion, in words."""
     targets: Collection[str]
-    """The quantities that one target stands for."""
+    """The quantities to which a single target applies."""
     least_judged: int
-    """Steps of a run that was made before, and can be judged."""
+    """Least number of steps of an existing run that is judged."""
 
     def refuse_length(self, option: str) -> NoReturn:
-        """Refuse an option of a length that says nothing of it. Raises CrankcheckError."""
+        """Refuse an option of a length that does not apply. Raises CrankcheckError."""
         ...
 
     def released(self, scene: Scene) -> Scene:
-        """The scene that a run of it is of: let go, where the drive is free."""
+        """The scene of the run: in free motion, where the drive is free."""
         ...
 
     def opened(self, scene: Scene) -> tuple[Scene, State]:
-        """The scene that an engine is given, and where it begins. Raises CrankcheckError where it
-        can not."""
+        """The scene that an engine is given, and its start. Raises CrankcheckError."""
         ...
 
     def held_steps(self, scene: Scene) -> tuple[float, ...]:
-        """Steps in a turn that the scene of an engine is exact for; empty for any."""
+        """Steps in a turn for which the scene of an engine is exact; empty for any."""
         return ()
 
     def launch(self, run: Planned) -> Truth | None:
-        """What a run starts from, None where it starts as the scene is let go. Raises
-        CrankcheckError."""
+        """The start of a run; None for the start of the scene itself. Raises CrankcheckError."""
         ...
 
     def refuse_made(self, run: Planned) -> None:
-        """Refuse a run that was made before and has no reference. Raises CrankcheckError."""
+        """Refuse an existing run that has no reference. Raises CrankcheckError."""
         ...
 
     def judged_by(self, given: GivenAs) -> list[str] | None:
-        """The options of `judge` for a log of it; None where no log of it is judged."""
+        """The options of `judge` for a log of it; None where logs of it are not judged."""
         return []
 
     def given_by(self, study: StudyLinks) -> list[GivenAs]:
-        """All that a study gives elastic links as. Raises CrankcheckError."""
+        """All models of elastic links in a study. Raises CrankcheckError."""
         return [GivenAs()]
 
     def key(self, given: GivenAs) -> list[object]:
-        """What names a stored result beside what all have."""
+        """The parts of a stored result's name beside those of all kinds."""
         return []
 
     def shortened(self, scene: Scene, lasts_s: float) -> str:
-        """What is said of a run that ends before the scene does; "" for nothing."""
+        """A note on a run that ends before its scene; "" for none."""
         return ""
 
     def motion(self, scene: Scene, time_s: Array) -> Motion:
-        """How it moves in truth, to be drawn, with rigid links. Raises CrankcheckError."""
+        """The reference motion to draw, with rigid links. Raises CrankcheckError."""
         ...
 
     def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
-        """The forces that it is drawn with. Raises CrankcheckError where there are none."""
+        """The forces to draw. Raises CrankcheckError where there are none."""
         ...
 
     def drawn_s(self, most_s: float) -> float:
-        """How long of it is drawn at most, where it does not come back [s]."""
+        """Longest drawn time of a motion that is not periodic [s]."""
         ...
 
     def latest_s(self, scene: Scene) -> float:
-        """Until when it can be looked at [s]."""
+        """The latest time that can be drawn or shown [s]."""
         ...
 
 
@@ -264,24 +261,24 @@ def _module(cls: type, name: str) -> ModuleType | None:
 
 @cache
 def way(name: str) -> Way:
-    """The way of that name."""
+    """Return the way named ``name``."""
     return cast(Way, import_module(name if "." in name else f"..ways.{name}", __package__).WAY)
 
 
 def own_parts(name: str) -> dict[str, object]:
-    """The parts of that name by way, the most general first, of ways with one of their own."""
+    """The parts named ``name`` of the ways that have their own, the most general way first."""
     modules = {each: _module(type(way(each)), name) for each in reversed(WAYS)}
     return {each: getattr(module, name.upper()) for each, module in modules.items() if module}
 
 
 def way_of(scene: Scene, drive: Drive | None = None) -> Way:
-    """The way of a run of the scene with a drive; of None with its own."""
+    """The way of a run of the scene with a drive; None for the scene's own drive."""
     chosen = drive or ("free" if scene.is_free else "prescribed")
     return next(each for each in map(way, WAYS) if each.takes(scene, chosen))
 
 
 def driven_by(scene: Scene, drive: Drive) -> Drive:
-    """The drive of a run of the scene: that which is asked for, if it takes that, or its own."""
+    """The drive of a run of the scene: the requested one if it can be run, or its own."""
     chosen = way_of(scene)
     return drive if drive in chosen.drives else chosen.drive
 

@@ -1,1 +1,1 @@
-"""The kinds of scenes: a module each."""
+"""The kinds of scenes: a folder each."""

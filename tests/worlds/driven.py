@@ -39,7 +39,7 @@ from models.scene import GROUND, Link, Point, Scene, Slider, span
 from models.scene.laws import ConstantSpeed
 from models.scene.moved import moved, scaled
 from reports.compare.hardness import curvature
-from reports.quantities import DEFAULTS
+from reports.quantities.limits import DEFAULTS
 from sim.pymunk.settings import TUNED
 from sim.pymunk.space import build
 from tests.worlds.strategies import (

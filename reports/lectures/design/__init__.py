@@ -1,1 +1,1 @@
-"""Mechanisms that a synthesis found: their files, their table, their proof in engines."""
+"""Mechanisms found by a synthesis: their files, their table, their proof in engines."""

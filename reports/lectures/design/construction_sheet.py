@@ -1,4 +1,4 @@
-"""The sheet of a construction: a layer for each step, the mechanism that it finds, its letters.
+"""The sheet of a construction: a layer for each step, the mechanism found, its letters.
 
 Source of the way of drawing: lecture "Tong hop co cau" (synthesis), examples 2 to 6.
 """
@@ -53,9 +53,9 @@ from reports.lectures.drawing.sheets.paper import (
 from reports.lectures.drawing.sheets.scheme import PIN_MM, draw_foot, draw_outline, draw_scheme
 
 NEAR_MM = 0.5
-"""Points that stand nearer have their letters in one label."""
+"""Distance of points [mm] below which their letters share a label."""
 NUMBERED, NUMBER_PLACES = 2, 14
-"""So many lines of a step have its number, at one of so many places along them."""
+"""Number of lines of a step with its number, and of places for it along each."""
 
 
 def dot_letters(
@@ -64,8 +64,8 @@ def dot_letters(
     at: Callable[[Array], Array],
     box: Box,
 ) -> list[Letter]:
-    """The letters of all dots in the box, and of the mechanism's ``points`` [m] that have no letter
-    by then: C1 is also the letter of a point C in the first position."""
+    """The letters of all dots in the box, and of those of the mechanism's ``points`` [m] without a
+    letter: C1 is also the letter of a point C in the first position."""
     low, high = box.corners
     dots = [each for step in steps for each in step.elements if isinstance(each, Dot)]
     named = [(dot.letter, at(xy(dot.place)), dot.look) for dot in dots if dot.letter]
@@ -88,8 +88,8 @@ def dot_letters(
 def step_numbers(
     steps: Sequence[DrawingStep], drawn: Mapping[int, Sequence[Array]]
 ) -> list[Letter]:
-    """The number of each step at its longest lines [mm] that are no links; ``drawn`` are the lines
-    of elements, by their identity."""
+    """The number of each step at its longest lines [mm], links excepted; ``drawn`` are the lines of
+    elements, by their identity."""
     letters = []
     for number, step in enumerate(steps, 1):
         every = [each for each in step.elements if not isinstance(each, Dot)]
@@ -110,7 +110,7 @@ def _length(line: Array) -> float:
 
 
 def _along(line: Array) -> Array:
-    """Places along a line, evenly, off its ends."""
+    """Places along a line, evenly spaced, off its ends."""
     way = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
     there = np.linspace(0.06, 0.94, NUMBER_PLACES) * way[-1]
     return np.stack([np.interp(there, way, line[:, k]) for k in (0, 1)], axis=1)
@@ -118,20 +118,20 @@ def _along(line: Array) -> Array:
 
 PADDING, GAP = 11.0, 3.0
 COLUMNS_MM = (54.0, 64.0, 76.0, 90.0, 106.0)
-"""Widths of the column of words, the least that does is taken."""
+"""Widths of the column of words [mm]; the least that suffices is taken."""
 MOST_SHARE = 0.5
-"""Of the sheet that words may take."""
+"""Largest share of the sheet for words."""
 DOT_MM = {"given": 0.7, "auxiliary": 0.6, "result": PIN_MM}
 LAYER_WORDS = 40
-"""Letters of a step's words that its layer is called by."""
+"""Number of letters of a step's words in the name of its layer."""
 FRONT = 6
-"""Dots lie over lines."""
+"""Drawing order of dots, over lines."""
 
 
 @dataclass(frozen=True)
 class ConstructionSheet:
-    """A construction on paper: its scale [m/mm], what is in the middle of its box [m], and the
-    words of the column beside or below it."""
+    """A construction on paper: its scale [m/mm], the middle of its box [m], and the words of the
+    column beside or below it."""
 
     view: ConstructionView
     scale: float
@@ -142,12 +142,12 @@ class ConstructionSheet:
     paper: Paper
 
     def at(self, places: Array) -> Array:
-        """Where places [m], (..., 2), stand on the sheet [mm]."""
+        """Places [m], (..., 2), on the sheet [mm]."""
         return np.asarray(self.box.middle + (places - self.middle) / self.scale)
 
     @property
     def cut(self) -> tuple[Array, Array]:
-        """The corners of what is on the paper [m]."""
+        """The corners of the drawn region [m]."""
         half = self.scale * np.array([self.box.width, self.box.height]) / 2
         return self.middle - half, self.middle + half
 
@@ -157,7 +157,7 @@ def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
     on paper that is higher than wide.
 
     Raises CrankcheckError for a proposal that can not be assembled in its first position, and for
-    paper that its words do not fit on.
+    paper too small for its words.
     """
     view = ConstructionView.of(proposed)
     inner = inner_box(paper)
@@ -174,7 +174,7 @@ def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
 
 
 def _in(view: ConstructionView, box: Box, column: Box, paper: Paper) -> ConstructionSheet:
-    """The sheet with its figure in a box, and its words in another."""
+    """The sheet with its figure in one box, and its words in another."""
     scale, middle = box.fitted(view.shown, PADDING)
     half = scale * np.array([box.width, box.height]) / 2
     words = parts_of(view, [words for _, words in view.far(middle - half, middle + half)])
@@ -194,7 +194,7 @@ def _beside(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
 
 
 def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
-    """The box of the figure over one of the words that is as high as these need."""
+    """The box of the figure over the box of the words, which is as high as they need."""
     tall = height_of(parts_of(view, [words for _, words in view.far(*_corners(view))]), inner.width)
     boxes = []
     for spare in (1.0, 1.25, 1.6):
@@ -249,7 +249,7 @@ def _frame(axes: Axes, sheet: ConstructionSheet, note: str) -> None:
 
 
 def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> list[Array]:
-    """An element of a step; gives its lines on the sheet [mm]."""
+    """Draw an element of a step; return its lines on the sheet [mm]."""
     if isinstance(element, Dot):
         _draw_dot(axes, sheet, element, gid)
         return []
@@ -268,14 +268,14 @@ def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> l
 
 
 def _is_whole(sheet: ConstructionSheet, circle: DrawnCircle) -> bool:
-    """Whether all of a circle is on the paper."""
+    """True if all of a circle is on the paper."""
     low, high = sheet.cut
     middle = xy(circle.centre)
     return bool(np.all((middle - circle.radius > low) & (middle + circle.radius < high)))
 
 
 def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: Dot, gid: str) -> None:
-    """A point as a small circle, a pivot of the ground on its foot; none of what is off."""
+    """Draw a point as a small circle, a pivot of the ground on its foot; nothing off the paper."""
     low, high = sheet.cut
     place = xy(dot.place)
     if np.any((place < low) | (place > high)):

@@ -1,4 +1,4 @@
-"""What is seen of a construction: the mechanism and what is near it, and words for what is not."""
+"""The visible part of a construction: the mechanism with its surroundings; words for the rest."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ from reports.lectures.drawing.sheets.scheme import extent_of, sense_of_law
 from reports.output.numbers import readable
 
 GIVEN, AUXILIARY, OTHERS = "#2e6f9e", "#a9b3bf", "#d3dfe9"
-"""Of what a task gives, of what is drawn on the way, and of the mechanism's other positions; the
-last two are so faint that letters may interrupt them."""
+"""Colours of given elements, of auxiliary lines, and of the mechanism's other positions; the last
+two are so faint that letters may interrupt them."""
 CURVES = ("#b7791f", "#6b4e9b", "#3a7d44")
-"""Of curves, one after the other: they go through everything, and have to be told apart."""
+"""Colours of curves, one after the other: they cross everything, and must be distinguishable."""
 OTHERS_WIDTH = 1.2
 
 
@@ -57,7 +57,7 @@ LOOKS: dict[Look, Stroke] = {
 
 
 def look_of(element: Element, steps: Sequence[DrawingStep]) -> Stroke:
-    """That of an element among all of them."""
+    """The look of an element among all of them."""
     if isinstance(element, DrawnCurve) and element.look == "auxiliary":
         curves = curves_of(steps)
         number = next(k for k, curve in enumerate(curves) if curve is element)
@@ -66,27 +66,27 @@ def look_of(element: Element, steps: Sequence[DrawingStep]) -> Stroke:
 
 
 def curves_of(steps: Sequence[DrawingStep]) -> list[DrawnCurve]:
-    """The curves that are drawn on the way, in their order."""
+    """The auxiliary curves, in their order."""
     every = (element for step in steps for element in step.elements)
     return [each for each in every if isinstance(each, DrawnCurve) and each.look == "auxiliary"]
 
 
 LEAST = 1e-9
-"""An arc that is shorter [rad] is none."""
+"""Least angle of an arc [rad]."""
 
 
 def xy(place: complex) -> Array:
-    """A place as the drawing has it (2,)."""
+    """A place as an array (2,)."""
     return np.array([place.real, place.imag])
 
 
 def strokes(element: Element, low: Array, high: Array) -> list[Array]:
-    """The lines of an element within a box [m], (n, 2) each; none of a dot."""
+    """The lines of an element within a box [m], (n, 2) each; none for a dot."""
     return [part for line in _lines(element, low, high) for part in cut_line(line, low, high)]
 
 
 def _lines(element: Element, low: Array, high: Array) -> Iterator[Array]:
-    """The whole lines of an element, but for what of a circle is far from the box."""
+    """The whole lines of an element, except parts of a circle far from the box."""
     match element:
         case Dot():
             return
@@ -127,7 +127,7 @@ def placements_of(examined: Examined) -> tuple[PlacedMechanism | None, ...]:
 
 
 def _placed(scene: Scene, position: PrecisionPosition) -> PlacedMechanism | None:
-    """On the scene's own branches where these meet the position, else on those that are nearest."""
+    """Place the mechanism on the scene's own branches if they meet the position, else nearest."""
     signed = SignedScene.of(scene)
     every = (
         signed.with_signs(signs) for signs in itertools.product((1, -1), repeat=len(signed.dyads))
@@ -143,7 +143,7 @@ def _placed(scene: Scene, position: PrecisionPosition) -> PlacedMechanism | None
 
 
 def _standing(scene: Scene, position: PrecisionPosition) -> tuple[float, PlacedMechanism | None]:
-    """How far off a position a scene is, and how it stands there."""
+    """The distance of a scene from a position, and its placement there."""
     theta, one = np.array([position.driver_rad]), np.ones(1)
     try:
         motion = solve_driven(scene, theta, one, 0.0 * one, bound=False)
@@ -155,9 +155,9 @@ def _standing(scene: Scene, position: PrecisionPosition) -> tuple[float, PlacedM
 
 
 NEAR = {"given": math.inf, "result": 1.5, "auxiliary": 0.5}
-"""What is further from the mechanism than so many times its size does not shrink the figure."""
+"""Distance from the mechanism, in its sizes, beyond which an element does not shrink the figure."""
 FEW_PLACES = 72
-"""Of a circle or a curve that has to be in the figure."""
+"""Number of places of a circle that must be in the figure."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ class ConstructionView:
 
     @staticmethod
     def of(proposed: Examined | Proposal) -> ConstructionView:
-        """Raises CrankcheckError of a proposal that can not be assembled in its first position."""
+        """Build the view. Raises CrankcheckError where the first position can not be assembled."""
         examined = examine(proposed) if isinstance(proposed, Proposal) else proposed
         placements = placements_of(examined)
         if placements[0] is None:
@@ -191,11 +191,11 @@ class ConstructionView:
 
     @property
     def others(self) -> list[PlacedMechanism]:
-        """The mechanism in the other positions that it can be assembled in."""
+        """The mechanism in its other positions, where it can be assembled."""
         return [each for each in self.placements[1:] if each is not None]
 
     def far(self, low: Array, high: Array) -> Iterator[tuple[Array, str]]:
-        """What is out of a box [m], where (2,), and in words; letters once."""
+        """Elements out of a box [m]: their place (2,), and words; letters once."""
         told = set()
         for number, step in enumerate(self.steps, 1):
             for element in step.elements:
@@ -207,7 +207,7 @@ class ConstructionView:
 
 
 def _shown(examined: Examined, placements: Sequence[PlacedMechanism | None]) -> Array:
-    """The mechanism in its positions, what is given, and what else is near."""
+    """Places of the mechanism in its positions, of given elements, and of other elements nearby."""
     there = [extent_of(placed) for placed in placements if placed is not None]
     elements = [each for step in examined.proposal.steps for each in step.elements]
     for look, reach in NEAR.items():
@@ -221,8 +221,8 @@ def _shown(examined: Examined, placements: Sequence[PlacedMechanism | None]) -> 
 
 
 def _extent(element: Element) -> Iterable[complex]:
-    """The places that an element has the figure have room for. What is drawn beyond a line's ends
-    needs none, and neither do curves and circles that are not given."""
+    """The places of an element that the figure must contain: none beyond a line's ends, and none of
+    curves and circles that are not given."""
     match element:
         case Dot(place):
             return [place]
@@ -238,7 +238,7 @@ def _extent(element: Element) -> Iterable[complex]:
 
 
 def _is_out(element: Element, low: Array, high: Array) -> bool:
-    """Whether nothing of an element is in a box; of a curve something is, or it is told by none."""
+    """True if no part of an element is in a box."""
     if isinstance(element, Dot):
         place = xy(element.place)
         return bool(np.any((place < low) | (place > high)))
@@ -246,7 +246,7 @@ def _is_out(element: Element, low: Array, high: Array) -> bool:
 
 
 def _words_of(element: Element, number: int) -> tuple[complex, str]:
-    """A place of an element of a step, and what it is called."""
+    """A place of an element of a step, and its name."""
     match element:
         case Dot(place, letter):
             return place, letter or f"a point of step {number}"
@@ -260,7 +260,7 @@ def _words_of(element: Element, number: int) -> tuple[complex, str]:
 
 
 def _away(place: Array, middle: Array) -> str:
-    """Where a place is from the middle of the figure."""
+    """The direction and distance of a place from the middle of the figure, in words."""
     x, y = place - middle
     angle = round(math.degrees(math.atan2(y, x))) % 360
     where = f"({readable(float(place[0]))}, {readable(float(place[1]))}) m"
@@ -268,12 +268,12 @@ def _away(place: Array, middle: Array) -> str:
 
 
 TOUCHED = 1e-3
-"""A driver that turns back this near to a position [rad] is in it."""
+"""Distance [rad] at which a driver that turns back still reaches a position."""
 
 
 def positions_on_way(view: ConstructionView, motion: Motion) -> list[float | None]:
-    """The samples at which a motion first goes through the precision positions, parts of samples
-    counted; None of a position on another branch, and of one that the driver does not reach."""
+    """The samples at which a motion first goes through the precision positions, as fractional
+    numbers; None for a position on another branch, or one that the driver does not reach."""
     scene = view.examined.scene
     theta = motion.links[scene.driver.link].theta
     return [
@@ -285,7 +285,7 @@ def positions_on_way(view: ConstructionView, motion: Motion) -> list[float | Non
 
 
 def _first(theta: Array, angle: float) -> float | None:
-    """Where angles (T,) first pass one, whole turns apart."""
+    """The sample at which angles (T,) first pass ``angle``, up to whole turns."""
     off = (theta - angle + math.pi) % math.tau - math.pi
     if abs(off[0]) < TOUCHED:
         return 0.0

@@ -1,4 +1,4 @@
-"""The solutions of a synthesis as a table: what each is, and what is wrong with it."""
+"""The solutions of a synthesis as a table: their properties and their defects."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ DEFECT_FREE = "none"
 
 
 def remarks(one: Examined) -> list[str]:
-    """What a task wished and a mechanism does not have, and how well it does it, in words."""
+    """Unfulfilled wishes of a task, and notes on the quality of a mechanism, in words."""
     doubt = one.proposal.doubt
     return [*one.unfulfilled, *one.notes, *([doubt] if doubt else [])]
 
 
 def counted(solutions: Solutions, listed: int) -> str:
-    """How many solutions there are, of how many, in words."""
+    """The numbers of solutions examined, sound and listed, in words."""
     many, sound = len(solutions.examined), len(solutions.sound)
     told = f"{count(solutions.looked, 'mechanism')} looked at, {many} examined"
     told += f", {sound} without a defect"
@@ -42,7 +42,7 @@ def counted(solutions: Solutions, listed: int) -> str:
 
 
 def solution_table(every: Sequence[Examined]) -> Table:
-    """A row for each, numbered from 1."""
+    """Table of solutions, a row each, numbered from 1."""
     table = plain_table(gap=2)
     for head in ("", "defect", "driver", "trans. deg", "size m", "type", "chosen, remarks"):
         table.add_column(head, overflow="fold")
@@ -60,7 +60,7 @@ def solution_table(every: Sequence[Examined]) -> Table:
 
 
 def solution_frame(every: Sequence[Examined]) -> pd.DataFrame:
-    """The same with all digits, and the lengths: a row for each."""
+    """Table of solutions with all digits, and the lengths: a row for each."""
     import pandas as pd
 
     rows = []
@@ -96,8 +96,8 @@ def _chosen(one: Examined) -> list[str]:
 
 @dataclass(frozen=True)
 class ProofRow:
-    """What an engine missed most of what a solution was asked, in words; ``within`` is whether all
-    of it is within what is allowed."""
+    """The largest miss of an engine for a solution, in words; ``within`` says whether all of its
+    misses are within their limits."""
 
     within: bool
     solution: int
@@ -110,7 +110,7 @@ class ProofRow:
 
 
 def proof_rows(proofs: Mapping[int, Sequence[Met]]) -> list[ProofRow]:
-    """By number of the solution, a row for each engine and profile."""
+    """The rows by number of the solution, one for each engine and profile."""
     rows = []
     for number, every in proofs.items():
         for engine in dict.fromkeys((one.engine, one.profile) for one in every):
@@ -134,7 +134,7 @@ def proof_rows(proofs: Mapping[int, Sequence[Met]]) -> list[ProofRow]:
 
 
 def proof_table(proofs: Mapping[int, Sequence[Met]]) -> Table:
-    """The rows for a terminal."""
+    """Table of the rows for a terminal."""
     table = plain_table(gap=2)
     for head in ("", "solution", "engine", "position", "driver deg", "what", "off", "allowed"):
         table.add_column(head, overflow="fold")
@@ -153,7 +153,7 @@ def proof_table(proofs: Mapping[int, Sequence[Met]]) -> Table:
 
 
 def proof_frame(proofs: Mapping[int, Sequence[Met]]) -> pd.DataFrame:
-    """A row for each thing asked at each position, with all digits."""
+    """Table of the proof with all digits, a row for each requirement at each position."""
     import pandas as pd
 
     return pd.DataFrame(
@@ -182,8 +182,8 @@ def _share(one: Met) -> float:
 def sensitivity_table(
     found: Sensitivity, limits: Sequence[float], tolerance_m: float, spread: Spread
 ) -> Table:
-    """A row for each thing asked: linear worst case and root of squares, the Monte Carlo's largest,
-    what is allowed, and the dimension that it goes with most."""
+    """Table of requirements: linear worst case and root of squares, the Monte Carlo's largest, the
+    limit, and the dimension of largest influence."""
     table = plain_table(f"Solution 1, every dimension off by up to {tolerance_m:g} m", gap=2)
     for head in ("position", "what", "worst", "root sum sq.", "Monte Carlo", "allowed", "most by"):
         table.add_column(head, overflow="fold")

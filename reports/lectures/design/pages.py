@@ -1,5 +1,4 @@
-"""Pages of a synthesis: a construction step by step as one draws it, and all solutions side by
-side."""
+"""Pages of a synthesis: a construction step by step, and all solutions side by side."""
 
 import base64
 import math
@@ -42,19 +41,19 @@ from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
 
 INSTANTS = 241
-"""Over what the driver goes through, both ends included."""
+"""Number of instants over the range of the driver, both ends included."""
 LASTS_MS = 8000
-"""What that takes: slow enough to see the positions."""
+"""Duration of the motion [ms]: slow enough to see the positions."""
 AROUND = 1.5
-"""Lines go on so many times the size of the figure beyond it: a screen is wider than its box."""
+"""Length of lines beyond the figure, in its sizes: a screen is wider than its box."""
 EVERY = 4
-"""Of the places along a circle, these are enough for a screen."""
+"""Stride of the places along a circle: these suffice for a screen."""
 MOVES = "The mechanism goes through its precision positions."
 
 
 def construction_page(proposed: Examined | Proposal) -> str:
-    """The page of a construction, one file that loads nothing. Raises CrankcheckError of a proposal
-    that can not be assembled in its first position."""
+    """The page of a construction, one file that loads nothing. Raises CrankcheckError for a
+    proposal that can not be assembled in its first position."""
     view = ConstructionView.of(proposed)
     scene = view.examined.scene
     section = Section(
@@ -81,13 +80,13 @@ def construction_page(proposed: Examined | Proposal) -> str:
 
 
 def _doubts(view: ConstructionView) -> list[str]:
-    """What keeps the mechanism from its task."""
+    """Doubts and defects that keep the mechanism from its task."""
     doubt, defects = view.examined.proposal.doubt, view.examined.defects
     return [doubt] * bool(doubt) + [f"It has a fault: {listed(defects)}."] * bool(defects)
 
 
 def _embedded(view: ConstructionView) -> dict[str, object]:
-    """What the page draws: places [m] as x, y after one another."""
+    """The drawn parts of the page: places [m] as x, y after one another."""
     motion = turn_of(view.examined.scene, INSTANTS)
     moves = drawing(view.examined.scene, motion.time_s, motion)
     places = [view.shown, *(point.position for point in motion.points.values())]
@@ -110,7 +109,7 @@ def _embedded(view: ConstructionView) -> dict[str, object]:
 def _element(
     element: Element, low: Array, high: Array, curves: dict[int, int]
 ) -> dict[str, object]:
-    """A dot, or lines as far as they are in a box; curves have one of so many looks."""
+    """A dot, or lines as far as they are in a box; curves have one of several looks."""
     if isinstance(element, Dot):
         at = list(xy(element.place))
         return {"at": at, "letter": element.letter, "fixed": element.fixed, "look": element.look}
@@ -127,8 +126,8 @@ def _flat(lines: list[Array]) -> list[list[float]]:
 
 
 def _pose(view: ConstructionView, number: int) -> dict[str, object]:
-    """What is asked for in a position: the links whose angles are, or else whose points are, as
-    they stand there, all links where these are none; and the places of asked points."""
+    """The requirements of a position: the links with required angles, or else with required points,
+    as placed there, or all links; and the required places of points."""
     placed, position = view.placements[number], view.examined.positions[number]
     places = [list(xy(each.place)) for each in position.asked if isinstance(each, AskedPlace)]
     return {"links": _flat(_asked_links(view, placed)), "places": places}
@@ -149,8 +148,8 @@ Proofs = Mapping[int, Sequence[Met]]
 
 
 def solutions_sheet(every: Sequence[Examined], task: TaskTable, paper: Paper) -> Canvas | None:
-    """All solutions in their first positions, to one scale; None where none stands in it. Raises
-    CrankcheckError for paper that is too small."""
+    """All solutions in their first positions, to one scale; None where none can be placed there.
+    Raises CrankcheckError for paper that is too small."""
     drawn = []
     for number, one in enumerate(every, 1):
         placement = placements_of(one)[0]
@@ -170,8 +169,8 @@ def solutions_page(
     proofs: Proofs,
     facts: Mapping[str, str],
 ) -> str:
-    """The page; ``sheet`` is an SVG of all solutions, ``facts`` are versions and settings. It leads
-    to the pages of the constructions, `construction_name`, beside it."""
+    """The page of all solutions; ``sheet`` is their SVG, ``facts`` are versions and settings. It
+    links to the pages of the constructions, `construction_name`, beside it."""
     sections = [_solutions(every, task, counted, sheet)]
     if proofs:
         rows = proof_rows(proofs)
@@ -211,12 +210,12 @@ def _solutions(
 
 
 def construction_name(number: int, kind: str) -> str:
-    """The file of a solution's construction."""
+    """The file name of a solution's construction."""
     return f"construction-{number}.{kind}"
 
 
 def scene_name(number: int) -> str:
-    """The file of a solution's scene."""
+    """The file name of a solution's scene."""
     return f"solution-{number}.toml"
 
 

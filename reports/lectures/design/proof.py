@@ -1,4 +1,4 @@
-"""The proof of a mechanism: an engine runs it through what was asked, and is looked at there."""
+"""The proof of a mechanism: an engine runs it, and its positions are checked."""
 
 import math
 from collections.abc import Iterator
@@ -17,16 +17,16 @@ from sim.run import run
 
 STEPS_PER_TURN = 720.0
 LEVERS = 6
-"""Samples on which a place between two of them is read: their polynomial is off by less than what
-the drive of an engine is, some 1e-12."""
+"""Number of samples that interpolate a place between two of them: their polynomial has less error
+than the drive of an engine, some 1e-12."""
 OF_LONGEST, DEGREES = 1e-3, 0.1
-"""What a position may be missed by where a task is silent: of the longest link, and by an angle."""
+"""Default tolerances of a position: share of the longest link, and angle."""
 
 
 @dataclass(frozen=True)
 class Met:
-    """How an engine (or the reference) met one thing that is asked at a position: how far it was
-    off [m or rad] and what is allowed, NaN where it came to no such position (``reason``)."""
+    """Result of an engine (or the reference) for a requirement at a position: its error [m or rad]
+    and limit, NaN where it reached no such position (``reason``)."""
 
     engine: str
     profile: str
@@ -39,7 +39,7 @@ class Met:
 
     @property
     def within(self) -> bool:
-        """Whether the position is met."""
+        """True if the position is met."""
         return self.off <= self.limit
 
 
@@ -50,12 +50,12 @@ def proven(
     profile: str = "tuned",
     steps_per_turn: float = STEPS_PER_TURN,
 ) -> list[Met]:
-    """Run an examined mechanism in an engine, and look at it when its driver has the stated angles.
+    """Run an examined mechanism in an engine, and check it when its driver has the stated angles.
 
     Returns
     -------
     list[Met]
-        One for each thing asked at each position; of a run that did not work, with its reason.
+        A result for each requirement at each position; a failed run has its reason.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def proven(
 
 
 def by_reference(examined: Examined, task: TaskTable) -> list[Met]:
-    """The same of the reference."""
+    """The results of the reference, as in `proven`."""
     at_s = passing_times(examined.scene.driver.law, [p.driver_rad for p in examined.positions])
     motion = solve(examined.scene, at_s, bound=False)
     return list(_met(examined, task, "reference", "", motion, ""))
@@ -96,26 +96,26 @@ def _met(
 
 
 def limit_of(asked: Asked, scene: Scene, task: TaskTable) -> float:
-    """What a position may be missed by [rad or m]: as the task says, or the usual."""
+    """The tolerance of a position [rad or m]: the task's, or the default."""
     if isinstance(asked, AskedAngle):
         return math.radians(DEGREES if task.tolerance_deg is None else task.tolerance_deg)
     return OF_LONGEST * scene.longest_m if task.tolerance_m is None else task.tolerance_m
 
 
 def in_words(asked: Asked) -> str:
-    """What is asked, for a table."""
+    """The requirement in words, for a table."""
     if isinstance(asked, AskedAngle):
         return f"angle of {asked.link}"
     return f"place of {asked.point if isinstance(asked, AskedPlace) else asked.slider}"
 
 
 def unit_of(asked: Asked) -> str:
-    """Of how far it is off."""
+    """The unit of the error of a requirement."""
     return "rad" if isinstance(asked, AskedAngle) else "m"
 
 
 def _between(motion: Motion, at_s: Array) -> Motion:
-    """A logged motion at instants between its samples; NaN at those that it did not come to."""
+    """A logged motion interpolated at instants; NaN at instants that it did not reach."""
     t = motion.time_s
     dt = float(t[1] - t[0]) if len(t) > 1 else 1.0
     first = np.clip(np.floor((at_s - t[0]) / dt).astype(int) - LEVERS // 2 + 1, 0, None)

@@ -1,4 +1,4 @@
-"""The column of words beside a construction: its steps, its looks, what is off the paper."""
+"""The column of words beside a construction: steps, looks, elements off the paper."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -19,17 +19,17 @@ from reports.lectures.design.construction_view import (
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, line, text
 
 ROW_MM, GAP_MM = 3.1, 1.3
-"""A line of the column, and what is left between its parts."""
+"""Height of a line of the column, and gap between its parts."""
 INSET_MM, HANGING_MM, SAMPLE_MM = 2.0, 5.5, 7.0
-"""At both sides of the column, before the words of a step, and of a line's sample."""
+"""Margins at both sides of the column, before the words of a step, and for a line's sample."""
 SPARE = 0.95
-"""Of the room that lines take: what shows the file may have wider type."""
+"""Usable share of the width: a viewer of the file may have wider type."""
 KEY: dict[Look, str] = {"given": "given", "auxiliary": "construction"}
 
 
 @dataclass(frozen=True)
 class ColumnPart:
-    """A paragraph of the column: what hangs before it, a number or the sample of a line."""
+    """A paragraph of the column, with a hanging number or the sample of a line before it."""
 
     words: str
     before: str | Stroke = ""
@@ -38,7 +38,7 @@ class ColumnPart:
 
     @property
     def hanging(self) -> float:
-        """How far its words are from the left [mm]."""
+        """Distance of its words from the left [mm]."""
         if isinstance(self.before, Stroke):
             return SAMPLE_MM + 1.5
         return HANGING_MM if self.before else 0.0
@@ -50,7 +50,7 @@ class ColumnPart:
 
 
 def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[ColumnPart]]:
-    """What is told of a construction, in groups."""
+    """The words on a construction, in groups."""
     proposal = view.examined.proposal
     steps = [ColumnPart(step.words, f"({k})") for k, step in enumerate(view.steps, 1)]
     chosen = [ColumnPart(f"{name}: {value}") for name, value in proposal.chosen.items()]
@@ -67,7 +67,7 @@ def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[ColumnPart
 
 
 def _key(view: ConstructionView) -> list[ColumnPart]:
-    """What the lines are, of those that there are."""
+    """The key of the lines, for the looks that occur."""
     coloured = {id(curve) for curve in curves_of(view.steps)}  # by the numbers of their steps
     every = [each for step in view.steps for each in step.elements if id(each) not in coloured]
     looks = {each.look for each in every if not isinstance(each, Dot)}
@@ -82,14 +82,14 @@ def _titled(words: str) -> ColumnPart:
 
 
 def height_of(groups: Sequence[Sequence[ColumnPart]], width: float) -> float:
-    """What groups need in a column of a width [mm]."""
+    """The height of groups in a column of a width [mm]."""
     rows = sum(len(part.lines(width)) for group in groups for part in group)
     parts = sum(len(group) for group in groups)
     return 2 * INSET_MM + ROW_MM * rows + GAP_MM * (0.5 * parts + len(groups))
 
 
 def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box) -> None:
-    """All groups from the top of a column that is high enough."""
+    """Write all groups from the top of a column that is high enough."""
     left, y = column.left + INSET_MM, column.bottom + column.height - INSET_MM
     for group in groups:
         for part in group:
@@ -105,7 +105,7 @@ def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box
 
 
 def _hang(axes: Axes, part: ColumnPart, left: float, base: float) -> None:
-    """What stands before a paragraph, on the base line of its first row."""
+    """Draw the number or sample before a paragraph, on the base line of its first row."""
     if isinstance(part.before, Stroke):
         start, end = np.array([left, base + 0.8]), np.array([left + SAMPLE_MM, base + 0.8])
         line(axes, start, end, color=part.before.colour, linewidth=part.before.width)

@@ -1,4 +1,4 @@
-"""`crankcheck synth`: from what a mechanism must do to its scenes."""
+"""`crankcheck synth`: from the task of a mechanism to its scenes."""
 
 from __future__ import annotations
 
@@ -50,16 +50,16 @@ if TYPE_CHECKING:
 Proofs = Mapping[int, Sequence[Met]]
 FRAME, PROOF, PAGE = "solutions.csv", "proof.csv", "index.html"
 OURS = re.compile(r"(solution|construction)-\d+\.(toml|svg|html)|proof\.csv")
-"""Files of such names in a folder are of this command."""
+"""Pattern of the file names that belong to this command."""
 USUAL = ("tuned",)
-"""Profiles of the proof where none is named."""
+"""Default profiles of the proof."""
 SAMPLES = 1000
-"""Mechanisms of the Monte Carlo: two seconds."""
+"""Number of mechanisms of the Monte Carlo: two seconds."""
 
 
 @dataclass(frozen=True)
 class SynthRequest:
-    """What `synth` was asked for, as given."""
+    """Arguments of `synth`, as given."""
 
     kind: Annotated[
         str | None, typer.Argument(metavar="KIND", help="What kind of task; none lists them.")
@@ -97,7 +97,7 @@ class SynthRequest:
     paper: PaperSize = "A4"
 
     def run(self, console: Console, progress: Console) -> int:
-        """List, write and prove the solutions. Raises CrankcheckError for what can not be asked."""
+        """List, write and prove the solutions. Raises CrankcheckError for a faulty request."""
         if self.kind is None or self.task is None:
             return _list(self.kind, console)
         paper = Paper.of(self.paper)
@@ -138,7 +138,7 @@ class SynthRequest:
 
 
 def _check(request: SynthRequest) -> None:
-    """Refuse numbers that are none, and what belongs to a proof that is not asked for."""
+    """Refuse numbers that are not finite, and options of a proof that is not requested."""
     numbers = {"--steps-per-turn": request.steps_per_turn, "--vary": request.vary_m}
     for option, number in numbers.items():
         if number is not None and not math.isfinite(number):
@@ -162,7 +162,7 @@ def _searched(task: TaskTable, console: Console) -> Solutions:
 
 
 def _list(kind: str | None, console: Console) -> int:
-    """The kinds with their shipped tasks."""
+    """List the kinds with their shipped tasks."""
     if kind is not None:
         refuse_unknown(kind)
     table = plain_table(gap=2)
@@ -178,7 +178,7 @@ def _list(kind: str | None, console: Console) -> int:
 def _show_sensitivity(
     console: Console, solutions: Solutions, task: TaskTable, tolerance_m: float
 ) -> None:
-    """What tolerances and clearances do to the best solution."""
+    """Show the effect of tolerances and clearances on the best solution."""
     if not solutions.sound:
         _say(console, "\nno sensitivity: no solution is without a defect")
         return
@@ -197,7 +197,7 @@ def _show_sensitivity(
 def _show_proof(
     console: Console, proofs: Proofs, facts: Mapping[str, str], request: SynthRequest
 ) -> None:
-    """The proof, and what it was made with."""
+    """Show the proof, with versions and settings."""
     if not proofs:
         _say(console, "\nnothing to prove: no solution listed is without a defect")
         return
@@ -219,7 +219,7 @@ def _write(
     paper: Paper,
     console: Console,
 ) -> None:
-    """The scenes, the tables, the constructions and the page that leads to them."""
+    """Write the scenes, the tables, the constructions and the page that links to them."""
     from reports.lectures.design.construction_sheet import construction_sheet
     from reports.lectures.design.pages import (
         construction_name,
@@ -262,7 +262,7 @@ def _say(console: Console, words: str) -> None:
 
 
 LISTED = 5
-"""Solutions that are printed."""
+"""Number of printed solutions."""
 TaskLike = str | PathLike[str] | Mapping[str, object]
 
 
@@ -270,26 +270,25 @@ TaskLike = str | PathLike[str] | Mapping[str, object]
 class Synthesis(Shown):
     """The solutions of a task (`synth`), the best first.
 
-    ``details`` holds all that is known of them: ``examined`` has for each its ``scene``,
-    ``positions``, ``defects``, ``least_transmission_rad``, ``extent_m`` and the like.
+    ``details`` has all facts of them: ``examined`` has for each its ``scene``, ``positions``,
+    ``defects``, ``least_transmission_rad``, ``extent_m`` and the like.
     """
 
     details: Solutions
 
     @property
     def scenes(self) -> list[Scene]:
-        """The scenes of the solutions without a defect: what every other function takes."""
+        """The scenes of the solutions without a defect, as arguments of every other function."""
         return [one.scene for one in self.details.sound]
 
     def frame(self) -> pd.DataFrame:
-        """A row for each solution, those with a defect too."""
+        """Table of solutions, a row each, including those with a defect."""
         from reports.lectures.design.design_tables import solution_frame
 
         return solution_frame(self.details.examined)
 
     def proof(self, engine: str, profile: str = "tuned", *, best: int = 1) -> pd.DataFrame:
-        """What an engine makes of the best solutions without a defect: a row for each thing that
-        is asked at each position.
+        """Prove the best sound solutions in an engine: a row for each requirement at each position.
 
         Raises
         ------
@@ -315,7 +314,7 @@ class Synthesis(Shown):
 
 @told_at_the_call
 def synth(kind: str, task: TaskLike) -> Synthesis:
-    """The mechanisms that do a task.
+    """Find the mechanisms that do a task.
 
     Parameters
     ----------
@@ -327,10 +326,9 @@ def synth(kind: str, task: TaskLike) -> Synthesis:
     Raises
     ------
     CrankcheckError
-        Another kind, no such task, or a task that no mechanism does; the message says what would
-        work.
+        Another kind, no such task, or a task that no mechanism does; the message suggests a remedy.
     SceneError
-        A task with faults, all that were found in one message.
+        A task with faults, all in one message.
     """
     return Synthesis(solutions_of(_task(kind, task)))
 

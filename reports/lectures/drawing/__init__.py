@@ -1,1 +1,1 @@
-"""What lectures draw: sheets to scale, chains, schemes, workbooks with formulas."""
+"""Drawings of lectures: sheets to scale, chains, schemes, workbooks with formulas."""

@@ -38,12 +38,12 @@ from reports.requests.options import Duration, PaperSize, SceneName
 
 LEAST_PARTS, MOST_PARTS, MOST_COUNTS = 4, 1440, 12
 MOST_DIGITS = 9
-"""Of longer numbers none is asked for in earnest, and the longest are not read as such."""
+"""Most digits of a number; longer ones are not parsed."""
 
 
 @dataclass(frozen=True)
 class GraphRequest:
-    """What `graph` was asked for, as given."""
+    """Arguments of `graph`, as given."""
 
     scene: SceneName
     of: Annotated[
@@ -72,7 +72,7 @@ class GraphRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or draw graphs. Raises CrankcheckError for what can not be asked."""
+        """Show or draw graphs. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
         divisions = counts(self.divisions)
         by, over = _method(self.by), _over(self.over)
@@ -95,7 +95,7 @@ class GraphRequest:
 
 
 def _tell_graphs(request: GraphRequest, console: Console, drawn: DrawnGraphs, paper: Paper) -> None:
-    """Draw the sheet, or show the table; then what both are off by."""
+    """Draw the sheet, or show the table; then print the errors of graphs and log."""
     of = drawn.span
     told = (
         f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}"
@@ -132,13 +132,13 @@ def _by(method: Method) -> str:
 
 
 def counts(text: str) -> Sequence[int]:
-    """Numbers of divisions, rising. Raises CrankcheckError."""
+    """Parse numbers of divisions, rising. Raises CrankcheckError."""
     words = text.split(",")
     if not all(word.strip().isdecimal() for word in words):
         raise CrankcheckError(
             f"--divisions {shown(text)}: give whole numbers, such as 24, or 12,24,48"
         )
-    # Zeros in front count as digits, too: what is too long is out of bounds either way.
+    # Zeros in front count as digits, too: a number too long is out of bounds either way.
     found = [int(word) if len(word.strip()) <= MOST_DIGITS else MOST_PARTS + 1 for word in words]
     if not all(LEAST_PARTS <= each <= MOST_PARTS for each in found):
         raise CrankcheckError(

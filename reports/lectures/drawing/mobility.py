@@ -19,12 +19,12 @@ from reports.output.console import hanging, plain_table
 from reports.output.write import check_file, write
 
 HEAD = 10
-"""Letters before each paragraph."""
+"""Width of the heads of paragraphs, in letters."""
 
 
 @dataclass(frozen=True)
 class MobilityRequest:
-    """What `mobility` was asked for, as given."""
+    """Arguments of `mobility`, as given."""
 
     scheme: Annotated[
         str | None,
@@ -40,8 +40,7 @@ class MobilityRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show one scheme, or list the shipped ones. Raises CrankcheckError for what can not be
-        asked."""
+        """Show a scheme, or list the shipped ones. Raises CrankcheckError for a faulty request."""
         if self.output is not None and not self.replace:
             raise CrankcheckError("-o writes the scheme that --replace makes; add --replace")
         if self.scheme is None:
@@ -61,7 +60,7 @@ class MobilityRequest:
 
 
 def show_mobility(console: Console, mobility: SchemeMobility) -> None:
-    """The count, the rank, the mobility, and what is passive or idle by name."""
+    """Show the count, the rank, the mobility, and passive constraints and idle freedoms by name."""
     scheme = mobility.scheme
     hanging(console, f"{scheme.name}: ", scheme.source, "bold")
     if scheme.note:
@@ -95,7 +94,7 @@ def _paragraphs(mobility: SchemeMobility) -> list[tuple[str, str]]:
 
 
 def _mobility(mobility: SchemeMobility) -> str:
-    """The real mobility, what of it is idle, and what the drawn position makes of it."""
+    """The real mobility, its idle part, and the particulars of the drawn position."""
     words = f"W = {mobility.real}"
     if mobility.idle:
         words += f", {mobility.useful} without what is idle"
@@ -119,7 +118,7 @@ def _mobility(mobility: SchemeMobility) -> str:
 
 
 def _show_replaced(console: Console, scheme: Scheme, request: MobilityRequest) -> None:
-    """The scheme with lower pairs alone, as a list of joints, and in a file where asked."""
+    """Show the scheme with lower pairs alone as a list of joints, and write it where requested."""
     fewer = replaced(scheme)
     if fewer == scheme:
         raise CrankcheckError(f"{scheme.name}: no higher pair; there is nothing to replace")
@@ -157,7 +156,7 @@ def _number(count: int, what: str) -> str:
 
 @dataclass(frozen=True)
 class JointRequest:
-    """What `joint` was asked for, as given."""
+    """Arguments of `joint`, as given."""
 
     joint: Annotated[
         str | None,
@@ -165,8 +164,7 @@ class JointRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show one joint, or list the shipped ones. Raises CrankcheckError for what can not be
-        read."""
+        """Show a joint, or list the shipped ones. Raises CrankcheckError for a bad file."""
         if self.joint is None:
             _list_contacts(console)
         else:
@@ -175,7 +173,7 @@ class JointRequest:
 
 
 def show_joint(console: Console, joint: JointAnalysis) -> None:
-    """The class of a joint by its contacts alone, and by what its neighbours leave."""
+    """Show the class of a joint by its contacts alone, and where its neighbours guide it."""
     touching = joint.touching
     hanging(console, f"{touching.name}: ", touching.source, "bold")
     if touching.note:
@@ -211,6 +209,6 @@ def _pair(touching: Touching) -> str:
 
 
 def _contacts(touching: Touching) -> str:
-    """How often the two touch, and in what."""
+    """The kinds and numbers of the contacts."""
     counts = Counter(contact.kind for contact in touching.contacts)
     return ", ".join(f"{kind} x {n}" if n > 1 else kind for kind, n in counts.items())

@@ -55,7 +55,7 @@ from reports.requests.options import PaperSize, SceneName, seconds
 
 
 def show_polygons(console: Console, sheet: PolygonSheet) -> None:
-    """Print both polygons, step by step, how fast the links turn, and what their images are."""
+    """Print both polygons, step by step, the rates of the links, and their images."""
     _say(console, _heading(sheet))
     for drawn in (sheet.velocity, sheet.acceleration):
         quantity, unit = drawn.polygon.quantity, UNITS[drawn.polygon.quantity]
@@ -101,13 +101,13 @@ def _vectors(drawn: DrawnPolygon) -> Table:
 
 
 def _towards(vector: Array) -> str:
-    """The angle of a vector [deg]; none of one that is 0."""
+    """The angle of a vector [deg]; "-" for a zero vector."""
     x, y = vector
     return f"{math.degrees(math.atan2(y, x)):.3f}" if np.any(vector) else "-"
 
 
 def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> None:
-    """The images of a log's points beside those of the reference, where there is a log."""
+    """Print the images of a log's points beside those of the reference, where there is a log."""
     if drawn.logged is None:
         return
     unit = UNITS[drawn.polygon.quantity]
@@ -149,7 +149,7 @@ LEAST_K, MOST_K = 1e-3, 1e3
 
 @dataclass(frozen=True)
 class PolygonRequest:
-    """What `polygon` was asked for, as given."""
+    """Arguments of `polygon`, as given."""
 
     scene: SceneName
     at_deg: Annotated[
@@ -195,7 +195,7 @@ class PolygonRequest:
     ] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show the vectors, or draw the sheet. Raises CrankcheckError for what can not be asked."""
+        """Show the vectors, or draw the sheet. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
         _check(self)
         scene = load_scene(self.scene)
@@ -225,7 +225,7 @@ class PolygonRequest:
 
 
 def _check(request: PolygonRequest) -> None:
-    """Refuse what can not be asked."""
+    """Refuse options that are out of range or contradict each other. Raises CrankcheckError."""
     inputs = [find_scene(request.scene), request.log, request.map]
     ending = ""
     if request.output is not None:
@@ -240,7 +240,7 @@ def _check(request: PolygonRequest) -> None:
 
 
 def _contradiction(request: PolygonRequest, ending: str) -> str:
-    """Two options that do not go together, and why; empty where there are none."""
+    """Two options that contradict each other, and the reason; empty where there are none."""
     at_time, has_log = request.at_s is not None, request.log is not None
     if at_time and request.at_deg is not None:
         return "--at-s with --at-deg: each says the instant"
@@ -256,7 +256,7 @@ def _contradiction(request: PolygonRequest, ending: str) -> str:
 
 
 def _logged(scene: Scene, request: PolygonRequest) -> LoggedInstant | None:
-    """The log at the instant, where one is drawn beside."""
+    """The log at the instant, where one is given."""
     if request.log is None:
         return None
     map_ = read_map(request.map) if request.map else Map()
@@ -274,7 +274,7 @@ def _placed(scene: Scene, request: PolygonRequest) -> PlacedMechanism:
 
 
 def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
-    """What was drawn."""
+    """Description of the drawing."""
     name = sheet.drawn.placement.scene.name
     ending = request.output.suffix.lower() if request.output is not None else ""
     if request.turn or ending == PAGE:

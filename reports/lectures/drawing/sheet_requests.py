@@ -43,7 +43,7 @@ Output = Annotated[Path, typer.Option("-o", "--output", help="Draw it: .svg in l
 
 @dataclass(frozen=True)
 class PositionsRequest:
-    """What `positions` was asked for, as given."""
+    """Arguments of `positions`, as given."""
 
     scene: SceneName
     output: Output
@@ -51,7 +51,7 @@ class PositionsRequest:
     paper: PaperSize = "A4"
 
     def run(self, console: Console, progress: Console) -> int:
-        """Draw positions. Raises CrankcheckError for what can not be asked."""
+        """Draw positions. Raises CrankcheckError for a faulty request."""
         paper = _checked(self.scene, self.output, self.paper)
         scene = load_scene(self.scene)
         sheet = positions(scene, self.divisions, paper)
@@ -61,20 +61,20 @@ class PositionsRequest:
 
 
 def _checked(scene: str, output: Path, paper: str) -> Paper:
-    """The paper; refuse a file that could not be written."""
+    """The paper; refuses a file that could not be written."""
     check_file(output, "-o", ENDINGS, inputs=[find_scene(scene)])
     return Paper.of(paper)
 
 
 def save_sheet(console: Console, canvas: Canvas, path: Path, told: str) -> None:
-    """Write a sheet, and say so."""
+    """Write a sheet, and print its name and content."""
     write(path, canvas.saved(path.suffix.lower()[1:], told))
     console.print(harmless(f"{path}: {told}"), highlight=False, markup=False, soft_wrap=True)
 
 
 @dataclass(frozen=True)
 class CentresRequest:
-    """What `centres` was asked for, as given."""
+    """Arguments of `centres`, as given."""
 
     scene: SceneName
     at_deg: Annotated[float, typer.Option(metavar="DEG", help="The driver's angle.")] = 60.0
@@ -88,7 +88,7 @@ class CentresRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or draw centres. Raises CrankcheckError for what can not be asked."""
+        """Show or draw centres. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
         if self.output is not None:
             check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
@@ -106,7 +106,7 @@ class CentresRequest:
 
 
 def _angle(scene: Scene, at_deg: float) -> float:
-    """The driver's angle [rad]. Raises CrankcheckError for one that its law never comes to."""
+    """The driver's angle [rad]. Raises CrankcheckError for an angle that its law never reaches."""
     return angle_at(at_deg) if scene.is_free else driver_at(scene, at_deg)[0]
 
 
@@ -134,7 +134,7 @@ def _place(place: Array | None) -> tuple[str, str]:
 
 
 def _show_circles(console: Console, sheet: CentreSheet) -> None:
-    """The poles and circles of the link that was named."""
+    """Show the poles and circles of the named link."""
     circles = sheet.circles
     assert circles is not None
     table = plain_table(gap=2)
@@ -154,12 +154,12 @@ def _show_circles(console: Console, sheet: CentreSheet) -> None:
 
 
 MOST_TYPED = 8
-"""Links of chains whose types are listed."""
+"""Most links of chains whose types are listed."""
 
 
 @dataclass(frozen=True)
 class ChainsRequest:
-    """What `chains` was asked for, as given."""
+    """Arguments of `chains`, as given."""
 
     links: Annotated[int, typer.Option(metavar="N", help="Links, the ground with them.")] = 6
     mobility: Annotated[int, typer.Option(metavar="W", help="Their mobility.")] = 1
@@ -176,7 +176,7 @@ class ChainsRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """List or draw chains. Raises CrankcheckError for what can not be asked."""
+        """List or draw chains. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
         if self.output is not None:
             check_file(self.output, "-o", ENDINGS)
@@ -199,7 +199,7 @@ class ChainsRequest:
 
 
 def _asked(request: ChainsRequest) -> Iterator[tuple[str, Chain]]:
-    """The chains of pins with their names; where types are asked for, these."""
+    """The chains of pins with their names; with ``sliders`` their types instead."""
     if request.sliders is not None and request.sliders < 0:
         raise CrankcheckError(f"--sliders {request.sliders}: take 0 or more")
     if request.sliders is not None and request.links > MOST_TYPED:
@@ -218,7 +218,7 @@ def _asked(request: ChainsRequest) -> Iterator[tuple[str, Chain]]:
 
 
 def _rows(request: ChainsRequest, name: str, chain: Chain) -> Iterator[DrawnChain]:
-    """What is listed or drawn of a chain: itself, or its mechanisms."""
+    """The listed or drawn rows of a chain: itself, or its mechanisms."""
     if not request.inversions:
         many = len(inversions(chain, name))
         counted = f"{many} mechanism{'s' if many > 1 else ''}"
@@ -229,7 +229,7 @@ def _rows(request: ChainsRequest, name: str, chain: Chain) -> Iterator[DrawnChai
 
 
 def _words(mechanism: Mechanism) -> str:
-    """The class by each driver, where one driver says where everything is."""
+    """The class by each driver, where one driver determines all positions."""
     if mechanism.chain.mobility != 1:
         return f"ground link {mechanism.ground + 1}"
     classes = sorted(set(mechanism.classes().values()))
@@ -253,7 +253,7 @@ def _show_chains(console: Console, request: ChainsRequest, rows: list[DrawnChain
 
 
 def _show_assortments(console: Console, request: ChainsRequest, every: list[Chain]) -> None:
-    """All counts of links that the mobility allows, with how many chains each has."""
+    """Show all counts of links that the mobility allows, with the number of chains of each."""
     table = plain_table(gap=2)
     table.add_column("assortment of links")
     table.add_column("chains", justify="right")

@@ -1,4 +1,4 @@
-"""`crankcheck structure`: what a scene is made of, and all its assemblies."""
+"""`crankcheck structure`: the parts of a scene, and all its assemblies."""
 
 import itertools
 import math
@@ -31,15 +31,15 @@ from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName
 
 MOST_CHOICES = 1024
-"""Combinations of branches that are tried."""
+"""Largest number of combinations of branches."""
 SAME = 1e-6
-"""Points that are nearer than this share of the longest length are the same."""
+"""Distance of points that coincide, as a share of the longest length."""
 
 
 @dataclass(frozen=True)
 class SceneAssembly:
-    """One assembly: the mechanism as it stands, its ``branch`` there, and whether it is the one
-    that the scene itself moves in."""
+    """One assembly: the mechanism as placed, its ``branch`` there, and True for the assembly that
+    the scene itself moves in."""
 
     placement: PlacedMechanism
     branch: Mapping[str, int]
@@ -47,7 +47,7 @@ class SceneAssembly:
 
     @property
     def words(self) -> str:
-        """What to write into a scene for it."""
+        """The text of the assembly's branch for a scene file."""
         if not self.branch:
             return "the only one"
         return ", ".join(
@@ -63,7 +63,7 @@ class SceneAssembly:
 
 def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> list[SceneAssembly]:
     """Every assembly with the driver at a coordinate [rad, or m of a slider], in the order of the
-    branches, each with the numbers that it has where a motion starts there.
+    branches, each with the numbers of a motion that starts there.
 
     Raises CrankcheckError where there are too many combinations to try.
     """
@@ -97,7 +97,7 @@ def _way(scene: Scene) -> float:
 
 
 def _own(scene: Scene, state: DriverState) -> PlacedMechanism | None:
-    """The scene where its own motion comes to, None where it does not."""
+    """The scene's own assembly there; None where its motion does not reach it."""
     return _placed(scene, state)
 
 
@@ -110,14 +110,14 @@ def _placed(scene: Scene, state: DriverState) -> PlacedMechanism | None:
 
 
 def _is(one: PlacedMechanism, other: PlacedMechanism) -> bool:
-    """Whether all points stand at the same places."""
+    """True if all points coincide."""
     apart = max(float(np.hypot(*(at - other.points[name]))) for name, at in one.points.items())
     return apart < SAME * one.scene.longest_m
 
 
 @dataclass(frozen=True)
 class StructureRequest:
-    """What `structure` was asked for, as given."""
+    """Arguments of `structure`, as given."""
 
     scene: SceneName
     at_deg: Annotated[
@@ -134,7 +134,7 @@ class StructureRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or draw the structure. Raises CrankcheckError for what can not be asked."""
+        """Show or draw the structure. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
         if self.output is not None:
             check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
@@ -163,21 +163,21 @@ class StructureRequest:
 
 
 def _coordinate(scene: Scene, request: StructureRequest) -> float:
-    """Where the driver stands [rad, m]: as asked, or where the scene starts."""
+    """The driver's coordinate [rad, m]: the requested one, or the scene's start."""
     if request.at_deg is not None or request.at_m is not None:
         return place_at(scene, request.at_deg, request.at_m)
     return float(scene.driver.law.at(np.zeros(1))[0][0])
 
 
 def _told(scene: Scene, coordinate: float) -> str:
-    """The driver's place for people."""
+    """The driver's place as text."""
     if scene.driver.slider is not None:
         return f"{coordinate:.6g} m"
     return f"{math.degrees(coordinate):.6g} deg"
 
 
 def _count_in_words(structure: Structure) -> str:
-    """Links and joints by class, and the mobility."""
+    """Links and joints by class, and the mobility, as text."""
     n, p = len(structure.bodies), structure.pairs
     sliders = len(structure.prismatics)
     return (
@@ -188,7 +188,7 @@ def _count_in_words(structure: Structure) -> str:
 
 
 def _show_groups(console: Console, structure: Structure) -> None:
-    """The groups in solving order, and the class of the mechanism."""
+    """Show the groups in solving order, and the class of the mechanism."""
     table = plain_table("Assur groups in solving order", gap=2)
     for head in ("group", "links", "class", "order"):
         table.add_column(head, overflow="fold")
@@ -206,7 +206,7 @@ def _show_groups(console: Console, structure: Structure) -> None:
 
 
 def _show_drivers(console: Console, scene: Scene, structure: Structure) -> None:
-    """The class for every joint that could drive."""
+    """Show the class for every joint that could drive."""
     table = plain_table("Driven at another joint (* this scene's)", gap=2)
     for head in ("", "driver", "class", "groups"):
         table.add_column(head, overflow="fold")
@@ -226,7 +226,7 @@ def _group_in_words(group: ClassedGroup) -> str:
 
 
 def _show_assemblies(console: Console, every: list[SceneAssembly], at: str) -> None:
-    """Every assembly, by the angles of its links."""
+    """Show every assembly, by the angles of its links."""
     _say(console, f"\n{_counted(every)} with {at}" + (" (* this scene's)" if every else ""))
     if not every:
         return

@@ -1,4 +1,4 @@
-"""What is told of a steady cycle: its numbers with their units, works by what does them, notes."""
+"""Words on a steady cycle: its numbers with their units, works by their sources, notes."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
 
 EVEN = 1e-9
-"""A fluctuation below this has no place."""
+"""Fluctuation below which the extremes have no place."""
 
 
 @dataclass(frozen=True)
 class NumberRow:
-    """A number of a cycle by its ``key`` in files and its name, with where the driver stands then
-    [deg], NaN where it is of the whole cycle."""
+    """A number of a cycle by its ``key`` in files and its name, with the driver's angle at it
+    [deg], NaN for a number of the whole cycle."""
 
     key: str
     name: str
@@ -41,8 +41,8 @@ class NumberRow:
 
 @dataclass(frozen=True)
 class WorkRow:
-    """The work that something does in a cycle [J], and its mean torque on the driver, along the
-    motion [N m]."""
+    """The work of a source in a cycle [J], and its mean torque on the driver, positive if it drives
+    [N m]."""
 
     name: str
     work_j: float
@@ -75,7 +75,7 @@ def number_rows(cycle: SteadyCycle) -> list[NumberRow]:
 
 
 def work_rows(cycle: SteadyCycle) -> list[WorkRow]:
-    """The works of a cycle, what drives most first."""
+    """The works of a cycle, the strongest drive first."""
     angle = cycle.machine.cycle_rad
     return [
         WorkRow(name, work, work / angle)
@@ -84,7 +84,7 @@ def work_rows(cycle: SteadyCycle) -> list[WorkRow]:
 
 
 def heading(cycle: SteadyCycle) -> str:
-    """What the cycle is one of."""
+    """The heading: scene, driver, and length of the cycle."""
     machine = cycle.machine
     turns = machine.cycle_rad / math.tau
     words = {1: "one turn", 2: "two turns"}.get(round(turns), f"{turns:g} turns")
@@ -93,7 +93,7 @@ def heading(cycle: SteadyCycle) -> str:
 
 
 def notes(cycle: SteadyCycle) -> list[str]:
-    """How the numbers are meant."""
+    """Notes on the meaning of the numbers."""
     told = [
         "Coefficient of fluctuation: (largest - smallest speed) / mean, the mean being half their "
         "sum. Torques count along the motion: what is positive drives."
@@ -121,8 +121,8 @@ def notes(cycle: SteadyCycle) -> list[str]:
 
 @dataclass(frozen=True)
 class WayRow:
-    """A way to the flywheel: its ``key`` in files, its name with where it comes from, the moment of
-    inertia [kg m^2], and by what share it is off the exact one."""
+    """A method for the flywheel: its ``key`` in files, its name with its source, the moment of
+    inertia [kg m^2], and its deviation from the exact one, as a share."""
 
     key: str
     name: str
@@ -141,7 +141,7 @@ class BesideRow:
 
 
 def way_rows(found: WantedFlywheel) -> list[WayRow]:
-    """The exact flywheel first."""
+    """The methods for the flywheel, the exact one first."""
     exact, near = found.inertia_kg_m2, found.approximations
     ways = {
         "exact": ("exact, of the full equation", exact),
@@ -153,7 +153,7 @@ def way_rows(found: WantedFlywheel) -> list[WayRow]:
 
 
 def beside_rows(found: WantedFlywheel) -> list[BesideRow]:
-    """The cycle without the flywheel and with it."""
+    """The numbers of the cycle without the flywheel and with it."""
     bare = {} if found.bare is None else {row.key: row for row in number_rows(found.bare)}
     rows = []
     for row in number_rows(found.cycle):
@@ -167,7 +167,7 @@ def beside_rows(found: WantedFlywheel) -> list[BesideRow]:
 
 
 def flywheel_heading(found: WantedFlywheel) -> str:
-    """What the flywheel is for."""
+    """The heading: the flywheel and its purpose."""
     scene = found.cycle.machine.scene
     return (
         f"{scene.name}: a flywheel of {found.inertia_kg_m2:.6g} kg m^2 on {scene.driver.link} "
@@ -176,7 +176,7 @@ def flywheel_heading(found: WantedFlywheel) -> str:
 
 
 def flywheel_notes(found: WantedFlywheel) -> list[str]:
-    """What is special."""
+    """Notes on the tangents, and on a machine that stops without the flywheel."""
     steep, flat = found.slopes
     told = [
         f"Tangents of the energy-mass diagram: tan psi_max = {steep:.6g}, tan psi_min = "
@@ -192,9 +192,9 @@ class CycleSeries:
     """A cycle at angles ``turned`` since its start [rad], (T,): the driver's angle, time, speed
     along the motion, the reduced moment of inertia, work since the start, energy of motion.
 
-    ``driving`` is the torque of all that does work in a cycle, ``resisting`` that of all that
-    takes it, ``returning`` that of what gives back what it takes (weights, springs); ``sources``
-    are all of them one by one [N m].
+    ``driving`` is the torque of all sources that do work in a cycle, ``resisting`` of those that
+    take it, ``returning`` of those that return it (weights, springs); ``sources`` are all of them
+    one by one [N m].
     """
 
     turned: Array
@@ -234,7 +234,7 @@ def cycle_series(cycle: SteadyCycle) -> CycleSeries:
 
 
 def cycle_frame(cycle: SteadyCycle, bare: SteadyCycle | None = None) -> pd.DataFrame:
-    """One row per sample; with the speed without a flywheel, where that is another cycle."""
+    """Table of samples, a row each; with the speed without a flywheel, if that cycle is given."""
     import pandas as pd
 
     series, link = cycle_series(cycle), cycle.machine.scene.driver.link
@@ -329,7 +329,7 @@ def show_flywheel(console: Console, found: WantedFlywheel) -> None:
 
 
 def _table(heads: tuple[str, str, str, str]) -> Table:
-    """Names, then numbers; a column without a head has units."""
+    """A table of names, then numbers; a column without a head has units."""
     table = plain_table(gap=2)
     for k, head in enumerate(heads):
         table.add_column(head, justify="right" if head and k else "left", no_wrap=True)
@@ -337,7 +337,7 @@ def _table(heads: tuple[str, str, str, str]) -> Table:
 
 
 def _digits(value: float) -> str:
-    """Seven significant digits; a dash where there is none."""
+    """Seven significant digits; a dash for NaN."""
     return NONE if math.isnan(value) else f"{value + 0.0:.7g}"
 
 

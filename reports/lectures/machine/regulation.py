@@ -1,4 +1,4 @@
-"""`cycle` and `flywheel`: how evenly a machine runs, and what makes it run so."""
+"""`cycle` and `flywheel`: the evenness of a machine's speed, and the flywheel for it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 class MachineCycle(Shown):
     """The steady cycle of a scene (`cycle`). Torques count along the motion: positive ones drive.
 
-    ``details`` holds all that is known of it: ``delta``, ``mean_rad_s``, ``extreme_speeds_rad_s``,
+    ``details`` has all facts of it: ``delta``, ``mean_rad_s``, ``extreme_speeds_rad_s``,
     ``surplus_j``, ``works_j``, ``drive_n_m``, ``period_s`` and the like.
     """
 
@@ -63,7 +63,7 @@ class MachineCycle(Shown):
 
     @property
     def extreme_angles_deg(self) -> tuple[float, float]:
-        """Where the driver stands at the largest and at the smallest speed."""
+        """The driver's angles at the largest and at the smallest speed."""
         one = self.details
         return (
             math.degrees(one.driver_rad(one.fastest)),
@@ -81,12 +81,12 @@ class MachineCycle(Shown):
         return self.details.drive_n_m
 
     def scene_let_go(self, cycles: float = 5.0) -> Scene:
-        """The scene let go in this cycle, for so many of them, the drive's torque a load of it: an
-        engine that runs it free runs the cycle."""
+        """The scene released in this cycle, for so many cycles, with the drive's torque as a load:
+        an engine that runs it free runs the cycle."""
         return cycle_scene(self.details, cycles)
 
     def frame(self) -> pd.DataFrame:
-        """One row each half degree of the driver: speed, inertia, torques, work, energy."""
+        """Table of the cycle, a row each half degree: speed, inertia, torques, work, energy."""
         from reports.lectures.machine.cycle_rows import cycle_frame
 
         return cycle_frame(self.details)
@@ -106,21 +106,21 @@ class MachineFlywheel(Shown):
 
     @property
     def inertia_kg_m2(self) -> float:
-        """What is to be put on the driver, beside what it has."""
+        """The moment of inertia to be added to the driver."""
         return self.details.inertia_kg_m2
 
     @property
     def cycle(self) -> MachineCycle:
-        """The steady cycle with it."""
+        """The steady cycle with the flywheel."""
         return MachineCycle(self.details.cycle)
 
     @property
     def scene(self) -> Scene:
-        """The scene with it."""
+        """The scene with the flywheel."""
         return with_flywheel(self.details.cycle.machine.scene, self.inertia_kg_m2)
 
     def frame(self) -> pd.DataFrame:
-        """As that of the cycle, with the speed without the flywheel where there is one."""
+        """Table of the cycle, with the speed without the flywheel where there is one."""
         from reports.lectures.machine.cycle_rows import cycle_frame
 
         return cycle_frame(self.details.cycle, self.details.bare)
@@ -133,30 +133,30 @@ class MachineFlywheel(Shown):
 
 @told_at_the_call
 def cycle(scene: SceneLike) -> MachineCycle:
-    """The cycle that a machine repeats under its loads: its speed, and how that fluctuates.
+    """Find the cycle that a machine repeats under its loads: its speed and fluctuation.
 
     Parameters
     ----------
     scene : Scene, str or path
-        A shipped name, the path of a scene file, or a scene. Driven at constant speed, that is its
-        mean speed, and the drive a constant torque; let go, its loads alone count.
+        A shipped name, the path of a scene file, or a scene. A driven scene has its constant speed
+        as the mean, and a constant torque as the drive; in free motion its loads alone count.
 
     Raises
     ------
     CrankcheckError
-        No steady cycle, and why.
+        No steady cycle, with the reason.
     """
     return MachineCycle(cycle_of(TurningMachine.of(scene_of(scene))))
 
 
 @told_at_the_call
 def flywheel(scene: SceneLike, delta: float) -> MachineFlywheel:
-    """The flywheel on the driver with which a machine has a coefficient of fluctuation.
+    """Find the flywheel on the driver that gives a machine a coefficient of fluctuation.
 
     Parameters
     ----------
     scene : Scene, str or path
-        As of `cycle`.
+        As in `cycle`.
     delta : float
         The coefficient, (largest - smallest speed) / mean, such as 0.02.
 
@@ -185,14 +185,14 @@ Figures = Annotated[
 
 @dataclass(frozen=True)
 class CycleRequest:
-    """What `cycle` was asked for, as given."""
+    """Arguments of `cycle`, as given."""
 
     scene: SceneName
     output: Output = None
     figures: Figures = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or write a steady cycle. Raises CrankcheckError for what can not be asked."""
+        """Show or write a steady cycle. Raises CrankcheckError for a faulty request."""
         check_outputs_of(self.scene, self.output, self.figures)
         cycle = cycle_of(TurningMachine.of(load_scene(self.scene)))
         if self.figures is not None:
@@ -208,8 +208,7 @@ class CycleRequest:
 
 
 def check_outputs_of(scene: str, output: Path | None, figures: Path | None) -> None:
-    """Refuse files that could not be written, before anything is worked out. Raises
-    CrankcheckError."""
+    """Refuse files that could not be written, before the calculation. Raises CrankcheckError."""
     if output is not None:
         check_file(output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=[find_scene(scene)])
     if figures is not None:
@@ -219,12 +218,12 @@ def check_outputs_of(scene: str, output: Path | None, figures: Path | None) -> N
 
 
 def tell_of(console: Console, told: str) -> None:
-    """Print what was written."""
+    """Print a line on a written file."""
     console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
 
 
 def _write_cycle(path: Path, cycle: SteadyCycle) -> None:
-    """The cycle as a file of the kind that the ending says."""
+    """Write the cycle as a file of the kind of its ending."""
     ending, scene = path.suffix.lower(), cycle.machine.scene
     if ending == PAGE:
         from reports.lectures.machine.regulation_page import page_of_cycle
@@ -252,8 +251,8 @@ FlywheelFigures = Annotated[
 
 @dataclass(frozen=True)
 class FlywheelRequest:
-    """What `flywheel` was asked for, as given. ``written`` is where the scene goes, ``free`` says
-    that it is let go in it."""
+    """Arguments of `flywheel`, as given. ``written`` is the file of the scene, which is in free
+    motion there with ``free``."""
 
     scene: SceneName
     delta: Annotated[
@@ -273,7 +272,7 @@ class FlywheelRequest:
     ] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or write a flywheel. Raises CrankcheckError for what can not be asked."""
+        """Show or write a flywheel. Raises CrankcheckError for a faulty request."""
         _check(self)
         machine = TurningMachine.of(load_scene(self.scene))
         try:
@@ -297,7 +296,7 @@ class FlywheelRequest:
 
 
 def _check(request: FlywheelRequest) -> None:
-    """Refuse what can not be written, or goes with nothing."""
+    """Refuse files that can not be written, and ``free`` without a file. Raises CrankcheckError."""
     check_outputs_of(request.scene, request.output, request.figures)
     if request.free and request.written is None:
         raise CrankcheckError("--free: it says how the scene is written; give --write FILE.toml")
@@ -312,14 +311,14 @@ def _check(request: FlywheelRequest) -> None:
 
 
 def _scene(found: WantedFlywheel, *, free: bool) -> str:
-    """The scene with the flywheel as the text of a file, the flywheel by itself in it."""
+    """The scene with the flywheel as the text of a file, with an entry for the flywheel itself."""
     machine = found.cycle.machine
     scene = cycle_scene(found.cycle, flywheel=False) if free else machine.scene
     return scene_text(scene, {scene.driver.link: found.inertia_kg_m2})
 
 
 def _write_flywheel(path: Path, found: WantedFlywheel) -> None:
-    """The flywheel as a file of the kind that the ending says."""
+    """Write the flywheel as a file of the kind of its ending."""
     ending, scene = path.suffix.lower(), found.cycle.machine.scene
     if ending == PAGE:
         from reports.lectures.machine.regulation_page import page_of_flywheel

@@ -1,4 +1,4 @@
-"""What figures of regulation are drawn of: a cycle, the one without a flywheel, and their axis."""
+"""Figures of regulation: a cycle, the cycle without a flywheel, and their axis."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -32,7 +32,7 @@ RETURNING = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5, 1
 
 @dataclass(frozen=True)
 class Regulated:
-    """A steady cycle to be drawn; ``wanted`` is its flywheel, where it is one's."""
+    """A steady cycle to draw; ``wanted`` is its flywheel, if it has one."""
 
     cycle: SteadyCycle
     wanted: WantedFlywheel | None = None
@@ -48,7 +48,7 @@ class Regulated:
 
     @property
     def degrees(self) -> Array:
-        """What curves go over: the driver's angle, as it goes on from the start [deg]."""
+        """The abscissa of curves: the driver's angle, continuous from the start [deg]."""
         return np.degrees(self.series.theta)
 
     def plot(self, axes: Axes, curve: Array, **look: Any) -> None:
@@ -56,7 +56,7 @@ class Regulated:
         axes.plot(self.degrees, curve, **look)
 
     def mark_axis(self, axes: Axes) -> None:
-        """Limits and ticks of the angle; short numbers on the other axis."""
+        """Set limits and ticks of the angle; short numbers on the other axis."""
         ends = self.degrees[[0, -1]]
         axes.set_xlim(*sorted(ends))
         axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
@@ -70,7 +70,7 @@ class Regulated:
 
     @property
     def notes(self) -> list[str]:
-        """What stands under each figure."""
+        """The notes under each figure."""
         cycle, scene = self.cycle, self.cycle.machine.scene
         parts = [
             f"crankcheck {crankcheck_version()}; steady cycle at a mean speed of "
@@ -86,7 +86,7 @@ class Regulated:
 
 TOUCH = {"color": "#1f5f9e", "marker": "o", "markersize": 3.0, "linestyle": "none"}
 NARROW = 1e-6
-"""A moment of inertia that varies by less than this, over its size, is constant: no diagram."""
+"""Variation of the moment of inertia, over its size, below which it is constant: no diagram."""
 EVERY_DEG = 90
 PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.3, "alpha": 0.85}
 ROOM = 0.12
@@ -94,7 +94,7 @@ ROOM = 0.12
 
 
 def draw_energy_mass(of: Regulated) -> Figure | None:
-    """The diagram; None of a machine of constant moment of inertia."""
+    """Draw the diagram; None for a machine of constant moment of inertia."""
     cycle = of.cycle
     diagram = energy_mass(cycle)
     if np.ptp(diagram.inertia) <= NARROW * float(diagram.inertia.max()):
@@ -124,14 +124,14 @@ def draw_energy_mass(of: Regulated) -> Figure | None:
 
 
 def _limits(axes: Axes, diagram: EnergyMass) -> None:
-    """Room around the curve; tangents run out of it."""
+    """Set limits with room around the curve; tangents run beyond it."""
     for put, series in ((axes.set_xlim, diagram.inertia), (axes.set_ylim, diagram.work)):
         room = ROOM * (float(np.ptp(series)) or 1.0)
         put(float(series.min()) - room, float(series.max()) + room)
 
 
 def _angles(of: Regulated, axes: Axes) -> None:
-    """Where the driver stands at some angles; numbers stand to the right of their dots."""
+    """Mark some angles of the driver; numbers are to the right of their dots."""
     cycle = of.cycle
     first = cycle.machine.start_rad
     ends = sorted((first, first + cycle.machine.way * cycle.machine.cycle_rad))
@@ -153,7 +153,7 @@ def _angles(of: Regulated, axes: Axes) -> None:
 
 
 def _origin(cycle: SteadyCycle) -> str:
-    """Where the tangents meet, in the numbers of the axes."""
+    """The intersection of the tangents, in the numbers of the axes."""
     inertia = readable(0.0 - cycle.solution.flywheel, 5)
     return f"{inertia} kg m² and {readable(-float(cycle.solution.at_borders[0]), 5)} J"
 
@@ -161,11 +161,11 @@ def _origin(cycle: SteadyCycle) -> str:
 MEAN = {"color": INK, "linewidth": 0.7, "linestyle": (0, (5.0, 2.0))}
 EXTREME = {"color": "#1f5f9e", "marker": "o", "markersize": 3.2, "linestyle": "none"}
 APART = 6.0
-"""Fluctuations that differ by more than this have no room in one panel."""
+"""Ratio of fluctuations above which they have no room in one panel."""
 
 
 def draw_speed(of: Regulated) -> Figure:
-    """One panel; a second one, closer, where the flywheel takes nearly all of the fluctuation."""
+    """Draw one panel; a second, closer one where the flywheel takes most of the fluctuation."""
     cycle, bare = of.cycle, of.bare
     with_it = "with the flywheel" if of.wanted is not None else "speed"
     entries: list[tuple[Artist, str]] = [
@@ -198,7 +198,7 @@ def draw_speed(of: Regulated) -> Figure:
 
 
 def _extremes(of: Regulated) -> str:
-    """Where the speed is extreme."""
+    """The driver's angles at the extreme speeds, in words."""
     high, low = (math.degrees(of.cycle.driver_rad(u)) for u in (of.cycle.fastest, of.cycle.slowest))
     return f"extreme at {readable(high, 4)} and {readable(low, 4)} deg"
 
@@ -207,7 +207,7 @@ WORK = {"color": INK, "linewidth": 1.2}
 
 
 def draw_torques(of: Regulated) -> Figure:
-    """Torques above, work below with its surplus."""
+    """Draw torques above, and work with its surplus below."""
     series, cycle = of.series, of.cycle
     curves = [
         (series.driving, CURVE, "driving torque"),
@@ -241,8 +241,8 @@ REGULATION_FIGURES: Mapping[str, Callable[[Regulated], Figure | None]] = {
     "torques": draw_torques,
     "energy-mass": draw_energy_mass,
 }
-"""Each gives None where there is nothing to draw: a machine of constant moment of inertia has no
-energy-mass diagram."""
+"""Figures by name, each None where there is nothing to draw: a machine of constant moment of
+inertia has no energy-mass diagram."""
 
 
 def figure_files() -> list[str]:
@@ -251,7 +251,7 @@ def figure_files() -> list[str]:
 
 
 def drawn_figures(of: Regulated) -> Iterator[tuple[str, Figure]]:
-    """Each figure by its name, without those that have nothing to draw."""
+    """The figures by their names, without empty ones."""
     for name, draw in REGULATION_FIGURES.items():
         with styled():
             figure = draw(of)
@@ -260,8 +260,7 @@ def drawn_figures(of: Regulated) -> Iterator[tuple[str, Figure]]:
 
 
 def written_figures(of: Regulated, folder: Path) -> str:
-    """Write all figures; returns what was written, in a line. Raises CrankcheckError where the
-    system refuses."""
+    """Write all figures; return a line on them. Raises CrankcheckError where the system refuses."""
     names, title = [], of.cycle.machine.scene.name
     for name, figure in drawn_figures(of):
         names.append(name)

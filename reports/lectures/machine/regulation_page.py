@@ -22,7 +22,7 @@ CAPTIONS: Mapping[str, str] = {
 
 
 def cycle_section(cycle: SteadyCycle, figures: Mapping[str, bytes]) -> Section:
-    """The section; ``figures`` are SVG files by their name."""
+    """The section of a cycle; ``figures`` are SVG files by their name."""
     return Section(
         anchor="cycle",
         title="Steady cycle",
@@ -43,7 +43,7 @@ def cycle_section(cycle: SteadyCycle, figures: Mapping[str, bytes]) -> Section:
 
 
 def flywheel_section(found: WantedFlywheel) -> Section:
-    """The section."""
+    """The section of a flywheel."""
     return Section(
         anchor="flywheel",
         title="Flywheel",

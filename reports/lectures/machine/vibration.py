@@ -1,4 +1,4 @@
-"""`crankcheck vibration`: how elastic links vibrate, at a speed and over speeds."""
+"""`crankcheck vibration`: vibration of elastic links, at a speed and over speeds."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_COUNT = 5000
-"""Speeds, or speeds times factors, beyond which it takes minutes."""
+"""Number of speeds, or of speeds times factors, beyond which it takes minutes."""
 RATIOS, COUNT = (12.5, 2.5), 101
-"""With --map alone: frequency ratios that speeds are between, and how many."""
+"""Default of --map: the frequency ratios of the extreme speeds, and the number of speeds."""
 FACTORS = "0.1:10:9"
 MOST_RATIO = 1e4
-"""A frequency ratio from which on a turn holds more vibrations than windows follow."""
+"""Frequency ratio above which a turn has more vibrations than windows follow."""
 ONE, MANY = 5, 3
 """Modes across each link, at one speed and at many: three give the deflection to 1e-3 of itself."""
 
@@ -55,8 +55,8 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class Files(Generic[Found]):
-    """What is written of what was found: texts by file, and ``figures``, which ``draws`` has a
-    function each for and loads what draws only then."""
+    """Files of a result: texts by file, and ``figures``, with a function of ``draws`` for each,
+    whose imports wait until then."""
 
     texts: Mapping[str, Callable[[Found], str]]
     figures: Sequence[str]
@@ -83,7 +83,7 @@ def _over_inertia() -> Sequence[Callable[[InertiaMap], Figure]]:
 
 AT_A_SPEED = Files[SteadyVibration](
     {
-        "vibration_figures.json": files.vibration_document,
+        "vibration.json": files.vibration_document,
         "turn.csv": lambda found: csv(files.turn_frame(found)),
         "natural.csv": lambda found: csv(files.natural_frame(found)),
         "spectrum.csv": lambda found: csv(files.spectrum_frame(found)),
@@ -113,7 +113,7 @@ OVER_INERTIA = Files[InertiaMap](
 
 @dataclass(frozen=True)
 class VibrationRequest:
-    """What `vibration` was asked for, as given."""
+    """Arguments of `vibration`, as given."""
 
     scene: SceneName
     speeds: Annotated[
@@ -147,8 +147,8 @@ class VibrationRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or write a vibration. Raises CrankcheckError for what can not be asked, and where
-        there is no periodic motion."""
+        """Show or write a vibration. Raises CrankcheckError for a faulty request, and where there
+        is no periodic motion."""
         scene = load_scene(self.scene)
         check_vibrates(scene)
         one = self.map_link is None and self.speeds is None
@@ -169,7 +169,7 @@ def _modes(across: int) -> Modes:
 
 
 def _vibration(request: VibrationRequest, scene: Scene, by: Modes, console: Console) -> None:
-    """At the speed of the scene."""
+    """Show and write the vibration at the speed of the scene."""
     _check(request, AT_A_SPEED)
     found: SteadyVibration = steady_vibration(scene, by)
     show_vibration(console, found)
@@ -177,7 +177,7 @@ def _vibration(request: VibrationRequest, scene: Scene, by: Modes, console: Cons
 
 
 def _speeds(request: VibrationRequest, scene: Scene, by: Modes, console: Console) -> None:
-    """Over speeds."""
+    """Show and write the vibration over speeds."""
     _check(request, OVER_SPEEDS)
     speeds = _asked_speeds(scene, request.speeds)
     _refuse_many(len(speeds), "--speeds")
@@ -187,7 +187,7 @@ def _speeds(request: VibrationRequest, scene: Scene, by: Modes, console: Console
 
 
 def _map(request: VibrationRequest, scene: Scene, by: Modes, link: str, console: Console) -> None:
-    """Over speeds and inertia."""
+    """Show and write the vibration over speeds and inertia."""
     _check(request, OVER_INERTIA)
     low, high, count = asked_range(request.factors or FACTORS, "--factors", "0.1:10:9")
     factors = np.geomspace(low, high, count)
@@ -200,7 +200,7 @@ def _map(request: VibrationRequest, scene: Scene, by: Modes, link: str, console:
 
 
 def _asked_speeds(scene: Scene, text: str | None) -> Array:
-    """Speeds as they are asked for, or by frequency ratios."""
+    """The requested speeds, or speeds by frequency ratios."""
     if text is None:
         low, high = (lowest_rad_s(scene) / ratio for ratio in RATIOS)
         return np.linspace(low, high, COUNT)
@@ -215,7 +215,7 @@ def _asked_speeds(scene: Scene, text: str | None) -> Array:
 
 
 def asked_range(text: str, option: str, example: str) -> tuple[float, float, int]:
-    """FROM:TO:COUNT as numbers. Raises CrankcheckError for what is none."""
+    """Parse FROM:TO:COUNT. Raises CrankcheckError for other text."""
     parts = text.split(":")
     try:
         low, high, count = float(parts[0]), float(parts[1]), int(parts[2])
@@ -239,7 +239,7 @@ def _refuse_many(count: int, option: str) -> None:
 
 
 def _check(request: VibrationRequest, written: Files[Found]) -> None:
-    """Refuse a folder that is not to be written. Raises CrankcheckError."""
+    """Refuse a folder that can not be written. Raises CrankcheckError."""
     if request.output is not None:
         drawn = [f"{name}.{kind}" for name in written.figures for kind in ("svg", "pdf")]
         inputs = [find_scene(request.scene)]
@@ -249,7 +249,7 @@ def _check(request: VibrationRequest, written: Files[Found]) -> None:
 def _write(
     request: VibrationRequest, written: Files[Found], found: Found, console: Console, scene: Scene
 ) -> None:
-    """Tables and figures into a folder, where one was named."""
+    """Write tables and figures into a folder, where one was named."""
     folder = request.output
     if folder is None:
         return

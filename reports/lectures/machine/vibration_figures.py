@@ -1,4 +1,4 @@
-"""What figures of vibration share: how they are written, and what stands under them."""
+"""Figures of vibration: the shared way of writing them, and the notes under them."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -24,26 +24,26 @@ from reports.lectures.machine.vibration_rows import unstable_speeds
 from reports.output.write import crankcheck_version, write
 
 COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a4d9e")
-"""Of the links, one after the other."""
+"""Colours of the links, one after the other."""
 SIDES = (0.58, 0.1)
 """Room on the left and on the right of a panel [inch]."""
 ORDERS = 24
-"""Orders that are drawn."""
+"""Largest number of drawn orders."""
 SMALLEST = 1e-7
-"""Amplitudes over the length that are still drawn."""
+"""Smallest drawn amplitude over the length."""
 
 
 @dataclass(frozen=True)
 class VibrationDrawing:
-    """A figure by its name, and what draws it."""
+    """A figure by its name, and the function that draws it."""
 
     name: str
     draw: Callable[[], Figure]
 
 
 def write_figures(folder: Path, drawings: Iterable[VibrationDrawing], title: str) -> list[str]:
-    """Write figures in all formats; returns the names of the files. Raises CrankcheckError where
-    the system refuses."""
+    """Write figures in all formats; return the names of the files. Raises CrankcheckError where the
+    system refuses."""
     names = []
     for each in drawings:
         with styled():
@@ -55,13 +55,13 @@ def write_figures(folder: Path, drawings: Iterable[VibrationDrawing], title: str
 
 
 def notes(scene: Scene, said: str) -> list[str]:
-    """What stands under a figure."""
+    """The notes under a figure."""
     links = ", ".join(scene.elastic)
     return [f"crankcheck {crankcheck_version()}; elastic: {links}; {said}."]
 
 
 def whole_orders(axes: Axes, which: str, highest: int) -> None:
-    """Ticks at whole orders."""
+    """Set ticks at whole orders."""
     axis = axes.xaxis if which == "x" else axes.yaxis
     axis.set_major_locator(MaxNLocator(nbins=min(12, highest), integer=True))
 
@@ -72,7 +72,7 @@ LINEAR = "linear in the deflection, about the rigid motion, with the stiffness t
 
 
 def draw_over_speed(over: OverSpeeds) -> Figure:
-    """The largest deflection of each link, and below it the largest multiplier."""
+    """Draw the largest deflection of each link, and below it the largest multiplier."""
     scene, links = over.scene, list(over.points[0].swings)
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], color=colour), f"{name}, largest over length")
@@ -112,7 +112,7 @@ def draw_over_speed(over: OverSpeeds) -> Figure:
 
 
 def _mark_critical(axes: Axes, over: OverSpeeds) -> None:
-    """Dotted lines at the strongest critical speeds, with the order above those that have room."""
+    """Draw dotted lines at the strongest critical speeds, with the order where it has room."""
     low, high = over.speeds[0], over.speeds[-1]
     taken: list[float] = []
     for each in over.critical[:12]:
@@ -127,7 +127,7 @@ def _mark_critical(axes: Axes, over: OverSpeeds) -> None:
 
 
 def draw_waterfall(over: OverSpeeds) -> Figure:
-    """The spectrum at every speed, a panel for each link, and the orders of the modes."""
+    """Draw the spectrum at every speed, a panel for each link, and the orders of the modes."""
     scene, links = over.scene, list(over.points[0].swings)
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], color=SHOWN, linestyle="--"), "order that a mode vibrates at"),
@@ -164,13 +164,13 @@ def _draw_modes(axes: Axes, over: OverSpeeds) -> None:
 
 
 LOWEST, HIGHEST = -5.0, 0.0
-"""Decades of the deflection over the length that are told apart."""
+"""Decades of the deflection over the length that have separate colours."""
 MOST_GROWTH = 3.0
-"""Decades of a turn's growth that are told apart."""
+"""Decades of a turn's growth that have separate colours."""
 
 
 def draw_over_inertia(found: InertiaMap) -> Figure:
-    """Deflection on the left, multipliers on the right."""
+    """Draw the deflection on the left, multipliers on the right."""
     scene, driver = found.scene, found.scene.driver.link
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], color="#eeeeee", marker="s", linestyle=""), "deviations do not grow"),
@@ -211,12 +211,12 @@ def draw_over_inertia(found: InertiaMap) -> Figure:
 
 
 FINE = 361
-"""Points of a curve."""
+"""Number of points of a curve."""
 LOOKS = {"": "-", "linear": (0, (1.0, 1.2)), "linear, not stiffened": (0, (4.0, 1.5))}
 
 
 def draw_over_turn(vibration: SteadyVibration) -> Figure:
-    """Deflection of the middle over the driver's angle, a panel for each link."""
+    """Draw the deflection of the middle over the driver's angle, a panel for each link."""
     scene = vibration.scene
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], color="#1a1a1a", linestyle=look), name or "unlinearised")  # type: ignore[arg-type]  # a pattern of dashes
@@ -245,7 +245,7 @@ def draw_over_turn(vibration: SteadyVibration) -> Figure:
 
 
 def draw_spectrum(vibration: SteadyVibration) -> Figure:
-    """Amplitudes over the length at orders of the driver, and the orders of the modes."""
+    """Draw amplitudes over the length at orders of the driver, and the orders of the modes."""
     scene, each = vibration.scene, list(vibration.swings.values())
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], color=colour, marker="o", markersize=3, linestyle="-"), own.link)
@@ -277,7 +277,7 @@ def draw_spectrum(vibration: SteadyVibration) -> Figure:
 
 
 def between(series: Array, shares: Array) -> Array:
-    """What is periodic (N,) at shares of the period (T,)."""
+    """A periodic series (N,) at shares of the period (T,)."""
     found = np.fft.rfft(series) / len(series)
     found[1:] *= 2.0
     wave = np.exp(2j * np.pi * np.outer(shares, np.arange(len(found))))

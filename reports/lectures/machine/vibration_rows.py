@@ -1,4 +1,4 @@
-"""What is told of a steady vibration: natural frequencies, orders, deflections, notes."""
+"""Words on a steady vibration: natural frequencies, orders, deflections, notes."""
 
 import math
 from collections.abc import Iterator
@@ -13,10 +13,9 @@ from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from reports.output.numbers import readable
 
 NEAR = 2.0
-"""A sensitivity from which on a resonance is near enough to be told of; without one it is about
-1."""
+"""Sensitivity from which on a resonance is reported as near; without one it is about 1."""
 THICK = 0.1
-"""Deflections over the length from which on the theory of a bent beam is left."""
+"""Deflection over the length beyond which the theory of a bent beam is left."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +31,9 @@ class LinkRow:
 
 @dataclass(frozen=True)
 class ModeRow:
-    """A mode of the mechanism: its natural frequency with the driver held still, the least and the
-    most over a turn [rad/s] and the mean over the driver's speed; the order of the turning that it
-    vibrates at, and what a turn multiplies a deviation by."""
+    """A mode of the mechanism: its natural frequency with the driver fixed, the least and the most
+    over a turn [rad/s] and the mean over the driver's speed; its order while the driver turns, and
+    the multiplier of a deviation over a turn."""
 
     mode: int
     least_rad_s: float
@@ -46,9 +45,9 @@ class ModeRow:
 
 @dataclass(frozen=True)
 class SwingRow:
-    """The largest deflection of a link [m], of its length, where it is [m from the first pin] and
-    with the driver at which angle [deg]; the largest of its middle and its extension [m]; and by
-    what share the linear theories are off the largest."""
+    """The largest deflection of a link [m], over its length, its place [m from the first pin] and
+    the driver's angle at it [deg]; the largest deflection of its middle and its extension [m]; and
+    the deviations of the linear theories from the largest, as shares."""
 
     link: str
     largest_m: float
@@ -97,7 +96,7 @@ def swing_rows(vibration: SteadyVibration) -> list[SwingRow]:
 
 
 def heading(vibration: SteadyVibration) -> str:
-    """What the vibration is of."""
+    """The heading: scene, elastic links, speed, and frequency ratio."""
     scene, speed = vibration.scene, vibration.speed_rad_s
     links = ", ".join(scene.elastic)
     ratio = lowest_rad_s(scene) / speed
@@ -108,7 +107,7 @@ def heading(vibration: SteadyVibration) -> str:
 
 
 def notes(vibration: SteadyVibration) -> list[str]:
-    """Whether it is to be met, and how the numbers are meant."""
+    """Notes on stability, resonance and damping, and on the meaning of the numbers."""
     told = [stability_text(vibration), resonance_text(vibration.motion.sensitivity)]
     thick = [row.link for row in swing_rows(vibration) if row.share > THICK]
     if thick:
@@ -130,7 +129,7 @@ def notes(vibration: SteadyVibration) -> list[str]:
 
 
 def stability_text(vibration: SteadyVibration) -> str:
-    """Whether the periodic motion is stable."""
+    """The stability of the periodic motion, in words."""
     largest = vibration.stability.largest
     damped = any(own.damping_s for own in vibration.scene.elastic.values())
     if not vibration.stability.is_stable:
@@ -139,7 +138,7 @@ def stability_text(vibration: SteadyVibration) -> str:
             "vibration, and the mechanism does not stay on this motion. Take another speed, a "
             "lighter link that the elastic one moves, or more damping_s."
         )
-    if damped and largest == 0.0:  # below what a number holds
+    if damped and largest == 0.0:  # below the smallest number
         return "Stable: deviations die out within a turn."
     if damped and largest < 1.0 - STABLE:
         turns = -math.log(10.0) / math.log(largest)
@@ -148,7 +147,7 @@ def stability_text(vibration: SteadyVibration) -> str:
 
 
 def resonance_text(found: FrequencySensitivity) -> str:
-    """How far it is from a resonance."""
+    """The distance from a resonance, in words."""
     if found.size < NEAR:
         return (
             f"No resonance is near: 1 % of stiffness changes the deflection by {found.size:.3g} %."
@@ -161,13 +160,12 @@ def resonance_text(found: FrequencySensitivity) -> str:
 
 
 MOST_ROWS = 12
-"""Critical speeds on a terminal; files hold all."""
+"""Most critical speeds on a terminal; files have all."""
 
 
 @dataclass(frozen=True)
 class Unstable:
-    """Speeds next to each other at which the motion is unstable [rad/s], and the largest
-    multiplier in them."""
+    """Adjacent speeds of unstable motion [rad/s], and the largest multiplier among them."""
 
     low_rad_s: float
     high_rad_s: float
@@ -175,7 +173,7 @@ class Unstable:
 
 
 def unstable_speeds(over: OverSpeeds) -> list[Unstable]:
-    """Where deviations grow."""
+    """The ranges of speeds at which deviations grow."""
     found, own = [], list[tuple[float, float]]()
     for point in over.points:
         if point.stability.is_stable:
@@ -201,7 +199,7 @@ def speeds_heading(over: OverSpeeds) -> str:
 
 
 def speeds_notes(over: OverSpeeds) -> list[str]:
-    """What there is to know of them."""
+    """Notes on unstable and critical speeds."""
     told = [
         f"Unstable from {each.low_rad_s:.6g} to {each.high_rad_s:.6g} rad/s: a turn multiplies "
         f"deviations by up to {readable(each.multiplier)}."
@@ -226,9 +224,9 @@ def map_heading(found: InertiaMap) -> str:
 
 @dataclass(frozen=True)
 class InertiaRow:
-    """With a link so many times as heavy: the median over the speeds of the largest deflection over
-    the length, the largest multiplier with the speed at which it is [rad/s], and at how many speeds
-    the motion is unstable."""
+    """Results for a link so many times as heavy: the median over the speeds of the largest
+    deflection over the length, the largest multiplier with its speed [rad/s], and the number of
+    speeds at which the motion is unstable."""
 
     factor: float
     share: float

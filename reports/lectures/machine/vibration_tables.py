@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 MODES = 6
-"""Modes of the mechanism that are shown; files hold all."""
+"""Most modes of the mechanism on the terminal; files have all."""
 
 
 def show_vibration(console: Console, vibration: SteadyVibration) -> None:
@@ -106,7 +106,7 @@ def _head(console: Console, text: str) -> None:
 
 
 def _table(*heads: str) -> Table:
-    """A name, then numbers."""
+    """A table of a name, then numbers."""
     table = plain_table(gap=2)
     for k, head in enumerate(heads):
         table.add_column(head, justify="right" if k else "left", no_wrap=True)
@@ -131,8 +131,7 @@ def _notes(console: Console, told: Iterable[str]) -> None:
 
 
 def turn_frame(vibration: SteadyVibration) -> pd.DataFrame:
-    """Over a turn: deflections, extensions, and those of the linear theories; one row per
-    instant."""
+    """Table of instants of a turn: deflections, extensions, deflections by linear theories."""
     import pandas as pd
 
     columns = {
@@ -148,7 +147,7 @@ def turn_frame(vibration: SteadyVibration) -> pd.DataFrame:
 
 
 def natural_frame(vibration: SteadyVibration) -> pd.DataFrame:
-    """Natural frequencies with the driver held still, over its angle."""
+    """Table of natural frequencies with the driver fixed, over its angle."""
     import pandas as pd
 
     frequencies = vibration.natural.frequency_rad_s
@@ -160,7 +159,7 @@ def natural_frame(vibration: SteadyVibration) -> pd.DataFrame:
 
 
 def spectrum_frame(vibration: SteadyVibration) -> pd.DataFrame:
-    """The amplitudes of the middles (of what only stretches, of the extension) over orders."""
+    """Table of amplitudes over orders: of middles, or of extensions of links that only stretch."""
     import pandas as pd
 
     each = {f"{name}_m": own.amplitudes for name, own in vibration.swings.items()}
@@ -169,7 +168,7 @@ def spectrum_frame(vibration: SteadyVibration) -> pd.DataFrame:
 
 
 def speeds_frame(over: OverSpeeds) -> pd.DataFrame:
-    """One row per speed."""
+    """Table of speeds, a row each."""
     import pandas as pd
 
     rows = []
@@ -189,7 +188,7 @@ def speeds_frame(over: OverSpeeds) -> pd.DataFrame:
 
 
 def waterfall_frame(over: OverSpeeds) -> pd.DataFrame:
-    """One row per speed and order: the amplitudes of all links."""
+    """Table of the amplitudes of all links, a row per speed and order."""
     import pandas as pd
 
     frames = []
@@ -201,7 +200,7 @@ def waterfall_frame(over: OverSpeeds) -> pd.DataFrame:
 
 
 def critical_frame(over: OverSpeeds) -> pd.DataFrame:
-    """All critical speeds, the widest band first."""
+    """Table of all critical speeds, the widest band first."""
     import pandas as pd
 
     columns = ["speed_rad_s", "ratio", "mode", "order", "band"]
@@ -209,7 +208,7 @@ def critical_frame(over: OverSpeeds) -> pd.DataFrame:
 
 
 def map_frame(found: InertiaMap) -> pd.DataFrame:
-    """One row per factor and speed."""
+    """Table with a row per factor and speed."""
     import pandas as pd
 
     frames = []

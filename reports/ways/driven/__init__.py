@@ -22,7 +22,8 @@ from reports.plan.singular import (
     refuse_singular,
 )
 from reports.plan.steps import TURNS, counted
-from reports.quantities import DEFAULTS, MOVES, named
+from reports.quantities import MOVES, named
+from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import ResultKind, StudyLengths, Way
@@ -30,7 +31,7 @@ from sim.engine import Drive
 
 
 class DrivenWay(Way):
-    """As of `Way`."""
+    """The way of driven scenes with rigid links."""
 
     name = "driven"
     drive: Drive = "prescribed"
@@ -101,7 +102,7 @@ class DrivenWay(Way):
         return self.truth(run)
 
     def refuse_made(self, run: Planned) -> None:
-        """Nothing: it was refused before it was run."""
+        """Do nothing: such a run was refused before it was run."""
 
     def motion(self, scene: Scene, time_s: Array) -> Motion:
         return solve(scene, time_s, bound=False)

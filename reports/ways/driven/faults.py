@@ -12,13 +12,13 @@ from reports.selftest.unseen import UNSEEN
 
 
 def turn(scene: Scene, engine: str, steps: int, converge: bool, *, forces: bool = False) -> Cell:
-    """A turn of so many steps."""
+    """A cell of one turn in so many steps."""
     dt_s = scene.driver.law.period_s / steps
     return Cell(scene, engine, PROFILE, dt_s, steps, converge=converge, with_forces=forces)
 
 
 def words(scenes: Collection[str]) -> Sequence[str]:
-    """How long the runs are."""
+    """The length of the runs, in words."""
     return [f"{STEPS} steps a turn, 1 turn"]
 
 

@@ -28,7 +28,7 @@ NO_FIT = (
 
 
 class DrivenLog:
-    """As of `LogKind`."""
+    """Logs of driven scenes with rigid links."""
 
     truth_name = "closed form"
     no_cause = "none that is known explains {}"
@@ -58,20 +58,20 @@ LOG = DrivenLog()
 
 
 SHOWN = 3
-"""Columns whose errors are told of."""
+"""Most columns whose errors are described."""
 HARMONICS = 3
 LEAST_TURNS, LEAST_ROWS = 1.5, 24
-"""What shows whether an error comes back every turn."""
+"""Harmonics of an error that comes back every turn, and the least turns and rows to find them."""
 TOLD = 0.1
-"""A part of an error, by the mean square, that is worth telling."""
+"""Least part of an error, by the mean square, that is described."""
 WORDS = ("stays the same", "grows or falls evenly", "comes back every turn", "does none of these")
 SMALL, MOST = 0.1, 0.7
-"""A part of an error at the logged angle of the driver that is little of it, and most of it."""
+"""Limits of the part of an error that remains at the logged angle: little of it, most of it."""
 
 
 def of_no_cause(case: LogCase, causes: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
-    """Of what is out and has no cause: a sentence on the drive, the geometry and the joints, and
-    one on how the columns that are off most go on, places first. Raises CrankcheckError where the
+    """Sentences on errors without a cause: one on the drive, the geometry and the joints, and one
+    on the course of the largest errors by column, places first. Raises CrankcheckError where the
     scene has no reference."""
     told = {column for cause in causes for column in cause.columns}
     left = [
@@ -89,8 +89,7 @@ def of_no_cause(case: LogCase, causes: Sequence[Cause], errors: Errors) -> tuple
 
 
 def seldom(case: LogCase) -> Iterator[str]:
-    """What is to be known of an angle of the driver that is out, and turns by half a turn or more
-    from row to row."""
+    """Notes on a driver's angle out of tolerance that turns by half a turn or more per row."""
     scene, time_s = case.truth.scene, case.log.time_s
     try:
         angle = scene.driver.law.at(time_s)[0]
@@ -111,8 +110,8 @@ def seldom(case: LogCase) -> Iterator[str]:
 
 
 def _parts(scene: Scene, left: Sequence[Excerpt], errors: Errors) -> str:
-    """How much of the worst place that has no cause is left at the logged angle of the driver, and
-    how far the joints are open; "" where the log does not tell."""
+    """Words on the part of the worst place without a cause that remains at the logged angle of the
+    driver, and on the gap of the joints; "" where the log does not show it."""
     bodies = {(each.channel.kind.quantity, each.channel.of) for each in left}
     places = [row for row in errors.rows if row.quantity in named("place")]
     worst = largest(
@@ -139,15 +138,15 @@ def _parts(scene: Scene, left: Sequence[Excerpt], errors: Errors) -> str:
 
 
 def _verdict(share: float) -> str:
-    """What is off, by the part of an error that is left at the logged angle of the driver."""
+    """The cause, by the part of an error that remains at the logged angle of the driver."""
     if share < SMALL:
         return "it is the drive that is off, and not the geometry"
     return "the drive does not explain it" if share > MOST else "the drive is a part of it"
 
 
 def _shape(scene: Scene, excerpt: Excerpt) -> str:
-    """How the error of a column goes on, by parts of its mean square; "" of a log that is too short
-    to show it, or of an error that is no number."""
+    """The course of the error of a column, by parts of its mean square; "" for a log too short to
+    show it, or an error that is no number."""
     angle = scene.driver.law.at(excerpt.instants)[0]
     size = float(np.max(np.abs(excerpt.error), initial=0.0))
     if excerpt.rows.size < LEAST_ROWS or np.ptp(angle) < LEAST_TURNS * math.tau or not size > 0.0:
@@ -160,8 +159,8 @@ def _shape(scene: Scene, excerpt: Excerpt) -> str:
 
 
 def _shares(time_s: Array, angle_rad: Array, error: Array) -> tuple[float, float, float, float]:
-    """The parts of the square of an error that a number, a line, and harmonics of the driver's
-    angle take off, one after the other, and what is left."""
+    """The parts of the square of an error that a constant, a line, and harmonics of the driver's
+    angle take off, one after the other, and the rest."""
     middle = (time_s - time_s.mean()) / max(float(np.ptp(time_s)), np.finfo(float).tiny)
     turns = np.outer(angle_rad, np.arange(1, HARMONICS + 1))
     columns = np.column_stack([np.ones_like(middle), middle, np.cos(turns), np.sin(turns)])

@@ -1,4 +1,4 @@
-"""The table of cells whose driver follows a law, and what stands under it."""
+"""The table of cells whose driver follows a law, and its footer."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ NUMBERS = {
     for entry in QUANTITIES.values()
     if entry.head and entry.role in MOVES
 }
-"""The columns of numbers: head, and the quantities that it shows the worst of."""
+"""The columns of numbers: head, and the quantities whose worst error it shows."""
 TABLE = CellTable(
     "", NUMBERS, ((100, tuple(NUMBERS), ()), (76, (ANGLE, GAP), ()), (0, (ANGLE,), ())),
     apart=76, names=22,
@@ -21,12 +21,12 @@ TABLE = CellTable(
 
 
 def words(checked: Sequence[Checked]) -> Sequence[str]:
-    """What the numbers are."""
+    """The meaning of the numbers."""
     return [checked[0].cell.way.units]
 
 
 def steps(driven: Sequence[Checked]) -> Sequence[str]:
-    """How cells were stepped."""
+    """The steps of the cells."""
     counts = sorted({round(one.cell.steps_per_turn, 3) for one in driven})
     turns = sorted({round(one.cell.turns, 3) for one in driven})
     dts = sorted({one.cell.dt_s for one in driven})

@@ -17,7 +17,7 @@ from reports.plan.requirements import (
     logged_every,
     refuse_unelastic,
 )
-from reports.quantities import ELASTIC
+from reports.quantities.limits import ELASTIC
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned
 from reports.way.way import ResultKind, StudyLengths, StudyLinks
 from reports.ways.driven import DrivenWay
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Bending:
-    """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
+    """Particulars of links that bend, with any drive; precedes the way of rigid links."""
 
     kinds: Sequence[str] = ("elastic",)
     placed: Sequence[str] = ("deflection",)
@@ -52,7 +52,7 @@ class Bending:
     )
 
     def bends(self, row: Mapping[Any, Any]) -> bool:
-        """Whether links of a stored cell bend."""
+        """True if links of a stored cell bend."""
         segments = row.get("segments")  # a number, or none: NaN is not itself
         return segments is not None and bool(segments == segments)
 
@@ -74,7 +74,7 @@ class Bending:
 
 
 class ElasticWay(Bending, DrivenWay):
-    """As of `Way`."""
+    """The way of driven scenes with elastic links."""
 
     name = "elastic"
     closed_form = False

@@ -1,4 +1,4 @@
-"""The columns of cells whose links bend: what engines were given, and the parts of the deflection's
+"""The columns of cells whose links bend: engines' models of them, and the parts of the deflection's
 error, as shares of the largest."""
 
 from reports.compare.elastic_errors import ElasticFacts

@@ -21,9 +21,9 @@ NO_CAUSE = "causes are not looked for where links bend"
 
 
 def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> ElasticTruth:
-    """The truth of a log of so many segments.
+    """The reference of a log of so many segments.
 
-    Raises CrankcheckError for a scene that is let go; another drive than that of the scene; times
+    Raises CrankcheckError for a scene in free motion; another drive than that of the scene; times
     before 0, where its links do not come back after a period.
     """
     name, law = log.scene.name, log.scene.driver.law
@@ -50,7 +50,7 @@ def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> Elas
 
 @dataclass(frozen=True)
 class ElasticLogBeside(LogBeside, ElasticBeside):
-    """A log of as many segments as were told of it."""
+    """A log whose elastic links had the number of segments that the user states."""
 
     @property
     def has_crank(self) -> bool:
@@ -58,7 +58,7 @@ class ElasticLogBeside(LogBeside, ElasticBeside):
 
 
 class ElasticLog(DrivenLog):
-    """As of `LogKind`."""
+    """Logs of driven scenes with elastic links."""
 
     truth_name = "beam"
 

@@ -1,4 +1,4 @@
-"""Elastic links: how far engines' segments bend, beside the beam."""
+"""Elastic links: the deflection of engines' segments, beside the beam."""
 
 from collections.abc import Callable, Mapping
 
@@ -28,10 +28,10 @@ ERRORS = {
     "angle_pure": ("angle of rigid links", "rad"),
     "gap_pure": ("gaps of pins and sliders", "of longest link"),
 }
-"""What is drawn against the step, by column of the store: its name, and its unit."""
+"""Errors drawn against the step, by column of the store: name and unit."""
 SCRIPTS = ("legend.js", "charts.js", "free_courses.js", "elastic_links.js", "copying.js")
 PREFIX = "deflection."
-"""Of the series of a trace that are deflections [m], by link."""
+"""Prefix of the series of a trace that are deflections [m], by link."""
 
 
 def build(report: Report) -> Section | None:
@@ -72,7 +72,7 @@ def _rows(report: Report, line: Line) -> list[dict[str, object]]:
 
 
 def _courses(report: Report, line: Line) -> list[dict[str, object]]:
-    """How each elastic link bends over the last turn, at the finest step that ended well [m]."""
+    """The deflection [m] of each elastic link over the last turn, at the finest good step."""
     ran = line.cells[line.cells["status"] == "ok"]
     if ran.empty:
         return []
@@ -101,5 +101,5 @@ COURSES: Mapping[Clock, Callable[[Trace], tuple[str, Array]]] = {
     ),
     SECONDS: lambda trace: ("time [s]", trace["time_s"]),
 }
-"""What courses go over: its name, and its numbers (T,)."""
+"""The abscissa of courses: its name, and its numbers (T,)."""
 SECTION = WaySection(build)

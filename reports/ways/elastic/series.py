@@ -14,18 +14,18 @@ CHAIN = ("segments",)
 
 
 def elastic_error_series(trial: Trial, run: Run) -> ErrorSeries:
-    """A run of the segments of a scene, with its elastic links as such.
+    """The errors of a run of the segments of a scene, with its elastic links as such.
 
-    The error of place is the largest of two: that of the deflection beside the exact chain, over
-    the largest deflection, which is what an engine itself is off by; and that of a place beside the
-    beam, as of rigid links.
+    The error of place is the larger of two: the error of the deflection against the exact chain,
+    over the largest deflection, which is the engine's own; and the error of a place against the
+    beam, as for rigid links.
     """
     truth = _truth(trial)
     folded = truth.logged(run)
     beside = truth.beside(folded)
     assert beside is not None
     time_s, driver = beside.motion.time_s, beside.driver_rad
-    with np.errstate(all="ignore"):  # what has come apart is judged, not warned
+    with np.errstate(all="ignore"):  # a broken run is judged, not warned
         bent = [
             length(track.error) / track.scale
             for track in beside.tracks(CHAIN, truth.exact_at(time_s))
@@ -58,7 +58,7 @@ def elastic_start(trial: Trial) -> State:
 
 
 def elastic_motion(trial: Trial, time_s: Array) -> Motion:
-    """The exact chain with all of its nodes, to be drawn."""
+    """The exact chain with all of its nodes, to draw."""
     return _truth(trial).exact.motion.at(time_s)
 
 

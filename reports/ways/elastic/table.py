@@ -1,4 +1,4 @@
-"""The table of elastic links, what they are off by and whose that is; and what stands under it."""
+"""The table of elastic links, with the sources of their errors; and its footer."""
 
 from collections.abc import Sequence
 
@@ -15,14 +15,13 @@ ELASTIC_NUMBERS = {
     QUANTITIES["angle"].head: ["angle", "phase"],
     QUANTITIES["gap"].head: ["gap"],
 }
-"""What of an engine's errors is shown: beside the exact chain, beside the beam, and of places; of
-what is let go the driver's angle as well."""
+"""Shown errors of an engine: against the exact chain, against the beam, and of places; in free
+motion of the driver's angle as well."""
 THEORIES = ("chain\n/ D", "doubt\n/ D", "linear\n/ D")
 
 
 def _theories(one: Checked) -> tuple[str, ...]:
-    """What the segments leave of the beam, what the beam may be off by, and what the linear theory
-    is off it by."""
+    """Error of the segments against the beam, doubt of the beam, and error of the linear theory."""
     facts = ElasticFacts.of(one.errors)
     if facts is None:
         return ("-", "-", "-")
@@ -49,7 +48,7 @@ THEORY_WORDS = (
 
 
 def words(bent: Sequence[Checked]) -> Sequence[str]:
-    """What the numbers are."""
+    """The meaning of the numbers."""
     is_beam = {one.cell.springs == "beam" for one in bent}
     parts = [f"{BENT}, of deflections over the largest, D, of places over the longest link, L"]
     parts += [CHAINS] * (False in is_beam) + [BEAMS] * (True in is_beam)

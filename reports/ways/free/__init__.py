@@ -17,7 +17,8 @@ from reports.compare.free_facts import FreeFacts
 from reports.compare.free_truth import kept_motion, released_state
 from reports.plan.requirements import refuse_unreleased, under_control
 from reports.plan.steps import counted_free
-from reports.quantities import FREE, named
+from reports.quantities import named
+from reports.quantities.limits import FREE
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
 from reports.way.way import ResultKind, StudyLengths
@@ -33,7 +34,7 @@ UNITS = (
 
 
 class FreeWay(DrivenWay):
-    """As of `Way`."""
+    """The way of free motion with rigid links."""
 
     name = "free"
     drive: Drive = "free"

@@ -1,5 +1,4 @@
-"""The columns of free cells: how far they were followed, and how long each class of precision
-holds."""
+"""The columns of free cells: times to which they are followed and classes of precision hold."""
 
 from reports.compare.free_facts import FreeFacts
 from reports.judge.cell import Checked
@@ -27,20 +26,20 @@ COLUMNS = columns
 
 
 IFTOMM = {"1e-1": 1e-1, "1e-3": 1e-3}
-"""Largest error as it is, by the name of the class, from the low to the high."""
+"""Largest unscaled error, by the name of the class, from the low to the high."""
 FINE = {"phase": 1e-3, "geometry": 1.5e-3, "energy": 5e-3}
 """Shares of the common limits within which a cell is fine: at steps of 1e-3 s, over ten seconds of
-a four-bar that swings, 5e-6 rad, 1e-6 rad and 1e-5 of the energy."""
+a swinging four-bar, 5e-6 rad, 1e-6 rad and 1e-5 of the energy."""
 
 
 def precision(checked: Checked) -> str:
     """The classes that a cell reaches, such as ``fine, 1e-3``; "none" where it reaches none.
 
-    The library asks of a solution that it stays within 1e-1 of its reference (low precision), or
-    within 1e-3 (high precision): here that is the error of phase and place as it is, in radians or
-    longest links, at the same time. Our own are over the sensitivity, and tell engines apart whose
-    errors are all within the common limits: ``fine`` is what an engine reaches that integrates with
-    order four and holds its joints stiffly.
+    The library requires a solution within 1e-1 of its reference (low precision), or within 1e-3
+    (high precision): here of the unscaled error of phase and place, in radians or longest links, at
+    the same time. Our own classes are over the sensitivity, and separate engines whose errors are
+    all within the common limits: an engine that integrates with order four and holds its joints
+    stiffly reaches ``fine``.
 
     Source: M. Gonzalez, D. Dopico, U. Lugris, J. Cuadrado, A benchmarking system for MBS simulation
     software, Multibody System Dynamics 16 (2006), 179-190.
@@ -57,7 +56,7 @@ def precision(checked: Checked) -> str:
 
 
 def is_fine(checked: Checked) -> bool:
-    """Whether all errors that are judged are within the shares of the fine class."""
+    """True if all judged errors are within the shares of the fine class."""
     assert checked.errors is not None
     for name, share in FINE.items():
         worst = checked.errors.worst(name)

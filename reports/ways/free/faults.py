@@ -10,14 +10,14 @@ from reports.selftest.unseen import UNSEEN_FREE
 
 
 def run(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
-    """The run that `FREE_RUNS` says, as much finer as a turn of so many steps is."""
+    """The run of `FREE_RUNS`, with a step as much finer as a turn of so many steps has."""
     dt_s, of_run = FREE_RUNS[scene.name]
     dt_s, steps = dt_s * STEPS / steps, of_run * steps // STEPS
     return Cell(scene, engine, PROFILE, dt_s, steps, drive="free", converge=converge)
 
 
 def words(scenes: Collection[str]) -> Sequence[str]:
-    """How long the runs are, and at which step."""
+    """The lengths and steps of the runs, in words."""
     own = [
         f"{scene} {1e3 * dt_s:g} ms, {dt_s * steps:g} s"
         for scene, (dt_s, steps) in FREE_RUNS.items()

@@ -1,4 +1,4 @@
-"""Logs of free motion: their truth, and what is said of them in place of causes."""
+"""Logs of free motion: their reference, and notes in place of causes."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -27,25 +27,23 @@ from sim.engine import Run
 
 LEAST_ROWS = 2
 MOST_TIMES = 10.0
-"""How much longer than its scene says a log may last: each second of its truth takes a part of a
-second to integrate, or some seconds."""
+"""Longest log, in durations of its scene: each second of its reference takes a part of a second to
+integrate, or some seconds."""
 BEGUN = 1e-3
-"""What a reading of the first row is off by at most, as a pure number, where a log begins as its
-scene does."""
+"""Largest error of a first reading, as a pure number, of a log from the scene's start."""
 OPEN, CLOSED = 0.3, 0.03
-"""The part of an error of place that is left at the run's own angle: from here on it is the
-geometry that is off, and below it is not."""
+"""Limits of the part of an error of place that remains at the run's own angle: above the first the
+geometry is off, below the second it is not."""
 SHOWN = 4
-"""Columns that are told of."""
+"""Most columns that are named."""
 
 
 def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[OwnLog, FreeTruth]:
-    """The log as far as the truth of it is known well enough, and the truth.
+    """The log as far as its reference is known well enough, and the reference.
 
-    ``target`` has limits as pure numbers by quantity, that of all others under `EVERY`.
-
-    Raises CrankcheckError for times before 0, at which the scene is let go, or long after its end;
-    a scene that can not be let go; a truth that is lost before the second row.
+    ``target`` has limits as pure numbers by quantity, that of all others under `EVERY`. Raises
+    CrankcheckError for times before 0, the start of the free motion, or long after its end; a scene
+    that can not move freely; a reference that is lost before the second row.
     """
     scene, lasts_s = log.scene, _lasts_s(log)
     refuse_unreleased(scene, lasts_s)
@@ -62,7 +60,7 @@ def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[
 
 
 def _lasts_s(log: OwnLog) -> float:
-    """How long the truth has to go on. Raises CrankcheckError for times that it has none at."""
+    """Duration of the reference. Raises CrankcheckError for times without a reference."""
     scene, time_s = log.scene, log.time_s
     first, last = float(time_s[0]), float(time_s[-1])
     zero = (
@@ -85,7 +83,7 @@ def _lasts_s(log: OwnLog) -> float:
 
 
 def told_of_start(log: OwnLog, truth: FreeTruth) -> Iterator[str]:
-    """Whether a log begins as its scene is let go, where that is not so."""
+    """A note on a log that does not begin as the free motion of its scene does."""
     first, sample = float(log.time_s[0]), float(np.min(np.diff(log.time_s)))
     if first > sample:
         yield (
@@ -108,7 +106,7 @@ def told_of_start(log: OwnLog, truth: FreeTruth) -> Iterator[str]:
 
 
 def _off_at_start(reading: Reading, truth: FreeTruth) -> tuple[float, str, float]:
-    """What a reading is off by in its first row, with its unit, and as a pure number; 0 of an
+    """The error of a reading in its first row, with its unit, and as a pure number; 0 for an
     acceleration, which is no part of a start."""
     kind, scene = reading.channel.kind, truth.scene
     if kind.order == 2:
@@ -121,7 +119,7 @@ def _off_at_start(reading: Reading, truth: FreeTruth) -> tuple[float, str, float
 
 
 def told_of_no_limit(errors: Errors) -> Iterator[str]:
-    """What the log has, and what is held to no limit in free motion, of an engine neither."""
+    """A note on logged quantities that have no limit in free motion, for logs and engines alike."""
     own = (row for row in errors.rows if row.source == "reported" and row.kind == "total")
     names = dict.fromkeys(row.quantity for row in own if row.tolerance not in errors.limits)
     if names:
@@ -129,7 +127,7 @@ def told_of_no_limit(errors: Errors) -> Iterator[str]:
 
 
 def told_apart(errors: Errors) -> Iterator[str]:
-    """Whether it is the phase that has run away, or the linkage that has come open."""
+    """A note on the source of the errors: the phase has run away, or the linkage has come open."""
     phase, geometry = errors.worst("phase", kind="raw"), errors.worst("geometry")
     if phase is None or geometry is None or not (phase.finite and geometry.finite):
         return
@@ -153,7 +151,7 @@ def _size(error: Error) -> str:
 
 
 class FreeLog:
-    """As of `LogKind`."""
+    """Logs of free motion with rigid links."""
 
     truth_name = "free motion"
     no_cause = "of {}: see the notes; none is looked for in what was let go"
@@ -181,7 +179,7 @@ class FreeLog:
         )
 
     def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
-        """Places at the same time and at the log's own angle."""
+        """Quantities of a channel: places at the same time and at the log's own angle."""
         kind = channel.kind
         if kind.order:
             return (kind.quantity,)
@@ -203,11 +201,10 @@ LOG = FreeLog()
 
 @dataclass(frozen=True)
 class FreeLogBeside(LogBeside, FreeBeside):
-    """A log as far as it goes, which is where the truth of it is known: ``unknown`` rows after it
-    were left out.
+    """A log as far as its reference is known: ``unknown`` rows after it were left out.
 
-    Geometry is that of the readings as they are, and not of what else was put on the truth at the
-    same time: where the phase has run away, that is of another position.
+    Geometry is that of the readings alone, without other places of the reference at the same time:
+    where the phase has run away, those belong to another position.
     """
 
     log: OwnLog = field(kw_only=True)
@@ -260,7 +257,7 @@ class FreeLogBeside(LogBeside, FreeBeside):
         return tuple(each for each in self.log.readings if np.array_equal(each.instants, own))
 
     def _says(self, body_kind: str, body: str, *names: str) -> bool:
-        """Whether there are readings of a body of all these names, for itself."""
+        """True if there are readings of a body of all these names, not relative to another."""
         held = {
             each.channel.kind.name
             for each in self._at_rows
@@ -270,7 +267,7 @@ class FreeLogBeside(LogBeside, FreeBeside):
         return held.issuperset(names)
 
     def _holds(self, orders: Sequence[Order]) -> bool:
-        """Whether the log says of every link and every point that moves all of some orders."""
+        """True if the log has all kinds of some orders for every link and every moving point."""
         scene = self.scene
         points = {*scene.pins, *(slider.point for slider in scene.sliders.values())}
         names = {

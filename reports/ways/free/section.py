@@ -1,4 +1,4 @@
-"""What was let go: how far each engine still knew where it was."""
+"""Free motion: the time for which each engine stays near the reference."""
 
 from collections.abc import Iterable
 
@@ -22,7 +22,7 @@ SCRIPTS = (
     "copying.js",
 )
 FREE_DRIVE = ", free drive"
-"""What a variant is called by where others were driven: here all were let go."""
+"""Words of a variant that are left out here, where all motion is free."""
 ERRORS = {
     "phase_pure": ("phase, over the sensitivity", "rad"),
     "geometry_pure": ("geometry at the run's own angle", "rad, or of longest link"),
@@ -30,12 +30,12 @@ ERRORS = {
     "place_pure": ("place at the same time, over the sensitivity", "rad, or of longest link"),
     "gap_pure": ("gaps of pins and sliders", "of longest link"),
 }
-"""What is drawn against the step, by column of the store: its name, and its unit."""
+"""Errors drawn against the step, by column of the store: name and unit."""
 
 
 def build(report: Report, room: int = BUDGET) -> Section | None:
-    """The section; None where everything was driven. ``room`` is that of its drawings and curves
-    [characters]."""
+    """The section; None where everything was driven. ``room`` is the size of its drawings and
+    curves [characters]."""
     lines = report.of_kind(KIND)
     if not lines:
         return None

@@ -1,4 +1,4 @@
-"""A machine that is let go, beside the motion that its masses and forces give it."""
+"""A machine in free motion, beside the motion that its masses and forces give it."""
 
 from dataclasses import replace
 
@@ -19,14 +19,14 @@ from reports.stability.other_truths import at_toggle, thrown_motion, thrown_star
 from sim.engine import Run
 
 LOOKS = 1001
-"""Instants at which the largest kinetic energy is looked for."""
+"""Number of instants in the search for the largest kinetic energy."""
 
 
 def free_error_series(trial: Trial, run: Run) -> ErrorSeries:
-    """A run of a scene that loses no energy, beside its free motion.
+    """The errors of a run of a scene that loses no energy, against its free motion.
 
     The error of place is the largest of three: that of phase and places at the same time, over the
-    sensitivity, as far as the truth is followed and known; that of the places at the run's own
+    sensitivity, as far as the reference is followed and known; that of the places at the run's own
     driver angle; and the drift of the energy, over the largest kinetic energy.
     """
     motion = run.motion
@@ -36,7 +36,7 @@ def free_error_series(trial: Trial, run: Run) -> ErrorSeries:
     known = truth.beside(first_samples(run, followed))
     assert isinstance(known, FreeBeside)
     whole = FreeBeside(truth, run, motion, whole_run=run, free=truth.free)
-    with np.errstate(all="ignore"):  # what has come apart is judged, not warned
+    with np.errstate(all="ignore"):  # a broken run is judged, not warned
         same_time = np.zeros_like(motion.time_s)
         same_time[: known.motion.time_s.size] = _same_time(known)
         parts = {
@@ -68,7 +68,7 @@ def free_start(trial: Trial) -> State:
 
 
 def free_motion(trial: Trial, time_s: Array) -> Motion:
-    """The truth to be drawn. Raises CrankcheckError where it is no longer followed."""
+    """The reference motion to draw. Raises CrankcheckError where it is no longer followed."""
     return replace(_truth(trial).at(time_s), bound=None)
 
 
@@ -86,8 +86,8 @@ def _same_time(known: FreeBeside) -> Array:
 
 
 def _geometry(whole: FreeBeside) -> Array:
-    """The worst error of place at the run's own driver angle (T,); 0 where it has left the range
-    of that, of which the other errors tell."""
+    """The worst error of place at the run's own driver angle (T,); 0 where that has left its range,
+    which other errors show."""
     none = np.zeros_like(whole.motion.time_s)
     if not np.isfinite(whole.crank).all():
         return np.full_like(none, np.inf)
@@ -101,8 +101,8 @@ def _geometry(whole: FreeBeside) -> Array:
 
 
 def _energy(whole: FreeBeside) -> Array:
-    """What the mean of the energy over a while around each sample has drifted by since the first
-    while, over the largest kinetic energy (T,): it also comes and goes with the motion."""
+    """Drift of the mean energy around each sample since the first such mean, over the largest
+    kinetic energy (T,): means, as the energy also comes and goes with the motion."""
     energy, time_s = whole.run.energy, whole.motion.time_s
     if energy is None:
         return np.zeros_like(time_s)

@@ -1,4 +1,4 @@
-"""The table of cells in free motion, and what stands under it."""
+"""The table of cells in free motion, and its footer."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ FREE_NUMBERS = {
 
 
 def _precision(one: Checked) -> list[str]:
-    """The classes that are reached, and the time to which the high one of IFToMM's is."""
+    """The classes reached, and the time for which IFToMM's high class holds."""
     facts = FreeFacts.of(one.errors)
     return [f"{precision(one)}\n{facts.horizon_s(1e-3):.3g} s" if facts else "-"]
 
@@ -36,7 +36,7 @@ TABLE = CellTable(
 
 
 def steps(free: Sequence[Checked]) -> Sequence[str]:
-    """How cells were stepped."""
+    """The steps of the cells."""
     dts = sorted({one.cell.dt_s for one in free})
     lasts = sorted({round(one.cell.dt_s * one.cell.steps, 9) for one in free})
     growth = sorted(facts.sensitivity for one in free if (facts := FreeFacts.of(one.errors)))

@@ -15,7 +15,7 @@ from reports.plan.requirements import (
     refuse_unelastic,
     shortened_note,
 )
-from reports.quantities import FREE_ELASTIC
+from reports.quantities.limits import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class FreeElasticWay(Bending, FreeWay):
-    """As of `Way`."""
+    """The way of free motion with elastic links."""
 
     name = "free_elastic"
     limits = FREE_ELASTIC

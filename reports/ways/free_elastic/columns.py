@@ -1,4 +1,4 @@
-"""The columns of free cells of elastic links: those of both."""
+"""The columns of free cells of elastic links: those of free and of elastic cells."""
 
 from reports.judge.cell import Checked
 from reports.ways.elastic.columns import COLUMNS as BENT

@@ -1,4 +1,4 @@
-"""What stands under the tables of free cells of elastic links, which are those of elastic ones."""
+"""The footer of free cells of elastic links; their table is that of elastic cells."""
 
 from reports.ways.elastic.table import BENT_WORDS
 from reports.ways.free.table import STEPPED

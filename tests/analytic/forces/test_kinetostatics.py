@@ -23,7 +23,7 @@ from models.scene.tabulated import Tabulated
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn
 from tests.analytic.forces.test_self_locking import STEEP
-from tests.models.test_loads import PRESS, RUBBING
+from tests.models.scene.test_loads import PRESS, RUBBING
 from tests.worlds.loading import loaded, massless
 from tests.worlds.mutation import MUTATIONS
 from tests.worlds.tiers import slowly

@@ -24,7 +24,8 @@ from reports.judge.cell import Cell, check, unfinished
 from reports.judge.rows import ERROR_COLUMNS, cell_frame, error_frame
 from reports.judge.tolerance import FORCES
 from reports.plan.singular import refuse_singular
-from reports.quantities import DEFAULTS, named
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS
 from reports.verify.advised import check_all
 from reports.workers.isolated import FEW
 from sim.engine import Run

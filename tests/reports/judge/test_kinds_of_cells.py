@@ -21,7 +21,8 @@ from reports.judge.rows import ERROR_COLUMNS, cell_row
 from reports.judge.rules import FORCES
 from reports.judge.rules.reference import too_good
 from reports.judge.tolerance import default, in_passage
-from reports.quantities import DEFAULTS, FREE, named
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS, FREE
 from reports.quantities.places import WITHIN_A_STEP
 from reports.ways.free.columns import precision
 from sim.engine import Run

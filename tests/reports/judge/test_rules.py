@@ -12,7 +12,7 @@ from reports.judge.rules import RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.three_steps import Convergence, convergence
 from reports.judge.tolerance import Limit, limits
-from reports.quantities import DEFAULTS
+from reports.quantities.limits import DEFAULTS
 from tests.worlds.facts import with_facts
 
 KINDS = {

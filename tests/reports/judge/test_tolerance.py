@@ -20,7 +20,7 @@ from reports.compare.whole_errors import OF_STEPS, summed
 from reports.judge.cell import check
 from reports.judge.rules.limits import allowance
 from reports.judge.tolerance import check_names, limits, parse
-from reports.quantities import DEFAULTS
+from reports.quantities.limits import DEFAULTS
 from sim.run import run
 from tests.worlds.facts import with_facts
 from tests.worlds.fake.engine import turned_link

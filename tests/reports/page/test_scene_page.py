@@ -23,14 +23,14 @@ from reports.lectures.drawing.sheets.polygon_instant import placed_at_time
 from reports.lectures.drawing.sheets.polygon_page import polygon_page
 from reports.page.scene_page import elastic_page, factors, free_page, scene_page
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.reports.page.conftest import Write
-from tests.reports.page.tab import Tab
-from tests.reports.sheets.constructions.constructed import (
+from tests.reports.lectures.design.constructions.constructed import (
     burmester_curves,
     far_pole,
     rocker_by_angle,
     three_positions,
 )
+from tests.reports.page.conftest import Write
+from tests.reports.page.tab import Tab
 from tests.worlds.tiers import few, slowly
 
 COUPLER = "#motion-picture .overlays .link:nth-child(2)"

@@ -20,7 +20,7 @@ from sim.engine.settings import profile_of, resolved
 from sim.mujoco.settings import writing
 from sim.registry import engine as adapter
 from sim.registry.offers import snippet
-from tests.sim.test_snippets import other
+from tests.sim.registry.test_snippets import other
 from tests.worlds import bare
 from tests.worlds.bare import BARE
 from tests.worlds.in_process import in_this_process

@@ -22,7 +22,7 @@ from reports.contract.clauses.reactions import named
 from sim.engine import Settings
 from sim.exudyn.engine import ENGINE
 from sim.registry.offers import force_recipe
-from tests.sim.test_force_recipes import printed
+from tests.sim.registry.test_force_recipes import printed
 from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.runs import acted_on, all_series, ran, rubbing, start_of, tuned

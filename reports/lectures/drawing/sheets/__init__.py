@@ -1,1 +1,1 @@
-"""Drawing sheets: what the lecture draws, in millimetres of paper and to scale."""
+"""Drawing sheets of the lecture, in millimetres of paper and to scale."""

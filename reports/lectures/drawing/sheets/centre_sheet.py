@@ -42,20 +42,20 @@ from reports.lectures.drawing.sheets.paper import (
 from reports.lectures.drawing.sheets.scheme import assembled, draw_scheme, extent_of, range_about
 
 POLYGON_MM = 42.0
-"""Height of the polygon of centres, which is at the top."""
+"""Height of the polygon of centres, at the top [mm]."""
 ROW_MM, SAMPLE_MM, CURVE_ROWS = 4.0, 7.0, 7.5
-"""A line of the column, the sample of a curve before its name; lines that tell poles and curves."""
+"""Height of a line of the column, sample of a curve before its name; lines for poles and curves."""
 INFLECTION, NO_TANGENTIAL = "#2e6f9e", "#3a7d44"
 FIXED, MOVING, THEOREM = "#b7791f", "#6b4e9b", "#a9b3bf"
 
 
 def height_of_column(bodies: int, *, with_curves: bool) -> float:
-    """What so many bodies need [mm]."""
+    """Height of the column for so many bodies [mm]."""
     return POLYGON_MM + ROW_MM * (bodies + (CURVE_ROWS if with_curves else 0.0) + 1.0)
 
 
 def write_legend(axes: Axes, numbers: Mapping[str, int], link: str, column: Box) -> None:
-    """The bodies by number; of a ``link``, where one was named, what is which curve."""
+    """Write the bodies by number; with a ``link``, also the key of its poles and curves."""
     left, y = column.left + 2.0, column.bottom + column.height - POLYGON_MM - ROW_MM
     room = (column.width - 4.0) / MM_PER_IN
     for body, k in numbers.items():
@@ -79,7 +79,7 @@ def write_legend(axes: Axes, numbers: Mapping[str, int], link: str, column: Box)
 
 
 def body_numbers(drawn: DrawnPolygons) -> dict[str, int]:
-    """The numbers of the bodies, as books have them: 0 the ground, 1 the driver, then the rest."""
+    """The numbers of the bodies, as in books: 0 the ground, 1 the driver, then the rest."""
     placement = drawn.placement
     driver = placement.scene.driver.link
     rest = [body for body in placement.structure.bodies if body != driver]
@@ -87,7 +87,7 @@ def body_numbers(drawn: DrawnPolygons) -> dict[str, int]:
 
 
 def centre_name(pair: Pair, numbers: Mapping[str, int]) -> str:
-    """P12 and the like, the lower number first."""
+    """The name of a centre, such as P12, the lower number first."""
     low, high = sorted(numbers[body] for body in pair)
     return f"P{low}{high}" if high < 10 else f"P{low}.{high}"
 
@@ -95,7 +95,7 @@ def centre_name(pair: Pair, numbers: Mapping[str, int]) -> str:
 def draw_polygon_of_centres(
     axes: Axes, centres: Mapping[Pair, Centre], numbers: Mapping[str, int], column: Box
 ) -> None:
-    """At the top of the column: bodies as corners, centres of joints full sides, others dashed."""
+    """Draw bodies as corners, centres of joints as full sides, others dashed; atop the column."""
     top = column.bottom + column.height
     middle = np.array([column.left + column.width / 2, top - POLYGON_MM / 2])
     radius = POLYGON_MM / 2 - 5.0
@@ -114,22 +114,22 @@ def draw_polygon_of_centres(
 
 PADDING = 12.0
 NEAR_MM = 0.5
-"""Centres that stand nearer have their names in one label."""
+"""Distance of centres [mm] below which their names share a label."""
 COLUMN_MM = 46.0
 """Width of the column on the right."""
 FAR = 1.5
-"""Centres that are further from the mechanism than so many times its size are told, not drawn."""
+"""Distance from the mechanism, in its sizes, beyond which centres are not drawn."""
 POLE = "#d1495b"
 CENTRE_MM, CENTRE_SIZE = 0.8, 7.0
-"""Radius of a centre's circle, and the type of its name [point]."""
+"""Radius of a centre's circle [mm], and the type of its name [point]."""
 GAP = 3.0
 DENSE = 1441
-"""Places along a centrode."""
+"""Number of places along a centrode."""
 
 
 @dataclass(frozen=True)
 class CentreSheet:
-    """The centres at one position, and what is drawn of the link that was named, if one was."""
+    """The centres at one position, and the circles and centrodes of the named link, if any."""
 
     drawn: DrawnPolygons
     centres: Mapping[Pair, Centre]
@@ -145,11 +145,11 @@ class CentreSheet:
         return _boxes(self.paper)[0]
 
     def at(self, places: Array) -> Array:
-        """Where places [m], (..., 2), stand on the sheet [mm]."""
+        """Places [m], (..., 2), on the sheet [mm]."""
         return np.asarray(self.box.middle + (places - self.middle) / self.scale)
 
     def is_near(self, place: Array | None) -> bool:
-        """Whether a place [m] is on the sheet."""
+        """True if a place [m] is on the sheet."""
         if place is None:
             return False
         away = np.abs(self.at(place) - self.box.middle)
@@ -160,7 +160,7 @@ def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
     """The sheet of a position; ``link`` is "" for the centres alone.
 
     Raises CrankcheckError for a link that the scene has not, or that does not turn, and for paper
-    on which not all fits.
+    that is too small.
     """
     placement = drawn.placement
     if drawn.undetermined:
@@ -182,7 +182,7 @@ def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
 
 
 def _check_room(drawn: DrawnPolygons, paper: Paper, *, with_curves: bool) -> None:
-    """Refuse paper on which the column on the right does not fit."""
+    """Refuse paper on which the column on the right does not fit. Raises CrankcheckError."""
     bodies = len(body_numbers(drawn))
     column = _boxes(paper)[1]
     needed = height_of_column(bodies, with_curves=with_curves)
@@ -196,7 +196,7 @@ def _check_room(drawn: DrawnPolygons, paper: Paper, *, with_curves: bool) -> Non
 
 
 def _centrodes_of(drawn: DrawnPolygons, link: str) -> Centrodes:
-    """The centrodes over what the driver reaches, with gaps at its singular angles."""
+    """The centrodes over the range of the driver, with gaps at its singular angles."""
     scene = drawn.placement.scene
     theta = np.linspace(*range_about(scene, drawn.placement.driver.theta), DENSE)[1:-1]
     possible = assembled(scene, theta)
@@ -214,7 +214,7 @@ def _frame(
     circles: CurvatureCircles | None,
     paper: Paper,
 ) -> tuple[float, Array]:
-    """The scale [m/mm], and what is in the middle [m]: the mechanism, and what is near it."""
+    """The scale [m/mm], and the middle [m], of the mechanism and of places near it."""
     points = extent_of(drawn.placement)
     low, high = points.min(axis=0), points.max(axis=0)
     about, size = (low + high) / 2, float(np.max(high - low))
@@ -226,7 +226,7 @@ def _frame(
 
 
 def _boxes(paper: Paper) -> tuple[Box, Box]:
-    """The drawing, and the column on its right."""
+    """The boxes of the drawing, and of the column on its right."""
     inner = inner_box(paper)
     wide = inner.width - COLUMN_MM - GAP
     left = inner.left + wide + GAP
@@ -267,7 +267,7 @@ def _head(axes: Axes, sheet: CentreSheet, note: str) -> None:
 
 
 def _draw_centrodes(axes: Axes, sheet: CentreSheet, curves: Centrodes) -> None:
-    """Both curves, as far as they are on the sheet; the moving one as the link stands."""
+    """Draw both curves, as far as they are on the sheet; the moving one in the link's position."""
     theta = sheet.drawn.placement.angles[sheet.link]
     first = next(iter(sheet.drawn.placement.scene.links[sheet.link].points))
     c, s = math.cos(theta), math.sin(theta)
@@ -291,13 +291,13 @@ def _circles(axes: Axes, sheet: CentreSheet, circles: CurvatureCircles) -> None:
 
 
 def _arc_near(middle: Array, radius: float, box: Box) -> Array:
-    """The part of a circle [mm] that may be in a box, (n, 2), closely."""
+    """The part of a circle [mm] that may be in a box, (n, 2), finely sampled."""
     start, end = near_angles(middle, radius, *box.corners)
     return arc_places(middle, radius, start, end)
 
 
 def _centres(axes: Axes, sheet: CentreSheet) -> None:
-    """Every centre on the sheet, and the lines that cross in it, of the theorem."""
+    """Draw every centre on the sheet, and the lines of the theorem that cross in it."""
     for centre in sheet.centres.values():
         if not sheet.is_near(centre.place):
             continue

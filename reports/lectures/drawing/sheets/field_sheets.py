@@ -1,5 +1,4 @@
-"""Sheets of schemes, each in a field of its own with its name below: chains, and the assemblies of
-a scene."""
+"""Sheets of schemes, each in a field with its name below: chains, and assemblies of a scene."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -42,7 +41,7 @@ FRONT = 6
 def draw_chain(
     axes: Axes, chain: Chain, at: Mapping[Joint, Array], ground: int | None = None
 ) -> None:
-    """The chain with its joints at places [mm]; the ground, if there is one, hatched."""
+    """Draw the chain with its joints at places [mm]; the ground, if there is one, hatched."""
     for link in range(chain.links):
         corners = _around(np.array([at[joint] for joint in chain.joints_of(link)]))
         if len(corners) == 2:
@@ -61,7 +60,7 @@ def draw_chain(
 
 
 def _around(corners: Array) -> Array:
-    """The corners in order around their middle."""
+    """The corners in order around their centroid."""
     to = corners - corners.mean(axis=0)
     return np.asarray(corners[np.argsort(np.arctan2(to[:, 1], to[:, 0]))])
 
@@ -74,7 +73,7 @@ def _plate(axes: Axes, corners: Array, *, is_ground: bool) -> None:
 
 
 def _strokes(axes: Axes, ends: Array, middle: Array) -> None:
-    """The strokes of a bar that is the ground, on its side away from the chain's middle."""
+    """Draw the strokes of a bar of the ground, on its side away from the chain's middle."""
     along = ends[1] - ends[0]
     length = float(np.hypot(*along))
     unit = along / length
@@ -88,7 +87,7 @@ def _strokes(axes: Axes, ends: Array, middle: Array) -> None:
 
 
 def _block(axes: Axes, place: Array, along: Array) -> None:
-    """A slider: a block on the bar that it slides on."""
+    """Draw a slider: a block on the bar that it slides on."""
     half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
     signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
     corners = [place + a * half + b * aside for a, b in signs]
@@ -97,7 +96,7 @@ def _block(axes: Axes, place: Array, along: Array) -> None:
 
 
 def _along(chain: Chain, joint: Joint, at: Mapping[Joint, Array]) -> Array:
-    """The direction of a slider: that of an edge of its first link, of a bar where one is."""
+    """The direction of a slider: along an edge of its link with fewer joints, as of a bar."""
     link = min(joint, key=lambda one: chain.degrees[one])
     others = [one for one in chain.joints_of(link) if one != joint]
     way = np.asarray(at[others[0]] - at[joint])
@@ -105,14 +104,14 @@ def _along(chain: Chain, joint: Joint, at: Mapping[Joint, Array]) -> Array:
 
 
 LEAST_MM = (24.0, 24.0)
-"""A field that can be read."""
+"""Least readable field: width and height [mm]."""
 WORDS_MM, LINE_MM, PAD_MM = 8.5, 2.7, 3.5
-"""Height of the words below a scheme, of a line of them, and what is left blank around it."""
+"""Height of the words below a scheme, of a line of them, and the margin around it [mm]."""
 BAR_MM = 22.0
-"""The longest that a bar of common length is drawn."""
+"""Greatest length of a bar of common length [mm]."""
 NAME = 6.5
 ASPECT = 1.25
-"""Width over height of a field, about."""
+"""Approximate width over height of a field."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +125,7 @@ class DrawnChain:
 
 
 def check_room(many: int, paper: Paper) -> None:
-    """Raise CrankcheckError for paper on which so many fields can not be read."""
+    """Refuse paper on which so many fields can not be read. Raises CrankcheckError."""
     field = _fields(many, paper)[0]
     if field.width >= LEAST_MM[0] and field.height >= LEAST_MM[1]:
         return
@@ -145,7 +144,7 @@ def _is_enough(many: int, paper: Paper) -> bool:
 
 
 def _fields(many: int, paper: Paper) -> list[Box]:
-    """A field for each, row by row from the top."""
+    """The fields, row by row from the top."""
     inner = inner_box(paper)
     columns = max(1, math.ceil(math.sqrt(many * inner.width / (inner.height * ASPECT))))
     columns = min(columns, many)
@@ -159,7 +158,7 @@ def _fields(many: int, paper: Paper) -> list[Box]:
 
 
 def draw_chains(chains: Sequence[DrawnChain], title: str, note: str, paper: Paper) -> Canvas:
-    """The sheet, in layers; all chains with bars of one length."""
+    """Draw the sheet, in layers; all chains with bars of one length."""
     check_room(len(chains), paper)
     canvas = Canvas(paper)
     write_head(canvas.layer("frame"), paper, title, note)
@@ -189,13 +188,13 @@ def draw_chains(chains: Sequence[DrawnChain], title: str, note: str, paper: Pape
 
 PADDING, NAME_MM = 11.0, 7.0
 LEAST_SIDE_MM = 34.0
-"""A field that can be read is so wide and high."""
+"""Least width and height of a readable field [mm]."""
 
 
 def draw_assemblies(
     drawn: Sequence[tuple[PlacedMechanism, str, bool]], title: str, note: str, paper: Paper
 ) -> Canvas:
-    """The sheet of placements, each with its words, and whether it is the scene's own.
+    """Draw the sheet of placements, each with its words, and True for the scene's own.
 
     Raises CrankcheckError for paper on which they can not be read.
     """
@@ -227,12 +226,12 @@ def draw_assemblies(
 
 
 def _at(places: Array, box: Box, scale: float, middle: Array) -> Array:
-    """Where places [m], (..., 2), stand on the sheet [mm]."""
+    """Places [m], (..., 2), on the sheet [mm]."""
     return np.asarray(box.middle + (places - middle) / scale)
 
 
 def _square_fields(many: int, paper: Paper) -> list[Box]:
-    """A field for each, side by side and then below, about as wide as high."""
+    """The fields, side by side and then below, about as wide as high."""
     inner = inner_box(paper)
     columns = min(range(1, many + 1), key=lambda n: _unlike(many, n, inner))
     rows = math.ceil(many / columns)
@@ -245,7 +244,7 @@ def _square_fields(many: int, paper: Paper) -> list[Box]:
 
 
 def _unlike(many: int, columns: int, inner: Box) -> float:
-    """How far so many columns are from fields as wide as high, with none of them blank."""
+    """Deviation of a layout from fields as wide as high, none of them blank."""
     rows = math.ceil(many / columns)
     aspect = inner.width / columns * rows / inner.height
     return abs(math.log(aspect)) + (rows * columns - many) / many

@@ -1,4 +1,4 @@
-"""Three graphs drawn from the reference and, beside them, from a log, and what each is off by."""
+"""Three graphs drawn from the reference and, beside them, from a log, with the errors of each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -18,19 +18,19 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.map_file import Map, read_map
 
 BESIDE = 4
-"""Rows on both sides of the period that the spline goes through as well."""
+"""Rows on both sides of the period that the spline also passes."""
 ON_ROW = 1e-6
-"""How near a place is to a row to be on it, in steps between rows."""
+"""Distance of a place from a row below which it is on it, in steps between rows."""
 DOUBTED = 0.1
-"""The share of its range that half of all readings are off by where it is told."""
+"""Error of half of all readings, as a share of their range, from which a note on it is printed."""
 NAMES: Mapping[Order, str] = {0: "places", 1: "rates", 2: "accelerations"}
 SIZES: Mapping[Order, str] = {0: "their range", 1: "the largest", 2: "the largest"}
-"""What is off is told over this."""
+"""Scales of the errors, in words."""
 
 
 @dataclass(frozen=True)
 class LoggedRows:
-    """Rows of a reading in the period: instants [s] and values (T,), angles without turns lost."""
+    """Rows of a reading in the period: instants [s] and values (T,), angles with all turns."""
 
     time_s: Array
     values: Array
@@ -38,7 +38,7 @@ class LoggedRows:
 
 @dataclass(frozen=True)
 class GraphLog:
-    """A log's readings of a quantity by their order; ``span`` is the period that is drawn."""
+    """A log's readings of a quantity by their order; ``span`` is the drawn period."""
 
     source: Path
     span: GraphSpan
@@ -46,7 +46,7 @@ class GraphLog:
 
     @property
     def name(self) -> str:
-        """What sheets call it."""
+        """The name of the log on sheets."""
         return self.source.stem
 
     def at(self, order: Order, x: Array) -> Array:
@@ -55,7 +55,7 @@ class GraphLog:
         return np.asarray(CubicSpline(rows.time_s, rows.values)(x))
 
     def at_divisions(self, order: Order, parts: int) -> Plotted:
-        """Readings of an order at those divisions that its rows reach; none of what it has not."""
+        """Readings of an order at the divisions that its rows reach; none without rows."""
         x = self.span.divisions(parts)
         if order not in self.rows:
             return Plotted(x[:0], x[:0])
@@ -65,7 +65,7 @@ class GraphLog:
         return Plotted(x, self.at(order, x))
 
     def doubt(self, order: Order, x: Array) -> str:
-        """That readings are mostly far from the scene's, in words; empty where they are not."""
+        """A note that readings are mostly far from the scene's; empty where they are not."""
         off = np.abs(self.at(order, x) - self.span.exact(order, x))
         share = float(np.median(off)) / self.span.sizes()[order]
         if share <= DOUBTED:
@@ -78,8 +78,8 @@ class GraphLog:
         )
 
     def how(self, order: Order, x: Array) -> str:
-        """How readings at places come of the rows, and what that adds: what the spline through the
-        exact values at the rows is off by."""
+        """The source of readings at places: rows, or the spline between them, with the error that
+        the spline through the exact values has."""
         rows = self.rows[order].time_s
         step = float(np.median(np.diff(rows)))
         after = np.clip(np.searchsorted(rows, x), 1, rows.size - 1)
@@ -95,16 +95,16 @@ class GraphLog:
 
 
 def graph_log(path: Path, map_path: Path | None, whole: GraphSpan) -> GraphLog:
-    """The readings that a log has of the quantity of a range, over a period of it.
+    """Read a log's readings of the quantity of a range, over a period of it.
 
     The period is the first whole one that the log covers, or, where it covers none, the one that
-    begins with its first row; what is let go is drawn from its start on.
+    begins with its first row; free motion is drawn from its start on.
 
     Raises
     ------
     CrankcheckError
-        As `SheetLog.of_file`; a log that has nothing of the quantity, or is shorter than the
-        period; graphs of analogues.
+        As `SheetLog.of_file`; a log without the quantity, or shorter than the period; graphs of
+        analogues.
     """
     if whole.truth is None:
         raise CrankcheckError(
@@ -132,8 +132,8 @@ def graph_log(path: Path, map_path: Path | None, whole: GraphSpan) -> GraphLog:
 
 
 def needed(log: GraphLog, order: Order, parts: int) -> None:
-    """Refuse what can not be drawn of a log: readings of an order that it has not, or fewer rows
-    than parts. Raises CrankcheckError."""
+    """Refuse a drawing for which a log lacks readings of an order, or has fewer rows than parts.
+    Raises CrankcheckError."""
     quantity = log.span.quantity
     if order not in log.rows:
         others = {0: "chords or tangents", 2: "integration"}
@@ -155,7 +155,7 @@ def needed(log: GraphLog, order: Order, parts: int) -> None:
 
 
 def _reading(log: OwnLog, whole: GraphSpan, order: Order) -> Reading | None:
-    """The reading of an order, rather one that is not relative to another link."""
+    """The reading of an order, preferably one that is not relative to another link."""
     kind, body = whole.quantity.kinds[order], whole.quantity.body
     of_it = [r for r in log.readings if (r.channel.kind, r.channel.of) == (kind, body)]
     return min(of_it, key=lambda each: bool(each.channel.relative_to), default=None)
@@ -187,13 +187,13 @@ def _rows(reading: Reading, truth: Truth, moved: GraphSpan) -> LoggedRows | None
 
 
 READ: dict[Method, Order] = {"chords": 0, "tangents": 0, "integration": 2}
-"""Of which order readings are drawn from."""
+"""The order from which each method starts."""
 
 
 @dataclass(frozen=True)
 class DrawnGraphs:
     """A quantity and its rates over a range in equal parts, drawn ``by`` a method: of the
-    reference, and of a log where there is one. ``sizes`` are what errors are over."""
+    reference, and of a log where there is one. ``sizes`` are the scales of the errors."""
 
     span: GraphSpan
     by: Method
@@ -205,25 +205,25 @@ class DrawnGraphs:
 
     @property
     def derived(self) -> tuple[Order, Order]:
-        """The orders that were not read, in the order of drawing."""
+        """The derived orders, in the order of drawing."""
         return (1, 0) if self.by == "integration" else (1, 2)
 
     def off(self, drawn: ThreeGraphs, order: Order) -> float:
-        """What a graph is off by the exact curve at most, over the size."""
+        """Largest error of a graph against the exact curve, over the size."""
         graph = drawn.graphs[order]
         exact = self.span.exact(order, graph.x)
         return float(np.abs(graph.y - exact).max()) / self.sizes[order]
 
     def own_part(self, order: Order) -> float:
-        """What the log's graph is off that of the reference, over the size: the method is in
-        both."""
+        """Largest difference of the log's graph from the reference's, over the size: both contain
+        the error of the method."""
         assert self.logged is not None
         one, other = self.logged.graphs[order], self.reference.graphs[order]
         return float(np.abs(one.y - other.y).max()) / self.sizes[order]
 
 
 def drawn_graphs(of: GraphSpan, by: Method, parts: int, log: GraphLog | None = None) -> DrawnGraphs:
-    """Draw. Raises CrankcheckError for a log that has not what the method reads."""
+    """Draw the graphs. Raises CrankcheckError for a log without the readings of the method."""
     x = of.divisions(parts)
     start = float(of.exact(0, x[:1])[0]), float(of.exact(1, x[:1])[0])
     reference = three_graphs(by, x, of.exact, start)

@@ -1,4 +1,4 @@
-"""How the errors of drawn graphs fall with the number of divisions."""
+"""The fall of the errors of drawn graphs with the number of divisions."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -23,21 +23,21 @@ from reports.output.console import plain_table
 from reports.results.floor_fit import straight
 
 Whose = Literal["reference", "log", "its own part"]
-"""What errors are of: the drawing of the reference, that of a log, or the part of the log's that is
-not the method's."""
+"""Source of errors: the drawing of the reference, the drawing of a log, or the part of the log's
+error that is not the method's."""
 LEAST_FALL = 2
-"""Errors above rounding that an order takes."""
+"""Least number of errors above rounding that an order needs."""
 OWN_SHARE = 0.5
-"""Where more of the last error is the log's own, the line has come down to its floor."""
+"""Share of the log's own part in the last error, above which the line has reached its floor."""
 BENT = 0.5
-"""From one number of divisions to the next the order differs from the fitted one by this at most;
-beyond, a power fits poorly."""
+"""Largest difference of the order between two numbers of divisions from the fitted one; beyond, a
+power fits poorly."""
 
 
 @dataclass(frozen=True)
 class ErrorLine:
-    """Errors over the size, one for each number of divisions; ``of`` is whose, ``symbol`` of
-    what; ``own`` is the part of each that is a log's own, and does not fall."""
+    """Errors over the size, one for each number of divisions, of the source ``of`` and the graph
+    ``symbol``; ``own`` is the log's own part of each, which does not fall."""
 
     of: Whose
     symbol: str
@@ -46,12 +46,12 @@ class ErrorLine:
 
     @property
     def is_own(self) -> bool:
-        """Whether all of it is the log's own."""
+        """True if all of the errors are the log's own."""
         return self.of == "its own part"
 
     def order(self, divisions: Sequence[int]) -> float | None:
-        """The power of the length of a part that they fall with; None for errors of rounding, for
-        those that end in a floor, and where no power fits."""
+        """The power of the length of a part by which the errors fall; None for errors of rounding,
+        for errors that end in a floor, and where no power fits."""
         some = [(n, error) for n, error in zip(divisions, self.errors, strict=True)
                 if error > NOTHING]  # fmt: skip
         if len(some) < LEAST_FALL or self.ends_in_floor:
@@ -63,14 +63,14 @@ class ErrorLine:
 
     @property
     def ends_in_floor(self) -> bool:
-        """Whether most of the last error does not come of the method."""
+        """True if most of the last error is not the method's."""
         return bool(self.own) and self.own[-1] > OWN_SHARE * self.errors[-1]
 
 
 @dataclass(frozen=True)
 class GraphErrors:
     """Lines of errors over the numbers of divisions: of the reference, of a log where there is one,
-    and of that the part that is its own."""
+    and of the log's own part."""
 
     span: GraphSpan
     by: Method
@@ -128,7 +128,7 @@ def order_words(line: ErrorLine, divisions: Sequence[int]) -> str:
 
 
 def told_floor(errors: GraphErrors) -> str:
-    """Where the errors of the log end."""
+    """A note on the floor of the log's errors."""
     assert errors.log is not None
     own = ", ".join(
         f"{each.symbol} {share(each.errors[-1])}" for each in errors.lines if each.is_own
@@ -140,7 +140,7 @@ def told_floor(errors: GraphErrors) -> str:
 
 
 AROUND_MM = (18.0, 14.0)
-"""Left of the diagram and below it, for numbers and names [mm]."""
+"""Room left of the diagram and below it, for numbers and names [mm]."""
 LOOKS: Mapping[Whose, tuple[str, str]] = {
     "reference": (DRAWN, "-"),
     "log": (LOGGED, "--"),
@@ -148,12 +148,12 @@ LOOKS: Mapping[Whose, tuple[str, str]] = {
 }
 MARKERS = ("o", "s")
 GUIDE = 0.5
-"""How far below the first line the slope of order 2 stands, as a share."""
+"""Height of the slope of order 2 below the first line, as a factor."""
 
 
 def draw_errors(errors: GraphErrors, paper: Paper, note: str) -> Canvas:
-    """A line for each graph that was drawn, of the reference and of a log. Raises CrankcheckError
-    where all are right to rounding."""
+    """Draw a line for each drawn graph, of the reference and of a log. Raises CrankcheckError where
+    all are right to rounding."""
     canvas = Canvas(paper)
     frame = canvas.layer("frame")
     of = errors.span
@@ -203,7 +203,7 @@ def _draw(axes: Axes, errors: GraphErrors) -> None:
 
 def _guide(lines: Sequence[ErrorLine], divisions: Sequence[int]) -> tuple[Array, Array]:
     """The slope of order 2 from the first to the last number of divisions, a little below the first
-    error that is above rounding."""
+    error above rounding."""
     parts, error = next(
         (parts, error)
         for line in lines

@@ -37,17 +37,17 @@ from reports.output.numbers import readable
 
 EXACT, DRAWN, RAY, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#e6e6e6"
 DASHED = (0, (4, 2))
-"""Lines of a log, under which others are seen."""
+"""Style of a log's lines, through which others are seen."""
 VALUES_APART_MM = 6.0
-"""Values beside a graph are so far from one another at least."""
+"""Least distance of values beside a graph."""
 LABELS_APART_MM = 6.5
-"""As are numbers of divisions, or angles."""
+"""Least distance of numbers of divisions, or of angles."""
 TANGENT = 0.35
-"""How far a tangent is drawn to either side, in parts."""
+"""Length of a tangent to either side, in parts."""
 
 
 def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None:
-    """Both axes of a graph, its divisions with their numbers, values on the right, and the pole."""
+    """Draw axes of a graph, its divisions with their numbers, values on the right, and the pole."""
     box, top = panel.box, panel.box.bottom + panel.box.height
     room = (box.left + box.width - sheet.legend.left) / MM_PER_IN
     size = SMALL if width_in(caption) <= room else TINY
@@ -73,7 +73,7 @@ def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None
 
 
 def _names(sheet: GraphSheet) -> list[str]:
-    """What stands below the divisions: their numbers, or the angles of the driver."""
+    """Labels of the divisions: their numbers, or the angles of the driver."""
     of, parts = sheet.drawn.span, sheet.drawn.parts
     if of.over == "time":
         return [str(k) for k in range(parts + 1)]
@@ -81,12 +81,12 @@ def _names(sheet: GraphSheet) -> list[str]:
 
 
 def _every(sheet: GraphSheet) -> int:
-    """Which divisions have theirs."""
+    """Number of divisions from label to label."""
     return math.ceil(LABELS_APART_MM * sheet.drawn.parts / sheet.panels[0].box.width)
 
 
 def _write_values(axes: Axes, panel: Panel) -> None:
-    """Round values on an axis right of the graph."""
+    """Write round values on an axis right of the graph."""
     right, bottom = panel.box.left + panel.box.width + 2.0, panel.box.bottom
     line(axes, np.array([right, bottom]), np.array([right, bottom + panel.box.height]),
          linewidth=0.4, color=QUIET)  # fmt: skip
@@ -100,7 +100,7 @@ def _write_values(axes: Axes, panel: Panel) -> None:
 
 
 def draw_exact(axes: Axes, sheet: GraphSheet, panel: Panel) -> None:
-    """The exact curve."""
+    """Draw the exact curve."""
     dense = sheet.drawn.span.dense
     y = panel.height_mm(sheet.drawn.span.exact(panel.order, dense))
     (curve,) = axes.plot(sheet.along_mm(dense), y, color=EXACT, lw=1.6, solid_capstyle="round")
@@ -110,8 +110,8 @@ def draw_exact(axes: Axes, sheet: GraphSheet, panel: Panel) -> None:
 def draw_rays(
     canvas: Canvas, sheet: GraphSheet, panel: Panel, drawn: ThreeGraphs, color: str, layer: str
 ) -> None:
-    """A ray from the pole to each ordinate on the axis, and from there across to where it belongs;
-    of a graph that is integrated its mean ordinates as well."""
+    """Draw a ray from the pole to each ordinate on the axis, and from there across to its place; by
+    integration the mean ordinates as well."""
     if not panel.order:
         return
     axes = canvas.layer(f"rays-{panel.symbol}{layer}")
@@ -132,8 +132,7 @@ def draw_rays(
 def draw_graph(
     canvas: Canvas, sheet: GraphSheet, panel: Panel, drawn: ThreeGraphs, color: str, layer: str
 ) -> None:
-    """The points of a graph, and the chords or steps between them; its tangents where these are
-    drawn."""
+    """Draw the points of a graph, and the chords or steps between, or also its tangents."""
     axes = canvas.layer(f"graph-{panel.symbol}{layer}")
     graph = drawn.graphs[panel.order]
     x, y = sheet.along_mm(graph.x), panel.height_mm(graph.y)
@@ -153,7 +152,7 @@ def draw_graph(
 def _draw_tangents(
     axes: Axes, sheet: GraphSheet, panel: Panel, graph: Plotted, slopes: Plotted, color: str
 ) -> None:
-    """A piece of the tangent at each point that has one."""
+    """Draw a piece of the tangent at each point that has one."""
     reach = TANGENT * (sheet.drawn.span.end - sheet.drawn.span.start) / sheet.drawn.parts
     for k, (x, y, slope) in enumerate(zip(slopes.x, graph.y[1:-1], slopes.y, strict=True)):
         ends = np.array([x - reach, x + reach])
@@ -163,7 +162,7 @@ def _draw_tangents(
 
 
 def draw_own_rates(canvas: Canvas, sheet: GraphSheet, panel: Panel) -> None:
-    """What the log itself says of a rate at the divisions, as points."""
+    """Draw the log's own rates at the divisions, as points."""
     log = sheet.drawn.log
     if log is None or panel.order == READ[sheet.drawn.by]:
         return
@@ -177,7 +176,7 @@ def draw_own_rates(canvas: Canvas, sheet: GraphSheet, panel: Panel) -> None:
 
 
 def _clip(axes: Axes, panel: Panel, lines: object, left: float = 0.0) -> None:
-    """Nothing beyond the box of a graph, and the pole left of it."""
+    """Clip lines to the box of a graph, with the pole left of it."""
     box = panel.box
     frame = Rectangle(
         (box.left - left - 1.0, box.bottom - 0.5), box.width + left + 2.0, box.height + 1.0,
@@ -188,7 +187,7 @@ def _clip(axes: Axes, panel: Panel, lines: object, left: float = 0.0) -> None:
 
 
 NAME_IN = 1.3
-"""How long the name of a log is in the title at most [inch]."""
+"""Greatest length of the name of a log in the title [inch]."""
 
 
 def laid_out(drawn: DrawnGraphs, paper: Paper) -> GraphSheet:
@@ -197,7 +196,7 @@ def laid_out(drawn: DrawnGraphs, paper: Paper) -> GraphSheet:
 
 
 def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
-    """The sheet, a layer for each graph and for the construction of each from the one before."""
+    """Draw the sheet, a layer for each graph and for the construction of each from the last."""
     canvas, drawn = Canvas(sheet.paper), sheet.drawn
     frame = canvas.layer("frame")
     write_head(frame, sheet.paper, _title(drawn), note)
@@ -226,7 +225,7 @@ def _title(drawn: DrawnGraphs) -> str:
 
 
 def caption(sheet: GraphSheet, panel: Panel) -> str:
-    """What stands above a graph: scale, axis, pole, and what it is off by."""
+    """The caption of a graph: scale, axis, pole, and errors."""
     drawn, order = sheet.drawn, panel.order
     words = [f"{panel.symbol} [{panel.unit}], {readable(panel.scale)} {panel.unit} per mm"]
     if panel.axis:
@@ -253,7 +252,7 @@ def caption(sheet: GraphSheet, panel: Panel) -> str:
 
 
 def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
-    """What is along the graphs on the left, what the lines are on the right."""
+    """Write the abscissa of the graphs on the left, the key of the lines on the right."""
     drawn, box = sheet.drawn, sheet.legend
     base = box.bottom + 1.6
     text(axes, box.left, base, _along(sheet), TINY, color=QUIET)

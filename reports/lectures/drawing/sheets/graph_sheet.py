@@ -6,7 +6,7 @@
     P--| graph   its rate: a ray from the pole P parallel to each chord |
     P--| graph   the rate of that                                       |
 
-By integration the second rate stands above, and each graph has steps parallel to the rays of the
+By integration the second rate is at the top, and each graph has steps parallel to the rays of the
 one before.
 """
 
@@ -24,12 +24,12 @@ from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.paper import ROUNDING, Box, Paper, inner_box, round_scale
 
 POLES_MM = (40.0, 35.0, 30.0, 25.0, 20.0, 15.0, 12.0, 10.0, 8.0, 6.0, 5.0)
-"""Distances that are taken; with less a ray is too steep to be drawn well."""
+"""Distances of the pole; with less a ray is too steep to be drawn well."""
 
 
 @dataclass(frozen=True)
 class GraphScales:
-    """By order: units to the mm, and the distance of the pole beside it, NaN beside the first."""
+    """Units to the mm by order, and the distance of the pole beside it, NaN beside the first."""
 
     units_per_mm: tuple[float, float, float]
     poles_mm: tuple[float, float, float]
@@ -38,19 +38,19 @@ class GraphScales:
 def graph_scales(
     by: Method, heights: tuple[float, float, float], scale_x: float, room_mm: float
 ) -> GraphScales:
-    """The scales at which all three graphs fit, and are large.
+    """Choose scales at which all three graphs fit, and are large.
 
-    Of the graph that is read the scale is a round one, the finest that leaves a pole to the others;
-    theirs follow from it and the pole distances.
+    The scale of the read graph is round, the finest that leaves a pole to the others, whose scales
+    follow from it and the pole distances.
 
     Parameters
     ----------
     heights : (float, float, float)
-        From the lowest to the highest of each graph, by order [unit].
+        Height of each graph from its lowest to its highest value, by order [unit].
     scale_x : float
         Units of x to the mm.
     room_mm : float
-        How high a graph may be [mm].
+        Greatest height of a graph [mm].
     """
     backwards = by == "integration"
     read, second, third = heights[::-1] if backwards else heights
@@ -76,21 +76,21 @@ def graph_scales(
 GAP = 2.0
 LEGEND_MM = 5.0
 CAPTION_MM, NUMBERS_MM = 5.0, 3.5
-"""Above a graph, and below it for the numbers of the divisions [mm]."""
+"""Room above a graph, and below it for the numbers of the divisions [mm]."""
 POLE_ROOM, VALUES_MM = 47.0, 11.0
-"""Left of the axes for poles, and right of the graphs for values [mm]."""
+"""Room left of the axes for poles, and right of the graphs for values [mm]."""
 LEAST_MM = 2.0
-"""Parts that are narrower on paper can not be drawn in."""
+"""Least width of a part on paper [mm]."""
 BEYOND = 0.5
-"""How far, as a share of the exact graph, a log's may go beyond it within the sheet."""
+"""Largest excess of a log's graph over the exact one within the sheet, as a share of it."""
 STILL = 0.1
-"""The share of its size that the graph of what stands still is high at most."""
+"""Greatest height of the graph of a body at rest, as a share of its size."""
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One graph on paper: what stands on its axis of x, its scale [unit to the mm], the distance of
-    its pole (NaN: none), the box of its lines and the height of the axis [mm]."""
+    """One graph on paper: the value at its x axis, its scale [unit to the mm], the distance of its
+    pole (NaN: none), the box of its lines and the height of the axis [mm]."""
 
     order: Order
     symbol: str
@@ -103,11 +103,11 @@ class Panel:
 
     @property
     def origin(self) -> Array:
-        """Where the axes meet [mm]."""
+        """The origin of the axes [mm]."""
         return np.array([self.box.left, self.axis_mm])
 
     def height_mm(self, y: Array) -> Array:
-        """Values as places across [mm]."""
+        """Values as heights on paper [mm]."""
         return self.axis_mm + (y - self.axis) / self.scale
 
 
@@ -132,7 +132,7 @@ class GraphSheet:
 
 
 def graph_sheet(drawn: DrawnGraphs, paper: Paper, table_mm: float) -> GraphSheet:
-    """Graphs on paper, beside a table so wide. Raises CrankcheckError for parts too narrow."""
+    """Lay out graphs beside a table so wide. Raises CrankcheckError for parts too narrow."""
     inner = inner_box(paper)
     wide = inner.width - POLE_ROOM - VALUES_MM - GAP - table_mm
     part_mm = math.floor(2.0 * wide / drawn.parts) / 2.0  # a ruler has half millimetres
@@ -168,7 +168,7 @@ def graph_sheet(drawn: DrawnGraphs, paper: Paper, table_mm: float) -> GraphSheet
 
 
 def _panels(drawn: DrawnGraphs, scale_x: float, boxes: list[Box]) -> tuple[Panel, ...]:
-    """The graphs in their boxes, the one that is read first above."""
+    """The graphs in their boxes, the read graph at the top."""
     axes = _axis_of_places(drawn), 0.0, 0.0
     reaches = [_reach(drawn, order, axes[order]) for order in ORDERS]
     first, second, third = (high - low for low, high in reaches)
@@ -191,8 +191,7 @@ def _panels(drawn: DrawnGraphs, scale_x: float, boxes: list[Box]) -> tuple[Panel
 
 
 def _axis_of_places(drawn: DrawnGraphs) -> float:
-    """What stands on the axis of the quantity itself: about its middle; where it is integrated, its
-    start."""
+    """The value at the axis of the quantity itself: about its middle; by integration, its start."""
     if drawn.by == "integration":
         return float(drawn.reference.graphs[0].y[0])
     exact = drawn.span.exact(0, drawn.span.dense)
@@ -202,7 +201,7 @@ def _axis_of_places(drawn: DrawnGraphs) -> float:
 
 
 def _reach(drawn: DrawnGraphs, order: Order, axis: float) -> tuple[float, float]:
-    """The lowest and the highest of a graph over its axis, which lies within [unit]."""
+    """The lowest and the highest value of a graph over its axis, which lies within [unit]."""
     exact = drawn.span.exact(order, drawn.span.dense)
     both = np.concatenate([exact, drawn.reference.graphs[order].y, [axis]]) - axis
     low, high = float(both.min()), float(both.max())

@@ -1,8 +1,8 @@
-"""What graphs are drawn over: a period of the driver, in time or in its angle.
+"""Spans of graphs: a period of the driver, in time or in its angle.
 
-Over the angle of a driver of constant speed the graphs are those over time, with another scale
-along: rates are rates. Where the speed is not constant, they are the derivatives by the driver's
-angle, which the problem book calls analogues.
+With a driver of constant speed, graphs over its angle are the graphs over time with another scale
+along: rates are rates. Otherwise they are the derivatives by the driver's angle, which the problem
+book calls analogues.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ AXES = ("x", "y")
 
 @dataclass(frozen=True)
 class GraphedQuantity:
-    """A quantity of a ``body`` with both of its rates: how a motion holds them, their symbols, and
-    what their unit is before any s."""
+    """A quantity of a ``body`` with both of its rates: their kinds in a motion, their symbols, and
+    the unit without any s."""
 
     name: str
     body: str
@@ -40,8 +40,8 @@ class GraphedQuantity:
 
 
 def quantity_of(motion: Motion, name: str) -> GraphedQuantity:
-    """The quantity of that name: a link, a slider, or a coordinate of a point (C.x). Raises
-    CrankcheckError for what the motion has not."""
+    """The quantity named ``name``: a link, a slider, or a coordinate of a point (C.x). Raises
+    CrankcheckError for a name that the motion has not."""
     point, _, axis = name.partition(".")
     if name in motion.links:
         kinds = _kinds("link", "angle", "angular velocity", "angular acceleration")
@@ -64,18 +64,18 @@ Over = Literal["time", "angle"]
 OVERS: tuple[Over, ...] = get_args(Over)
 DENSE = 721
 TRIFLE = 1e-3
-"""What is a smaller share of what its integral asks for is none: errors are over sizes above 0."""
+"""Least size of a rate, as a share of the mean rate: errors are over sizes above 0."""
 ON_END = 1e-6
-"""How near a row is to an end of the period to be on it, in periods."""
+"""Distance of a row from an end of the period below which it is on it, in periods."""
 STILL = 1e-9
-"""What moves by less [rad, longest links] stands still."""
+"""Motion [rad, longest links] below which a quantity is at rest."""
 
 
 @dataclass(frozen=True)
 class GraphSpan:
-    """A quantity from ``start`` to ``end`` of the abscissa x: time [s], or, of analogues, the
-    driver's angle [rad]. ``motion_at`` solves at places; one unit of x is ``shown`` units of what
-    is written along (s or deg)."""
+    """A quantity from ``start`` to ``end`` of the abscissa x: time [s], or, for analogues, the
+    driver's angle [rad]. ``motion_at`` solves at places; one unit of x is ``shown`` units of the
+    labels (s or deg)."""
 
     scene: Scene
     quantity: GraphedQuantity
@@ -88,7 +88,7 @@ class GraphSpan:
 
     @property
     def analogues(self) -> bool:
-        """Whether rates are those by the driver's angle; only over time is there a truth."""
+        """True if rates are by the driver's angle; only graphs over time have a ``truth``."""
         return self.truth is None
 
     @property
@@ -115,7 +115,7 @@ class GraphSpan:
         return self.quantity.kinds[order].of(self.motion_at(x), self.quantity.body)
 
     def sizes(self) -> tuple[float, float, float]:
-        """What errors are over: the range of the quantity, the largest of its rates."""
+        """The scales of errors: the range of the quantity, the largest of its rates."""
         motion, body = self.motion_at(self.dense), self.quantity.body
         value, rate, second = (kind.of(motion, body) for kind in self.quantity.kinds)
         least = TRIFLE / (self.end - self.start)
@@ -124,7 +124,7 @@ class GraphSpan:
         return size, size_of_rate, max(float(np.abs(second).max()), least * size_of_rate)
 
     def driver_at(self, x: Array) -> Array:
-        """Where the driver is at places [deg or m]."""
+        """The position of the driver at places [deg or m]."""
         if self.analogues:
             return np.degrees(x)
         place = self.scene.driver.law.at(x)[0]
@@ -132,20 +132,20 @@ class GraphSpan:
 
     @property
     def words(self) -> str:
-        """How long it is."""
+        """The length of the span, in words."""
         return f"the angle of {self.scene.driver.joint}" if self.analogues else "a period"
 
     @property
     def taken(self) -> str:
-        """Which period of a log it is."""
+        """The period of a log that is drawn, in words."""
         turns = self.start / (self.end - self.start)
         if abs(turns - round(turns)) <= ON_END:
             return f"in period {round(turns) + 1} of the driver, the first whole one in it"
         return "from its first row on, as it has no whole period of the driver"
 
     def within(self, first: float, last: float) -> GraphSpan:
-        """The first period of those of the driver within the rows of a log, from ``first`` to
-        ``last`` [s], or that from the first row on."""
+        """The first period of the driver within the rows of a log, from ``first`` to ``last`` [s],
+        or the period from the first row on."""
         if first <= self.start:
             return self
         lasts = self.end - self.start
@@ -155,7 +155,7 @@ class GraphSpan:
 
 
 class FreeSpan(GraphSpan):
-    """The first seconds of a free motion."""
+    """The span of free motion: its first seconds."""
 
     taken = "from its release on"
 
@@ -171,10 +171,10 @@ class FreeSpan(GraphSpan):
 
 
 def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
-    """The quantity ``name`` of a scene over a period, or, let go, over a duration.
+    """The quantity ``name`` of a scene over a period, or in free motion over a duration.
 
-    Raises CrankcheckError for what the scene has not or what stands still in it, and for a duration
-    or a period that it has not.
+    Raises CrankcheckError for a quantity that the scene has not or that is at rest, and for a
+    duration or a period that does not apply.
     """
     of = (_let_go if scene.is_free else _driven)(scene, name, over, duration_s)
     unit = scene.longest_m if of.quantity.unit == "m" else 1.0
@@ -184,7 +184,7 @@ def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -
 
 
 def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
-    """Over a period of the driver."""
+    """The span of a period of the driver."""
     if duration_s is not None:
         raise CrankcheckError(
             f"--duration: {scene.name} is driven, and drawn over its period of "
@@ -205,7 +205,7 @@ def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> Gr
 
 
 def _by_angle(scene: Scene, quantity: GraphedQuantity) -> GraphSpan:
-    """Over the driver's angle: a turn of it, or as far as it swings."""
+    """The span of the driver's angle: a turn of it, or its swing."""
     law = scene.driver.law
     if isinstance(law, Oscillating):
         swing = abs(law.amplitude_rad)
@@ -221,7 +221,7 @@ def _by_angle(scene: Scene, quantity: GraphedQuantity) -> GraphSpan:
 
 
 def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
-    """Over the first seconds of a free motion."""
+    """The span of the first seconds of a free motion."""
     if scene.elastic:
         raise CrankcheckError(
             f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and graphs "
@@ -239,7 +239,7 @@ def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> Gr
         )
     if not (math.isfinite(duration_s) and duration_s > 0.0):
         raise CrankcheckError(f"--duration {duration_s:g}: give seconds above 0")
-    # What integrates it is not loaded for what is driven.
+    # The integrator is not loaded for a driven scene.
     from reports.compare.free_truth import free_truth_until
 
     truth = free_truth_until(scene, duration_s, 0.0)

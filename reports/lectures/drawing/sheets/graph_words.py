@@ -1,4 +1,4 @@
-"""What drawn graphs are off by, in words and as a table on the terminal."""
+"""Errors of drawn graphs, in words and as a table on the terminal."""
 
 import math
 
@@ -23,7 +23,7 @@ DIGITS, MOST_DECIMALS = 5, 9
 
 
 def table_cells(drawn: DrawnGraphs) -> list[list[str]]:
-    """The columns of the table, each from its two lines of heading on."""
+    """The columns of the table, each with two lines of heading."""
     order = READ[drawn.by]
     graph = drawn.reference.graphs[order]
     unit = drawn.span.units[order]
@@ -43,26 +43,26 @@ def table_cells(drawn: DrawnGraphs) -> list[list[str]]:
 
 
 def numbers(drawn: DrawnGraphs, x: Array) -> Array:
-    """The divisions at places, halves in the middles of parts."""
+    """The division numbers of places, with halves in the middles of parts."""
     length = drawn.span.end - drawn.span.start
     return np.round(2.0 * drawn.parts * (x - drawn.span.start) / length) / 2.0
 
 
 def driver_column(drawn: DrawnGraphs, x: Array) -> list[str]:
-    """Where the driver is at places."""
+    """The driver's positions at places, as a column."""
     digits = 2 if driver_unit(drawn.span.scene) == "deg" else 5
     return [f"{each + 0.0:.{digits}f}" for each in np.round(drawn.span.driver_at(x), digits)]
 
 
 def written(values: Array, size: float) -> list[str]:
-    """Values with as many decimals as their size asks for."""
+    """Values with as many decimals as their size requires."""
     decimals = min(max(DIGITS - 1 - math.floor(math.log10(size)), 0), MOST_DECIMALS)
     rounded = np.round(values, decimals) + 0.0
     return [f"{each:.{decimals}f}" if rounded.any() else "0" for each in rounded]
 
 
 def table_width_mm(drawn: DrawnGraphs) -> float:
-    """How wide the table is on paper."""
+    """The width of the table on paper [mm]."""
     return sum(map(_width_mm, table_cells(drawn)))
 
 
@@ -71,7 +71,7 @@ def _width_mm(column: list[str]) -> float:
 
 
 def draw_table(axes: Axes, drawn: DrawnGraphs, box: Box) -> None:
-    """The table in its box: every second, third... row where all have no room, which is said."""
+    """Draw the table in its box: every second, third... row where room is lacking, with a note."""
     columns = table_cells(drawn)
     rows, room = len(columns[0]) - 2, int(box.height / ROW_MM) - 4
     every = math.ceil(rows / room)
@@ -92,16 +92,16 @@ def draw_table(axes: Axes, drawn: DrawnGraphs, box: Box) -> None:
 
 
 NOTHING = 1e-9
-"""What is off by a smaller share is rounding."""
+"""Share below which an error is rounding."""
 
 
 def share(off: float) -> str:
-    """An error over its size in per cent."""
+    """An error over its size, in per cent."""
     return f"{float(f'{100 * off:.2g}'):g} %" if off > NOTHING else "0 %"
 
 
 def own_rates_off(drawn: DrawnGraphs, order: Order) -> float | None:
-    """What a log's own rate is off by at the divisions, over the size; None where it has none."""
+    """Largest error of a log's own rate at the divisions, over the size; None without rate."""
     if drawn.log is None:
         return None
     rates = drawn.log.at_divisions(order, drawn.parts)
@@ -112,7 +112,7 @@ def own_rates_off(drawn: DrawnGraphs, order: Order) -> float | None:
 
 
 def told_errors(drawn: DrawnGraphs, graphs: ThreeGraphs) -> str:
-    """What the graphs that were derived are off by."""
+    """The errors of the derived graphs, in words."""
     symbols = drawn.span.symbols
     return ", ".join(
         f"{symbols[order]} off by up to {share(drawn.off(graphs, order))}"
@@ -121,7 +121,7 @@ def told_errors(drawn: DrawnGraphs, graphs: ThreeGraphs) -> str:
 
 
 def told_log(drawn: DrawnGraphs) -> list[str]:
-    """What the log's graphs are off by, of that the engine's part, and how it was read."""
+    """Lines on the errors of the log's graphs, the engine's part of them, and their reading."""
     assert drawn.log is not None
     assert drawn.logged is not None
     symbols, order = drawn.span.symbols, READ[drawn.by]
@@ -145,7 +145,7 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
 
 
 def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
-    """Print the table: what is read at each division, and what is drawn from it."""
+    """Print the table: the read values at each division, and the drawn ones."""
     of = drawn.span
     table = plain_table(gap=2)
     heads = ["no.", f"{of.scene.driver.name} {driver_unit(of.scene)}"]
@@ -168,14 +168,14 @@ def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
 
 
 def _places(drawn: DrawnGraphs) -> Array:
-    """All places at which something is plotted, by halves of parts."""
+    """All plotted places, by halves of parts."""
     halves = {float(each) for graph in drawn.reference.graphs for each in numbers(drawn, graph.x)}
     length = drawn.span.end - drawn.span.start
     return drawn.span.start + length * np.array(sorted(halves)) / drawn.parts
 
 
 def _cells(drawn: DrawnGraphs, graphs: ThreeGraphs, order: Order, places: Array) -> list[str]:
-    """The values of a graph at those places, nothing where it has no point."""
+    """The values of a graph at those places, "" where it has no point."""
     graph = graphs.graphs[order]
     texts = written(graph.y, drawn.sizes[order])
     at = dict(zip(numbers(drawn, graph.x).tolist(), texts, strict=True))
@@ -183,5 +183,5 @@ def _cells(drawn: DrawnGraphs, graphs: ThreeGraphs, order: Order, places: Array)
 
 
 def tell(console: Console, line: str) -> None:
-    """A sentence in one line, whatever stands in it."""
+    """Print a sentence in one line, whatever its characters."""
     console.print(harmless(line), highlight=False, markup=False, soft_wrap=True)

@@ -1,7 +1,7 @@
-"""Letters and numbers beside what they name: clear of all lines and of one another.
+"""Letters and numbers beside their points: clear of all lines and of one another.
 
-A letter stands as near as it can; where all near places are taken it stands farther off, with a
-thin line that leads to what it names. Among faint lines it interrupts these, as draughtsmen do.
+A letter is as near as possible; where all near places are taken it is farther off, with a thin line
+to its point. Among faint lines it interrupts these, as draughtsmen do.
 """
 
 import math
@@ -23,8 +23,8 @@ from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Canvas, line, 
 
 PIXEL_MM = 0.2
 TINT, FAINT = 0.08, 0.36
-"""What is less dark than the first counts as blank (the inside of a plate is paper with a tint),
-and less dark than the second as a faint line, which may be interrupted."""
+"""Limits of darkness: below the first a pixel counts as blank (the inside of a plate is paper with
+a tint), below the second as a faint line, which may be interrupted."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ class Ink:
     below_left: Array
 
     def within(self, middles: Array, half: Array) -> Array:
-        """The darkness, times the area [mm²], in boxes of half a size (2,) about places (k, 2)
-        [mm]; shape (k,)."""
+        """Darkness times area [mm²], in boxes of half a size (2,) about places (k, 2) [mm];
+        (k,)."""
         most = np.array(self.below_left.shape)[::-1] - 1
         low = np.clip(np.floor((middles - half) / PIXEL_MM), 0, most).astype(int)
         high = np.clip(np.ceil((middles + half) / PIXEL_MM), 0, most).astype(int)
@@ -51,7 +51,7 @@ class Ink:
 
 
 def ink_of(figure: Figure) -> tuple[Ink, Ink]:
-    """What is drawn on a figure by now: dark lines, and faint ones."""
+    """Render a figure as it is now: its dark lines, and its faint ones."""
     dpi = figure.dpi
     figure.set_dpi(MM_PER_IN / PIXEL_MM)
     with styled():
@@ -76,33 +76,33 @@ def _summed(dark: Array) -> Ink:
 LETTER, NUMBER = 8.0, 5.5
 """Type of the letters of points, and of numbers along a circle [point]."""
 CLEAR_MM, AIRY_MM = 0.45, 1.0
-"""Room around a text that has to be blank, and that had better be."""
+"""Room around a text that must be blank, and that preferably is [mm]."""
 AWAY_MM = (0.3, 0.6, 1.0, 1.5, 2.0, 2.8, 3.6, 4.5, 6.0, 8.0, 10.0, 13.0, 16.0, 20.0)
-"""How far the edge of a text may be from what it names."""
+"""Distances of the edge of a text from its point [mm]."""
 LED_MM = 2.6
-"""A text that is farther off than this has a line that leads to it."""
+"""Distance from which a text has a line to its point [mm]."""
 AROUND = 32
 FRONT = 8
-"""Letters lie over everything in their layer."""
+"""Drawing order of letters: over everything in their layer."""
 DARK_COST, FAINT_COST, AIRY_COST, LED_COST = 60.0, 6.0, 0.2, 1.5
-"""Costs, against a millimetre off: of a square millimetre of dark or of faint lines under a text,
-of one of any close by, and of a leading line."""
+"""Costs, in millimetres of distance: of a square millimetre of dark or of faint lines under a text,
+of any line close by, and of a leading line."""
 COVER_COST, CROSS_COST = 1e4, 30.0
-"""Costs of lying over another text or off the box, and over a place on a line that leads to one."""
+"""Costs of covering another text or leaving the box, and of covering a leading line."""
 LOOKED_AT = 600
-"""So many of the places that are best but for other texts are looked at."""
+"""Number of places examined: those that are best but for other texts."""
 LEADING = np.linspace(0.0, 1.0, 12)
-"""Shares of a leading line at which it is looked at."""
+"""Shares of a leading line at which it is examined."""
 GROUND_MM = 0.2
-"""A text that interrupts faint lines has so much blank around it."""
+"""Width of the blank around a text that interrupts faint lines [mm]."""
 ROUNDING = 1e-6
-"""Ink [mm²] that is the rounding of sums."""
+"""Ink [mm²] within the rounding of sums."""
 
 
 @dataclass(frozen=True)
 class Letter:
-    """A text that names one of the places ``at`` (n, 2) [mm], at which a symbol of some radius
-    [mm] is drawn."""
+    """A text that names one of the places ``at`` (n, 2) [mm], drawn as a symbol of a radius
+    [mm]."""
 
     text: str
     at: Array
@@ -112,26 +112,26 @@ class Letter:
 
     @property
     def half(self) -> Array:
-        """Half the width and height of what is printed [mm]."""
+        """Half the width and height of the print [mm]."""
         low, high = _printed(self.text, self.size)
         return (high - low) / 2
 
     def base(self, middle: Array) -> Array:
-        """Where the base line begins of a text whose print has its middle at a place [mm]."""
+        """The start of the base line of a text whose print has its middle at a place [mm]."""
         low, high = _printed(self.text, self.size)
         return np.asarray(middle - (low + high) / 2)
 
 
 @lru_cache(maxsize=1024)
 def _printed(words: str, size: float) -> tuple[Array, Array]:
-    """The corners of a text's outlines, from where its base line begins [mm]."""
+    """The corners of a text's outlines, from the start of its base line [mm]."""
     outline = TextPath((0.0, 0.0), words, size, prop=FontProperties(family=FONT)).get_extents()
     low, high = np.array(outline.min), np.array(outline.max)
     return MM_PER_IN / POINTS * low, MM_PER_IN / POINTS * high
 
 
 def together(at: Mapping[str, Array], within_mm: float) -> dict[str, Array]:
-    """Names at their places [mm], those that stand within a distance of one another as one."""
+    """Names at their places [mm]; names within a distance of one another are joined."""
     spots: dict[str, Array] = {}
     for name, there in at.items():
         same = [one for one, spot in spots.items() if np.hypot(*(spot - there)) < within_mm]
@@ -151,8 +151,8 @@ def write_letters(
     box: Box,
     ink: tuple[Ink, Ink] | None = None,
 ) -> None:
-    """Letters in a box of the sheet, those that come first with the first choice; ``ink`` is what
-    is drawn in the box, where that is known, as looking costs more than all else."""
+    """Write letters in a box of the sheet, the first with the first choice; ``ink`` is the drawing
+    in the box, where known, as rendering costs more than all else."""
     dark, faint = ink or ink_of(canvas.figure)
     taken: list[tuple[Array, Array]] = []
     for letter in letters:
@@ -169,7 +169,7 @@ def write_letters(
 
 
 def _interrupt(axes: Axes, middle: Array, half: Array) -> None:
-    """Blank paper under a text."""
+    """Draw blank paper under a text."""
     wide, tall = 2 * half
     ground = Rectangle(tuple(middle - half), wide, tall, fc="white", ec="none")
     ground.set_gid("blank")
@@ -179,7 +179,7 @@ def _interrupt(axes: Axes, middle: Array, half: Array) -> None:
 def _best(
     letter: Letter, dark: Ink, faint: Ink, taken: Sequence[tuple[Array, Array]], box: Box
 ) -> tuple[Array, Array]:
-    """The middle of the best place for a text, and what it names from there [mm]."""
+    """The middle of the best place for a text, and the place that it names from there [mm]."""
     middles, anchors, away = _candidates(letter)
     half, clear = letter.half, letter.half + CLEAR_MM
     low = np.array([box.left, box.bottom]) + clear
@@ -209,7 +209,7 @@ def _best(
 
 
 def _candidates(letter: Letter) -> tuple[Array, Array, Array]:
-    """Middles around each place (k, 2), the place that each is at, and how far off its edge is."""
+    """Middles around each place (k, 2), the place of each, and the distance of its edge."""
     angle = math.tau * np.arange(AROUND) / AROUND + math.pi / 4
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     with np.errstate(divide="ignore"):
@@ -223,7 +223,7 @@ def _candidates(letter: Letter) -> tuple[Array, Array, Array]:
 
 
 def _lead(letter: Letter, middle: Array, anchor: Array) -> tuple[Array, Array] | None:
-    """The line from a text to what it names, where it stands far off."""
+    """The line from a text to its point, where the text is far off."""
     nearest = np.clip(anchor, middle - letter.half - 0.3, middle + letter.half + 0.3)
     length = float(np.hypot(*(anchor - nearest)))
     if length - letter.radius < LED_MM:
@@ -232,5 +232,5 @@ def _lead(letter: Letter, middle: Array, anchor: Array) -> tuple[Array, Array] |
 
 
 def _sampled(start: Array, end: Array) -> Array:
-    """Points along a line [mm], closely."""
+    """Points along a line [mm], closely spaced."""
     return np.linspace(start, end, max(int(2 * np.hypot(*(end - start))), 1) + 1)

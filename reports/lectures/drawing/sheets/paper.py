@@ -1,8 +1,8 @@
 """Paper: its size, and the boxes on it, in millimetres from the lower left corner.
 
 Source: lecture "Phan tich dong hoc": K is the real value over the length drawn in mm, and is taken
-from 1, 2, 5 times a power of ten. The problem book takes the one that gives the vector of the
-crank's pin a length of k times the drawn crank, p b = k AB.
+from 1, 2, 5 times a power of ten. The problem book takes the scale that makes the vector of the
+crank's pin k times as long as the drawn crank, p b = k AB.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from reports.output.write import crankcheck_version
 
 STEPS = (1.0, 2.0, 5.0)
 ROUNDING = 1e-9
-"""By what a size may pass the room and fit still."""
+"""Share by which a size may exceed the room and still fit."""
 
 
 def round_scale(size: float, room_mm: float) -> float:
@@ -60,22 +60,22 @@ SIZES = {
     "A2": (594.0, 420.0),
 }
 LEAST_MM, MOST_MM = (180.0, 120.0), 2000.0
-"""What a sheet needs at least, wide and high; and the longest that is taken for paper."""
+"""Least width and height of a sheet, and its greatest length [mm]."""
 ECHO = 20
-"""So many letters of a size that is none are told."""
+"""Number of letters of an invalid size that a message quotes."""
 MM_PER_IN = 25.4
 
 
 @dataclass(frozen=True)
 class Paper:
-    """A sheet, wide and high [mm]."""
+    """A sheet: width and height [mm]."""
 
     width: float
     height: float
 
     @staticmethod
     def of(text: str) -> Paper:
-        """A4 and the like, across, or WIDTHxHEIGHT in mm. Raises CrankcheckError."""
+        """Parse A4 and the like, across, or WIDTHxHEIGHT in mm. Raises CrankcheckError."""
         told = text if len(text) <= ECHO else f"{text[:ECHO]}..."
         match = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text)
         if text.upper() not in SIZES and match is None:
@@ -83,7 +83,7 @@ class Paper:
                 f"--paper {told}: no size; use {', '.join(SIZES)}, or WIDTHxHEIGHT in mm, such as "
                 "297x210"
             )
-        width, height = SIZES.get(text.upper()) or (float(match[1]), float(match[2]))  # type: ignore[index]  # told apart above
+        width, height = SIZES.get(text.upper()) or (float(match[1]), float(match[2]))  # type: ignore[index]  # checked above
         if width < LEAST_MM[0] or height < LEAST_MM[1] or max(width, height) > MOST_MM:
             raise CrankcheckError(
                 f"--paper {told}: {width:g} x {height:g} mm; a sheet that can be read needs "
@@ -107,13 +107,13 @@ class Box:
 
     @property
     def corners(self) -> tuple[Array, Array]:
-        """The lower left and the upper right one [mm]."""
+        """The lower left and the upper right corner [mm]."""
         low = np.array([self.left, self.bottom])
         return low, low + np.array([self.width, self.height])
 
     def fitted(self, places: Array, padding: float) -> tuple[float, Array]:
         """The finest round scale [unit/mm] at which places (n, 2) have so much room around them
-        [mm] in the box, 1 of places that are one; and the middle of them (2,)."""
+        [mm] in the box, 1 for places that coincide; and their middle (2,)."""
         low, high = places.min(axis=0), places.max(axis=0)
         room = np.array([self.width, self.height]) - 2 * padding
         scales = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
@@ -121,24 +121,24 @@ class Box:
 
 
 def sheet_note(scene: Scene) -> str:
-    """Who drew it, and where the mechanism comes from."""
+    """The note of a sheet: version of crankcheck, and source of the mechanism."""
     return f"crankcheck {crankcheck_version()}, closed form; {scene.source}"
 
 
 def of_elastic(scene: Scene, words: str) -> str:
-    """What is said of a scene that has elastic links, of which sheets know none."""
+    """The words for a scene with elastic links, which sheets take as rigid; "" for others."""
     return words if scene.elastic else ""
 
 
 ROUND = 721
-"""Places along a whole circle."""
+"""Number of places along a whole circle."""
 
 
 def cut_line(places: Array, low: Array, high: Array) -> list[Array]:
     """The parts of a line through places (n, 2) that are in a box, each (k, 2) of two or more.
 
-    A step from outside to outside that is longer than the box is wide and high is a jump of a curve
-    that comes back from infinity, and is left out.
+    A step from outside to outside that is longer than the box's diagonal is a jump of a curve that
+    comes back from infinity, and is left out.
     """
     start, step = places[:-1], np.diff(places, axis=0)
     near, far = _shares(start, step, low, high)
@@ -158,7 +158,7 @@ def cut_line(places: Array, low: Array, high: Array) -> list[Array]:
 
 
 def _shares(start: Array, step: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Between which shares of their steps lines are in a box (Liang and Barsky), (n,) each."""
+    """The shares of their steps between which lines are in a box (Liang and Barsky), (n,) each."""
     with np.errstate(divide="ignore", invalid="ignore"):
         one, other = (low - start) / step, (high - start) / step
     within = (low <= start) & (start <= high)
@@ -168,8 +168,8 @@ def _shares(start: Array, step: Array, low: Array, high: Array) -> tuple[Array, 
 
 
 def near_angles(middle: Array, radius: float, low: Array, high: Array) -> tuple[float, float]:
-    """Between which angles [rad] a circle may be in a box: of one that is far larger than the box,
-    most is of no use, and slow to draw."""
+    """The angles [rad] between which a circle may be in a box: most of a circle far larger than the
+    box is useless, and slow to draw."""
     away = (low + high) / 2 - middle
     reach = math.dist(low, high) / 2
     half = math.asin(reach / radius) if radius > reach else math.pi
@@ -178,13 +178,13 @@ def near_angles(middle: Array, radius: float, low: Array, high: Array) -> tuple[
 
 
 def arc_places(middle: Array, radius: float, start: float, end: float) -> Array:
-    """Places along an arc between two angles [rad], (n, 2), closely."""
+    """Places along an arc between two angles [rad], (n, 2), closely spaced."""
     angle = np.linspace(start, end, ROUND)
     return np.asarray(middle + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
 
 
 HEAD_MM, HEAD_WIDE_MM = 2.2, 0.8
-"""Length and width of the head of an arrow; shorter arrows have smaller ones."""
+"""Length and width of the head of an arrow [mm]; shorter arrows have smaller heads."""
 LAYER = re.compile(r'<g id="layer-([^"]*)">')
 INKSCAPE = "http://www.inkscape.org/namespaces/inkscape"
 
@@ -199,7 +199,7 @@ class Canvas:
         self.layers: list[Axes] = []
 
     def layer(self, name: str) -> Axes:
-        """A new layer over the others, the whole sheet wide."""
+        """Add a layer over the others, as wide as the sheet."""
         axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set(xlim=(0.0, self.paper.width), ylim=(0.0, self.paper.height))
         axes.set_axis_off()
@@ -208,7 +208,7 @@ class Canvas:
         return axes
 
     def named(self, name: str) -> Axes:
-        """The layer of a name that is there."""
+        """The existing layer named ``name``."""
         return next(axes for axes in self.layers if axes.get_gid() == f"layer-{name}")
 
     def saved(self, kind: str, title: str) -> bytes:
@@ -218,18 +218,18 @@ class Canvas:
 
 
 def _layered(svg: str) -> str:
-    """The drawing with its layers as those of a drawing program."""
+    """Mark the layers of an SVG for a drawing program."""
     marked = LAYER.sub(r'<g id="layer-\1" inkscape:groupmode="layer" inkscape:label="\1">', svg)
     return marked.replace("<svg ", f'<svg xmlns:inkscape="{INKSCAPE}" ', 1)
 
 
 def layer_words(title: str) -> str:
-    """Words as they stand in the name of a layer."""
+    """Words in the form of a layer's name."""
     return "".join(c if c.isalnum() else "-" for c in title).strip("-")
 
 
 def line(axes: Axes, start: Array, end: Array, gid: str = "", **look: Any) -> None:
-    """A straight line [mm]."""
+    """Draw a straight line [mm]."""
     drawn = Line2D([start[0], end[0]], [start[1], end[1]], **({"color": INK} | look))
     if gid:
         drawn.set_gid(gid)
@@ -237,7 +237,7 @@ def line(axes: Axes, start: Array, end: Array, gid: str = "", **look: Any) -> No
 
 
 def arrow(axes: Axes, start: Array, end: Array, gid: str, color: str, width: float = 0.9) -> None:
-    """An arrow whose line is as long as the vector, its head within that [mm]."""
+    """Draw an arrow whose line is as long as the vector, its head within that [mm]."""
     line(axes, start, end, gid, color=color, linewidth=width, solid_capstyle="butt")
     along = end - start
     length = float((along @ along) ** 0.5)
@@ -247,38 +247,38 @@ def arrow(axes: Axes, start: Array, end: Array, gid: str, color: str, width: flo
 
 
 def arrow_head(axes: Axes, tip: Array, along: Array, color: str, length: float = HEAD_MM) -> None:
-    """The head of an arrow, its tip at a place, along a unit vector [mm]."""
+    """Draw the head of an arrow, its tip at a place, along a unit vector [mm]."""
     side = along[::-1] * (-1.0, 1.0) * length * HEAD_WIDE_MM / HEAD_MM / 2
     back = tip - length * along
     axes.add_patch(Patch([tip, back + side, back - side], closed=True, fc=color, ec=color, lw=0.2))
 
 
 def text(axes: Axes, x: float, y: float, words: str, size: float = SMALL, **look: Any) -> None:
-    """Words with the left end of their base line at a place [mm]."""
+    """Write words with the left end of their base line at a place [mm]."""
     # a dollar in a name is a dollar
     plain: dict[str, Any] = {"size": size, "ha": "left", "va": "baseline", "parse_math": False}
     axes.text(x, y, words, **(plain | look))
 
 
 MARGIN, HEAD, FOOT = 8.0, 9.0, 6.0
-"""Around the sheet, and of title and note [mm]."""
+"""Margin around the sheet, and heights of title and note [mm]."""
 
 
 def inner_box(paper: Paper) -> Box:
-    """What is left between title and note."""
+    """The box between title and note."""
     width, height = paper.width - 2 * MARGIN, paper.height - 2 * MARGIN - HEAD - FOOT
     return Box(MARGIN, MARGIN + FOOT, width, height)
 
 
 def write_head(axes: Axes, paper: Paper, title: str, note: str) -> None:
-    """The title, and the note at the foot."""
+    """Write the title, and the note at the foot."""
     text(axes, MARGIN, paper.height - MARGIN - 4.0, title, LARGE, weight="bold")
     room = (paper.width - 2 * MARGIN) / MM_PER_IN
     text(axes, MARGIN, MARGIN, cut(note, room, TINY), TINY, color=QUIET)
 
 
 def draw_border(axes: Axes, box: Box) -> None:
-    """A thin line around a box."""
+    """Draw a thin line around a box."""
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * (box.width, box.height)
     for start, end in itertools.pairwise(corners + np.array([box.left, box.bottom])):
         line(axes, start, end, color=FRONT, linewidth=0.6)

@@ -49,8 +49,8 @@ IMAGE = "#8a94a0"
 
 
 def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
-    """The polygon, a layer for each step of drawing, one for the images, one for letters, which
-    holds the legend alone."""
+    """Draw the polygon, a layer for each step of drawing, one for the images, one for letters,
+    which holds the legend alone."""
     quantity = drawn.polygon.quantity
     for number, step in enumerate(drawn.polygon.steps, 1):
         axes = canvas.layer(f"{quantity}-{number}-{layer_words(step.title)}")
@@ -79,7 +79,7 @@ def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str)
 
 
 def _legend(axes: Axes, polygon: Polygon, box: Box) -> None:
-    """What the colours of the vectors are, of those that there are."""
+    """Write the key of the colours of the vectors that occur."""
     there = {vector.kind for vector in polygon.vectors}
     words = [(WORDS[kind], colour) for kind, colour in COLOURS.items() if kind in there]
     x = box.left + 1.5
@@ -90,10 +90,10 @@ def _legend(axes: Axes, polygon: Polygon, box: Box) -> None:
 
 POLES: Mapping[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
 NEAR_MM, APART_MM = 0.3, 1.2
-"""Images that stand nearer have their letters in one label; ends between images that stand nearer
-to one than the second have no letter."""
+"""Distances [mm]: images nearer than the first have their letters in one label; ends between
+images, nearer to one than the second, have no letter."""
 NODE_MM = 0.6
-"""Half the size of the circle about an image."""
+"""Half the size of the circle about an image [mm]."""
 
 
 def polygon_letters(drawn: DrawnPolygon) -> list[Letter]:
@@ -108,7 +108,7 @@ def polygon_letters(drawn: DrawnPolygon) -> list[Letter]:
 
 
 def _images(drawn: DrawnPolygon) -> dict[str, Array]:
-    """Where the pole, the images, and those of a log stand [mm], by letters."""
+    """The places of the pole, the images, and a log's images [mm], by letters."""
     polygon = drawn.polygon
     prime = "'" if polygon.quantity == "acceleration" else ""
     at: dict[str, Array] = {POLES[polygon.quantity]: drawn.pole}
@@ -124,8 +124,8 @@ def _images(drawn: DrawnPolygon) -> dict[str, Array]:
 
 
 def _between(drawn: DrawnPolygon, images: Sequence[Array]) -> dict[str, Array]:
-    """The ends of normal and of Coriolis' components that are no images: n' and k' as the lecture
-    has them, with what they are of where there are several."""
+    """The ends of normal and Coriolis components that are no images: n' and k' as in the lecture,
+    with the rest of the vector's name where there are several."""
     ends = [
         (vector, drawn.at(vector.end))
         for vector in drawn.polygon.vectors
@@ -146,6 +146,6 @@ def _between(drawn: DrawnPolygon, images: Sequence[Array]) -> dict[str, Array]:
 
 
 def lower_case(name: str) -> str:
-    """The image of a point is called by its small letter."""
+    """The name of the image of a point: its small letter."""
     point, bracket, body = name.partition("(")
     return point.lower() + bracket + body

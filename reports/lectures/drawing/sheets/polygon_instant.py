@@ -1,8 +1,8 @@
-"""The instant that polygons are drawn of: by the angle of the driver, or by the time.
+"""The instant of polygons: by the angle of the driver, or by the time.
 
-Of a log it is the sample that is nearest to the angle, as the driver's law or its free motion has
-it, of the last time that the log passes it; or to the time. The reference is drawn of that sample's
-time, so that nothing is interpolated, and what is off is the log's alone.
+In a log it is the sample nearest to the angle, by the driver's law or its free motion, when the log
+passes it for the last time; or nearest to the time. The reference is drawn at that sample's time,
+so that nothing is interpolated, and all errors are the log's.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from reports.logs.log_beside import EVEN
 from reports.logs.map_file import Map
 
 AT_DEG = 90.0
-"""The angle where nothing is said."""
+"""Default angle of the driver [deg]."""
 LARGEST = 1e9
-"""A speed [rad/s] that a user names is no more than this, and no less than one over it."""
+"""Largest speed [rad/s] that a user may name; its inverse is the smallest."""
 MOST_PERIODS = 10.0
-"""So many of its own durations what is let go is followed for: that takes seconds."""
+"""Longest time of free motion, in durations of the scene: it takes seconds to integrate."""
 REST = 1e-12
-"""A speed [rad/s] that is less than so much of the root of the acceleration is rounding."""
+"""Share of the root of the acceleration below which a speed [rad/s] is rounding."""
 
 
 def placed_at_angle(
@@ -47,8 +47,7 @@ def placed_at_angle(
     """The mechanism with its driver at an angle [deg], with the speed of its law there, or with
     ``omega`` [rad/s], which is constant.
 
-    Raises CrankcheckError for an angle that it never has, and for a driver that is let go without a
-    speed.
+    Raises CrankcheckError for an angle that it never has, and for free motion without a speed.
     """
     if omega is not None:
         if not 1 / LARGEST <= abs(omega) <= LARGEST:  # or no number
@@ -66,12 +65,12 @@ def placed_at_angle(
 
 
 def placed_at_time(scene: Scene, at_s: float) -> PlacedMechanism:
-    """The mechanism as it stands and moves at a time [s], by its driver's law, or let go as masses
-    and forces have it. Raises CrankcheckError for a time at which it does not move."""
+    """The mechanism at a time [s], by its driver's law, or in free motion by masses and forces.
+    Raises CrankcheckError for a time at which it is at rest."""
     motion = _motion_at(scene, time_at(scene, at_s))
     placed = PlacedMechanism.standing(scene, motion)
     driver = placed.driver
-    if abs(driver.omega) < REST * math.sqrt(abs(driver.alpha)):  # it is let go from rest
+    if abs(driver.omega) < REST * math.sqrt(abs(driver.alpha)):  # released from rest
         placed = replace(placed, driver=replace(driver, omega=0.0))
     if not (placed.driver.omega or placed.driver.alpha):
         turns = "swings" if isinstance(scene.driver.law, Oscillating) else "moves"
@@ -83,8 +82,8 @@ def placed_at_time(scene: Scene, at_s: float) -> PlacedMechanism:
 
 
 def _motion_at(scene: Scene, time_s: float) -> Motion:
-    """The motion at one instant [s]; what is let go is integrated over a part of its time at least,
-    as it begins at 0."""
+    """The motion at one instant [s]; free motion is integrated over a part of its duration at
+    least, as it begins at 0."""
     if not scene.is_free:
         return true_motion(scene, np.array([time_s]))
     if scene.elastic:
@@ -110,12 +109,12 @@ ORDER_OF: Mapping[Quantity, Order] = {"velocity": 1, "acceleration": 2}
 
 @dataclass(frozen=True)
 class LoggedInstant:
-    """What a log of a name is off by in one sample.
+    """Errors of a log in one sample.
 
     ``placement`` is the reference at its time [s]; ``places`` are the errors of points [m], (2,)
     each; ``rates`` those of the ends of their vectors [m/s, m/s^2]. ``ways`` says where these come
-    from; ``missing`` names the points that the log does not say enough of; ``passes`` is how often
-    the log passes the angle that was asked for.
+    from; ``missing`` names the points with too few readings; ``passes`` counts the passes of the
+    requested angle.
     """
 
     source: str
@@ -129,14 +128,13 @@ class LoggedInstant:
 
     @property
     def taken(self) -> str:
-        """Which of several passes of an angle it is, in words that follow the name of the log."""
+        """The pass of the angle, if there are several, in words that follow the name of the log."""
         return f" (the last of {self.passes} passes)" if self.passes > 1 else ""
 
 
 @dataclass(frozen=True)
 class LogInstants:
-    """A log that instants are looked for in, the truth beside it, and the driver's angle by that at
-    every sample [rad], (T,)."""
+    """A log with its reference, and the driver's angle by that at every sample [rad], (T,)."""
 
     log: OwnLog
     truth: Truth
@@ -144,12 +142,12 @@ class LogInstants:
 
     @staticmethod
     def of_file(scene: Scene, path: Path, map_: Map) -> LogInstants:
-        """A file, read as `judge` does. Raises CrankcheckError for what is no log of the scene."""
+        """Read a file, as `judge` does. Raises CrankcheckError for no log of the scene."""
         return LogInstants._of(SheetLog.of_file(scene, path, map_, "polygons"))
 
     @staticmethod
     def of_log(log: OwnLog) -> LogInstants:
-        """A log that was read. Raises CrankcheckError as `SheetLog.of_log`."""
+        """Take a log that was read. Raises CrankcheckError as `SheetLog.of_log`."""
         return LogInstants._of(SheetLog.of_log(log))
 
     @staticmethod
@@ -157,8 +155,8 @@ class LogInstants:
         return LogInstants(beside.log, beside.truth, beside.driver_rad(beside.log.time_s))
 
     def at_angle(self, at_deg: float) -> LoggedInstant:
-        """At the sample that is nearest to an angle of the driver [deg], when it passes it for the
-        last time with rows before and after. Raises CrankcheckError where it does not."""
+        """Errors at the sample nearest to an angle of the driver [deg], at the last pass with rows
+        before and after. Raises CrankcheckError where there is no pass."""
         off = (self.driver_rad - angle_at(at_deg) + math.pi) % math.tau - math.pi
         near = np.abs(off) < math.pi / 2
         before = np.flatnonzero((off[:-1] * off[1:] <= 0.0) & near[:-1] & near[1:])
@@ -177,8 +175,7 @@ class LogInstants:
         )
 
     def at_time(self, at_s: float) -> LoggedInstant:
-        """At the sample that is nearest to a time [s]. Raises CrankcheckError for one that is not
-        in the log."""
+        """Errors at the sample nearest to a time [s]. Raises CrankcheckError off the log."""
         time_s = self.log.time_s
         row = int(np.argmin(np.abs(time_s - at_s)))
         if not abs(time_s[row] - at_s) <= np.diff(time_s).max() / 2:  # or no number
@@ -189,7 +186,7 @@ class LogInstants:
         return self._at(row)
 
     def _at(self, row: int) -> LoggedInstant:
-        """What is off in a row. Raises CrankcheckError where nothing can be drawn of it."""
+        """Errors in a row. Raises CrankcheckError where none can be drawn."""
         log, rows = self.log, slice(max(row - 1, 0), row + 2)
         places = self._errors(0, rows)
         here = row - rows.start
@@ -216,8 +213,8 @@ class LogInstants:
         )
 
     def _errors(self, order: Order, rows: slice) -> dict[str, Array]:
-        """What places or rates of points are off by in some rows, (n, 2) each, of those that the
-        log has both coordinates of."""
+        """Errors of places or rates of points in some rows, (n, 2) each, for points with both
+        coordinates in the log."""
         each_of: dict[str, set[int | None]] = {}
         for reading in self.log.readings:
             channel = reading.channel
@@ -253,7 +250,7 @@ class LogInstants:
 
 
 def _points(scene: Scene) -> dict[str, None]:
-    """The points of a scene that a log can tell of."""
+    """The points of a scene that a log can have."""
     return dict.fromkeys([*scene.pins, *(slider.point for slider in scene.sliders.values())])
 
 
@@ -264,8 +261,8 @@ def _vectors(motion: Motion, name: str, order: Order) -> Array:
 
 
 def _differenced(places: Mapping[str, Array], time_s: Array, order: Order) -> dict[str, Array]:
-    """Rates of errors of places by three rows, as `reports.compare` has them; none at the ends of a
-    log, or where its rows are not even."""
+    """Rates of errors of places by three rows, as in `reports.compare`; none at the ends of a log,
+    or where its rows are not even."""
     steps = np.diff(time_s)
     if steps.size < 2 or np.ptp(steps) > EVEN * steps.max():
         return {}

@@ -19,16 +19,15 @@ from reports.lectures.drawing.sheets.paper import Box, arrow, line
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 
 MOST_MM = 8.0
-"""The largest error is drawn no longer than this, and longer than a tenth of it, unless it is
-longer at its own scale."""
+"""Greatest length of the largest error [mm], ten times its least; it may be longer to scale."""
 STAR = "*"
-"""What is added to the letter of a point as the log has it."""
+"""Suffix of the letter of a point in the log."""
 
 
 @dataclass(frozen=True)
 class MagnifiedErrors:
-    """By point the place [mm] that is exact, and the error there [mm], (2,) each, drawn ``factor``
-    times as long, which is a power of ten and 1 at least."""
+    """The exact place [mm], and the error there [mm], (2,) each, by point; errors are drawn
+    ``factor`` times as long, a power of ten that is at least 1."""
 
     exact: Mapping[str, Array]
     errors: Mapping[str, Array]
@@ -36,13 +35,13 @@ class MagnifiedErrors:
 
     @staticmethod
     def of(exact: Mapping[str, Array], errors: Mapping[str, Array]) -> MagnifiedErrors:
-        """Those of the points that have both."""
+        """The errors of the points that have both."""
         both = {name: error for name, error in errors.items() if name in exact}
         return MagnifiedErrors(exact, both, magnification(both.values()))
 
     @property
     def tips(self) -> dict[str, Array]:
-        """Where the log has the points, magnified [mm]."""
+        """The places of the log's points, magnified [mm]."""
         return {
             name: np.asarray(self.exact[name] + self.factor * error)
             for name, error in self.errors.items()
@@ -50,12 +49,12 @@ class MagnifiedErrors:
 
     @property
     def is_large(self) -> bool:
-        """Whether an error is longer than what room is left for it."""
+        """True if an error is longer than the room for it."""
         return any(float(np.hypot(*error)) >= MOST_MM for error in self.errors.values())
 
     @property
     def words(self) -> str:
-        """By what errors are magnified."""
+        """The magnification of the errors, in words."""
         if not any(np.any(error) for error in self.errors.values()):
             return "no error"
         if self.factor == 1.0:
@@ -64,7 +63,7 @@ class MagnifiedErrors:
 
 
 def magnification(errors_mm: Iterable[Array]) -> float:
-    """The power of ten, 1 at least, that makes the largest error [mm] (2,) as long as it may be."""
+    """The power of ten, at least 1, that makes the largest error [mm] (2,) as long as permitted."""
     largest = max((float(np.hypot(*error)) for error in errors_mm), default=0.0)
     if not 0.0 < largest < MOST_MM:
         return 1.0
@@ -72,7 +71,7 @@ def magnification(errors_mm: Iterable[Array]) -> float:
 
 
 def outline(corners: Sequence[Array]) -> list[tuple[Array, Array]]:
-    """The lines from corner to corner (2,), and back to the first where there are more than two."""
+    """The lines from corner to corner (2,), and back to the first if there are more than two."""
     edges = [*itertools.pairwise(corners)]
     return [*edges, (corners[-1], corners[0])] if len(corners) > 2 else edges
 
@@ -80,7 +79,7 @@ def outline(corners: Sequence[Array]) -> list[tuple[Array, Array]]:
 def logged_lines(
     drawn: MagnifiedErrors, links: Iterable[Iterable[str]]
 ) -> Iterator[tuple[Array, Array]]:
-    """The lines of links or of their images, each by its points, as the log has them [mm]."""
+    """The log's lines of links or of their images, each by its points [mm]."""
     tips = drawn.tips
     for points in links:
         corners = [tips.get(name, drawn.exact.get(name)) for name in points]
@@ -90,8 +89,7 @@ def logged_lines(
 def draw_errors(
     axes: Axes, drawn: MagnifiedErrors, links: Iterable[Iterable[str]], gid: str
 ) -> None:
-    """The errors as arrows, and what the log makes of ``links``; lines of errors are called ``gid``
-    and the point."""
+    """Draw errors as arrows, and the log's ``links``; lines are named ``gid`` and the point."""
     for start, end in logged_lines(drawn, links):
         line(axes, start, end, color=LOGGED, linewidth=0.6, linestyle=(0, (3, 1.5)), zorder=2)
     for name, tip in drawn.tips.items():
@@ -100,17 +98,17 @@ def draw_errors(
 
 
 PADDING_MM = 9.0
-"""Room for letters around a polygon."""
+"""Room for letters around a polygon [mm]."""
 BEYOND_MM = 6.0
-"""By how much a dashed direction goes on beyond the crossing."""
+"""Length of a dashed direction beyond the crossing [mm]."""
 COVERED_MM = 0.1
-"""A line of an image that is nearer to a vector is covered by it."""
+"""Distance below which a line of an image is covered by a vector [mm]."""
 
 
 @dataclass(frozen=True)
 class DrawnPolygon:
-    """A polygon, how much a millimetre of it stands for, and where its pole is [mm]; where a log is
-    drawn beside it, what that is off by [mm], and how it was found."""
+    """A polygon, its unit to the millimetre, and the place of its pole [mm]; with a log, the log's
+    errors [mm], and the way that gave them."""
 
     polygon: Polygon
     scale: float
@@ -119,16 +117,16 @@ class DrawnPolygon:
     logged_by: str = ""
 
     def at(self, vector: Array) -> Array:
-        """Where the end of a vector from the pole stands [mm]."""
+        """The place of the end of a vector from the pole [mm]."""
         return np.asarray(self.pole + vector / self.scale)
 
     def size_of(self, vector: Vector) -> float:
-        """How long a vector is [its unit], 0 where that is the rounding of a crossing."""
+        """The length of a vector [its unit], 0 where that is the rounding of a crossing."""
         return vector.size if vector.size > POINT * self.polygon.largest else 0.0
 
     def logged_sizes(self) -> Iterator[tuple[str, float, float, Array]]:
-        """Of each end of a vector that a log has: its name, how long that vector is, and how long
-        the log's is [its unit], and the error (2,) [mm]."""
+        """The name of each end of a vector that a log has, the lengths of the exact and the logged
+        vector [its unit], and the error (2,) [mm]."""
         if self.logged is None:
             return
         ends = self.polygon.ends
@@ -139,8 +137,8 @@ class DrawnPolygon:
     def beside(
         self, errors: Mapping[str, Array], way: str, box: Box, scale: float | None = None
     ) -> DrawnPolygon:
-        """With the errors of a log's ends of vectors [its unit], (2,) each, in the same box: where
-        they need no magnifying, at a scale at which they have room."""
+        """The polygon with the errors of a log's ends of vectors [its unit], (2,) each, in the same
+        box: large errors, not magnified, change the scale to have room."""
         exact = {name: self.at(end) for name, end in self.polygon.ends.items()}
         on_paper = {name: error / self.scale for name, error in errors.items()}
         logged = MagnifiedErrors.of(exact, on_paper)
@@ -158,7 +156,7 @@ class DrawnPolygon:
 
 
 def extent(polygon: Polygon) -> tuple[Array, Array]:
-    """The corners of the box that holds the polygon [its unit]."""
+    """The corners of the box around the polygon [its unit]."""
     ends = [np.zeros(2), *polygon.ends.values()]
     ends += [end for vector in polygon.vectors for end in (vector.start, vector.end)]
     places = np.array(ends)
@@ -168,8 +166,8 @@ def extent(polygon: Polygon) -> tuple[Array, Array]:
 def fitted(
     polygon: Polygon, box: Box, scale: float | None = None, beside: Sequence[Array] = ()
 ) -> DrawnPolygon:
-    """The polygon in the middle of a box, at a scale, or at the finest round one that fits, with
-    the ends ``beside`` it (2,).
+    """Fit the polygon into the middle of a box, at a scale, or at the finest round one that fits,
+    with the ends ``beside`` it (2,).
 
     Raises CrankcheckError where a wanted scale makes it larger than the box.
     """
@@ -196,8 +194,7 @@ def frame_of(
 
 
 def crossing_line(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | None:
-    """The ends of the dashed line along a direction that crosses another [mm]; None of a vector
-    that was known."""
+    """The ends of the dashed line along a direction that crosses another; None if known [mm]."""
     start, end = drawn.at(vector.start), drawn.at(vector.end)
     length = float(np.hypot(*(end - start)))
     if not vector.direction or length < 1e-9:
@@ -207,7 +204,7 @@ def crossing_line(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | 
 
 
 def image_lines(drawn: DrawnPolygon) -> Iterator[tuple[Array, Array]]:
-    """The edges of the images of links [mm], without those that a vector lies on."""
+    """The edges of the images of links [mm], except those covered by a vector."""
     vectors = [(drawn.at(vector.start), drawn.at(vector.end)) for vector in drawn.polygon.vectors]
     for image in drawn.polygon.images.values():
         for a, b in outline([drawn.at(end) for end in image.values()]):

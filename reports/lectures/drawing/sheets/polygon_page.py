@@ -46,7 +46,7 @@ from reports.page.sections.section import Section
 @dataclass(frozen=True)
 class PolygonCourse:
     """A turn of the driver's law and the polygons at each of its instants, both ends included;
-    ``nearest`` is the one that stands and moves most like the placement it was asked for with."""
+    ``nearest`` is the instant most like the requested placement."""
 
     scene: Scene
     motion: Motion
@@ -57,17 +57,16 @@ class PolygonCourse:
 
     @staticmethod
     def kind(scene: Scene, *, steady: bool) -> type[PolygonCourse]:
-        """What a scene is drawn over: with a ``steady`` driver always a turn."""
+        """The kind of course of a scene: with a ``steady`` driver always a turn."""
         return FreeMotionCourse if scene.is_free and not steady else PolygonCourse
 
     @classmethod
     def of(
         cls, placement: PlacedMechanism, samples: int, most: int, *, steady: bool
     ) -> PolygonCourse:
-        """Over a turn of the driver's law at a number of instants, with a ``steady`` driver at the
-        speed of the placement; over a free motion at as many as it needs, up to ``most``. Raises
-        CrankcheckError where the driver goes through no turn.
-        """
+        """Sample a turn of the driver's law at ``samples`` instants, with a ``steady`` driver at
+        the speed of the placement; or a free motion at as many as it needs, up to ``most``. Raises
+        CrankcheckError where the driver goes through no turn."""
         scene = placement.scene
         course = cls.kind(scene, steady=steady)
         if steady:
@@ -82,22 +81,22 @@ class PolygonCourse:
 
     @classmethod
     def instants(cls, scene: Scene, samples: int, most: int) -> int:
-        """How many there are."""
+        """The number of instants."""
         return samples
 
     @property
     def frames(self) -> tuple[DrawnPolygons, ...]:
-        """Those that an animation shows again and again: the last comes first again."""
+        """The polygons of an animation that repeats: the last equals the first."""
         return self.drawn[:-1]
 
     @property
     def along(self) -> str:
-        """What the slider of a page says."""
+        """The label of a page's slider."""
         return f"Angle of the {self.scene.driver.link}"
 
     @property
     def until(self) -> dict[str, object]:
-        """What the drawing of a page is told besides."""
+        """Further data for the drawing of a page."""
         return {}
 
 
@@ -118,7 +117,7 @@ class FreeMotionCourse(PolygonCourse):
 
     @property
     def until(self) -> dict[str, object]:
-        """The time that it is drawn for [s]: the slider is one of times."""
+        """The end of the drawn time [s]: the slider has times."""
         return {"until_s": float(self.motion.time_s[-1])}
 
 
@@ -133,13 +132,13 @@ def _nearest(motion: Motion, placement: PlacedMechanism) -> int:
 ANIMATED, PAGE = ".gif", ".html"
 ENDINGS = (".svg", ".pdf", ANIMATED, PAGE)
 FRAMES, MOST_FRAMES = 24, 40
-"""Of a turn, and at most of a free motion: each takes half a second to draw."""
+"""Frames of a turn, and at most of a free motion: each takes half a second to draw."""
 FRAME_S, STEP_S, LAST_S = 0.15, 1.2, 3.0
 DPI = 100
 
 
 def polygon_file(sheet: PolygonSheet, ending: str) -> bytes:
-    """The sheet as a file of an ending in `ENDINGS`, animated step by step."""
+    """The sheet as a file with an ending of `ENDINGS`, animated step by step."""
     canvas = draw_sheet(sheet, sheet_note(sheet.drawn.placement.scene))
     name = sheet.drawn.placement.scene.name
     if ending != ANIMATED:
@@ -170,7 +169,7 @@ def turning_file(sheet: PolygonSheet, *, steady: bool = False) -> bytes:
 
 
 def _picture(figure: Figure) -> Image.Image:
-    """The figure as it stands now."""
+    """A picture of the figure in its present state."""
     figure.set_dpi(DPI)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()  # type: ignore[no-untyped-call]  # matplotlib has no annotation here
@@ -179,7 +178,7 @@ def _picture(figure: Figure) -> Image.Image:
 
 
 def _animated(frames: list[Image.Image], seconds: list[float]) -> bytes:
-    """Pictures one after the other, again and again, in the colours of the last, which has all."""
+    """An endless animation of the pictures, in the colours of the last, which has all."""
     colours = frames[-1].quantize(64, dither=Image.Dither.NONE)
     frames = [each.quantize(palette=colours, dither=Image.Dither.NONE) for each in frames]
     buffer = io.BytesIO()
@@ -191,14 +190,14 @@ def _animated(frames: list[Image.Image], seconds: list[float]) -> bytes:
 
 
 INSTANTS, MOST = 181, 721
-"""Over the turn, both ends included; and at most of a free motion."""
+"""Instants of a turn, both ends included; and at most of a free motion."""
 LASTS_MS = 9000
-"""What a round of the page takes: slow enough to follow vectors with the eye."""
+"""Duration of a round of the page [ms]: slow enough to follow vectors with the eye."""
 
 
 def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
     """The page of a mechanism over a turn of its driver's law, or over its free motion, which
-    stands at first as the ``placement``; with a ``steady`` driver over a turn at the speed there.
+    starts at the ``placement``; with a ``steady`` driver over a turn at the speed there.
 
     Raises CrankcheckError where the driver goes through no turn.
     """
@@ -230,7 +229,7 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
 
 
 def _missing(drawn: Sequence[DrawnPolygons]) -> str:
-    """At how many instants polygons are not determined."""
+    """The number of instants at which polygons are not determined, in words."""
     some = sum(bool(each.undetermined) for each in drawn)
     return f"At {count(some, 'instant')} of {len(drawn)} not all is determined." if some else ""
 
@@ -279,7 +278,7 @@ def _embedded(drawn: Sequence[DrawnPolygons], quantity: Quantity) -> dict[str, o
 
 
 def _images(polygon: Polygon, points: Sequence[str]) -> list[list[int]]:
-    """Of each link the numbers of its points, -1 for one that stays in the pole."""
+    """The numbers of each link's points, -1 for a point that stays in the pole."""
     return [
         [points.index(name) if name in points else -1 for name in image]
         for image in polygon.images.values()
@@ -288,14 +287,14 @@ def _images(polygon: Polygon, points: Sequence[str]) -> list[list[int]]:
 
 
 def _box(rows: Array, places: Array) -> list[float]:
-    """The corners of what holds the polygon at all instants."""
+    """The corners of the box around the polygon at all instants."""
     xs = np.concatenate([rows[::2].ravel(), places[::2].ravel(), [0.0]])
     ys = np.concatenate([rows[1::2].ravel(), places[1::2].ravel(), [0.0]])
     return [np.nanmin(xs), np.nanmin(ys), np.nanmax(xs), np.nanmax(ys)]
 
 
 def _links(drawn: Sequence[DrawnPolygons]) -> dict[str, object]:
-    """How fast links turn; 0 exactly where their image is one point."""
+    """The rates of links; exactly 0 where their image is one point."""
     names = list(dict.fromkeys(name for each in drawn for name in drawn_links(each)))
     rows = np.full((2 * len(names), len(drawn)), np.nan)
     for at, each in enumerate(drawn):

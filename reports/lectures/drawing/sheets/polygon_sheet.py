@@ -65,9 +65,8 @@ DOUBT = "#a52a16"
 
 @dataclass(frozen=True)
 class PolygonSheet:
-    """What is on the sheet: the polygons, each with its scale; the scale of lengths [m/mm], and
-    what stands in the middle of the scheme [m]; the log that is drawn beside, if there is one; the
-    time [s], where it is known."""
+    """The contents of the sheet: the polygons, each with its scale; the scale of lengths [m/mm],
+    and the middle of the scheme [m]; the log beside it, if any; the time [s], where known."""
 
     drawn: DrawnPolygons
     velocity: DrawnPolygon
@@ -80,12 +79,12 @@ class PolygonSheet:
     time_s: float | None = None
 
     def place(self, at: Array) -> Array:
-        """Where a place [m] stands in the scheme [mm]."""
+        """The place in the scheme [mm] of a place [m]."""
         return np.asarray(self.boxes["scheme"].middle + (at - self.middle) / self.length_scale)
 
     @property
     def misplaced(self) -> MagnifiedErrors | None:
-        """What the log is off by in the scheme."""
+        """The errors of the log in the scheme."""
         if self.log is None:
             return None
         exact = {name: self.place(at) for name, at in self.drawn.placement.points.items()}
@@ -100,11 +99,9 @@ def laid_out(
     log: LoggedInstant | None = None,
     time_s: float | None = None,
 ) -> PolygonSheet:
-    """The polygons on paper, at the finest round scales that fit; with ``k`` at the book's, the
-    crank's vectors k times as long as the drawn crank; with the images of a ``log`` beside them, or
-    of an instant that is named by its time [s].
-    Raises CrankcheckError for too small paper.
-    """
+    """Lay out polygons on paper, at the finest round scales that fit; with ``k`` at the book's
+    scales, the crank's vectors k times as long as the drawn crank; with the images of a ``log``
+    beside them, or of an instant named by its time [s]. Raises CrankcheckError for small paper."""
     boxes = _boxes(paper)
     places = extent_of(drawn.placement)
     length_scale, middle = boxes["scheme"].fitted(places, SCHEME_PADDING)
@@ -166,7 +163,7 @@ def _boxes(paper: Paper) -> dict[str, Box]:
 
 
 def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
-    """The sheet, a layer for each part and each step of drawing; ``note`` stands at its foot.
+    """Draw the sheet, a layer for each part and each step of drawing; ``note`` is its foot.
 
     Raises CrankcheckError for paper on which its table can not be read.
     """
@@ -183,7 +180,7 @@ def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
 
 
 def draw_lines(sheet: PolygonSheet, note: str) -> Canvas:
-    """All of the sheet but its letters and its table, whose layers are there."""
+    """Draw the sheet without its letters and its table, whose layers are present."""
     canvas = Canvas(sheet.paper)
     _frame(canvas.layer("frame"), sheet, note)
     _scheme(canvas.layer("scheme"), sheet)
@@ -194,7 +191,7 @@ def draw_lines(sheet: PolygonSheet, note: str) -> Canvas:
 
 
 def heading(sheet: PolygonSheet) -> str:
-    """The mechanism, and how its driver stands and moves."""
+    """The heading: the mechanism, with the position and speed of its driver."""
     scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
     angle = round(math.degrees(driver.theta), 9) % 360.0
     at_time = f" (t = {sheet.time_s:.6g} s)" if sheet.time_s is not None else ""
@@ -225,7 +222,7 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
 
 
 def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
-    """What could not be drawn, above the legend of each polygon; and which is one point."""
+    """Write the parts not drawn above the legend of each polygon; also that it is one point."""
     for drawn in (sheet.velocity, sheet.acceleration):
         box = sheet.boxes[drawn.polygon.quantity]
         told = doubts(sheet.drawn)
@@ -238,7 +235,7 @@ def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
 
 
 def _logged(sheet: PolygonSheet) -> dict[str, str]:
-    """What is told of a log in the boxes that it is drawn in."""
+    """The words on a log in the boxes where it is drawn."""
     log, misplaced = sheet.log, sheet.misplaced
     if log is None or misplaced is None:
         return {}

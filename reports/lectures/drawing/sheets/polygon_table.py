@@ -28,7 +28,7 @@ REASONS = {"velocity": "as omega is 0", "acceleration": "as omega and alpha are 
 
 
 def image_words(drawn: DrawnPolygons, link: str, quantity: Quantity) -> str:
-    """Whether the image of a link is similar to it, how large and how turned; or one point."""
+    """The similarity of a link's image in words: its scale and turn; or that it is one point."""
     image = similarity(drawn, link, quantity)
     if image.is_point:
         return f"one point, {REASONS[quantity]}"
@@ -37,12 +37,12 @@ def image_words(drawn: DrawnPolygons, link: str, quantity: Quantity) -> str:
 
 
 def at_rest(quantity: Quantity) -> str:
-    """What is said of a polygon that is one point."""
+    """The words for a polygon that is one point."""
     return f"at rest: every {quantity} is 0"
 
 
 def doubts(drawn: DrawnPolygons) -> list[str]:
-    """What could not be drawn, and what can hardly be drawn by hand."""
+    """The parts that could not be drawn, and those that can hardly be drawn by hand."""
     lost = [f"not drawn: {told}" for told in drawn.undetermined]
     return lost + [f"flat: {told}" for told in drawn.flat]
 
@@ -53,17 +53,17 @@ def drawn_links(drawn: DrawnPolygons) -> list[str]:
 
 
 ROW, GAP = 1.9, 3.0
-"""The height of a row, in that of its letters; the room between columns [mm]."""
+"""The height of a row, in heights of its letters; the room between columns [mm]."""
 TOP_MM, SIDE_MM = 5.0, 1.5
 SIZES = (TINY, 4.3, 4.0)
-"""Type that a table may have [point]: the largest with which it has room."""
+"""Types of the table [point]: the largest that has room is used."""
 
 
 @dataclass(frozen=True)
 class Row:
     """A line of the table: a name, a length on paper, a value; a heading has a name alone.
 
-    ``kept`` is how many of the rows after it stand in the same column.
+    ``kept`` is the number of following rows that must be in the same column.
     """
 
     name: str
@@ -79,7 +79,7 @@ class Row:
 
 
 def vector_rows(drawn: DrawnPolygon) -> Iterator[Row]:
-    """The vectors of a polygon in the order of drawing, and what a log is off by."""
+    """The vectors of a polygon in the order of drawing, and the errors of a log."""
     quantity = drawn.polygon.quantity
     unit = UNITS[quantity].replace("^2", "²")
     yield Row("velocities" if quantity == "velocity" else "accelerations", kept=1)
@@ -99,7 +99,7 @@ def vector_rows(drawn: DrawnPolygon) -> Iterator[Row]:
 
 
 def link_rows(drawn: DrawnPolygons) -> Iterator[Row]:
-    """How the links turn, and what their images are."""
+    """The rates of the links, and their images."""
     yield Row("links, and their images", kept=3)
     for name in drawn_links(drawn):
         omega, alpha = link_rates(drawn, name)
@@ -110,7 +110,7 @@ def link_rows(drawn: DrawnPolygons) -> Iterator[Row]:
 
 
 def draw_table(axes: Axes, rows: list[Row], box: Box, paper: Paper) -> None:
-    """The rows in columns within a box. Raises CrankcheckError for too small paper."""
+    """Draw the rows in columns within a box. Raises CrankcheckError for paper that is too small."""
     for size in SIZES:
         columns = _columns(rows, box, size)
         if sum(_width(column, size) + GAP for column in columns) <= box.width - 2 * SIDE_MM + GAP:
@@ -127,7 +127,7 @@ def draw_table(axes: Axes, rows: list[Row], box: Box, paper: Paper) -> None:
 
 
 def _columns(rows: list[Row], box: Box, size: float) -> list[list[Row]]:
-    """The rows from above to below, column by column, what is kept together in one."""
+    """The rows from top to bottom, column by column, with kept rows in one column."""
     most = max(int((box.height - TOP_MM - SIDE_MM) / _pitch(size)), 1)
     columns: list[list[Row]] = [[]]
     for row in rows:
@@ -138,12 +138,12 @@ def _columns(rows: list[Row], box: Box, size: float) -> list[list[Row]]:
 
 
 def _pitch(size: float) -> float:
-    """From row to row [mm]."""
+    """The distance from row to row [mm]."""
     return ROW * size / POINTS * MM_PER_IN
 
 
 def _parts(column: list[Row], size: float) -> tuple[float, float]:
-    """How wide names and lengths on paper are [mm]."""
+    """The widths of names and of lengths on paper [mm]."""
     wide = [
         (width_in(row.name, size) * MM_PER_IN, width_in(row.on_paper, size) * MM_PER_IN)
         for row in column
@@ -155,7 +155,7 @@ def _parts(column: list[Row], size: float) -> tuple[float, float]:
 
 
 def _width(column: list[Row], size: float) -> float:
-    """How wide a column is [mm]."""
+    """The width of a column [mm]."""
     name, on_paper = _parts(column, size)
     return max(
         name + on_paper + 2 * GAP / 2 + width_in(row.value, size) * MM_PER_IN

@@ -1,7 +1,7 @@
 """The sheet of positions: a turn of the crank in equal parts, with the loci of the points.
 
-Every pin of a group is found as one draws it: arcs about the pins that it hangs on, or a ray along
-a line, cross in it (lecture "Phan tich dong hoc", part II); the first position is drawn full.
+Every pin of a group is found as in a drawing: arcs about its neighbour pins, or a ray along a line,
+cross in it (lecture "Phan tich dong hoc", part II); the first position is drawn in full.
 """
 
 import math
@@ -40,11 +40,11 @@ from reports.lectures.drawing.sheets.scheme import (
 
 PADDING = 12.0
 LEAST_APART_MM = 2.5
-"""Divisions of the crank circle that stand closer can not be numbered."""
+"""Least distance of divisions of the crank circle that can be numbered."""
 LOCUS, LOCUS_PLACES = 361, 36
-"""Places along a locus, and those of them at which its name may stand."""
+"""Number of places along a locus, and of those considered for its name."""
 LEAST_WAY_MM = 0.1
-"""A point with a shorter way stands still."""
+"""Least path of a moving point."""
 ARC_MM, DOT_MM = 4.0, 0.45
 """Half the length of the arcs of the construction, and the radius of a position's mark."""
 FAINT, LOCI = "#a9b3bf", "#b7791f"
@@ -52,8 +52,8 @@ FAINT, LOCI = "#a9b3bf", "#b7791f"
 
 @dataclass(frozen=True)
 class PositionSheet:
-    """The mechanism at ``angles`` of the driver (n,), its points there and along the loci
-    [m], and the scale of lengths [m/mm]."""
+    """The mechanism at ``angles`` of the driver (n,), its points there and along the loci [m], and
+    the scale of lengths [m/mm]."""
 
     scene: Scene
     placement: PlacedMechanism
@@ -69,16 +69,16 @@ class PositionSheet:
         return inner_box(self.paper)
 
     def at(self, place: Array) -> Array:
-        """Where places [m], (..., 2), stand on the sheet [mm]."""
+        """Places [m], (..., 2), on the sheet [mm]."""
         return np.asarray(self.box.middle + (place - self.middle) / self.scale)
 
 
 def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     """The scene with its crank circle in so many parts, from the driver's angle at time 0 on; a
-    slider, or a driver that does not turn fully, is drawn from end to end of what it goes through
-    or reaches. The positions are numbered in the sense in which the driver starts.
+    slider, or a driver that does not turn fully, is drawn from end to end of its range. The
+    positions are numbered in the sense in which the driver starts.
 
-    Raises CrankcheckError where the parts are too small to be told apart on the paper.
+    Raises CrankcheckError where the parts are too small to be distinguished on the paper.
     """
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     low, high = range_of_law(scene)
@@ -107,7 +107,7 @@ def _points(scene: Scene, angles: Array) -> dict[str, Array]:
 
 
 def _check_apart(sheet: PositionSheet, divisions: int) -> None:
-    """Refuse divisions that fall together on the paper."""
+    """Refuse divisions that fall together on the paper. Raises CrankcheckError."""
     apart = max(
         float(np.hypot(*np.diff(sheet.at(sheet.points[name])[:2], axis=0)[0]))
         for name in _driven(sheet.scene)
@@ -122,7 +122,7 @@ def _check_apart(sheet: PositionSheet, divisions: int) -> None:
 
 
 def _driven(scene: Scene) -> tuple[str, ...]:
-    """The points that the driver moves: those of a crank, that of a slider, a pin of two links."""
+    """The points that the driver moves: of a crank, the point of a slider, a pin of two links."""
     driver = scene.driver
     if driver.slider is not None:
         return (scene.sliders[driver.slider].point,)
@@ -130,7 +130,7 @@ def _driven(scene: Scene) -> tuple[str, ...]:
 
 
 def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
-    """The sheet, in layers: loci, positions, construction, the mechanism, letters."""
+    """Draw the sheet, in layers: loci, positions, construction, the mechanism, letters."""
     canvas = Canvas(sheet.paper)
     _frame(canvas.layer("frame"), sheet, note)
     _loci(canvas.layer("loci"), sheet)
@@ -149,7 +149,7 @@ def _frame(axes: Axes, sheet: PositionSheet, note: str) -> None:
 
 
 def _ways(sheet: PositionSheet) -> Iterator[tuple[str, Array]]:
-    """The ways of all points that move [mm], (n, 2) each."""
+    """The paths of all points that move [mm], (n, 2) each."""
     for name, way in sheet.loci.items():
         places = sheet.at(way)
         if np.ptp(places, axis=0).max() > LEAST_WAY_MM:
@@ -163,7 +163,7 @@ def _loci(axes: Axes, sheet: PositionSheet) -> None:
 
 
 def _positions(axes: Axes, sheet: PositionSheet) -> None:
-    """All positions of all links, faint."""
+    """Draw all positions of all links, faint."""
     for k in range(len(sheet.angles)):
         places = {name: sheet.at(at[k]) for name, at in sheet.points.items()}
         draw_outline(axes, sheet.scene.links.values(), places, FAINT, 0.5)
@@ -173,7 +173,7 @@ def _positions(axes: Axes, sheet: PositionSheet) -> None:
 
 
 def _construction(axes: Axes, sheet: PositionSheet) -> None:
-    """The arcs about outer pins that cross in the inner pin of each group."""
+    """Draw the arcs about outer pins that cross in the inner pin of each group."""
     for part in sheet.placement.structure.order:
         if not isinstance(part, Group) or part.kind not in ("RRR", "RRP"):
             continue
@@ -186,7 +186,7 @@ def _construction(axes: Axes, sheet: PositionSheet) -> None:
 
 
 def _arc(axes: Axes, centre: Array, through: Array) -> None:
-    """A short arc about a centre on both sides of a place [mm]."""
+    """Draw a short arc about a centre on both sides of a place [mm]."""
     away = through - centre
     radius = float(np.hypot(*away))
     angle, half = math.degrees(math.atan2(away[1], away[0])), math.degrees(ARC_MM / radius)
@@ -195,8 +195,7 @@ def _arc(axes: Axes, centre: Array, through: Array) -> None:
 
 
 def _letters(sheet: PositionSheet) -> list[Letter]:
-    """Letters of the points in the first position, numbers along the driver's way, and the names
-    of the loci."""
+    """Letters of points in the first position, numbers on the driver's path, names of loci."""
     spots = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
     letters = point_letters(sheet.placement, spots)
     pivot = sheet.scene.driver_pivot if sheet.scene.driver.is_crank else ""

@@ -1,6 +1,5 @@
-"""The scheme of a mechanism as books draw it: bars and plates, pins, hatched ground, blocks, and
-the arrow of the driver's rotation.
-"""
+"""The scheme of a mechanism as in books: bars and plates, pins, hatched ground, blocks, and the
+arrow of the driver's rotation."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -25,7 +24,7 @@ from reports.lectures.drawing.sheets.paper import arrow_head, line
 
 
 def range_about(scene: Scene, theta: float) -> tuple[float, float]:
-    """The reachable range [rad] that an angle of the driver is in, near to that angle.
+    """The reachable range [rad] around an angle of the driver, near to that angle.
 
     Raises CrankcheckError where the scene can not be assembled there.
     """
@@ -41,8 +40,8 @@ def range_about(scene: Scene, theta: float) -> tuple[float, float]:
 
 
 def assembled(scene: Scene, theta: Array) -> Mask:
-    """At which driver angles (T,) the scene can be assembled; within a range there may be single
-    ones, singular positions, at which it can not."""
+    """True at driver angles (T,) where the scene can be assembled; a range may have single
+    exceptions, singular positions."""
     possible = np.ones(theta.shape, dtype=bool)
     parts, one = [np.arange(theta.size)], np.ones(1)
     while parts:
@@ -60,12 +59,12 @@ def assembled(scene: Scene, theta: Array) -> Mask:
 
 
 def sense_of_law(scene: Scene) -> float:
-    """1 of a driver that starts counter-clockwise, -1 of one that starts clockwise."""
+    """1 for a driver that starts counter-clockwise, -1 for one that starts clockwise."""
     return math.copysign(1.0, float(scene.driver.law.at(np.zeros(1))[1][0]))
 
 
 def range_of_law(scene: Scene) -> tuple[float, float]:
-    """What the driver goes through, or reaches from its start [rad or m]; as `range_about`."""
+    """The range of the driver by its law, or from its start [rad or m]; as `range_about`."""
     law = scene.driver.law
     if isinstance(law, Oscillating):
         swing = abs(law.amplitude_rad)
@@ -78,12 +77,12 @@ def range_of_law(scene: Scene) -> tuple[float, float]:
 
 
 SLOT_MM, SLOT_SPARE_MM = 1.5, 4.0
-"""Half the width of a slot in a link, and how far it goes on beyond the block's travel."""
+"""Half the width of a slot in a link, and its length beyond the block's travel [mm]."""
 TRAVEL, LONGEST = 73, 2.0
-"""Driver angles over which travel is looked for; the longest that is drawn, to either side, over
+"""Number of driver angles in the search for travel; the longest drawn travel to either side, over
 the longest link: near a singular position a block goes far away."""
 ALONG = 0.005
-"""A bar that is nearer to the line of a slider, over the longest link, is its guide."""
+"""Distance of a bar from a slider's line, over the longest link, below which it is its guide."""
 LOOKED_AT = 61
 """Places along a slot at which the bar may be joined to it."""
 
@@ -91,7 +90,7 @@ Travel = tuple[Array, Array]
 
 
 def travels(placement: PlacedMechanism) -> dict[str, Travel]:
-    """The ends of the travel [m], (2,) each, of every block that needs a slot, as its link stands.
+    """The ends of the travel [m], (2,) each, of every block that needs a slot, its link as placed.
 
     Raises CrankcheckError as `range_about`.
     """
@@ -116,7 +115,7 @@ def travels(placement: PlacedMechanism) -> dict[str, Travel]:
 
 
 def _on_bar(placement: PlacedMechanism, name: str) -> bool:
-    """Whether a slider runs along the bar of its guide, which is drawn through its block then."""
+    """True if a slider runs along the bar of its guide, which is then drawn through its block."""
     slider = placement.scene.sliders[name]
     points = placement.scene.links[slider.on].points
     ends = [placement.points[point] - placement.points[slider.point] for point in points]
@@ -127,7 +126,7 @@ def _on_bar(placement: PlacedMechanism, name: str) -> bool:
 def draw_slots(
     axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array], ends: Mapping[str, Travel]
 ) -> None:
-    """Slots with the ends of travel at ``ends``, the points of the links at ``places`` [mm]."""
+    """Draw slots with the ends of travel at ``ends``, the links' points at ``places`` [mm]."""
     for name, (low, high) in ends.items():
         along = placement.along(name)
         start, end = low - SLOT_SPARE_MM * along, high + SLOT_SPARE_MM * along
@@ -141,12 +140,12 @@ def draw_slots(
 
 
 def _within(corners: list[Array], place: Array) -> bool:
-    """Whether a place is on a plate."""
+    """True if a place is on a plate."""
     return len(corners) > 2 and bool(Path(np.array(corners)).contains_point(tuple(place)))
 
 
 def _draw_arm(axes: Axes, slot: Array, corners: list[Array]) -> None:
-    """The shortest arm from a link to the slot (n, 2) that it carries, where they do not meet."""
+    """Draw the shortest arm from a link to the slot (n, 2) that it carries, unless they meet."""
     nearest = [_foot(at, *edge) for edge in combinations(corners, 2) for at in slot]
     nearest = nearest or [corners[0]] * len(slot)  # a link of one point
     froms = np.tile(slot, (len(nearest) // len(slot), 1))
@@ -157,7 +156,7 @@ def _draw_arm(axes: Axes, slot: Array, corners: list[Array]) -> None:
 
 
 def _foot(place: Array, start: Array, end: Array) -> Array:
-    """The nearest place of a bar."""
+    """The nearest point of a bar to a place."""
     along = end - start
     share = float((place - start) @ along) / max(float(along @ along), 1e-30)
     return np.asarray(start + min(max(share, 0.0), 1.0) * along)
@@ -168,24 +167,24 @@ HATCH_MM, HATCHES = 1.3, 6
 TURN_MM, TURN_SHARE, TURN_DEG = (5.0, 9.0), 0.4, (22.0, 85.0)
 """The arrow of rotation: least and largest radius, share of the crank, and angles off the crank."""
 FOOT_DEG = 42.0
-"""Half the angle about a pin that its foot is in."""
+"""Half the angle about a pin that its foot occupies."""
 NEAR_MM = 0.5
-"""Points that stand nearer have their letters in one label."""
+"""Distance of points [mm] below which their letters share a label."""
 PLATE = "#eef1f4"
 FRONT = 6
-"""Pins lie over everything."""
+"""Drawing order of pins: over everything."""
 
 
 def extent_of(placement: PlacedMechanism) -> Array:
-    """What the scheme has to have room for: points, and ends of slots [m], (n, 2)."""
+    """The places that the scheme must contain: points, and ends of slots [m], (n, 2)."""
     return np.array([*placement.points.values(), *chain(*travels(placement).values())])
 
 
 def draw_scheme(
     axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Array], plate: str = PLATE
 ) -> None:
-    """The mechanism with its places [m] ``at`` those of the sheet [mm]; ``plate`` is the colour of
-    plates, "none" of those that hide nothing."""
+    """Draw the mechanism; ``at`` gives the place on the sheet [mm] of a place [m], ``plate`` is the
+    colour of plates, "none" for plates that hide nothing."""
     scene = placement.scene
     places = {name: at(place) for name, place in placement.points.items()}
     slots = {name: (at(low), at(high)) for name, (low, high) in travels(placement).items()}
@@ -223,7 +222,7 @@ def draw_scheme(
 def draw_outline(
     axes: Axes, links: Iterable[Link], places: Mapping[str, Array], color: str, width: float
 ) -> None:
-    """Links as lines between their points at ``places`` [mm]."""
+    """Draw links as lines between their points at ``places`` [mm]."""
     for link in links:
         ring = [places[name] for name in link.points]
         ring = [*ring, ring[0]] if len(ring) > 2 else ring
@@ -232,7 +231,7 @@ def draw_outline(
 
 
 def point_letters(placement: PlacedMechanism, places: Mapping[str, Array]) -> list[Letter]:
-    """The letters of the points at ``places`` [mm]; of points that fall together, one label."""
+    """The letters of the points at ``places`` [mm]; points that coincide have one label."""
     joined = together(places, NEAR_MM)
     return [
         Letter(names, at, max(symbol_radius(placement, name) for name in names.split(", ")))
@@ -241,7 +240,7 @@ def point_letters(placement: PlacedMechanism, places: Mapping[str, Array]) -> li
 
 
 def symbol_radius(placement: PlacedMechanism, point: str) -> float:
-    """How far what is drawn at a point reaches from it at least [mm]."""
+    """Least radius of the symbol drawn at a point [mm]."""
     sliding = any(slider.point == point for slider in placement.scene.sliders.values())
     return 0.5 * BLOCK_MM[1] if sliding else PIN_MM
 
@@ -255,13 +254,13 @@ def _segments(corners: Array) -> Iterator[tuple[Array, Array]]:
 
 
 def _flat(corners: Array) -> bool:
-    """Whether points stand in a line."""
+    """True if points lie on a line."""
     spread = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
     return bool(spread[1] < 1e-6 * spread[0])
 
 
 def draw_foot(axes: Axes, place: Array) -> None:
-    """A pin's support on hatched ground."""
+    """Draw a pin's support on hatched ground."""
     side, spare = np.array([0.6 * FOOT_MM, 0.0]), np.array([1.0, 0.0])
     left, right = place - (0.0, FOOT_MM) - side, place - (0.0, FOOT_MM) + side
     axes.add_patch(Patch([place, left, right], closed=True, fc="white", ec=INK, lw=0.7))
@@ -269,7 +268,7 @@ def draw_foot(axes: Axes, place: Array) -> None:
 
 
 def _hatched(axes: Axes, start: Array, end: Array) -> None:
-    """Ground: a line with short strokes on its right side."""
+    """Draw ground: a line with short strokes on its right side."""
     along = end - start
     length = math.hypot(*along)
     unit = along / length
@@ -281,7 +280,7 @@ def _hatched(axes: Axes, start: Array, end: Array) -> None:
 
 
 def _block(axes: Axes, place: Array, along: Array) -> None:
-    """The block of a slider."""
+    """Draw the block of a slider."""
     half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
     corners = [
         place + half + aside,
@@ -293,14 +292,14 @@ def _block(axes: Axes, place: Array, along: Array) -> None:
 
 
 def _rails(axes: Axes, place: Array, along: Array) -> None:
-    """A guide of the ground, hatched on both sides of what slides in it."""
+    """Draw a guide of the ground, hatched on both sides of the sliding part."""
     reach, aside = 1.2 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
     for side in (-1.0, 1.0):
         _hatched(axes, place + side * (aside + reach), place + side * (aside - reach))
 
 
 def _turning(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
-    """The arrow of the driver's rotation about its pivot; one that swings has two heads."""
+    """Draw the arrow of the driver's rotation about its pivot; a swing has two heads."""
     scene, theta = placement.scene, math.degrees(placement.driver.theta)
     middle = places[scene.driver_pivot]
     crank = max(math.dist(places[p], middle) for p in scene.links[scene.driver.link].points)
@@ -323,7 +322,7 @@ def _turning(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]
 
 
 def _moved_joint(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
-    """What drives but is no crank: a slider with an arrow along its line, a pin with a dot."""
+    """Draw a driver that is no crank: a slider with an arrow along its line, a pin with a dot."""
     driver = placement.scene.driver
     if driver.slider is None:
         spot = tuple(places[placement.scene.driver_pivot])

@@ -1,5 +1,4 @@
-"""A log that is drawn beside the reference: read as `judge` does, with the truth that it is held
-to."""
+"""A log beside the drawn reference: read as `judge` does, with the reference for its errors."""
 
 from __future__ import annotations
 
@@ -18,24 +17,24 @@ from reports.logs.meanings import understood, wanted
 from reports.own_log.log_limits import LogRequest, log_kind
 
 LOGGED = "#8e24aa"
-"""The colour of all that a log says."""
+"""The colour of everything logged."""
 ELSEWHERE = 0.1
-"""What a log of the scene is off by at most where it begins: in radians, or longest links; of rates
-at the driver's largest speed."""
+"""Largest error of a log of the scene at its start: in radians, or longest links; of rates at the
+driver's largest speed."""
 
 
 @dataclass(frozen=True)
 class SheetLog:
-    """A log of a scene, and the truth beside it, which is known as long as the log is."""
+    """A log of a scene, and its reference, which is known as long as the log is."""
 
     log: OwnLog
     truth: Truth
     driver_rad: Callable[[Array], Array]
-    """Where the driver is at times [rad], by its law or its free motion."""
+    """The driver's angle at times [rad], by its law or its free motion."""
 
     @staticmethod
     def of_file(scene: Scene, path: Path, map_: Map, drawing: str) -> SheetLog:
-        """A file that goes into a ``drawing``, in the plural.
+        """Read a file for a ``drawing``, named in the plural.
 
         Raises
         ------
@@ -54,7 +53,7 @@ class SheetLog:
 
     @staticmethod
     def of_log(log: OwnLog) -> SheetLog:
-        """A log that was read. Raises CrankcheckError for another motion, too."""
+        """Take a log that was read. Raises CrankcheckError for another motion, too."""
         if log.scene.is_free:
             known, truth, _ = log_kind(log.scene).truth(log, LogRequest())
             link = log.scene.driver.link
@@ -66,9 +65,9 @@ class SheetLog:
         return found
 
     def refuse_another(self) -> None:
-        """Raises CrankcheckError for a log that does not begin as its scene moves: an engine begins
-        there, however far it comes from it. Places say so, or, where it has none, rates; with what
-        acceleration an engine begins is its own affair."""
+        """Refuse a log that does not begin as its scene moves: an engine begins there, however far
+        it departs later. Places decide, or, without places, rates; an engine's first accelerations
+        are its own affair. Raises CrankcheckError."""
         order = min((each.channel.kind.order for each in self.log.readings), default=2)
         if order == 2:
             return
@@ -86,7 +85,7 @@ class SheetLog:
             )
 
     def _share(self, begin: Reading) -> float:
-        """What a reading is off by in the first row, as a pure number."""
+        """The error of a reading in the first row, as a pure number."""
         kind, scene = begin.channel.kind, self.truth.scene
         scale = 1.0 if kind.body_kind == "link" else scene.longest_m
         scale *= scene.pace_rad_s**kind.order

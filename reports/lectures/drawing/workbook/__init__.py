@@ -1,1 +1,1 @@
-"""Workbooks whose cells are the formulas: change a length, and tables and charts follow."""
+"""Workbooks with formulas as cells: change a length, and tables and charts follow."""

@@ -26,18 +26,17 @@ from reports.output.numbers import readable
 
 MOST_MEMBERS = 20
 CLOSE_DEG = 0.1
-"""Of the crank, between two positions that are tried."""
+"""Largest step of the crank between two tried positions."""
 SHARED = ("n", "time", "phi")
 """Columns of the drive, which all members share, unless they differ in its speed."""
 OF_ROWS = ("start_deg", "step_deg")
-"""Inputs that say which rows there are, and nothing of the mechanism."""
+"""Inputs that define the rows alone, and nothing of the mechanism."""
 
 
 def varied(table: FormulaTable, name: str, values: Sequence[float]) -> Input:
-    """The input that members differ in, by its name or that of the link whose length it is.
+    """The input that members differ in, by its name or by the link whose length it is.
 
-    Raises CrankcheckError for one that the table has not; too few, too many or equal values; and
-    one that it can not have.
+    Raises CrankcheckError for an unknown name; too few, too many or equal values; one out of range.
     """
     inputs = [each for each in table.inputs if each.name not in OF_ROWS]
     one = next((each for each in inputs if name and name in (each.name, each.link)), None)
@@ -68,9 +67,8 @@ def check_values(name: str, values: Sequence[float]) -> None:
 def member_columns(
     table: FormulaTable, one: Input, values: Sequence[float], asked: str
 ) -> list[dict[str, Array]]:
-    """The columns of each member, (rows,). Raises CrankcheckError for a member that has no
-    position, or no rates, everywhere on the way of the crank: of ``asked``, the name that was
-    given for ``one``."""
+    """The columns of each member, (rows,). Raises CrankcheckError for a member without position or
+    rates somewhere on the path of the crank; ``asked`` is the user's name for ``one``."""
     found = []
     for value in values:
         inputs = [replace(i, value=value) if i is one else i for i in table.inputs]
@@ -155,7 +153,7 @@ class FamilyChart:
 @dataclass(frozen=True)
 class FamilyCurves:
     """The charts of a family whose members differ in ``name``; ``angles_deg`` are the crank's,
-    (rows,) for each member, and ``charts`` go by kind, so many of each."""
+    (rows,) for each member, and ``charts`` are in order of kind, as many of each."""
 
     name: str
     unit: str
@@ -165,7 +163,7 @@ class FamilyCurves:
 
     @property
     def members(self) -> list[str]:
-        """What each is called: L = 3.5 m."""
+        """The names of the members: L = 3.5 m."""
         return [f"{self.name} = {readable(v, 6)} {self.unit}".rstrip() for v in self.values]
 
     def of_kind(self, kind: str) -> list[FamilyChart]:
@@ -188,7 +186,7 @@ def family_curves(table: FormulaTable, name: str, values: Sequence[float]) -> Fa
 
 
 def with_unit(head: str) -> str:
-    """X' [m/s] of a head X' m/s."""
+    """The label X' [m/s] of a head X' m/s."""
     words, _, unit = head.rpartition(" ")
     return f"{words} [{unit.replace('^2', '²')}]"
 
@@ -208,7 +206,7 @@ OMEGA = "omega"
 AXES = ("x", "y")
 CLOSE_RAD = math.radians(CLOSE_DEG)
 MOST_CLOSE = 20_000
-"""Instants at which the law of a driver is looked at for how far it goes."""
+"""Most instants at which the law of a driver is sampled for its range."""
 
 
 @dataclass(frozen=True)
@@ -223,10 +221,10 @@ class SceneFamily:
 
 
 def scene_family(scene: Scene, name: str, values: Sequence[float], time_s: Array) -> SceneFamily:
-    """The members over the instants of the ``scene``; where they differ in speed each has its own.
+    """The members over the instants of the ``scene``; each has its own where they differ in speed.
 
-    Raises CrankcheckError for a driver that is no crank, for what the scene has not, and for a
-    member that can not be assembled.
+    Raises CrankcheckError for a driver that is no crank, for a name that the scene has not, and for
+    a member that can not be assembled.
     """
     refuse_other_than_cranked(scene, "--family")
     check_values(name, values)
@@ -246,8 +244,7 @@ def scene_family(scene: Scene, name: str, values: Sequence[float], time_s: Array
 
 
 def _close_all_the_way(member: Scene, time_s: Array) -> None:
-    """Assemble a member closely on the way of its driver: between the instants, too. Raises
-    ReachError."""
+    """Assemble a member at small steps of its driver: between instants, too. Raises ReachError."""
     count = math.ceil(float(time_s[-1]) * member.driver.law.peak_speed_rad_s / CLOSE_RAD)
     angles = member.driver.law.at(np.linspace(0.0, time_s[-1], min(count, MOST_CLOSE) + 1))[0]
     low, high = float(angles.min()), float(angles.max())
@@ -284,8 +281,7 @@ def varied_scene(scene: Scene, name: str, value: float) -> Scene:
 
 
 def scene_curves(family: SceneFamily) -> FamilyCurves:
-    """The curves of what the mechanism drives: its last slider on the ground, else its last
-    link."""
+    """The curves of the output: the last slider on the ground, else the last link."""
     scene, motions = family.scene, family.motions
     sliders = [each.name for each in scene.sliders.values() if each.on == GROUND]
     if sliders:

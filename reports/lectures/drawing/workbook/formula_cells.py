@@ -1,7 +1,7 @@
 """A table of formulas as the cells of a workbook: a sheet of inputs, and one of the columns.
 
-Inputs are named cells, so that a formula reads as it is written in a book. The sheets are
-protected without a password: what may be changed is coloured and open.
+Inputs are named cells, so that a formula reads as in a book. The sheets are protected without a
+password: cells that may be changed are coloured and open.
 """
 
 import math
@@ -45,17 +45,17 @@ WIDTHS = (22, 16, 9, 62, 13)
 ON_A_PAGE = 20
 """Columns that are printed side by side."""
 DIGITS, FEWEST, MOST = 7, 1e-4, 1e7
-"""Significant digits that are shown, and sizes that are shown without a power of ten."""
+"""Significant digits shown, and the sizes between which no power of ten is shown."""
 
 
 def cell_name(name: str) -> str:
-    """The name that an input's cell goes by: R and C are words of spreadsheets, X0 is a cell."""
+    """The name of an input's cell: R and C are words of spreadsheets, X0 is a cell."""
     return f"{name}_" if TAKEN.fullmatch(name) else name
 
 
 def write_inputs(book: Workbook, table: FormulaTable) -> None:
-    """The sheet of inputs, one a row: name, value, unit, what it is, and its name in formulas;
-    below them what the table of columns comes to."""
+    """Write the sheet of inputs, one a row: name, value, unit, meaning, and its name in formulas;
+    below them the outcome of the table of columns."""
     sheet = book.create_sheet(INPUTS)
     sheet.append(["name", "value", "unit", "what it is", "in formulas"])
     for row, each in enumerate(table.inputs, 2):
@@ -90,7 +90,7 @@ def _open(sheet: Worksheet, row: int, each: Input) -> None:
 
 
 def _append_outcome(sheet: Worksheet, table: FormulaTable) -> None:
-    """What follows from the inputs: how far the rows go, and whether all can be assembled."""
+    """Write the outcome of the inputs: the range of the rows, and whether all can be assembled."""
     first, last = 2, table.count + 1
 
     def column(name: str) -> str:
@@ -111,7 +111,7 @@ def _append_outcome(sheet: Worksheet, table: FormulaTable) -> None:
 
 
 def write_columns(book: Workbook, table: FormulaTable) -> None:
-    """The sheet of columns; a row that can not be assembled has #N/A, which charts leave out."""
+    """Write the sheet of columns; rows not assembled have #N/A, which charts leave out."""
     sheet = book.create_sheet(TABLE)
     sheet.append([_head(each.head, table) for each in table.columns])
     for row in range(2, table.count + 2):
@@ -140,8 +140,8 @@ def write_columns(book: Workbook, table: FormulaTable) -> None:
 
 
 def _finish(sheet: Worksheet, frozen: str, columns: int) -> None:
-    """Heads that stand out and stay in sight, pages that can be read, and cells that can not be
-    changed by accident."""
+    """Format a sheet: heads that are distinct and stay in sight, legible pages, and cells that can
+    not be changed by accident."""
     for cell in sheet[1]:
         cell.font, cell.fill = BOLD, HEAD
         cell.alignment = Alignment(wrap_text=True, vertical="top")
@@ -155,7 +155,7 @@ def _finish(sheet: Worksheet, frozen: str, columns: int) -> None:
 
 
 def _number_format(values: Array) -> str:
-    """Digits behind the point by the largest number of a column."""
+    """The number format by the largest number of a column."""
     if values.dtype.kind != "f":
         return "General"
     if np.all(values == np.round(values)):
@@ -167,7 +167,7 @@ def _number_format(values: Array) -> str:
 
 
 def _head(head: str, table: FormulaTable) -> str:
-    """A head; one that has an input in it shows what that is now."""
+    """A head; a head with an input in it shows its present value."""
     return _placed(head, table, 0) if head.startswith("=") else head
 
 

@@ -1,9 +1,9 @@
 """A table of formulas over inputs: columns that are written once, for all rows of a sheet.
 
-Spreadsheets take -a^2 for (-a)^2: a square that is taken away stands in brackets.
+Spreadsheets take -a^2 for (-a)^2: a subtracted square is in brackets.
 
 A formula is written with names: ``{AB}`` an input, ``[phi]`` the same row's value of a column,
-``[phi-1]`` that of the row before. The first row may have another formula, as nothing is before it.
+``[phi-1]`` the value of the row before. The first row may have another formula.
 """
 
 import math
@@ -26,14 +26,14 @@ STATE = "state"
 """The column that says in words whether a row's position can be assembled."""
 ASSEMBLED = "assembled"
 ZERO = "1E-14"
-"""What is not told from 0: its root is 1e-7, and rates are that many times less certain."""
+"""Value indistinguishable from 0: its root is 1e-7, and rates are that many times less certain."""
 Range = Literal["any", "above 0", "not 0", "1 or -1"]
 
 
 @dataclass(frozen=True)
 class Input:
-    """A number that may be changed: its name in formulas, its unit, what it is, which values it
-    takes, and the link whose length it is, if it is one's."""
+    """A number that may be changed: its name in formulas, its unit, its meaning, its range, and the
+    link whose length it is, if any."""
 
     name: str
     value: float
@@ -43,7 +43,7 @@ class Input:
     link: str = ""
 
     def allows(self, value: float) -> bool:
-        """Whether the value is in its range."""
+        """True if the value is in its range."""
         return {
             "any": True,
             "above 0": value > 0.0,
@@ -54,8 +54,7 @@ class Input:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of formulas; ``head`` is what stands above it, its unit with it, or a formula of
-    inputs that says so."""
+    """A column of formulas; ``head`` is its heading, with the unit, or a formula of inputs."""
 
     name: str
     head: str
@@ -89,8 +88,8 @@ class FormulaTable:
 
 
 def state_column(inside: str) -> Column:
-    """Says by the sign of the column ``inside``, the square of what the rates are divided by over
-    its size, whether a row can be assembled."""
+    """The column that says whether a row can be assembled, by the sign of the column ``inside``:
+    the square of the rates' divisor over its size."""
     words = f'"cannot be assembled",IF([{inside}]>{ZERO},"{ASSEMBLED}","rates not determined")'
     formula = f'IF(ISNUMBER([{inside}]),IF([{inside}]<-{ZERO},{words}),"not determined")'
     return Column(STATE, STATE, formula)
@@ -105,7 +104,7 @@ DRIVE_COLUMNS = (
 
 
 def drive_inputs(scene: Scene, pin: str, step_deg: float) -> tuple[Input, ...]:
-    """Speed, start and step, the crank being the line from its pivot to ``pin``.
+    """The inputs of speed, start and step; the crank is the line from its pivot to ``pin``.
 
     Raises CrankcheckError for a law of another kind.
     """
@@ -123,7 +122,7 @@ def drive_inputs(scene: Scene, pin: str, step_deg: float) -> tuple[Input, ...]:
 
 
 def continued(name: str, head: str, within: str) -> Column:
-    """The angle of a column ``within`` a turn, going on continuously from row to row."""
+    """The angle of a column ``within`` a turn, continuous from row to row."""
     step = f"([{within}]-[{name}-1])"
     on = f"[{within}]-2*PI()*ROUND({step}/(2*PI()),0)"
     formula = f"IF(ISNUMBER([{name}-1]),{on},[{within}])"  # begins anew after a gap
@@ -149,8 +148,7 @@ def evaluated(table: FormulaTable) -> dict[str, Array]:
     """Every column by name, (rows,); NaN where a mechanism can not be assembled. Columns of words
     are arrays of text.
 
-    Columns that build on the row before are told by what they end in: numbers of rows, and angles
-    that go on continuously.
+    Columns that build on the row before are known by ``first``: row numbers, or continuous angles.
     """
     values: dict[str, Array] = {}
     given = {each.name: each.value for each in table.inputs}
@@ -167,7 +165,7 @@ def evaluated(table: FormulaTable) -> dict[str, Array]:
 
 
 def _of(formula: str, values: Mapping[str, Array], given: Mapping[str, float]) -> Array:
-    """A formula that stands in one row."""
+    """The value of a formula without references to the row before."""
     names: dict[str, object] = {f"in_{name}": value for name, value in given.items()}
     names |= {f"at_{name}": value for name, value in values.items()}
     plain = NAME.sub(lambda m: f"in_{m[1]}" if m[1] else f"at_{m[2]}", formula).replace("^", "**")

@@ -1,5 +1,4 @@
-"""The four-bar, the slider-crank and the slotted lever (culisse) as formulas of a sheet, as
-textbooks write them."""
+"""The four-bar, the slider-crank and the slotted lever (culisse) as formulas of textbooks."""
 
 import math
 
@@ -138,7 +137,7 @@ def slider_crank_table(scene: Scene, group: Group, count: int, step_deg: float) 
 
 
 def _pin_in(scene: Scene, slider: Slider, pin: str) -> Point:
-    """Where a pin of what slides is from the point of the slider [m]: along the line, and to its
+    """The place of a pin of the sliding link from the slider's point [m]: along the line, and
     left."""
     if slider.link is None:
         return 0.0, 0.0

@@ -55,13 +55,13 @@ class Curves:
 
 
 def _on_one_page(sheet: Any) -> Any:
-    """The sheet, set to be printed on one page."""
+    """Set the sheet to be printed on one page."""
     sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
     return sheet
 
 
 def add_chart(book: Workbook, number: int, title: str, curves: Curves) -> None:
-    """The chart below ``number`` others."""
+    """Add the chart below ``number`` others."""
     sheet = (
         book[CHART_SHEET]
         if CHART_SHEET in book.sheetnames
@@ -98,11 +98,11 @@ KINDS = (
 )
 MOST_CURVES = 8
 MARGIN, NARROWEST = 2, 12
-"""Of the width of a column over that of its head, and the smallest [characters]."""
+"""Width of a column beyond its head, and the smallest width [characters]."""
 
 
 def add_value_charts(book: Workbook, sheet: str, columns: Sequence[str], rows: int) -> None:
-    """A chart for each kind of column that the sheet has, over its first."""
+    """Add a chart for each kind of column that the sheet has, over its first column."""
     number = 0
     for title, ending in KINDS:
         places = [k for k, name in enumerate(columns, 1) if name.endswith(ending)]
@@ -113,7 +113,7 @@ def add_value_charts(book: Workbook, sheet: str, columns: Sequence[str], rows: i
 
 
 def widen(sheet: Any) -> None:
-    """Columns as wide as their heads."""
+    """Make columns as wide as their heads."""
     for cell in sheet[1]:
         width = max(len(str(cell.value)) + MARGIN, NARROWEST)
         sheet.column_dimensions[cell.column_letter].width = width
@@ -123,8 +123,8 @@ TIME_COLUMN = "time"
 
 
 def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | None:
-    """The formulas of a four-bar, a slider-crank or a slotted lever at constant speed; None of any
-    other scene, and of one that goes through change points: formulas stay on one branch there."""
+    """The formulas of a four-bar, a slider-crank or a slotted lever at constant speed; None for any
+    other scene, and for one with change points: formulas stay on one branch there."""
     if not isinstance(scene.driver.law, ConstantSpeed) or prepared(scene).passages:
         return None
     order = analyse(scene).order
@@ -141,7 +141,7 @@ def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | Non
 
 
 def _is_four_bar(scene: Scene) -> bool:
-    """Whether the two links hang between the crank and the ground, and have a length each."""
+    """True if two links of constant length connect the crank and the ground."""
     try:
         FourBar.of(scene)
     except StructureError:
@@ -150,12 +150,12 @@ def _is_four_bar(scene: Scene) -> bool:
 
 
 def _is_slider_crank(scene: Scene, group: Group) -> bool:
-    """Whether the rod hangs on the crank's pin, and what slides does so on the ground."""
+    """True if the rod is on the crank's pin, and the slider on the ground."""
     return scene.sliders[group.outer2].on == GROUND and group.outer1 in _crank_pins(scene)
 
 
 def _is_slotted_lever(scene: Scene, group: Group) -> bool:
-    """Whether a block on the crank's pin slides on a lever that is pinned to the ground."""
+    """True if a block on the crank's pin slides on a lever that is pinned to the ground."""
     slider = scene.sliders[group.inner]
     if slider.link is not None or slider.on not in scene.links:
         return False
@@ -178,13 +178,13 @@ def add_live(book: Workbook, table: FormulaTable) -> None:
 
 
 def _time_of(column: str, table: FormulaTable) -> str:
-    """The times of a column: those of its member, where members have their own."""
+    """The column of times of a column: its member's, where members have their own."""
     own = f"{TIME_COLUMN}_{column.rpartition('_')[2]}"
     return own if any(each.name == own for each in table.columns) else TIME_COLUMN
 
 
 def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
-    """A workbook of the formulas alone, and where they come from."""
+    """A workbook of the formulas alone, with their origin."""
     book = Workbook()
     about = book.active
     assert about is not None
@@ -204,12 +204,12 @@ def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
 
 
 MOST_LIVE, MOST_DRAWN = 20_000, 100_000
-"""Rows that a spreadsheet computes, and draws, while one looks on."""
+"""Most rows that a spreadsheet computes, and draws, at once."""
 
 
 def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callable[[Any], None]:
-    """What puts formulas and charts into the workbook of a motion over ``time_s``, evenly spaced
-    from 0, whose first sheet has the ``columns``."""
+    """The function that puts formulas and charts into the workbook of a motion over ``time_s``,
+    evenly spaced from 0, whose first sheet has the ``columns``."""
     count = time_s.size
     table = None
     if 1 < count <= MOST_LIVE:
@@ -228,7 +228,7 @@ def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callab
 
 
 def left_out(count: int) -> str:
-    """What a workbook of so many rows does not have, in words that end a sentence."""
+    """The parts missing from a workbook of so many rows, in words that end a sentence."""
     if count <= MOST_LIVE:
         return ""
     charts = f", and charts of {MOST_DRAWN}" * (count > MOST_DRAWN)
@@ -238,7 +238,7 @@ def left_out(count: int) -> str:
 def live_sheet(
     scene: Scene, time_s: Array, columns: Sequence[str]
 ) -> tuple[str, Callable[[Any], None]]:
-    """What a workbook does not have, in words, and what puts formulas and charts into it."""
+    """The parts missing from a workbook, in words, and the function that fills the rest."""
     return left_out(time_s.size), beside_values(scene, time_s, columns)
 
 

@@ -50,11 +50,11 @@ from reports.requests.solving import (
 from reports.way.way import way_of
 
 LARGEST = 1e9
-"""Of any number of a mechanism [SI]."""
+"""Largest number of a mechanism [SI]."""
 
 
 def run_family(scene: Scene, request: SolveOptions, console: Console) -> None:
-    """Write the family. Raises CrankcheckError for what can not be asked."""
+    """Write the family. Raises CrankcheckError for a faulty request."""
     assert request.family is not None
     _check(scene, request)
     name, values = _values(request.family)
@@ -89,7 +89,7 @@ def run_family(scene: Scene, request: SolveOptions, console: Console) -> None:
 
 
 def _drawn(scene: Scene, path: Path, curves: FamilyCurves) -> bytes | str:
-    """The page, or the drawing, of a family."""
+    """The page or the drawing of a family."""
 
     ending = path.suffix.lower()
     if ending == PAGE:
@@ -98,11 +98,11 @@ def _drawn(scene: Scene, path: Path, curves: FamilyCurves) -> bytes | str:
 
 
 NO_FAMILY = {"elastic": "has elastic links", "let go": "is let go"}
-"""Kinds of scenes that have no family, and why."""
+"""Kinds of scenes without families, and the reasons."""
 
 
 def _check(scene: Scene, request: SolveOptions) -> None:
-    """Refuse a family of what has none, or of a single position. Raises CrankcheckError."""
+    """Refuse a family of a scene without one, or of a single position. Raises CrankcheckError."""
     if why := NO_FAMILY.get(way_of(scene).kinds[0]):
         raise CrankcheckError(
             f"--family {request.family}: {scene.name} {why}; members of a family have rigid "
@@ -118,7 +118,7 @@ def _check(scene: Scene, request: SolveOptions) -> None:
 
 
 def _values(text: str) -> tuple[str, list[float]]:
-    """A name and numbers, from text such as L=3.5,2.5."""
+    """Parse a name and numbers, such as L=3.5,2.5. Raises CrankcheckError."""
     name, equals, numbers = text.partition("=")
     try:
         values = [float(number) for number in numbers.split(",")] if equals else []
@@ -173,7 +173,7 @@ def _mark_angles(axes: Any, curves: FamilyCurves) -> None:
 
 
 def _look(k: int) -> dict[str, Any]:
-    """The curve of a member: a hue of its own, and dashes for where there are none."""
+    """The look of a member's curve: a hue of its own, and dashes where hues run out."""
     dashes = DASHES[k % len(DASHES)]
     shades = COLOURS[k % len(COLOURS)]
     colour = shades[1 + k // len(COLOURS) % (len(shades) - 1)]
@@ -183,7 +183,7 @@ def _look(k: int) -> dict[str, Any]:
 def build(
     scene: Scene, curves: FamilyCurves, notes: Sequence[str], figures: Mapping[str, bytes]
 ) -> Section:
-    """The section; ``figures`` are SVG files by the kind of what they show."""
+    """The section; ``figures`` are SVG files by their kind."""
     return Section(
         anchor="family",
         title=f"Members over {curves.name}",
@@ -210,7 +210,7 @@ def _encoded(svg: bytes) -> str:
 def family_page(
     scene: Scene, curves: FamilyCurves, notes: Sequence[str], figures: Mapping[str, bytes]
 ) -> str:
-    """The page; ``figures`` are SVG files by the kind of what they show."""
+    """The page; ``figures`` are SVG files by their kind."""
     head = Head(
         title=f"crankcheck: {scene.name}, family",
         facts=(count(len(curves.values), "member"), f"crankcheck {crankcheck_version()}"),
@@ -242,6 +242,6 @@ def _title(scene: Scene, curves: FamilyCurves) -> str:
 
 
 def _notes(scene: Scene, curves: FamilyCurves) -> list[str]:
-    """Where the curves come from."""
+    """The note on the source of the curves."""
     speed = "" if curves.name == "omega" else f"; {scene.driver.joint} {describe_law(scene)}"
     return [f"crankcheck {crankcheck_version()}, closed form{speed}."]

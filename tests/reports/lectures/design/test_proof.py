@@ -20,7 +20,7 @@ from models.lectures.tasks.positions import CouplerTask
 from models.scene import span
 from models.scene.laws import ConstantSpeed, Oscillating
 from reports.lectures.design.proof import by_reference, proven
-from tests.analytic.synthesis.random_tasks import TASKS, random_solutions
+from tests.analytic.lectures.synthesis.random_tasks import TASKS, random_solutions
 from tests.worlds.tiers import at_length, slowly
 
 QUICK = (

@@ -16,7 +16,7 @@ from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.files.assemble import scene_text
 from models.files.reading import load_scene
 from models.scene.characteristics import Polynomial, Sine
-from tests.analytic.regulation.worked import shaft, yoke
+from tests.analytic.lectures.regulation.worked import shaft, yoke
 from tests.worlds.command_line import crank, refused
 from tests.worlds.tiers import few, slowly
 

@@ -273,7 +273,7 @@ def test_an_engine_that_is_not_installed_names_the_command(
 
 def test_importing_sim_loads_no_engine() -> None:
     code = f"import sim.run, sys; print([n for n in {[*ENGINES]} if n in sys.modules])"
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[3]
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True
     )

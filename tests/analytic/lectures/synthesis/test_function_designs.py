@@ -17,7 +17,7 @@ from analytic.lectures.synthesis.function.generator import FunctionProposal, str
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction, MechanismKind
 from models.errors import CrankcheckError, ReachError
 from models.lectures.draft import Draft
-from tests.analytic.synthesis.test_function_solutions import known
+from tests.analytic.lectures.synthesis.test_function_solutions import known
 from tests.worlds.tiers import at_length, slowly
 
 POWER = GivenFunction.of_formula("x^1.6")

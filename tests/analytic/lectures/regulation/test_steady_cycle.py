@@ -26,7 +26,7 @@ from models.scene.laws import Accelerating, ConstantSpeed
 from models.scene.loads import ConstantFriction, CoulombFriction, LineSpring, PinSpring, SlideSpring
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
-from tests.analytic.regulation.worked import shaft, yoke
+from tests.analytic.lectures.regulation.worked import shaft, yoke
 from tests.worlds.tiers import few, slowly
 
 PULL = {"pull": (Sine(20.0, math.tau), "angle")}

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 import pytest
-from pylinkage.synthesis import PlanePose as TheirPose
+from pylinkage.synthesis import Pose as TheirPose
 from pylinkage.synthesis import compute_pole, function_generation, motion_generation
 
 from analytic.lectures.synthesis.burmester import five_positions, four_positions

@@ -46,8 +46,8 @@ from reports.lectures.drawing.sheets.paper import (
     cut_line,
     near_angles,
 )
-from tests.reports.sheets.constructions import constructed as made
-from tests.reports.sheets.measured import TENTH_MM, drawn_lines, overlaps
+from tests.reports.lectures.design.constructions import constructed as made
+from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines, overlaps
 from tests.worlds.tiers import few
 
 A4, A5, UPRIGHT = Paper.of("A4"), Paper.of("A5"), Paper.of("210x297")

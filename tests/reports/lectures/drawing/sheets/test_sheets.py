@@ -21,7 +21,7 @@ from reports.lectures.drawing.sheets.paper import Box, Canvas, Paper, line, text
 from reports.lectures.drawing.sheets.polygon_sheet import draw_sheet, laid_out
 from reports.lectures.drawing.sheets.position_sheet import PositionSheet, draw_positions, positions
 from reports.lectures.drawing.sheets.scheme import assembled
-from tests.reports.sheets.measured import drawn_lines, overlaps
+from tests.reports.lectures.drawing.sheets.measured import drawn_lines, overlaps
 from tests.worlds.tiers import slow
 
 A4, SMALLEST = Paper.of("A4"), Paper.of("180x120")

@@ -27,7 +27,7 @@ from reports.lectures.drawing.sheets.graph_sheet import POLES_MM, GraphSheet, gr
 from reports.lectures.drawing.sheets.graph_span import Over, over_period
 from reports.lectures.drawing.sheets.graph_words import table_cells, told_log
 from reports.lectures.drawing.sheets.paper import Paper
-from tests.reports.sheets.measured import drawn_lines
+from tests.reports.lectures.drawing.sheets.measured import drawn_lines
 
 LECTURE = load_scene("fourbar-lecture-1")
 PERIOD = LECTURE.driver.law.period_s

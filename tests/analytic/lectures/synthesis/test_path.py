@@ -13,7 +13,7 @@ from analytic.lectures.synthesis.path.search import STARTS, PathFit, generate
 from analytic.lectures.synthesis.path.task import PathTask
 from models.array import Array
 from models.errors import CrankcheckError
-from tests.analytic.synthesis.test_path_shapes import random_path
+from tests.analytic.lectures.synthesis.test_path_shapes import random_path
 from tests.worlds.tiers import at_length, slowly
 
 KINDS = list(itertools.product((True, False), (True, False)))

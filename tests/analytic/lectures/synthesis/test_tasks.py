@@ -18,7 +18,7 @@ from models.errors import CrankcheckError, ReachError
 from models.lectures.tasks import load_task
 from models.lectures.tasks.positions import StrokeTask
 from models.scene.laws import Oscillating
-from tests.analytic.synthesis.random_tasks import HEAD, TASKS, random_solutions
+from tests.analytic.lectures.synthesis.random_tasks import HEAD, TASKS, random_solutions
 from tests.worlds.tiers import at_length, few, slowly
 
 MET = 1e-10

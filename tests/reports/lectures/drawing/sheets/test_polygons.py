@@ -47,7 +47,7 @@ from reports.lectures.drawing.sheets.polygon_sheet import (
 )
 from reports.logs.map_file import Map
 from reports.requests.any_log import log_of_motion
-from tests.reports.sheets.measured import TENTH_MM, drawn_lines
+from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines
 from tests.worlds.tiers import few, slow
 
 LECTURED = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever", "shaper",
