@@ -1,4 +1,4 @@
-"""Tolerances of each kind of motion and of links, by the names that `--tol` has for them.
+"""Tolerances of each kind of motion and of links, by their names in `--tol`.
 
 Apart from the quantities, as it reads all entries, also those of others.
 """
@@ -17,20 +17,20 @@ DRIVEN = (*MOVES, "force")
 DEFAULTS: Mapping[str, Tolerance] = {
     name: each.tolerance for name, (role, each) in _OWN.items() if role in DRIVEN
 }
-"""Of a mechanism that is driven."""
+"""Tolerances of a driven mechanism."""
 BENDING: Mapping[str, Tolerance] = {
     name: each.tolerance for name, (role, each) in _OWN.items() if role == "elastic"
 }
-"""Of elastic links themselves."""
+"""Tolerances of elastic links themselves."""
 ELASTIC = {**DEFAULTS, **BENDING}
-"""Of a mechanism whose links bend."""
+"""Tolerances of a mechanism whose links bend."""
 FREE: Mapping[str, Tolerance] = {
     name: limit
     for name, (role, each) in _OWN.items()
     if (limit := each.tolerance if role == "free" else each.free_motion)
 }
-"""Of free motion: its errors at the same time are over the sensitivity of the motion."""
+"""Tolerances of free motion: its errors at the same time are over the sensitivity of the motion."""
 FREE_ELASTIC = {**FREE, **BENDING}
-"""Of free motion of links that bend."""
+"""Tolerances of free motion of links that bend."""
 EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
-"""All that there may be a limit of."""
+"""Names of all tolerances."""
