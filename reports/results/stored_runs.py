@@ -56,8 +56,7 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Stor
 
 
 def scene_digests(names: Iterable[str]) -> dict[str, str]:
-    """Return the hash of each scene's text by the scene's own name; of all shipped ones by
-    default."""
+    """Return the hash of each scene's text by the scene's name; of all shipped scenes for none."""
     return {name: digest(text) for name, text in scene_texts(names).items()}
 
 
