@@ -133,8 +133,7 @@ def demanded(
 
 
 def _refuse_frame(demand: Demand) -> None:
-    """Refuse a frame that is too long, or so short that a run has too many. Raises
-    CrankcheckError."""
+    """Refuse a frame that is too long, or so short that a run has too many; CrankcheckError."""
     per_turn, turn = demand.frames_per_turn, f"a turn at {demand.speed_rad_s:g} rad/s"
     if per_turn * MOST_SUBSTEPS < LEAST_STEPS_PER_TURN:
         longest = demand.period_s * MOST_SUBSTEPS / LEAST_STEPS_PER_TURN
@@ -160,8 +159,7 @@ USUAL = "as-shipped"
 
 @dataclass(frozen=True)
 class Choice:
-    """Complete settings of an engine, by the name of a profile or of a study's variant, derived
-    from ``profile``."""
+    """Complete settings of an engine, by the name of its profile or a variant, from ``profile``."""
 
     engine: str
     name: str

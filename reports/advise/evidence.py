@@ -63,8 +63,8 @@ class MeasuredStudy:
     def missed(
         self, scene: Scene, choice: Choice, steps_per_turn: float, target: float
     ) -> float | None:
-        """Return the fewest steps in a turn, of more than so many, that miss a target; None where
-        none is known to."""
+        """Return the fewest steps in a turn, of more than so many, known to miss a target; or
+        None."""
         steps = self._of(scene, choice)
         return None if steps is None else steps.missed(steps_per_turn, target)
 
@@ -152,8 +152,7 @@ def _refusal(line: Line, stored_text: str, scene: Scene, text: str, choice: Choi
 
 
 def _forces_of_their_own(scene: Scene) -> str:
-    """Return the forces that, unlike inertia, do not grow with the square of the speed; "" if
-    none."""
+    """Return forces that, unlike inertia, do not grow with the speed squared; "" if none."""
     found = {
         "gravity": scene.gravity_m_s2 != (0.0, 0.0),
         "loads": bool(scene.loads),

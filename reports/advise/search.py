@@ -36,8 +36,8 @@ WORDS = {
 @dataclass(frozen=True)
 class TriedRun:
     """Result of a run. ``error`` is the error of place, over all its samples, infinite where it did
-    not end well; ``growth`` is its ratio of the second half of the turns to the first, NaN where it
-    is unknown."""
+    not end well; ``growth`` is its ratio of the second half of the turns to the first, NaN if
+    unknown."""
 
     error: float
     status: str = "ok"

@@ -1,5 +1,4 @@
-"""A diff on the terminal, as Markdown short enough for a comment on a pull request, and as JUnit
-XML."""
+"""A diff on the terminal, as Markdown short enough for a pull request comment, and as JUnit XML."""
 
 from collections.abc import Iterable, Sequence
 from typing import Literal

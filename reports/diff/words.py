@@ -156,8 +156,7 @@ def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -
 
 
 def _steps(changed: Sequence[float], compared: Sequence[float], unit: str) -> str:
-    """Return the step of the largest change, and the other changed steps; in a ``unit`` where it is
-    not a turn."""
+    """Return the step of the largest change, and the other changed steps, in a ``unit``."""
     first, *others = [f"{each:g}{unit}" for each in changed]
     if len(changed) > 2 and len(changed) == len(compared):
         return f"{first} (all {len(changed)}: {min(changed):g}{unit} to {max(changed):g}{unit})"

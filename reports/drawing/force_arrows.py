@@ -33,8 +33,8 @@ HEAD = (0.045, 0.016)
 
 @dataclass(frozen=True)
 class Arrow:
-    """An arrow from ``tail`` to ``tip`` [m], of the force on ``body``; without a head where it is
-    cut off."""
+    """An arrow from ``tail`` to ``tip`` [m], of the force on ``body``; without a head if cut
+    off."""
 
     body: str
     tail: Array

@@ -1,5 +1,4 @@
-"""A mechanism to be drawn by the page: its shape, the motion of the reference, and the displacement
-of an engine from it.
+"""A mechanism to be drawn by the page: shape, reference motion, and displacement of an engine.
 
 The page draws ``reference + factor * displacement``; so the two are kept apart, each with its own
 scale, and an error of 1e-9 can be magnified a millionfold. Nothing here knows of cells or sections:
@@ -251,8 +250,8 @@ def magnification(
 
 @dataclass(frozen=True)
 class Magnified:
-    """Both motions at the same instants; ``bent`` are deflections (T, K) at equal parts of each
-    elastic link [m]."""
+    """Both motions at the same instants; ``bent`` are deflections (T, K) along each elastic link
+    [m]."""
 
     scene: Scene
     elastic: Motion

@@ -61,8 +61,7 @@ def svg(
     with_forces: bool = False,
 ) -> str:
     """Draw the mechanism where its points stand farthest apart, and their paths over a turn, or
-    over the first ``most_s`` of it; if requested, with its forces as arrows, where these are
-    largest.
+    over its first ``most_s``; if requested, with its forces as arrows, where these are largest.
 
     Paths of ``logged``, the motion of a run, are drawn over the reference paths. Raises
     CrankcheckError where the mechanism can not go through all of that, or there are no forces.

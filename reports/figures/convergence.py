@@ -60,8 +60,8 @@ def draw(report: Report, scene: str) -> Figure:
 
 
 def draw_all(report: Report) -> Figure:
-    """Draw the plots of all scenes side by side, over steps per turn; over steps of time for free
-    motions alone."""
+    """Draw the plots of all scenes side by side, over steps per turn; over time for free
+    motions."""
     lines, scenes, mark_of = report.lines, list(report.scenes), marks(report.lines)
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], **mark.style), report.looks[name].name) for name, mark in mark_of.items()
@@ -210,8 +210,7 @@ def _entries(
 
 @dataclass(frozen=True)
 class Over:
-    """Axis of steps: in one panel, and in the panels of all scenes in the given unit of time, 0 for
-    a turn of each."""
+    """Axis of steps: in one panel, and in panels of all scenes in a unit of time, 0 for a turn."""
 
     label: str
     ticks: Callable[[Axes, Sequence[Line]], None]

@@ -98,8 +98,7 @@ def _beside_rigid() -> list[tuple[Artist, str]]:
 
 
 def _deflection(course: ElasticCourse) -> Figure | None:
-    """Draw the distance of the middle of each elastic link from the line between its pins; None
-    where no link bends."""
+    """Draw the deflection of the middle of each elastic link; None where no link bends."""
     curves = {}
     for name in (name for name, own in course.scene.elastic.items() if own.bends):
         line = line_of(course.scene, name)
@@ -136,8 +135,8 @@ def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, la
 
 
 def _torque(course: ElasticCourse) -> Figure | None:
-    """Draw the driving torque with elastic links and with rigid ones, and their difference; None
-    without a drive."""
+    """Draw the driving torque with elastic and with rigid links, and the difference; None if
+    free."""
     if course.torques is None:
         return None
     elastic, rigid = course.torques
@@ -179,8 +178,7 @@ def _angles(course: ElasticCourse) -> Figure | None:
 
 
 def _chosen(course: ElasticCourse) -> list[Apart]:
-    """Return at most so many, in the order of the scene; none that only a law of the driver
-    moves."""
+    """Return at most so many, in the order of the scene; none that follow a driver's law alone."""
     every = [one for one in course.apart() if np.any(one.difference)]
     sizes = sorted((float(np.max(np.abs(one.difference))) for one in every), reverse=True)
     least = sizes[min(MOST, len(sizes)) - 1] if sizes else 0.0
@@ -250,9 +248,8 @@ def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -
 
 
 def _control(course: ElasticCourse) -> Figure | None:
-    """Draw elastic links under a controller, over the same with the torque of the rigid mechanism
-    alone: deflections, the driver's speed, and its lead over its command; None without a
-    controller."""
+    """Draw elastic links under a controller, over the same with the torque of rigid links alone:
+    deflections, the driver's speed, and its lead over its command; None without a controller."""
     law = course.scene.driver.law
     if course.uncontrolled is None or not isinstance(law, Controlled):
         return None

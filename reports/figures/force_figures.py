@@ -126,8 +126,7 @@ def _stacked(
     notes: Sequence[str],
     top: float = 0.15,
 ) -> tuple[Figure, list[Axes]]:
-    """Draw panels below each other, each with its label and its curves, named curves in the
-    legend."""
+    """Draw panels below each other, each with its label and curves, named ones in the legend."""
     height = 2.1 if len(groups) == 1 else 1.6
     panels = Panels(len(groups), 1, height, *SIDES, top, between=(0, 0.22))
     curves = [curve for _, own in groups for curve in own]
@@ -176,8 +175,8 @@ def _efficiency(turn: ForceTurn) -> Figure | None:
 
 
 def _reduced(turn: ForceTurn) -> Figure:
-    """Draw the machine reduced to its driver: moment of inertia, and below it the torque where
-    weights or loads act."""
+    """Draw the machine reduced to its driver: inertia, and below it torque if weights or loads
+    act."""
     reduced, notes, drive = turn.reduced, turn.notes, turn.scene.driver
     mass = "moment of inertia [kg m²]" if drive.slider is None else "mass [kg]"
     groups = [(mass, [("", reduced.inertia, CURVE)])]

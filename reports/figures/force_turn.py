@@ -46,8 +46,7 @@ from reports.output.numbers import readable
 class ForceTurn:
     """The first turn of a scene: its motion with forces, and the machine reduced to its driver.
 
-    ``x`` is the axis of curves, called ``label``, between ``ends``; ``order`` are the samples along
-    it.
+    ``x`` is the axis of curves, called ``label``, between ``ends``; ``order`` are its samples.
     """
 
     scene: Scene

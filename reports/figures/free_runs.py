@@ -54,8 +54,8 @@ class FreeRun:
 
     @property
     def energy(self) -> Array | None:
-        """Change of the energy since the start, over the largest kinetic energy; None where the
-        engine has none."""
+        """Change of energy since the start, over the largest kinetic energy; None without
+        energy."""
         if "energy" not in self.trace:
             return None
         largest = float(np.max(self.trace["kinetic"]))
@@ -81,7 +81,7 @@ class FreeRun:
 
 @dataclass(frozen=True)
 class FreeRuns:
-    """The runs of a scene beside the reference, whose driver has ``angle`` [rad] and ``omega`` at
+    """The runs of a scene beside the reference; its driver has ``angle`` [rad], ``omega`` at
     ``time_s``."""
 
     scene: Scene
@@ -171,7 +171,7 @@ def courses(report: Report, name: str) -> Figure | None:
 
 def energy_change(report: Report, name: str) -> Figure | None:
     """Draw the change of the energy of each run: as it is, and as means over windows, whose last
-    less the first is the drift. A panel for each, with a scale of its own; None where none has an
+    less the first is the drift. A panel for each, with its own scale; None where none has an
     energy."""
     shown = free_runs(report, name)
     runs = [run for run in shown.runs if run.energy is not None] if shown else []

@@ -56,8 +56,7 @@ def mechanism_at(
     notes: Sequence[str],
     arrows: ForceArrows | None = None,
 ) -> Figure:
-    """Draw a scene at a sample of its path, within a box, with arrows of its forces where there are
-    any."""
+    """Draw a scene at a sample of its path, within a box, with arrows of its forces if any."""
     low, high = box
     panels = Panels(top=0.05, right=0.1)
     wide = COLUMN_IN - panels.left - panels.right

@@ -171,7 +171,7 @@ def shorten(axes: Axes) -> None:
 FORMATS = ("svg", "pdf")
 Face = Literal["normal", "italic"]
 LETTERS = frozenset(map(chr, range(32, 127))) | frozenset("⁻⁰¹²³⁴⁵⁶⁷⁸⁹±…\N{MINUS SIGN}")
-"""Letters in every font, so that most figures share the same cut of it."""
+"""Letters in every file, so that most figures share the same cut of a font."""
 FACES: dict[Face, str] = {"normal": "", "italic": "italic"}
 """Styles of the font, and the sign in an SVG that needs them."""
 TEXT = re.compile(r"<text[^>]*>(.*?)</text>", re.DOTALL)

@@ -49,8 +49,7 @@ from crankcheck.__main__ import main
 sys.argv[0] = "crankcheck"
 main()
 """
-"""Code of the other interpreter: its own packages, the engine among them, go before all that is
-borrowed from here."""
+"""Code of the other interpreter: its own packages, such as the engine, go before borrowed ones."""
 patient: Runner = partial(run_child, patience_s=UNWIND_S)
 
 
@@ -73,8 +72,7 @@ def code_key() -> str:
 def key_of(what: Iterable[object]) -> str:
     """Return a name for everything that a result depends on, but for the version of the engine.
 
-    ``what`` are the cells to verify, each of which shows its scene and settings in full, and any
-    further inputs.
+    ``what`` are the cells to verify, with scene and settings in full, and any further inputs.
     """
     parts = [code_key(), held_numpy(), platform.python_version(), processor()]
     return hashlib.sha256("\n".join([*parts, *map(repr, what)]).encode()).hexdigest()[:16]

@@ -183,7 +183,7 @@ def _factors(changes: Sequence[FollowedChange]) -> list[Headline]:
                 able = sum(max(change.old, change.new) > change.floor for change in every)
                 line = Headline(_told(top, len(alike), able), word == "better")
                 lines.append((profile != "as-shipped", -top.factor, line))
-    # The settings as shipped are what most users run: theirs come first.
+    # Most users run the settings as shipped: these come first.
     return [line for *_, line in sorted(lines, key=lambda entry: entry[:2])]
 
 

@@ -36,8 +36,7 @@ def terminal(stderr: bool = False) -> Terminal:
 
 
 def forget_odd_sizes() -> None:
-    """Remove a size of the terminal that is none: libraries misread it as a number, and make lines
-    of any width."""
+    """Remove an invalid size of the terminal: libraries make lines of any width from it."""
     for name in ("COLUMNS", "LINES"):
         if not re.fullmatch("[1-9][0-9]{0,3}", os.environ.get(name, "80"), re.ASCII):
             del os.environ[name]
@@ -51,7 +50,7 @@ def readable_everywhere() -> None:
 
 
 def tell(lines: Sequence[str]) -> None:
-    """Print the faults of a read file, if any, on standard error; a closed one is no fault."""
+    """Print the faults of a read file, if any, on standard error; an unwritable one is no fault."""
     if lines:
         with contextlib.suppress(OSError):
             typer.echo("\n".join((f"crankcheck: {lines[0]}", *lines[1:])), err=True)

@@ -16,7 +16,7 @@ from xml.etree import ElementTree as Xml
 from reports.output.write import clean, crankcheck_version, write
 
 if TYPE_CHECKING:
-    import pandas as pd  # a third of a second: not for what is only shown
+    import pandas as pd  # a third of a second: for files alone
 
 
 def junit(*suites: Xml.Element) -> str:
@@ -86,8 +86,7 @@ def table(
 ) -> str:
     """Return a table whose cells mean themselves, in ``room`` bytes; rows beyond are counted below.
 
-    A head that ends in a colon is over numbers, and stands on the right. ``what`` is the noun of
-    the counted rows.
+    A head that ends in a colon is over numbers, on the right. ``what`` names the counted rows.
     """
     rules = ["--:" if head.endswith(":") else "---" for head in heads]
     lines = [_row(head.removesuffix(":") for head in heads), _row(rules)]
@@ -150,8 +149,8 @@ def write_frame(
     """Write a table whole, or not at all.
 
     A workbook has it in ``sheet``, beside it its origin, and the additions of ``more`` to the
-    openpyxl workbook; the other kinds have no room for that. Raises CrankcheckError where the
-    system refuses.
+    openpyxl workbook; the other kinds have no room. Raises CrankcheckError where the system
+    refuses.
     """
     ending = path.suffix.lower()
     if ending == ".csv":

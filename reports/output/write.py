@@ -239,7 +239,7 @@ def write(path: Path, content: bytes | str) -> None:
         aside = path.with_name(f".{path.name[:100]}.{os.getpid()}.tmp")
         try:
             aside.unlink(missing_ok=True)  # of a process of the same number that was killed
-            with aside.open("xb") as file:  # never what stands there already, or a link
+            with aside.open("xb") as file:  # never an existing file, or a link
                 file.write(raw)
                 file.flush()
                 os.fsync(file.fileno())  # a name that stands for nothing is all that a crash leaves

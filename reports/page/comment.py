@@ -1,4 +1,4 @@
-"""A store as Markdown for a comment on a pull request: verdict, settings to use, orders and floors,
+"""A store as a Markdown comment on a pull request: verdict, settings to use, orders and floors,
 failures, and origin."""
 
 import math

@@ -210,8 +210,8 @@ def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
 
 
 def _turned(errors: Sequence[tuple[Reading, Array]], samples: int) -> dict[str, Array]:
-    """Return the errors of the angles of links: an angle relative to another link has the error of
-    that link as well."""
+    """Return the angle errors of links; a relative angle has the error of the other link as
+    well."""
     own = {e.channel.of: (e.channel.relative_to, off) for e, off in errors if e.channel.kind.turns}
     found: dict[str, Array] = {}
     for link in own:

@@ -144,8 +144,7 @@ TITLE = 24
 
 
 def _channels(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool) -> Section:
-    """Return the channels, the worst first: the log over the reference, and below it the error with
-    its limit."""
+    """Return the channels, worst first: the log over the reference, below it error and limit."""
     axes: dict[str, int] = {}
     channels = [_embedded(judged, curve, axes) for curve in drawn]
     scene = judged.beside.scene
@@ -204,7 +203,7 @@ def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> d
 
 
 def _samples(samples: Samples, axes: dict[str, int]) -> dict[str, object]:
-    """Return rows of a channel as the script reads them. Rows at the same instants share an
+    """Return rows of a channel as the script reads them; rows at the same instants share an
     axis."""
     start = float(samples.time_s[0])
     axis = json.dumps(

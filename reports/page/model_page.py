@@ -149,8 +149,7 @@ def _joint(judged: JudgedModel, joint: JointGap) -> dict[str, object]:
 
 
 def _lines(judged: JudgedModel) -> Section | None:
-    """Return the error of the three lines over time and against the step; None where no line logged
-    anything."""
+    """Return the error of the three lines over time and against the step; None without a log."""
     if not any(one.course for one in judged.three):
         return None
     return Section(
@@ -245,8 +244,8 @@ MOST = 300
 
 
 def _disturbing(judged: JudgedModel) -> Section | None:
-    """Return the parts beside the linkage that can disturb the comparison, by kind; None where
-    there are none."""
+    """Return the parts beside the linkage that can disturb the comparison, by kind; None if
+    none."""
     found = groups(judged)
     if not found:
         return None

@@ -51,7 +51,7 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
         profiles = list(dict.fromkeys(choice.profiles or ("tuned",)))
         named = [(e, profile_of(engine(e), p).name) for p in profiles for e in engines]
         variants = [Variant(engine=e, profile=p) for e, p in named]
-    if choice.engines:  # what a study names itself is named
+    if choice.engines:  # variants of a study are named
         variants = [variant for variant in variants if variant.engine in engines]
     for name, overrides in choice.overrides.items():
         variants = [

@@ -283,8 +283,7 @@ def few_swings_s(scene: Scene) -> float:
 
 
 def shortened_note(scene: Scene, lasts_s: float) -> str:
-    """Return the note on a run of elastic links that ends before the scene does by default; ""
-    where it does not."""
+    """Return the note on a run of elastic links that ends before its scene by default; or ""."""
     whole_s = scene.driver.law.period_s
     if few_swings_s(scene) >= whole_s or not math.isclose(lasts_s, few_swings_s(scene)):
         return ""

@@ -20,8 +20,7 @@ LEAST_STEPS_PER_TURN = 8
 MOST_STEPS = 300_000
 """Most logged steps: as many take about 1 GB with a six-bar."""
 MOST_SEARCHED = 200_000
-"""Most steps of a run of a search: some seconds. A search for the cheapest step needs none
-finer."""
+"""Most steps of a run of a search: some seconds. A search for the cheapest needs none finer."""
 MOST_UNLOGGED = 1_000_000_000
 """Most steps where few are logged: some hours of work."""
 STEPS_PER_TURN = 720.0

@@ -9,17 +9,17 @@
 
     segments = [4, 8, 16, 32]          # of each elastic link; 16 if left out
     springs = ["plain", "corrected"]   # between them, or "beam"; plain if left out
-    times_held = [1, 2, 4]             # steps of these, over the fewest that the segments hold with
+    times_held = [1, 2, 4]             # steps over the fewest for the segments
 
-    # or, of mechanisms that are let go, in place of steps_per_turn and turns:
+    # or, for free motion, in place of steps_per_turn and turns:
     free = true
     dt_s = [2e-3, 1e-3, 5e-4]
-    duration_s = 10                    # that of each scene if left out
+    duration_s = 10                    # the scene's own if left out
 
     [[variants]]
-    name = "stiff"                     # how tables and legends call it
+    name = "stiff"                     # its name in tables and legends
     engine = "mujoco"
-    profile = "as-shipped"             # the settings it starts from
+    profile = "as-shipped"             # the basis of its settings
     settings = { solref_timeconst_steps = [2, 4], solimp_dmin = 0.9999 }
 
 A list of values makes a variant for each of them, or for each combination of several lists.
@@ -87,8 +87,8 @@ class Variant(BaseModel):
 
 
 class Study(BaseModel):
-    """Content of a sweep; with ``times_held`` scenes with elastic links have steps of their own,
-    for their segments."""
+    """Content of a sweep; ``times_held`` gives scenes with elastic links steps for their
+    segments."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

@@ -19,8 +19,7 @@ SHARE = 0.95
 
 
 def pairs(stored: Stored) -> pd.Series[float]:
-    """Return the difference in the A/A pair of every timed cell: two timings of a run in one
-    sweep."""
+    """Return the difference in each timed cell's A/A pair: two timings of a run in one sweep."""
     cells = comparable(stored.cells)
     a, b = cells["us_per_step_a"], cells["us_per_step_b"]
     both = a.notna() & b.notna()

@@ -31,11 +31,10 @@ from models.array import Array
 
 @dataclass(frozen=True)
 class ErrorCurve:
-    """A curve through points; ``coefficient`` is C [unit / s^order], below 0 where the error comes
-    up to its floor.
+    """A curve through points; ``coefficient`` is C [unit / s^order], below 0 for errors that come
+    up to the floor.
 
-    ``misfit`` is the sum of squared residuals of ln error, ``points`` and ``parameters`` are
-    counts.
+    ``misfit`` is the sum of squared residuals of ln error, ``points`` and ``parameters`` counts.
     """
 
     order: float
@@ -269,7 +268,7 @@ class _Scan:
         return level, np.where(bad.any(axis=0), np.inf, misfit)
 
     def best(self, alignments: Array, orders: Array) -> tuple[Array, Array]:
-        """Return the units of least misfit per alignment and order, and that misfit, shape (i,
+        """Return the units of least misfit per alignment and order, with the misfit, shape (i,
         k)."""
         middle = np.full((len(alignments), len(orders)), 0.5 * (_LOW + _HIGH))
         width = 0.5 * (_HIGH - _LOW)

@@ -167,8 +167,7 @@ def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
 
 
 def _with_floor(line: LineFit, dts: Array, errors: Array, curve: ErrorCurve) -> LineFit:
-    """Return a floor, with the doubt of curves of any alignment; its order if the points show
-    it."""
+    """Return a floor, with the doubt of curves of any alignment; its order if points show it."""
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
     (alone,) = within(dts, errors, curve, [more**2])
     ordered = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]

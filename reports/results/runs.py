@@ -49,8 +49,7 @@ class CellName:
 
 
 def steps_told(names: Collection[CellName]) -> str:
-    """Return the steps of cells of one line, in words: in a turn, or in a second of a free
-    motion."""
+    """Return the steps of cells of one line, in words: in a turn, or a second of free motion."""
     turn = common_clock(name.drive for name in names).name
     steps = sorted({name.steps_per_turn for name in names})
     return f"{', '.join(f'{each:g}' for each in steps)} steps a {turn}"
@@ -58,8 +57,7 @@ def steps_told(names: Collection[CellName]) -> str:
 
 @dataclass(frozen=True)
 class CellCost:
-    """Cost of a step [microseconds], relative difference of two timings of it, and their
-    processor."""
+    """Cost of a step [microseconds], relative difference of two timings, and their processor."""
 
     us_per_step: float
     noise: float

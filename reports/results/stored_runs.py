@@ -1,5 +1,4 @@
-"""Read a stored run of either kind: the store of a sweep, or the files of `crankcheck verify
--o`."""
+"""Read a stored run of either kind: the store of a sweep, or files of `crankcheck verify -o`."""
 
 import csv
 import io

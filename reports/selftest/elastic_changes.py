@@ -1,5 +1,4 @@
-"""Runs of elastic links to plant faults in, and changes of their logs, or of an engine's own
-beams."""
+"""Runs of elastic links to plant faults in, and changes of their logs, or of engines' beams."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -164,8 +163,8 @@ def at_next_node(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
 
 
 def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
-    """Move the first node, away from the middle, by a share of the deflection there, after the look
-    at the start."""
+    """Move the first node, away from the middle, by a share of the deflection there, after the
+    start has been looked at."""
     name = next(iter(truth.scene.elastic))
     nodes = truth.cut.nodes(name)
     first, across = _line(motion, nodes)

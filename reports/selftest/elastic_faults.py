@@ -1,5 +1,4 @@
-"""Faults of elastic links: in the chain of segments, or the beams, of an engine, in its steps, and
-in its log.
+"""Faults of elastic links: in an engine's segments or beams, in its steps, and in its log.
 
 The pins of the scene move as they should to a millionth: only the bending shows the fault.
 """

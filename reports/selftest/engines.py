@@ -78,14 +78,13 @@ def soften(tools: Spoiler, session: Session, opening: Opening, share: float, ove
 
 
 def _block(tools: Spoiler, session: Session, opening: Opening, into_rad: float, _: float) -> None:
-    """Put up a post that the last link would meet so far before the end of its swing, reached in
-    mid-turn."""
+    """Put up a post that the last link would meet, in mid-turn, so far before its swing ends."""
     tools.block(session, opening, last(opening.scene), _post(opening.scene, into_rad))
 
 
 def _post(scene: Scene, into_rad: float) -> Post:
-    """Return a post beside the last link, near its end, at the end of its swing; clear of it where
-    the size is 0."""
+    """Return a post beside the last link, near its end, at the end of its swing; clear at size
+    0."""
     name = last(scene)
     link = scene.links[name]
     pivot = next(point for point in link.points if point in scene.ground)

@@ -152,8 +152,8 @@ def in_engine(
 ) -> Plant:
     """Meddle with the engine while it runs.
 
-    ``at`` says after which of so many steps; ``spoil`` is given the size, and the elapsed share of
-    the run.
+    ``at`` says after which of so many steps; ``spoil`` is given the size, and the run's elapsed
+    share.
     """
 
     def plant(size: float) -> CellRunner:
@@ -194,8 +194,7 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
 
 @lru_cache(maxsize=3)
 def _healthy(same: Same, name: str, profile: str, settings: Items, options: Items) -> Run:
-    """Return a run as the profile says: the same for all sizes of a fault, at a step, its half and
-    its quarter."""
+    """Return a run as the profile says, once for all sizes: at a step, its half and its quarter."""
     given = dict(options)
     planned = Planned(same.scene, given["dt_s"], given["steps"])
     start = way_of(same.scene, given.get("drive")).truth(planned).start

@@ -82,8 +82,7 @@ def _one_link(scene: Scene, done: Run) -> Run:
 
 
 def _velocity(scene: Scene, done: Run) -> Run:
-    """Give the last link the angular velocity of the closed form, at the instants of the engine's
-    velocities."""
+    """Give the last link the closed form's angular velocity, at the instants of the engine's."""
     assert done.velocity_time_s is not None
     name = last(scene)
     omega = solve(scene, done.velocity_time_s, bound=False).links[name].omega

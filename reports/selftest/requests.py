@@ -87,8 +87,7 @@ def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str
 
 
 def _one_more(name: str) -> dict[str, Any]:
-    """Return a setting that is a whole number, one above profile tuned; none where there is no such
-    setting."""
+    """Return a setting that is a whole number, one above profile tuned; none without one."""
     tuned = engine(name).profiles[PROFILE].settings
     whole = (n for n, setting in tuned.items() if type(setting.value) is int)
     return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}

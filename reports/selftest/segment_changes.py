@@ -36,8 +36,8 @@ def in_chain(change: Callable[[Scene, float], Scene]) -> Plant:
 
 
 def in_elastic_scene(change: Callable[[Scene, float], Scene]) -> Plant:
-    """Give the engine the segments of another scene, on its periodic motion: all of it is sound,
-    and another machine."""
+    """Give the engine the segments of another scene, on its periodic motion: a sound other
+    machine."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _: State, *args: Any, **options: Any) -> Run:
@@ -163,7 +163,7 @@ def modulus_and_mass(scene: Scene, share: float) -> Scene:
 
 
 def longer(scene: Scene, share: float) -> Scene:
-    """Lengthen the elastic link by a share, and keep its spring rates."""
+    """Lengthen the elastic link by a share, with the spring rates of its new length."""
     name, link = next((n, scene.links[n]) for n in scene.elastic)
     more = 1.0 + share
     points = {point: (more * x, more * y) for point, (x, y) in link.points.items()}

@@ -48,8 +48,8 @@ class GradeRule:
 
 
 def outcome(errors: ErrorSeries, within: float) -> Grade:
-    """Return the grade of a run by the first rule that applies; where errors keep to bounds, with
-    their growth in a turn.
+    """Return the grade of a run by the first rule that applies; for bounded errors with their
+    growth in a turn.
 
     Parameters
     ----------

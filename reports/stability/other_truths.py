@@ -41,7 +41,7 @@ def at_limit(trial: Trial, run: Run) -> ErrorSeries:
     driver = law.at(motion.time_s)[0]
     crank = motion.links[scene.driver.link].theta
     low, high = sorted((float(driver[0]), trial.limit_rad))
-    with np.errstate(over="ignore", invalid="ignore"):  # what has come apart is judged, not warned
+    with np.errstate(over="ignore", invalid="ignore"):  # runs that came apart are judged
         spin = np.max([np.abs(link.omega) for link in motion.links.values()], axis=0)
         gap = np.max([np.abs(one) for one in run.gaps.values()], axis=0) / scene.longest_m
         off = np.abs(crank - np.clip(driver, low, high))

@@ -188,8 +188,8 @@ def _graded(
 ) -> GradedPicture:
     """Return a run of the child process, with its picture where it is of the grid.
 
-    A run without a reference, or a request that no engine takes, is no fault of the engine: it
-    raises CrankcheckError.
+    Raises CrankcheckError for a run without a reference, or a request that the engine can not take:
+    these are no faults of the engine.
     """
     answer = child.call(graded_by_name, given, value, grid)
     if not isinstance(answer, Lost):

@@ -210,8 +210,7 @@ class Manifest:
     def joined(
         self, later: Manifest, folder: Path, digests: Collection[tuple[str, str]]
     ) -> Manifest:
-        """Return this one and a later run; ``digests`` are the names and hashes of the scenes that
-        there are cells of.
+        """Return this one and a later run; ``digests`` are names and hashes of scenes with cells.
 
         Raises CrankcheckError where a scene has changed since.
         """

@@ -130,8 +130,7 @@ def _timings(folder: Path, timings: Folder) -> Iterator[Damage]:
 
 
 def _asked(manifest: Manifest) -> dict[str, int]:
-    """Return how many cells of each line were requested, from the numbers of steps of the studies,
-    or of their own."""
+    """Return the requested number of cells of each line, from the steps of studies, or its own."""
     asked: dict[str, set[float]] = {}
     for run in manifest.runs:
         usual = run.get("study", {}).get("steps_per_turn", ())

@@ -12,7 +12,6 @@ CHOICES = (THREADS, "GOTO_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 def one_thread(variables: MutableMapping[str, str]) -> None:
-    """Set one thread in the variables of a process that has not imported numpy, unless they give a
-    number."""
+    """Set one thread in the variables of a process without numpy, unless they give a number."""
     if not any(variables.get(name) for name in CHOICES):
         variables[THREADS] = "1"

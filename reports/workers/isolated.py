@@ -122,7 +122,7 @@ class Isolated(Generic[Result]):
         variables = dict(os.environ)
         one_thread(variables)
         child = self._child = subprocess.Popen(
-            # The packages of this process, whatever stands in the folder that it works in.
+            # The packages of this process, for any contents of its working folder.
             [sys.executable, "-P", "-c", START, str(int(1e9 * self.limits.memory_gb)), *sys.path],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -177,7 +177,7 @@ def _watched(child: subprocess.Popen[bytes], limit_s: float) -> Iterator[threadi
         yield late
     finally:
         clock.cancel()
-        clock.join()  # it may be at it: the next job must not be what it kills
+        clock.join()  # it may be at it, and must not kill the next job
 
 
 def _unpacked(raised: bytes) -> Exception | None:
@@ -205,7 +205,7 @@ def _ending(code: int) -> str:
 
 
 FEW = 4
-"""Most items that are done in this process: a second one takes longer to start."""
+"""Most items that are done in this process: a second process takes longer to start."""
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
 BOUNDLESS = Limits(MOST_S, MOST_GB)

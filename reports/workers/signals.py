@@ -68,8 +68,8 @@ def _stop(number: int, _frame: FrameType | None) -> None:
 
 
 def _unraisable(lost: sys.UnraisableHookArgs) -> None:
-    """Report an error that nobody can catch, as in the end of an object, and forget it; a signal is
-    not to be forgotten."""
+    """Report an error that nobody can catch, as in the end of an object; end the process at a
+    signal."""
     if isinstance(lost.exc_value, Stopped):
         _end_at_once(lost.exc_value)
     sys.__unraisablehook__(lost)
@@ -84,8 +84,8 @@ def _end_at_once(stopped: Stopped) -> None:
 
 
 def broken_pipe_ends(at_once: bool) -> None:
-    """Let a pipe that nobody reads end the process by itself (141), as it should while only help is
-    printed; with workers to talk to it is an error to be handled."""
+    """Choose if a pipe that nobody reads ends the process by itself (141), as it should while only
+    help is printed; with workers to talk to it is an error to be handled."""
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL if at_once else signal.SIG_IGN)
 
@@ -141,8 +141,8 @@ def run_child(
 ) -> Ended:
     """Run a command and wait for it.
 
-    The child is born deaf to Ctrl-C and SIGTERM, which this process handles: it signals the child
-    to end and, ``patience_s`` later, kills it. A child that wants the time to unwind calls
+    The child is born deaf to Ctrl-C and SIGTERM, which this process handles: it asks the child to
+    end and kills it ``patience_s`` later. A child that wants the time to unwind calls
     `leave_to_parent`.
     """
     child: subprocess.Popen[str] | None = None

@@ -113,8 +113,7 @@ class FreeCourses:
         }
 
     def _cell(self, key: str, time_s: Array, truth: Motion | None) -> dict[str, object]:
-        """Return the error of a run in the drawing, and its curves over its own instants by
-        name."""
+        """Return the error of a run in the drawing, and its curves at its own instants by name."""
         trace = self.report.stored.trace(key)
         curves = run_curves(self.scene, trace)
         off = None

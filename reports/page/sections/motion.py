@@ -151,8 +151,8 @@ class _DrawnScene:
         }
 
     def _axis(self, parts: ErrorParts) -> dict[str, object]:
-        """Return the place of the driver [deg or m], angles from the first turn on, and the part of
-        the period [%]."""
+        """Return the driver's place [deg or m], angles from the first turn on, and the period part
+        [%]."""
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
         return {
             "angle": [round(float(a), 6) for a in told_places(self.scene, parts.driver_rad)],

@@ -80,8 +80,7 @@ def _escape(character: str) -> str:
 
 
 BUDGET = 1_900_000
-"""Characters for all drawings and curves: with Plotly (4.8 MB) a page of 560 cells stays below 8
-MB."""
+"""Characters for all drawings and curves: with Plotly (4.8 MB), 560 cells stay below 8 MB."""
 LEAST = 2
 """Least number of steps of a line: the coarsest and the finest are always shown."""
 

@@ -1,4 +1,4 @@
-"""Elastic links as chains of segments: limits of an engine on their deflection."""
+"""Elastic links as chains of segments: cases in which an engine loses their deflection."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,7 +14,7 @@ RATIO = 10.5
 """First frequency of the scene's coupler over the driver's speed."""
 SEGMENTS, STEPS = 4, 1440.0
 STEPS_OF_RATIO = 100.0
-"""Steps in a turn for each unit of the frequency ratio: twice the need of explicit steps for so few
+"""Steps in a turn per unit of frequency ratio: twice the need of explicit steps for these
 segments."""
 
 

@@ -65,8 +65,7 @@ def _stiff(steps: float) -> Trial:
 
 
 def _beside_flat(off_rad: float) -> Trial:
-    """Return a parallelogram that is released so far from its flat position, and swings as far from
-    the other one."""
+    """Return a parallelogram released so far from one flat position, and swinging to the other."""
     flat = fourbar("parallelogram-let-go", 0.1, 0.3, 0.1, 0.3, source="Grashof's limiting case")
     # Below its flat position C lies to the right of the line from B to D.
     return from_rest(replace(flat, gravity_m_s2=DOWN, branch={"C": -1}), -off_rad, SWING_S)
