@@ -135,8 +135,8 @@ class Advice:
         return promise is not None and not promise.seen.grows and not self.caution(offer)
 
     def caution(self, offer: Offer) -> str:
-        """Return where a study has it over the target at finer steps than those of the promise; ""
-        where it does not, or does not say."""
+        """Return where a study has it over the target at finer steps than the promise; "" where it
+        does not, or does not say."""
         demand, promise, choice = self.demand, offer.reached.promise, offer.reached.choice
         if promise is None:
             return ""

@@ -103,8 +103,7 @@ def evidence(
 
     A line of cells serves where the scene is the same but for the size of the speed, the engine is
     the version installed, the drive the usual one, and nothing but the crank sets a time scale: no
-    gravity, loads or constant friction, and no setting in seconds, unless the speed is that of the
-    study.
+    gravity, loads or constant friction, and no setting in seconds, unless at the study's own speed.
     """
     by_key = {choice.key: choice for choice in wanted}
     scenes = {scene.name: scene for scene in demand.scenes}

@@ -114,9 +114,9 @@ class SearchResult:
 
     ``at_frame`` is the worst with one step to a frame, None where such a step is too long for a
     turn. ``promise`` is the worst with the fewest sub-steps that reach the target, over the whole
-    run of every scene now; ``held_at`` are the larger numbers that were seen to reach it too. Where
-    none does it is None, and ``nearest`` has the least error over the target of all that were
-    looked at; ``unsteady`` reach it, and larger numbers do not. ``ended`` is the run that ended the
+    run of every scene now; ``held_at`` are the larger numbers that were seen to reach it too. It is
+    None where none does, and ``nearest`` has the least error over the target of all looks;
+    ``unsteady`` numbers reach it, and larger ones do not. ``ended`` is the run that ended the
     search, where one did.
     """
 

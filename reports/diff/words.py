@@ -193,7 +193,7 @@ def _several(diff: Diff) -> frozenset[str]:
 
 LEAST_NOISE = 0.1
 """Least noise between sweeps, larger than within one: another machine of the same kind, or one with
-other work beside. Up to this, costs are equal however near those were."""
+other work beside. Costs are equal up to this, even if timings within a sweep are nearer."""
 
 
 @dataclass(frozen=True)

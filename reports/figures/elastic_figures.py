@@ -135,8 +135,8 @@ def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, la
 
 
 def _torque(course: ElasticCourse) -> Figure | None:
-    """Draw the driving torque with elastic and with rigid links, and the difference; None if
-    free."""
+    """Draw the driving torque with elastic links and with rigid ones, and their difference; None
+    without a drive."""
     if course.torques is None:
         return None
     elastic, rigid = course.torques

@@ -37,7 +37,7 @@ def _torque(turn: ForceTurn) -> Figure | None:
     without forces.
 
     Shares are drawn where weights or loads act, or friction: the drive balances the reduced torque
-    and friction, and the rest is inertia. Where friction locks, a turn has no mean.
+    and friction, and the rest is inertia. A turn has no mean where friction locks.
     """
     if not turn.has_forces:
         return None

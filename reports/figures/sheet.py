@@ -162,7 +162,7 @@ def grid(
 ) -> tuple[Figure, list[Axes]]:
     """Return a page with a panel per name; ``labels`` are for the two axes.
 
-    Where panels are ``apart`` each has numbers of its own on its vertical axis.
+    Panels that are ``apart`` have numbers of their own on their vertical axes.
     """
     columns = min(MOST_COLUMNS, len(names))
     rows = math.ceil(len(names) / columns)

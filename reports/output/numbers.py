@@ -65,7 +65,7 @@ def listed(words: Sequence[str], last: str = "and") -> str:
 def finite(value: object, digits: int | None = None) -> object:
     """Return a value, and all that it holds, for JSON: numbers that are not finite are None.
 
-    With ``digits`` numbers are cut to so many significant ones, and whole ones have no point.
+    Numbers are cut to so many significant ``digits``, if given, and whole ones have no point.
     """
     if isinstance(value, Mapping):
         return {str(key): finite(each, digits) for key, each in value.items()}

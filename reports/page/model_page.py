@@ -227,7 +227,7 @@ def _motion(judged: JudgedModel) -> Section:
 
 
 def _instants(judged: JudgedModel) -> Array:
-    """Return the instants of the longest last turn of a line; without any, those of a turn."""
+    """Return the instants of the longest last turn of a line; of the last period without any."""
     empty = np.zeros(0)
     times = [one.last_turn.get("time_s", empty) for one in judged.three if one.status == "ok"]
     longest = max(times, key=len, default=empty)
@@ -244,8 +244,7 @@ MOST = 300
 
 
 def _disturbing(judged: JudgedModel) -> Section | None:
-    """Return the parts beside the linkage that can disturb the comparison, by kind; None if
-    none."""
+    """Return parts beside the linkage that can disturb the comparison, by kind; None if none."""
     found = groups(judged)
     if not found:
         return None

@@ -199,7 +199,7 @@ ELASTIC_CAPTIONS: Mapping[str, str] = {
 MOST = 1201
 """Most instants of the drawing."""
 EVERY = 2
-"""Stride from the sampled places of a link to those of the drawing."""
+"""Stride of the drawn places among the sampled places of a link."""
 STEPS = (1.0, 2.0, 5.0)
 """Factors that are offered within a power of ten."""
 

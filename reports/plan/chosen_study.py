@@ -110,7 +110,7 @@ def _free_lines(study: Study, choice: StudyChoice) -> dict[str, object]:
 
 
 def study_engines(study: Study, named: Sequence[str]) -> list[str]:
-    """Return the named engines, or else the usual ones and those of the study."""
+    """Return the named engines, or else the usual ones and the study's own."""
     own = [] if named else [_by_name(variant).engine for variant in study.variants]
     return list(dict.fromkeys([*chosen_engines(named), *own]))
 

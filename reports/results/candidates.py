@@ -161,7 +161,7 @@ def front(cells: pd.DataFrame, noise: float = 0.0) -> list[str]:
     """Return keys of the cells that no other beats in both error and time, from the slowest on.
 
     ``cells`` are rows of a store, of one scene; cells that did not end well, or were not timed,
-    take no part. With ``noise`` a time counts as shorter only if it is shorter by more than that.
+    take no part. A time counts as shorter only if it is shorter by more than ``noise``.
     """
     good = cells[(cells["status"] == "ok") & cells["s_per_turn"].notna()]
     rows = good[["key", "place_pure", "s_per_turn"]].itertuples(index=False)

@@ -54,8 +54,8 @@ def equal(a: float, b: float, within: float) -> bool:
 class Reached:
     """A target error reached on a line: steps a turn, and time per simulated turn [s].
 
-    ``s_per_turn`` is NaN where the cells were not timed. Where the coarsest step that ended well
-    already reaches the target, that step is taken: a coarser one may do, but was not run.
+    ``s_per_turn`` is NaN where the cells were not timed. The coarsest step that ended well is taken
+    if it already reaches the target: a coarser one may do, but was not run.
     """
 
     steps_per_turn: float

@@ -86,10 +86,10 @@ def called(variant: str, drive: Drive) -> str:
 def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
     """Return the lines of a store, by scene and variant in the order of its study.
 
-    ``quantity`` is the column of ``stored.cells`` that is fitted. Where a store holds several lines
+    ``quantity`` is the column of ``stored.cells`` that is fitted. Only the newest of several lines
     of one scene, engine, variant and drive (of another version of the engine, with other settings
-    under the same name, over other turns), only the newest is given: the highest version, and the
-    last written of that. Times are from one processor (see `machines`).
+    under the same name, over other turns) is given: the highest version, and the last written of
+    that. Times are from one processor (see `machines`).
     """
     cells = comparable(stored.cells)
     chosen = _newest(cells)

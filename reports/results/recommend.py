@@ -28,7 +28,7 @@ class Recommendation:
     """Settings for a target, or the reason why there are none.
 
     The promise uses measured cells alone: the error of place of ``best`` is at most ``target`` on
-    every scene. Where nothing reaches the target ``reason`` says so, and ``best`` comes nearest.
+    every scene. ``reason`` says that nothing reaches the target, and ``best`` comes nearest then.
 
     ``least_steps`` is where along the fits every scene meets the target, between measured steps;
     None where a fit does not show it. ``equal_to`` cost the same, within the noise, and have the
@@ -70,10 +70,10 @@ def recommendations(
     """Return one for each engine and target, of driven scenes, of free motion, and of both with
     elastic links, which have targets of their own.
 
-    Of all settings and measured steps whose error is at most the target on every scene of the
-    store, the ones with the least time per turn (geometric mean over the scenes) are chosen; among
-    settings that are equal within the noise, the ones with the least error. Of two steps of the
-    same settings the longer costs less: that takes no clock.
+    The settings and measured step with the least time per turn (geometric mean over the scenes) are
+    chosen, of all with an error of at most the target on every scene of the store; the least error
+    decides among settings that are equal within the noise. The longer of two steps of the same
+    settings costs less: that takes no clock.
     """
     within = noise(stored)
     every = lines(stored)
@@ -121,7 +121,7 @@ def _recommended(
 def _cheapest(timed: Sequence[Candidate], within: float) -> tuple[Candidate, tuple[str, ...]]:
     """Return the most accurate of the cheapest, within the noise; and the names of equal cost.
 
-    Of each set of settings only the one with the fewest steps takes part.
+    Only the fewest steps of each set of settings take part.
     """
     longest: dict[tuple[str, str], Candidate] = {}
     for one in sorted(timed, key=lambda one: one.steps_per_turn):

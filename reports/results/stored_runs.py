@@ -31,9 +31,9 @@ Contents = tuple[list[CellRow], StoredRun]
 def read_run(folder: Path, version: str | None = None, option: str = "") -> StoredRun:
     """Return the run in a folder.
 
-    A store keeps every version of an engine that it was filled with. Among cells that are otherwise
-    equal the one written last counts, unless ``version`` is given: then an engine that has cells of
-    that version is taken with these alone. ``option`` is the option for the version, for messages.
+    A store keeps every version of an engine that it was filled with. The last written of otherwise
+    equal cells counts, unless ``version`` is given: then an engine that has cells of that version
+    is taken with these alone. ``option`` is the option for the version, for messages.
 
     Raises
     ------

@@ -85,10 +85,10 @@ class Graded:
 
     ``error`` is the worst error of place, ``gap`` the widest open pin, ``drive`` the error of the
     crank: pure numbers (rad, or lengths over the longest link), NaN where there is none. ``sine``
-    is how far the scene stays from its nearest singular position (1 best, 0 singular). Where the
-    outcome has a place, ``at_s`` [s] and ``at_driver_rad`` [rad, or m of a slider] give it.
-    ``grid`` is False for the values of a bisection. ``force`` is the worst error of forces, a share
-    of the largest of their kind, NaN where none were requested; it is shown, and does not grade.
+    is how far the scene stays from its nearest singular position (1 best, 0 singular). ``at_s`` [s]
+    and ``at_driver_rad`` [rad, or m of a slider] give the place of the outcome, if any. ``grid`` is
+    False for the values of a bisection. ``force`` is the worst error of forces, a share of the
+    largest of their kind, NaN where none were requested; it is shown, and does not grade.
     """
 
     case: str

@@ -50,7 +50,7 @@ def main(memory_bytes: int) -> None:
 
 
 def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
-    """Hand on the input; end the process with the one that sends it."""
+    """Hand on the input; end the process when the input ends."""
     while raw := receive(source):
         jobs.put(raw)
     os._exit(0)

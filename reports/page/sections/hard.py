@@ -79,8 +79,7 @@ def _from(error: float) -> str:
 def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
     """Return the shown pictures with the numbers of their runs, in the order of the map.
 
-    Where the room is short, the easiest failures of each case in each engine, its limits, come
-    first.
+    The easiest failures of each case in each engine, its limits, come first if the room is short.
     """
     places = {case.name: index for index, case in enumerate(matrix.cases)}
     lines = {(run.engine, run.profile): None for run in matrix.runs}
