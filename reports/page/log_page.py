@@ -203,8 +203,7 @@ def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> d
 
 
 def _samples(samples: Samples, axes: dict[str, int]) -> dict[str, object]:
-    """Return rows of a channel as the script reads them; rows at the same instants share an
-    axis."""
+    """Return rows of a channel as the script reads them; rows at equal instants share an axis."""
     start = float(samples.time_s[0])
     axis = json.dumps(
         {

@@ -140,8 +140,7 @@ class Placing:
         return True
 
     def _take_free(self, link: Link) -> bool:
-        """Place a link at its angle about its first point of the reference, as no other is
-        known."""
+        """Place a link at its angle about its first point of the reference; no other is known."""
         if link.name not in self.turned:
             return False
         about = next(iter(link.points))

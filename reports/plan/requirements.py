@@ -88,8 +88,8 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
     Raises
     ------
     CrankcheckError
-        Friction that grows with the load of a joint, a load over time whose table ends before, no
-        mass that moves, a start that can not be assembled or contradicts itself.
+        Friction that grows with the reaction of a joint, a load over time whose table ends before,
+        no mass that moves, a start that can not be assembled or contradicts itself.
     """
     from analytic.free.release import release  # slow to import, for free motion alone
 

@@ -87,8 +87,7 @@ class Variant(BaseModel):
 
 
 class Study(BaseModel):
-    """Content of a sweep; ``times_held`` gives scenes with elastic links steps for their
-    segments."""
+    """Content of a sweep; ``times_held`` gives elastic links steps for their segments."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

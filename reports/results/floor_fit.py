@@ -268,8 +268,7 @@ class _Scan:
         return level, np.where(bad.any(axis=0), np.inf, misfit)
 
     def best(self, alignments: Array, orders: Array) -> tuple[Array, Array]:
-        """Return the units of least misfit per alignment and order, with the misfit, shape (i,
-        k)."""
+        """Return units of least misfit per alignment and order, with the misfit, shape (i, k)."""
         middle = np.full((len(alignments), len(orders)), 0.5 * (_LOW + _HIGH))
         width = 0.5 * (_HIGH - _LOW)
         for number in (41, *[11] * 4):

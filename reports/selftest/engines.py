@@ -83,8 +83,7 @@ def _block(tools: Spoiler, session: Session, opening: Opening, into_rad: float, 
 
 
 def _post(scene: Scene, into_rad: float) -> Post:
-    """Return a post beside the last link, near its end, at the end of its swing; clear at size
-    0."""
+    """Return a post beside the last link, near its end, where its swing ends; clear at size 0."""
     name = last(scene)
     link = scene.links[name]
     pivot = next(point for point in link.points if point in scene.ground)

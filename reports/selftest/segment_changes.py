@@ -36,8 +36,7 @@ def in_chain(change: Callable[[Scene, float], Scene]) -> Plant:
 
 
 def in_elastic_scene(change: Callable[[Scene, float], Scene]) -> Plant:
-    """Give the engine the segments of another scene, on its periodic motion: a sound other
-    machine."""
+    """Give the engine the segments of another scene, on its periodic motion: sound, but another."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _: State, *args: Any, **options: Any) -> Run:

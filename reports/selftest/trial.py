@@ -236,8 +236,7 @@ def _named(fault: Fault, checked: Checked) -> Finding | None:
 
 
 def _least(fault: Fault, caught: Callable[[float], bool]) -> float:
-    """Return the smallest size caught, as all larger tried ones are; 0 where no tried size
-    escapes."""
+    """Return the smallest size caught, as all larger tried ones are; 0 if no tried one escapes."""
     high = fault.planted
     for low in _smaller(fault):
         if not low or not caught(low):

@@ -220,8 +220,7 @@ def run_all(
     done: Callable[[Result], None] = lambda _: None,
     apart: bool = False,
 ) -> list[Result]:
-    """Return ``work`` on all items, in their order; ``done`` is called with each result as it
-    comes.
+    """Return ``work`` on all items, in their order; ``done`` is called with each of them.
 
     One job has no limits. Few items, or one job, are done in this process, unless they have to be
     ``apart``: other people's code may end the process without a word. ``lost`` gives the result of

@@ -68,8 +68,7 @@ def _stop(number: int, _frame: FrameType | None) -> None:
 
 
 def _unraisable(lost: sys.UnraisableHookArgs) -> None:
-    """Report an error that nobody can catch, as in the end of an object; end the process at a
-    signal."""
+    """Report an error that nobody can catch, as in an object's end; end the process at a signal."""
     if isinstance(lost.exc_value, Stopped):
         _end_at_once(lost.exc_value)
     sys.__unraisablehook__(lost)
