@@ -1,1 +1,1 @@
-"""What engines reach at a program's own frame time, and the sub-steps that reach a target."""
+"""Errors of engines at a program's own frame time, and the sub-steps that reach a target."""

@@ -1,4 +1,4 @@
-"""Advice: what was found, cheapest first, with the best of each engine and its snippet."""
+"""Advice: the searched choices, cheapest first, with the best of each engine and its snippet."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -16,15 +16,15 @@ from sim.registry import engine, offering
 from sim.registry.offers import Stepping, frame_snippet
 
 ROUNDS = 10
-"""How often each is timed, one after the other: a slow minute then slows all."""
+"""Rounds of timing, one after the other: a slow minute then slows all."""
 GUESS_US = 30.0
-"""Of a step; high, so that a repeat is short: of many short ones the least is hardly disturbed."""
+"""Guess of a step; high, so that a repeat is short: the least of many is hardly disturbed."""
 
 
 @dataclass(frozen=True)
 class Price:
-    """What the dearest of the scenes takes with a promise: a step [microseconds], and a second of
-    the mechanism's own time [s], which is the share of real time; least of all repeats."""
+    """Cost of the dearest of the scenes with a promise: a step [microseconds], and a second of the
+    mechanism's own time [s], which is the share of real time; least of all repeats."""
 
     scene: str
     us_per_step: float
@@ -33,8 +33,8 @@ class Price:
 
 @dataclass(frozen=True)
 class Prices:
-    """A price for each of those reached, None where there is no promise or its process was lost;
-    ``noise`` is the relative difference up to which two are called equal, NaN of none."""
+    """A price for each result, None where there is no promise or its process was lost; ``noise`` is
+    the relative difference up to which two are called equal, NaN of none."""
 
     each: tuple[Price | None, ...]
     noise: float
@@ -58,14 +58,14 @@ def prices(
 
 
 def timings(demand: Demand, found: Sequence[SearchResult]) -> int:
-    """How many timings there are."""
+    """Return the number of timings."""
     return ROUNDS * len(demand.scenes) * sum(one.promise is not None for one in found)
 
 
 def _price(
     demand: Demand, one: SearchResult, timings: Sequence[tuple[Repeats, Repeats] | None]
 ) -> Price | None:
-    """That of the dearest scene."""
+    """Return the price of the dearest scene."""
     least = [min(*timing[0], *timing[1]) for timing in timings if timing is not None]
     if one.promise is None or len(least) < len(demand.scenes):
         return None
@@ -76,27 +76,27 @@ def _price(
 
 @dataclass(frozen=True)
 class Offer:
-    """A choice with what it reaches, and what that costs."""
+    """A choice with its search result, and the cost of that."""
 
     reached: SearchResult
     price: Price | None
 
     @property
     def s_per_s(self) -> float:
-        """The share of real time; infinite where it is not known."""
+        """Share of real time; infinite where it is not known."""
         return math.inf if self.price is None else self.price.s_per_s
 
     @property
     def place(self) -> tuple[bool, float, float]:
-        """Where it stands in a table: promises by their price, then the rest by their error."""
+        """Place in a table: promises by their price, then the rest by their error."""
         best = self.reached.promise or self.reached.nearest
         return not self.reached.promise, self.s_per_s, best.error if best else math.inf
 
 
 @dataclass(frozen=True)
 class Advice:
-    """All offers, cheapest first; ``noise`` is up to which two prices are called equal, and
-    ``facts`` where all that comes from. The scenes were ``named``, or are the usual ones."""
+    """All offers, cheapest first; ``noise`` is the difference up to which two prices are called
+    equal, and ``facts`` the provenance. The scenes were ``named``, or are the usual ones."""
 
     demand: Demand
     offers: tuple[Offer, ...]
@@ -111,8 +111,8 @@ class Advice:
 
     @property
     def best(self) -> tuple[Offer, ...]:
-        """Of each engine the cheapest promise of those that nothing is said against, where there
-        are any; of those that cost the same, within the noise, the one with the least error."""
+        """Cheapest promise of each engine, of the steady ones where there are any; among promises
+        that cost the same, within the noise, the one with the least error."""
         by_engine: dict[str, list[Offer]] = {}
         for offer in self.promises:
             by_engine.setdefault(offer.reached.choice.engine, []).append(offer)
@@ -121,22 +121,22 @@ class Advice:
 
     @property
     def nearest(self) -> Offer | None:
-        """What comes nearest where nothing reaches the target."""
+        """Nearest offer where nothing reaches the target."""
         over = [offer for offer in self.offers if offer.reached.nearest]
         return min(over, key=lambda offer: offer.place, default=None)
 
     def equal(self, a: Offer, b: Offer) -> bool:
-        """Whether two cost the same, as far as could be seen."""
+        """True if two cost the same, within the noise."""
         return equal(a.s_per_s, b.s_per_s, self.noise)
 
     def steady(self, offer: Offer) -> bool:
-        """Whether a promise neither has an error that grows, nor breaks at finer steps."""
+        """True if the error of a promise does not grow, and it holds at finer steps."""
         promise = offer.reached.promise
         return promise is not None and not promise.seen.grows and not self.caution(offer)
 
     def caution(self, offer: Offer) -> str:
-        """Where a study has it over the target at finer steps than those of the promise; "" where
-        it does not, or tells nothing."""
+        """Return where a study has it over the target at finer steps than the promise; "" where it
+        does not, or does not say."""
         demand, promise, choice = self.demand, offer.reached.promise, offer.reached.choice
         if promise is None:
             return ""
@@ -156,7 +156,7 @@ class Advice:
         )
 
     def snippet(self, offer: Offer) -> str:
-        """Text to copy and paste, headed by what it promises; empty where there is none."""
+        """Return text to copy and paste, headed by its promise; empty where there is none."""
         promise, choice, demand = offer.reached.promise, offer.reached.choice, self.demand
         if promise is None or choice.engine not in offering("snippet"):
             return ""
@@ -184,6 +184,6 @@ class Advice:
 
 
 def offers(found: Sequence[SearchResult], priced: Prices) -> tuple[Offer, ...]:
-    """What was found and timed, cheapest first."""
+    """Return the results with their prices, cheapest first."""
     every = [Offer(one, price) for one, price in zip(found, priced.each, strict=True)]
     return tuple(sorted(every, key=lambda offer: offer.place))

@@ -1,4 +1,4 @@
-"""What is asked for: scenes at a speed, the frame of a program, and the error to reach."""
+"""A demand: scenes at a speed, the frame of a program, and the error to reach."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 
 MOST_SUBSTEPS = 4096
-"""Of a frame; who needs more has the wrong settings."""
+"""Most sub-steps of a frame; a need for more shows wrong settings."""
 COARSEST = 1.0
-"""An error of place that no target is above: a radian, or the longest link."""
+"""Upper limit of a target, an error of place: a radian, or the longest link."""
 SLOWEST, FASTEST = 1e-9, 1e9
 """Speeds of a driver [rad/s]."""
 
@@ -45,7 +45,7 @@ class Demand:
 
     @property
     def period_s(self) -> float:
-        """Of a turn."""
+        """Period of a turn [s]."""
         return math.tau / abs(self.speed_rad_s)
 
     @property
@@ -54,20 +54,20 @@ class Demand:
 
     @property
     def least(self) -> int:
-        """The fewest sub-steps of a frame with which a turn has steps enough to be one."""
+        """Fewest sub-steps of a frame that give a turn enough steps."""
         return max(1, math.ceil(LEAST_STEPS_PER_TURN * (1 - 1e-12) / self.frames_per_turn))
 
     @property
     def most(self) -> int:
-        """The most sub-steps that are looked for; a run with twice as many is still to be done."""
+        """Most sub-steps of the search; a run with twice as many is still possible."""
         return min(MOST_SUBSTEPS, int(MOST_SEARCHED / (2.0 * self.turns * self.frames_per_turn)))
 
     def steps_per_turn(self, substeps: int) -> float:
         return self.frames_per_turn * substeps
 
     def cell(self, scene: Scene, choice: Choice, substeps: int, longer: float = 1.0) -> Cell:
-        """A run with a frame cut into equal parts, so many times as long as was asked for; a longer
-        one only as far as steps are run."""
+        """Return a run with a frame cut into equal parts, ``longer`` times the demanded length, as
+        far as steps are run."""
         steps = math.ceil(self.turns * self.steps_per_turn(substeps) * (1 - 1e-12))
         return Cell(
             scene=scene,
@@ -82,9 +82,9 @@ class Demand:
 
 
 def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
-    """The scene with its driver at another constant speed, from where it starts.
+    """Return the scene with its driver at another constant speed, from where it starts.
 
-    Raises CrankcheckError for a driver with another law, which no speed takes the place of.
+    Raises CrankcheckError for a driver with another law, which no speed can replace.
     """
     law = scene.driver.law
     if not isinstance(law, ConstantSpeed):
@@ -99,7 +99,7 @@ def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
 def demanded(
     scenes: Sequence[Scene], speed_rad_s: float, frame_s: float, target: float, turns: float
 ) -> Demand:
-    """What is asked for, checked.
+    """Return the demand, checked.
 
     Raises
     ------
@@ -133,8 +133,7 @@ def demanded(
 
 
 def _refuse_frame(demand: Demand) -> None:
-    """Refuse a frame that is too long, or so short that a run has too many. Raises
-    CrankcheckError."""
+    """Refuse a frame that is too long, or so short that a run has too many; CrankcheckError."""
     per_turn, turn = demand.frames_per_turn, f"a turn at {demand.speed_rad_s:g} rad/s"
     if per_turn * MOST_SUBSTEPS < LEAST_STEPS_PER_TURN:
         longest = demand.period_s * MOST_SUBSTEPS / LEAST_STEPS_PER_TURN
@@ -160,8 +159,7 @@ USUAL = "as-shipped"
 
 @dataclass(frozen=True)
 class Choice:
-    """Complete settings of an engine, by the name of a profile or of a study's variant; ``profile``
-    is what they were derived from."""
+    """Complete settings of an engine, by the name of its profile or a variant, from ``profile``."""
 
     engine: str
     name: str
@@ -174,7 +172,7 @@ class Choice:
 
     @property
     def words(self) -> str:
-        """What is set otherwise than the engine is shipped."""
+        """Settings that differ from the engine as shipped."""
         profiles = engine(self.engine).profiles
         own = resolved(profiles[USUAL], None) if USUAL in profiles else {}
         differing = [f"{n} {value_text(v)}" for n, v in self.settings.items() if own.get(n) != v]
@@ -182,24 +180,24 @@ class Choice:
 
     @property
     def in_seconds(self) -> tuple[str, ...]:
-        """The settings that make errors depend on the speed."""
+        """Settings that make errors depend on the speed."""
         return engine(self.engine).in_seconds(self.settings)
 
     @property
     def key(self) -> str:
-        """What it is told by, whatever it is called."""
+        """Identity of the settings, independent of their name."""
         return key_of(self.engine, self.settings)
 
 
 def key_of(name: str, settings: Mapping[str, object]) -> str:
-    """An engine with complete settings, as a text."""
+    """Return an engine with complete settings, as a text."""
     return f"{name} {json.dumps(dict(settings), sort_keys=True)}"
 
 
 def choices(engines: Sequence[str], others: Iterable[Choice]) -> tuple[Choice, ...]:
-    """All profiles of the engines, the variants of the shipped study, and what others there are.
+    """Return all profiles of the engines, the variants of the shipped study, and the others.
 
-    Variants with the settings of another choice are left out, whatever they are called.
+    Variants with the settings of another choice are left out, under any name.
     """
     every = [
         Choice(name, profile.name, profile.name, resolved(profile, None))
@@ -214,7 +212,7 @@ def choices(engines: Sequence[str], others: Iterable[Choice]) -> tuple[Choice, .
 
 
 def _shipped() -> Iterator[Choice]:
-    """The variants of the shipped study, of the engines that are installed."""
+    """Yield the variants of the shipped study, of the installed engines."""
     for variant in (one for several in load_study(None).variants for one in several.each()):
         with suppress(EngineError):
             settings = resolved(profile_of(engine(variant.engine), variant.profile), variant.chosen)

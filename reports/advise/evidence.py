@@ -1,4 +1,4 @@
-"""What a stored study says of choices at any step: as far as it covers them, and why not else."""
+"""Errors of choices from a stored study at any step: its range, and the reasons for gaps."""
 
 import itertools
 import math
@@ -21,34 +21,34 @@ from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 
 SAME_SPEED = 1e-9
-"""Relative difference of two speeds that are one."""
+"""Relative difference up to which two speeds are equal."""
 
 
 @dataclass(frozen=True)
 class MeasuredSteps:
-    """The errors of place of one choice on one scene, by steps in a turn from few to many; infinite
-    for a run that did not end well."""
+    """Errors of place of one choice on one scene, by steps in a turn from few to many; infinite for
+    a run that did not end well."""
 
     errors: tuple[tuple[float, float], ...]
 
     def error(self, steps_per_turn: float) -> float | None:
-        """Between two measured steps on a straight line in the logarithms; None outside, and beside
-        a run that did not end well."""
+        """Return the error on a straight line in the logarithms between two measured steps; None
+        outside, and beside a run that did not end well."""
         for (few, before), (many, after) in itertools.pairwise(self.errors):
             if few <= steps_per_turn <= many and math.isfinite(before) and math.isfinite(after):
                 return interpolate((few, many), (before, after), steps_per_turn)
         return None
 
     def missed(self, steps_per_turn: float, target: float) -> float | None:
-        """The fewest steps in a turn, of more than so many, with an error over the target."""
+        """Return the fewest steps in a turn, of more than so many, with an error over target."""
         over = (n for n, error in self.errors if n > steps_per_turn and error > target)
         return next(over, None)
 
 
 @dataclass(frozen=True)
 class MeasuredStudy:
-    """The measured steps of a store, by choice (its engine and settings) and scene; ``turns`` is
-    how long its shortest run was, ``refusals`` say what of it does not serve, and why."""
+    """Measured steps of a store, by choice (its engine and settings) and scene; ``turns`` is the
+    length of its shortest run, ``refusals`` say which lines do not serve, and why."""
 
     folder: Path | None = None
     turns: float = math.nan
@@ -56,15 +56,15 @@ class MeasuredStudy:
     refusals: tuple[str, ...] = ()
 
     def error(self, scene: Scene, choice: Choice, steps_per_turn: float) -> float | None:
-        """The error of place of a run at so many steps in a turn; None where nothing tells."""
+        """Return the error of place of a run at so many steps in a turn; None if unknown."""
         steps = self._of(scene, choice)
         return None if steps is None else steps.error(steps_per_turn)
 
     def missed(
         self, scene: Scene, choice: Choice, steps_per_turn: float, target: float
     ) -> float | None:
-        """The fewest steps in a turn, of more than so many, that miss a target; None where none is
-        known to."""
+        """Return the fewest steps in a turn, of more than so many, known to miss a target; or
+        None."""
         steps = self._of(scene, choice)
         return None if steps is None else steps.missed(steps_per_turn, target)
 
@@ -73,13 +73,13 @@ class MeasuredStudy:
 
 
 def stored_scenes(stored: Stored) -> dict[str, str]:
-    """The texts of the scenes that the store has cells of, by name."""
+    """Return the texts of the scenes that the store has cells of, by name."""
     names = set(stored.cells["scene"])
     return {name: text for name, text in stored.manifest.scenes.items() if name in names}
 
 
 def stored_choices(every: Iterable[Line]) -> list[Choice]:
-    """The settings of lines that the engines take as they are installed here."""
+    """Return the settings of lines that the engines installed here take."""
     found: dict[str, Choice] = {}
     for line in every:
         with suppress(EngineError):  # an engine that is not here, or of other settings
@@ -99,12 +99,11 @@ def evidence(
     texts: Mapping[str, str],
     wanted: Iterable[Choice],
 ) -> MeasuredStudy:
-    """What the lines of a store say of the scenes demanded, whose texts these are, at their speed.
+    """Return the evidence of a store's lines on the demanded scenes of these texts, at their speed.
 
     A line of cells serves where the scene is the same but for the size of the speed, the engine is
     the version installed, the drive the usual one, and nothing but the crank sets a time scale: no
-    gravity, loads or constant friction, and no setting in seconds, unless the speed is that of the
-    study.
+    gravity, loads or constant friction, and no setting in seconds, unless at the study's own speed.
     """
     by_key = {choice.key: choice for choice in wanted}
     scenes = {scene.name: scene for scene in demand.scenes}
@@ -128,7 +127,7 @@ def evidence(
 
 
 def _refusal(line: Line, stored_text: str, scene: Scene, text: str, choice: Choice) -> str:
-    """Why a line does not serve; "" where it does."""
+    """Say why a line does not serve; "" where it does."""
     if line.version != (here := engine(line.engine).version()):
         return f"of {line.engine} {line.version}; here it is {here}"
     if line.drive != "prescribed":
@@ -152,7 +151,7 @@ def _refusal(line: Line, stored_text: str, scene: Scene, text: str, choice: Choi
 
 
 def _forces_of_their_own(scene: Scene) -> str:
-    """What does not grow with the square of the speed, as inertia does; "" where nothing is so."""
+    """Return forces that, unlike inertia, do not grow with the speed squared; "" if none."""
     found = {
         "gravity": scene.gravity_m_s2 != (0.0, 0.0),
         "loads": bool(scene.loads),
@@ -162,7 +161,7 @@ def _forces_of_their_own(scene: Scene) -> str:
 
 
 def _steps(line: Line) -> MeasuredSteps:
-    """The cells of a line."""
+    """Return the cells of a line."""
     columns = ("steps_per_turn", "status", "place_pure")
     rows = zip(*(line.cells[name] for name in columns), strict=True)
     errors = (

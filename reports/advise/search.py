@@ -1,4 +1,4 @@
-"""What a choice reaches at the frame itself, and with how few sub-steps of it the target."""
+"""The error of a choice at the frame itself, and the fewest sub-steps that reach the target."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -18,10 +18,10 @@ from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 from sim.run import run
 
 GROWS = 1.05
-"""How many times the error of the first half of a run may be in the second, and not grow: samples
+"""Largest ratio of the error in the second half of a run to the first that is not growth: samples
 that fall elsewhere in a turn make some of it."""
 LONGER = 8.0
-"""How many times as long a run is in which an error that grows has to stay under the target."""
+"""Factor of the length of a run in which an error that grows has to stay under the target."""
 WORDS = {
     "diverged": "comes apart",
     "locked": "locks",
@@ -30,14 +30,14 @@ WORDS = {
     "crashed": "crashes",
     "unsupported": "not possible",
 }
-"""What is said of a run that did not end well."""
+"""Words for a run that did not end well."""
 
 
 @dataclass(frozen=True)
 class TriedRun:
-    """What came of a run. ``error`` is that of place, over all its samples, infinite where it did
-    not end well; ``growth`` is that of the second half of the turns over that of the first, NaN
-    where nothing tells."""
+    """Result of a run. ``error`` is the error of place, over all its samples, infinite where it did
+    not end well; ``growth`` is its ratio of the second half of the turns to the first, NaN if
+    unknown."""
 
     error: float
     status: str = "ok"
@@ -51,7 +51,7 @@ class TriedRun:
 
 
 def look(cell: Cell) -> TriedRun:
-    """Run a cell, and hold its places to the reference."""
+    """Run a cell, and compare its places with the reference."""
     try:
         start = Truth(cell.scene, bound=False).start
         done = run(
@@ -74,7 +74,7 @@ def look(cell: Cell) -> TriedRun:
 
 
 def _seen(series: ErrorSeries) -> TriedRun:
-    """What the errors of a run say of it."""
+    """Return the result of the errors of a run."""
     if series.status != "ok":
         return TriedRun(math.inf, series.status, series.reason)
     if series.departure is not None:
@@ -90,9 +90,9 @@ def _seen(series: ErrorSeries) -> TriedRun:
 
 
 LIMITS = Limits(time_s=30.0)
-"""Of a run; the longest has `plan.steps.MOST_STEPS`, and takes a few seconds."""
+"""Limits of a run; the longest has `plan.steps.MOST_STEPS`, and takes a few seconds."""
 ENDS_A_SEARCH = ("unsupported", "timeout", "crashed")
-"""How a run ends that no other step mends, or that cost its process or its time."""
+"""Endings of a run that no other step mends, or that cost its process or its time."""
 
 
 @dataclass(frozen=True)
@@ -110,13 +110,13 @@ class Worst:
 
 @dataclass(frozen=True)
 class SearchResult:
-    """What came of a choice.
+    """Search result of a choice.
 
     ``at_frame`` is the worst with one step to a frame, None where such a step is too long for a
     turn. ``promise`` is the worst with the fewest sub-steps that reach the target, over the whole
-    run of every scene now; ``held_at`` are the larger numbers that were seen to reach it too. Where
-    none does it is None, and ``nearest`` has the least error over the target of all that were
-    looked at; ``unsteady`` reach it, and larger numbers do not. ``ended`` is the run that ended the
+    run of every scene now; ``held_at`` are the larger numbers that were seen to reach it too. It is
+    None where none does, and ``nearest`` has the least error over the target of all looks;
+    ``unsteady`` numbers reach it, and larger ones do not. ``ended`` is the run that ended the
     search, where one did.
     """
 
@@ -157,7 +157,7 @@ class EndedError(Exception):
 
 @dataclass
 class _TriedRuns:
-    """The looks at a choice so far, by number of sub-steps and scene."""
+    """The runs of a choice so far, by number of sub-steps and scene."""
 
     demand: Demand
     known: MeasuredStudy
@@ -168,8 +168,8 @@ class _TriedRuns:
     _last: dict[str, float] = field(default_factory=dict)
 
     def worst(self, substeps: int, *, whole: bool = False) -> Worst:
-        """The worst of the scenes, or the first that is over the target, unless the ``whole`` is
-        asked for; that which was worst last is looked at first. Raises EndedError where no other
+        """Return the worst of the scenes, or the first that is over the target, unless the
+        ``whole`` is requested; the last worst scene is run first. Raises EndedError where no other
         step would do."""
         here = self.seen.setdefault(substeps, {})
         for scene in sorted(self.demand.scenes, key=lambda s: -self._last.get(s.name, math.inf)):
@@ -181,7 +181,7 @@ class _TriedRuns:
         return self.worst_seen(substeps)
 
     def confirmed(self, substeps: int) -> bool:
-        """Whether all that was read of a study reaches the target in runs now, too."""
+        """True if all results from a study reach the target in runs now, too."""
         here = self.seen[substeps]
         for scene in self.demand.scenes:
             if here[scene.name].studied:
@@ -189,7 +189,7 @@ class _TriedRuns:
         return self.worst_seen(substeps).error <= self.demand.target
 
     def forget_the_study(self) -> None:
-        """Keep what was run now alone."""
+        """Keep the results of runs now alone."""
         self.known = MeasuredStudy()
         run = {
             substeps: {name: seen for name, seen in here.items() if not seen.studied}
@@ -198,24 +198,24 @@ class _TriedRuns:
         self.seen = {substeps: here for substeps, here in run.items() if here}
 
     def reached(self, substeps: int) -> bool:
-        """Whether every scene was seen to reach the target."""
+        """True if every scene was seen to reach the target."""
         here = self.seen[substeps]
         whole = len(here) == len(self.demand.scenes)
         return whole and all(seen.error <= self.demand.target for seen in here.values())
 
     def worst_seen(self, substeps: int) -> Worst:
-        """The worst of the scenes that were looked at."""
+        """Return the worst of the scenes that were looked at."""
         here = self.seen[substeps]
         name = max(here, key=lambda name: here[name].error)
         return Worst(substeps, name, here[name])
 
     def _read(self, scene: Scene, substeps: int) -> TriedRun | None:
-        """What the study has between its steps; None where it has nothing."""
+        """Return the study's error between its steps; None where it has none."""
         error = self.known.error(scene, self.choice, self.demand.steps_per_turn(substeps))
         return None if error is None else TriedRun(error, studied=True)
 
     def _run(self, scene: Scene, substeps: int) -> TriedRun:
-        """A run now; a longer one where the error grows, and is not over the target yet."""
+        """Return a run now; a longer one where the error grows, and is not over the target yet."""
         seen = self._call(scene, substeps)
         if seen.grows and seen.error <= self.demand.target:
             seen = self._call(scene, substeps, LONGER)
@@ -233,7 +233,7 @@ class _TriedRuns:
 def _reached(
     demand: Demand, known: MeasuredStudy, child: Isolated[TriedRun], choice: Choice
 ) -> SearchResult:
-    """The search for one choice."""
+    """Search for one choice."""
     looks = _TriedRuns(demand, known, child, choice)
     at_frame, promise, nearest, last = None, None, None, None
     try:
@@ -261,9 +261,9 @@ def _reached(
 
 
 def _fewest(looks: _TriedRuns) -> int | None:
-    """The fewest sub-steps that reach the target, and do so in runs now.
+    """Return the fewest sub-steps that reach the target, and do so in runs now.
 
-    What the study promises is run; where that is over the target, all is looked for by runs.
+    A promise of the study is run; if that run is over the target, the search goes on by runs alone.
     """
     demand = looks.demand
 
@@ -281,8 +281,7 @@ def _fewest(looks: _TriedRuns) -> int | None:
 
 
 def _nearest(looks: _TriedRuns) -> Worst | None:
-    """The least error over the target of all that were looked at; None where no run came to its
-    end."""
+    """Return the least error over the target of all looks; None where no run came to its end."""
     over = [looks.worst_seen(n) for n in looks.seen if not looks.reached(n)]
     finite = [worst for worst in over if math.isfinite(worst.error)]
     if not finite:

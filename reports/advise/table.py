@@ -1,4 +1,4 @@
-"""Advice on the terminal: a row for each choice, what is to be said of them, and the snippets."""
+"""Advice on the terminal: a row for each choice, remarks, and the snippets."""
 
 import json
 import math
@@ -20,12 +20,12 @@ from sim.registry import engine
 WIDE, WIDEST = 76, 96
 """Columns of a terminal that have room for all, and for more room between."""
 ABOUT = "~"
-"""Before an error that was not run, but read between the steps of a study."""
+"""Mark of an error that was not run, but read between the steps of a study."""
 COLOURS = {"within": "green", "over": "yellow"}
 
 
 def show(console: Console, advice: Advice) -> None:
-    """Print all of it, but for where it comes from."""
+    """Print all of it, but for its provenance."""
     console.print(Text(title(advice), "bold"))
     console.print(_table(advice, console.width), highlight=False)
     console.print()
@@ -43,7 +43,7 @@ def show(console: Console, advice: Advice) -> None:
 
 
 def title(advice: Advice) -> str:
-    """What was asked for."""
+    """Return the demand in words."""
     demand = advice.demand
     names = ", ".join(scene.name for scene in demand.scenes)
     few = f", too few: it needs {LEAST_STEPS_PER_TURN} steps" if demand.least > 1 else ""
@@ -55,7 +55,7 @@ def title(advice: Advice) -> str:
 
 
 def word(worst: Worst | None, target: float) -> str:
-    """What the frame itself does, in a word or two."""
+    """Return the result at the frame itself, in a word or two."""
     if worst is None:
         return "too coarse"
     if worst.seen.status != "ok":
@@ -64,7 +64,7 @@ def word(worst: Worst | None, target: float) -> str:
 
 
 def verdict(advice: Advice) -> Iterator[Text]:
-    """The best of each engine, or what comes nearest."""
+    """Yield the best of each engine, or the nearest offer."""
     demand = advice.demand
     for offer in advice.best:
         promise = offer.reached.promise
@@ -86,7 +86,7 @@ def _price(offer: Offer) -> str:
 
 
 def _nothing(advice: Advice) -> str:
-    """What is said where nothing reaches the target."""
+    """Return the text for a target that nothing reaches."""
     most, nearest = advice.demand.most, advice.nearest
     text = f"NOTHING REACHES {advice.demand.target:g} with up to {count(most, 'sub-step')} a frame"
     if nearest is None or nearest.reached.nearest is None:
@@ -100,7 +100,7 @@ def _nothing(advice: Advice) -> str:
 
 
 def _table(advice: Advice, width: int) -> Table:
-    """A row for each choice, cheapest first."""
+    """Return a row for each choice, cheapest first."""
     wide = width >= WIDE
     table = plain_table(gap=2 if width >= WIDEST else 1)
     table.add_column("settings", overflow="fold", min_width=14)
@@ -118,7 +118,7 @@ def _table(advice: Advice, width: int) -> Table:
 
 
 def _row(advice: Advice, offer: Offer) -> list[Text]:
-    """One choice."""
+    """Return the row of one choice."""
     reached, target = offer.reached, advice.demand.target
     said = word(reached.at_frame, target)
     best = "bold" if any(offer is each for each in advice.best) else ""
@@ -140,7 +140,7 @@ def _row(advice: Advice, offer: Offer) -> list[Text]:
 
 
 def _error(worst: Worst | None) -> str:
-    """The error with few digits; a dash where there is none."""
+    """Return the error with few digits; a dash where there is none."""
     if worst is None or not math.isfinite(worst.error):
         return "-"
     return (ABOUT if worst.seen.studied else "") + short(worst.error)
@@ -151,7 +151,7 @@ def _percent(share: float) -> str:
 
 
 def _times(advice: Advice, offer: Offer) -> str:
-    """The price over the least."""
+    """Return the price over the least."""
     first = advice.promises[0]
     return "1" if advice.equal(offer, first) else f"{offer.s_per_s / first.s_per_s:.2g}"
 
@@ -162,7 +162,7 @@ def _settings(advice: Advice) -> Iterator[tuple[str, str]]:
 
 
 def footer(advice: Advice) -> str:
-    """What the numbers are, and where they come from."""
+    """Return the meaning of the numbers, and their origin."""
     known, facts = advice.known, dict(advice.facts)
     noise = f", noise {advice.noise:.0%}" if math.isfinite(advice.noise) else ""
     lines = [
@@ -181,7 +181,7 @@ def footer(advice: Advice) -> str:
 
 
 def _of_scenes(advice: Advice) -> Iterator[str]:
-    """What the promise is for, where no scene was named."""
+    """Yield the scope of the promise, where no scene was named."""
     if not advice.named:
         yield (
             "Another mechanism may need other numbers: crankcheck advise SCENE ... takes your own."
@@ -189,7 +189,7 @@ def _of_scenes(advice: Advice) -> Iterator[str]:
 
 
 def _of_study(advice: Advice) -> Iterator[str]:
-    """What was taken from the study, and what was not."""
+    """Yield the parts of the study that were used, and those that were not."""
     known, folder = advice.known, harmless(str(advice.known.folder))
     if known.measured:
         yield (
@@ -208,7 +208,7 @@ SHOWN = 3
 
 
 def remarks(advice: Advice) -> Iterator[tuple[str, str]]:
-    """The choices that something is said of, and what."""
+    """Yield the choices with a remark, and the remark."""
     groups: dict[str, list[str]] = {}
     for offer in advice.offers:
         for text in filter(None, _of(advice, offer)):
@@ -218,7 +218,7 @@ def remarks(advice: Advice) -> Iterator[tuple[str, str]]:
 
 
 def _of(advice: Advice, offer: Offer) -> Iterator[str]:
-    """What is said of one; "" where there is nothing."""
+    """Yield the remarks on one offer; "" where there is none."""
     reached = offer.reached
     yield reached.ended.reason if reached.ended else ""
     yield _unsteady(reached)
@@ -227,7 +227,7 @@ def _of(advice: Advice, offer: Offer) -> Iterator[str]:
 
 
 def _unsteady(reached: SearchResult) -> str:
-    """That it was luck that some numbers reached the target."""
+    """Say that some numbers reached the target by luck."""
     if not reached.unsteady:
         return ""
     numbers = few((str(n) for n in reached.unsteady), SHOWN)
@@ -235,7 +235,7 @@ def _unsteady(reached: SearchResult) -> str:
 
 
 def _growth(worst: Worst | None) -> str:
-    """How an error grows."""
+    """Say how an error grows."""
     if worst is None or not worst.seen.grows:
         return ""
     return (
@@ -245,7 +245,7 @@ def _growth(worst: Worst | None) -> str:
 
 
 def document(advice: Advice) -> str:
-    """The text of the file; what is not finite is null."""
+    """Return the text of the file; numbers that are not finite are null."""
     demand, known = advice.demand, advice.known
     content = {
         "provenance": dict(advice.facts),
@@ -274,7 +274,7 @@ def document(advice: Advice) -> str:
 
 
 def _offer(advice: Advice, offer: Offer) -> Mapping[str, object]:
-    """One choice."""
+    """Return one choice."""
     reached, demand = offer.reached, advice.demand
     choice, price = reached.choice, offer.price
     return {
@@ -301,7 +301,7 @@ def _offer(advice: Advice, offer: Offer) -> Mapping[str, object]:
 
 
 def _worst(demand: Demand, worst: Worst | None) -> dict[str, object]:
-    """The numbers of some sub-steps; none where they were not run."""
+    """Return the numbers of some sub-steps; none where they were not run."""
     if worst is None:
         return {}
     return {

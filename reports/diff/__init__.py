@@ -1,1 +1,1 @@
-"""What changed between two stored runs: better, worse, new and missing cells."""
+"""Changes between two stored runs: better, worse, new and missing cells."""

@@ -1,5 +1,4 @@
-"""A diff on the terminal, as Markdown short enough for a comment on a pull request, and as JUnit
-XML."""
+"""A diff on the terminal, as Markdown short enough for a pull request comment, and as JUnit XML."""
 
 from collections.abc import Iterable, Sequence
 from typing import Literal
@@ -27,7 +26,7 @@ from reports.results.changes import CellPair, Diff
 from reports.results.runs import CellName, StoredCell
 
 MOST = {"worse": 200, "better": 10}
-"""Rows of a table; all that is worse is named, unless that is more than anyone reads."""
+"""Rows of a table; all worse cells are named, unless they are more than anyone reads."""
 LEFT_OUT = 8
 NARROW = 76
 """Columns below which old and new give way to their ratio."""
@@ -49,7 +48,7 @@ def show(console: Console, diff: Diff, strict: bool = False) -> None:
 
 
 def _grid(console: Console, word: str, rows: Sequence[PrintedRow]) -> None:
-    """The rows of what is worse, or better, and the reasons of engines that gave up."""
+    """Print the rows of worse cells, or better ones, and the reasons of engines that gave up."""
     if not rows:
         return
     wide = console.width >= NARROW
@@ -75,7 +74,7 @@ def _grid(console: Console, word: str, rows: Sequence[PrintedRow]) -> None:
 
 
 def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
-    """The cells of one run only."""
+    """Print the cells of one run only."""
     texts = left_out(cells)
     if not texts:
         return
@@ -92,11 +91,11 @@ BUDGETS = {"worse": 30_000, "better": 8_000, "new": 4_000, "missing": 4_000}
 NUMBERS = 3
 """Columns of numbers, which are the last."""
 HEAD = 6_000
-"""Bytes that the remarks may take, and the footer."""
+"""Bytes for the remarks, and for the footer."""
 
 
 def markdown(diff: Diff, strict: bool = False) -> str:
-    """The whole diff; what exceeds its room is counted."""
+    """Return the whole diff; rows that exceed their room are counted."""
     parts = [f"## crankcheck diff: {verdict(diff, strict).lower()}", f"**{headline(diff)}**"]
     parts.append(_fitted((f"- {plain(text)}" for text in remarks(diff)), HEAD))
     worse, better = lines(diff, "worse"), lines(diff, "better")
@@ -113,7 +112,7 @@ def markdown(diff: Diff, strict: bool = False) -> str:
 
 
 def _rows(rows: Sequence[PrintedRow], room: int) -> str:
-    """Rows as a table; what is compared are numbers."""
+    """Return rows as a table; the compared values are numbers."""
     heads = [head.replace("\n", " ") for head in HEADS]
     heads[-NUMBERS:] = [f"{head}:" for head in heads[-NUMBERS:]]
     return table(heads, map(_cells, rows), room, "rows")
@@ -125,13 +124,13 @@ def _cells(line: PrintedRow) -> tuple[str, ...]:
 
 
 def _fitted(texts: Iterable[str], room: int) -> str:
-    """As many lines as there is room for, then how many there was none for."""
+    """Return as many lines as there is room for, then the number of the rest."""
     return "\n".join(counted(texts, room, "lines"))
 
 
 def suite(diff: Diff, strict: bool = False) -> Element:
-    """One test case per cell of either run: a failure where it is worse, skipped where there is
-    nothing to compare it with; ``strict`` makes failures of those but the new ones."""
+    """Return one test case per cell of either run: a failure where it is worse, skipped where there
+    is nothing to compare it with; ``strict`` makes failures of skipped ones but the new."""
     lost = "failure" if strict else "skipped"
     cases = [
         *map(_compared, diff.pairs),
@@ -148,7 +147,7 @@ def suite(diff: Diff, strict: bool = False) -> Element:
 
 
 def _compared(pair: CellPair) -> Element:
-    """A cell of both runs."""
+    """Return the case of a cell of both runs."""
     case = _case(pair.name)
     if pair.word == "worse":
         versions = f"{pair.name.engine} {pair.old.version} -> {pair.new.version}"
@@ -166,7 +165,7 @@ def _compared(pair: CellPair) -> Element:
 
 
 def _uncompared(cells: Sequence[StoredCell], tag: str, why: str) -> list[Element]:
-    """Cells that there is nothing to compare with."""
+    """Return the cases of cells that there is nothing to compare with."""
     cases = [_case(cell.name) for cell in cells]
     for case in cases:
         remark(case, tag, message=why)

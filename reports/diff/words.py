@@ -11,12 +11,12 @@ from reports.results.cost import equal, noise_of
 from reports.results.runs import CellName, StoredCell, StoredRun, each_once, steps_told
 
 REASON = 120
-"""Characters of the reason that an engine gave for how it ended."""
+"""Characters of an engine's reason for its ending."""
 
 
 @dataclass(frozen=True)
 class PrintedRow:
-    """Cells that differ in step only, as one row: the worst of them, and which the others are."""
+    """Cells that differ in step only, as one row: the worst of them, and the other steps."""
 
     scene: str
     engine: str
@@ -32,7 +32,7 @@ HEADS = ("scene", "engine", "steps\na turn", "quantity", "old", "new", "ratio")
 
 
 def headline(diff: Diff) -> str:
-    """How many cells are what."""
+    """Return the number of cells of each kind."""
     parts = [f"{len(diff.those(word))} {word}" for word in ("worse", "better", "equal")]
     parts += [f"{len(diff.added)} new", f"{len(diff.missing)} missing"]
     if diff.other_scene:
@@ -41,14 +41,14 @@ def headline(diff: Diff) -> str:
 
 
 def verdict(diff: Diff, strict: bool = False) -> str:
-    """What the exit code says, in words."""
+    """Return the exit code in words."""
     if diff.those("worse"):
         return "WORSE"
     return "NOT WHOLE (--strict)" if diff.code(strict) else "NOT WORSE"
 
 
 def lines(diff: Diff, word: Word) -> list[PrintedRow]:
-    """The cells that are worse, or better, one row for those that differ in step only."""
+    """Return the cells that are worse, or better, one row for those that differ in step only."""
     compared: dict[tuple[object, ...], list[float]] = {}
     for pair in diff.pairs:
         compared.setdefault(pair.name.line, []).append(pair.name.steps_per_turn)
@@ -63,7 +63,7 @@ def lines(diff: Diff, word: Word) -> list[PrintedRow]:
 
 
 def left_out(cells: Iterable[StoredCell]) -> list[str]:
-    """Cells of one run, one text for those that differ in step only."""
+    """Return the cells of one run, one text for those that differ in step only."""
     groups: dict[tuple[object, ...], list[CellName]] = {}
     for cell in cells:
         groups.setdefault(cell.name.line, []).append(cell.name)
@@ -73,7 +73,7 @@ def left_out(cells: Iterable[StoredCell]) -> list[str]:
 
 
 def remarks(diff: Diff) -> list[str]:
-    """What one must know to read the numbers."""
+    """Return notes that a reader needs for the numbers."""
     texts = [versions(diff), *diff.old.notes]
     texts += [note for note in diff.new.notes if note not in diff.old.notes]
     scenes = list(dict.fromkeys(cell.name.scene for cell in diff.other_scene))
@@ -89,7 +89,7 @@ def remarks(diff: Diff) -> list[str]:
 
 
 def footer(diff: Diff) -> list[str]:
-    """Units, the rule of the verdict, and where both runs come from."""
+    """Return units, the rule of the verdict, and the origin of both runs."""
     return [
         "Largest errors against the reference as pure numbers: angles in rad, lengths over the "
         "longest link, rates over the driver's peak speed and its square.",
@@ -101,14 +101,14 @@ def footer(diff: Diff) -> list[str]:
 
 
 def origin(run: StoredRun) -> str:
-    """Where a run comes from."""
+    """Return the origin of a run."""
     names = ("crankcheck", "processor", "made")
     facts = [f"{name} {run.facts[name]}" for name in names if run.facts.get(name)]
     return ", ".join([run.label, *facts])
 
 
 def versions(diff: Diff) -> str:
-    """The versions of every engine, old and new, where that can be said of all its cells."""
+    """Return the versions of every engine, old and new, each pair once."""
     by_engine: dict[str, list[str]] = {}
     for pair in diff.pairs:
         by_engine.setdefault(pair.name.engine, []).append(_versions(pair))
@@ -116,7 +116,7 @@ def versions(diff: Diff) -> str:
 
 
 def told(pair: CellPair) -> str:
-    """The change of a cell in one line."""
+    """Return the change of a cell in one line."""
     if pair.turned:
         failed = pair.old if pair.new.ok else pair.new
         why = f": {failed.reason[:REASON]}" if failed.reason else ""
@@ -130,19 +130,19 @@ def told(pair: CellPair) -> str:
 
 
 def size(error: float) -> str:
-    """A pure error; a dash where there is no number."""
+    """Return a pure error; a dash where there is no number."""
     return f"{error:.2e}" if math.isfinite(error) else "-"
 
 
 def ratio(change: ErrorChange) -> str:
-    """New over old in three digits; a dash where one of them is no number, or the old one 0."""
+    """Return new over old in three digits; a dash where one is no number, or the old one 0."""
     if not math.isfinite(change.ratio) or not math.isfinite(change.old):
         return "-"
     return f"{change.ratio:#.3g}".removesuffix(".")
 
 
 def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -> PrintedRow:
-    """Pairs of one line, the largest change first, as a row."""
+    """Return pairs of one line, the largest change first, as a row."""
     first, change = members[0], members[0].worst
     unit = first.name.clock.per
     steps = _steps([pair.name.steps_per_turn for pair in members], compared, unit)
@@ -156,8 +156,7 @@ def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -
 
 
 def _steps(changed: Sequence[float], compared: Sequence[float], unit: str) -> str:
-    """The step of the largest change, and which others changed too; those in a ``unit`` where it is
-    not a turn."""
+    """Return the step of the largest change, and the other changed steps, in a ``unit``."""
     first, *others = [f"{each:g}{unit}" for each in changed]
     if len(changed) > 2 and len(changed) == len(compared):
         return f"{first} (all {len(changed)}: {min(changed):g}{unit} to {max(changed):g}{unit})"
@@ -165,7 +164,7 @@ def _steps(changed: Sequence[float], compared: Sequence[float], unit: str) -> st
 
 
 def _engine(pair: CellPair, several: frozenset[str]) -> str:
-    """Engine and variant; with its versions where those of the engine differ from cell to cell."""
+    """Return engine and variant; with its versions where they differ from cell to cell."""
     called = _called(pair.name, "turns" in several)
     return f"{called} ({_versions(pair)})" if pair.name.engine in several else called
 
@@ -183,7 +182,7 @@ def _versions(pair: CellPair) -> str:
 
 
 def _several(diff: Diff) -> frozenset[str]:
-    """The engines with several pairs of versions, and ``turns`` where cells differ in those."""
+    """Return engines with several pairs of versions, and ``turns`` where cells differ in these."""
     pairs = {(pair.name.engine, _versions(pair)) for pair in diff.pairs}
     engines = [engine for engine, _ in pairs]
     several = {engine for engine in engines if engines.count(engine) > 1}
@@ -193,8 +192,8 @@ def _several(diff: Diff) -> frozenset[str]:
 
 
 LEAST_NOISE = 0.1
-"""Two sweeps are further apart than two timings within one: another machine of the same kind, or
-one that does something else beside. Up to this, costs are equal however near those were."""
+"""Least noise between sweeps, larger than within one: another machine of the same kind, or one with
+other work beside. Costs are equal up to this, even if timings within a sweep are nearer."""
 
 
 @dataclass(frozen=True)
@@ -208,8 +207,8 @@ class CostChange:
 
 
 def cost_changes(diff: Diff) -> tuple[list[CostChange], float]:
-    """The change of every engine and variant whose cells were timed on the same processor, and
-    the relative difference up to which costs are equal, from the pairs of timings of each cell."""
+    """Return the change of every engine and variant with cells timed on the same processor, and the
+    relative difference up to which costs are equal, from the pairs of timings of each cell."""
     ratios: dict[tuple[str, str], list[float]] = {}
     noises: list[float] = []
     for pair in diff.pairs:
@@ -223,7 +222,7 @@ def cost_changes(diff: Diff) -> tuple[list[CostChange], float]:
 
 
 def cost_text(diff: Diff) -> str:
-    """The costs that changed in a sentence, empty where none can be compared."""
+    """Return the costs that changed in a sentence, empty where none can be compared."""
     costs, noise = cost_changes(diff)
     if not costs:
         return ""

@@ -1,7 +1,7 @@
-"""Forces as arrows on a mechanism that is drawn: at the pins and guides, all to one scale.
+"""Forces as arrows on a drawn mechanism: at the pins and guides, all to one scale.
 
-An arrow is the force on the body whose colour it has: at a pin of two bodies on the second, from
-the first; of more, on each, from the pin; at a guide the normal force on what slides.
+An arrow is the force on the body of its colour: at a pin of two bodies on the second, from the
+first; of more, on each, from the pin; at a guide the normal force on the sliding body.
 """
 
 import math
@@ -18,22 +18,22 @@ from reports.drawing.moving import packed
 from reports.drawing.shape import MARGIN, box_of, guide_direction, size_of_motion
 
 LONGEST = 0.34
-"""The length of the largest force, over the size of what moves."""
+"""Length of the largest force, over the size of the moving parts."""
 LARGE = 98.0
-"""The percentile that counts as the largest: near a dead point forces have no end."""
+"""Percentile that counts as the largest: near a dead point forces have no end."""
 CUT = 1.5
-"""An arrow of more than so many of `LONGEST` is cut off, and has no head."""
+"""Factor of `LONGEST` above which an arrow is cut off, and has no head."""
 LEAST = 0.012
-"""A shorter arrow, over the size of what moves, is not drawn."""
+"""Length of an arrow, over the size of the moving parts, below which it is not drawn."""
 ALONG = 24
 """Places along an arrow, the ends included."""
 HEAD = (0.045, 0.016)
-"""Length and half the width of a head, over the size of what moves."""
+"""Length and half the width of a head, over the size of the moving parts."""
 
 
 @dataclass(frozen=True)
 class Arrow:
-    """From ``tail`` to ``tip`` [m], of the force on ``body``; without a head where it is cut
+    """An arrow from ``tail`` to ``tip`` [m], of the force on ``body``; without a head if cut
     off."""
 
     body: str
@@ -43,11 +43,11 @@ class Arrow:
 
     @property
     def shaft(self) -> Array:
-        """Places along it that names should keep off, (n, 2) [m]; at its tail a pin stands."""
+        """Places along it that names should avoid, (n, 2) [m]; at its tail a pin stands."""
         return np.linspace(self.tail, self.tip, ALONG)[3:]
 
     def head(self, size: float) -> Array:
-        """The corners of the head, the tip first, (3, 2); ``size`` is that of what moves [m]."""
+        """Return the corners of the head, the tip first, (3, 2); ``size`` of moving parts [m]."""
         way = self.tip - self.tail
         long = float(np.hypot(*way))
         along = way / long
@@ -70,8 +70,8 @@ class _Force:
 
 @dataclass(frozen=True)
 class ForceArrows:
-    """The arrows of a motion with forces: how long a newton is drawn [m], what moves is how large
-    [m], and the bar that says so [N]."""
+    """Arrows of a motion with forces: the drawn length of a newton [m], the size of the moving
+    parts [m], and the scale bar [N]."""
 
     scene: Scene
     m_per_n: float
@@ -79,7 +79,7 @@ class ForceArrows:
     bar_n: float
 
     def at(self, motion: Motion, index: int) -> list[Arrow]:
-        """The arrows at a sample; none of a force that is not determined, or too small to see."""
+        """Return the arrows at a sample; none of an undetermined force, or one too small to see."""
         return [
             arrow
             for one in _acting(self.scene, motion, index)
@@ -87,7 +87,7 @@ class ForceArrows:
         ]
 
     def largest_at(self, path: Motion) -> int:
-        """The sample at which a force is the largest."""
+        """Return the sample at which a force is the largest."""
         sizes = [
             max((float(np.hypot(*(a.tip - a.tail))) for a in self.at(path, k)), default=0.0)
             for k in range(path.time_s.size)
@@ -95,8 +95,8 @@ class ForceArrows:
         return int(np.argmax(sizes))
 
     def embedded(self, motion: Motion) -> dict[str, object]:
-        """The forces of a motion for a page: each by the point where it acts and its kind, and its
-        x and y as rows [N]."""
+        """Return the forces of a motion for a page: each by the point where it acts and its kind,
+        and its x and y as rows [N]."""
         every = [list(_acting(self.scene, motion, k)) for k in range(motion.time_s.size)]
         forces = np.array([[one.force for one in each] for each in every])  # (T, n, 2)
         rows = forces.reshape(len(every), -1).T
@@ -117,7 +117,7 @@ class ForceArrows:
         return Arrow(one.body, tail, tail + way * min(1.0, most / long), long <= most)
 
     def box(self, path: Motion) -> tuple[Array, Array]:
-        """As `box_of`, with room for all arrows of a turn."""
+        """Return the box as `box_of`, with room for all arrows of a turn."""
         low, high = box_of(path)
         spare = 0.25 * MARGIN * self.size
         tips = [a.tip for k in range(path.time_s.size) for a in self.at(path, k)]
@@ -131,7 +131,7 @@ class ForceArrows:
 
 
 def force_arrows(scene: Scene, path: Motion) -> ForceArrows:
-    """The arrows of a turn that has forces; the bar is a round number near the largest."""
+    """Return the arrows of a turn that has forces; the bar is a round number near the largest."""
     sizes = [
         float(np.hypot(*one.force))
         for index in range(path.time_s.size)
@@ -146,13 +146,13 @@ def force_arrows(scene: Scene, path: Motion) -> ForceArrows:
 
 
 def rounded(value: float) -> float:
-    """The next of 1, 2, 5, 10, ... below."""
+    """Return the next of 1, 2, 5, 10, ... below."""
     power = 10.0 ** math.floor(math.log10(value))
     return max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1 + 1e-9)) * power
 
 
 def _acting(scene: Scene, motion: Motion, index: int) -> Iterator[_Force]:
-    """Every force that is drawn at a sample."""
+    """Yield every force that is drawn at a sample."""
     acting = motion.forces
     if acting is None:
         return

@@ -33,11 +33,11 @@ from reports.output.numbers import readable
 from reports.way.way import way_of
 
 INK = "#1f2933"
-"""Everything that has not the colour of a link."""
+"""Colour of everything but the links."""
 
 
 def draw_arrows(axes: Axes, arrows: ForceArrows, motion: Motion, index: int) -> None:
-    """The forces at a sample, each in the colour of the body that it acts on."""
+    """Draw the forces at a sample, each in the colour of the body that it acts on."""
     colours = colours_of(arrows.scene)
     for arrow in arrows.at(motion, index):
         colour = colours.get(arrow.body, INK)
@@ -50,7 +50,7 @@ def draw_arrows(axes: Axes, arrows: ForceArrows, motion: Motion, index: int) -> 
 
 
 def scale_bar(axes: Axes, arrows: ForceArrows, box: tuple[Array, Array], fontsize: float) -> None:
-    """How long a force is drawn, in the lower right corner of the box."""
+    """Draw the length of a force, in the lower right corner of the box."""
     if not arrows.bar_n:
         return
     long = arrows.bar_n * arrows.m_per_n
@@ -78,8 +78,8 @@ GUIDE = "#9aa5b1"
 
 
 def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
-    """One turn of the scene, or its free motion as far as it goes in that time, as a GIF that
-    repeats, its forces as arrows where they are wanted."""
+    """Return one turn of the scene, or its free motion as far as it goes in that time, as a GIF
+    that repeats, its forces as arrows if requested."""
     turn = _Turn.of(scene, FRAMES, with_forces=with_forces)
     figure = _figure(turn.box, columns=1, rows=1, width=6.4)
     canvas = FigureCanvasAgg(figure)
@@ -107,7 +107,7 @@ def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
 
 
 def strip(scene: Scene, *, with_forces: bool = False) -> bytes:
-    """Six positions over one turn, side by side, as a PNG; forces as in `animation`."""
+    """Return six positions over one turn, side by side, as a PNG; forces as in `animation`."""
     turn = _Turn.of(scene, STRIP, with_forces=with_forces)
     columns, rows = STRIP // 2, 2
     figure = _figure(turn.box, columns, rows, width=4.0)
@@ -121,7 +121,7 @@ def strip(scene: Scene, *, with_forces: bool = False) -> bytes:
 
 @dataclass(frozen=True)
 class _Turn:
-    """What is drawn: the positions, the whole turn behind them, and arrows where they are wanted,
+    """Content of a drawing: the positions, the whole turn behind them, and arrows if requested,
     within the corners of a box [m]."""
 
     scene: Scene
@@ -141,7 +141,7 @@ class _Turn:
 
 
 def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> Figure:
-    """A figure whose panels of ``width`` [inch] have the shape of what they show."""
+    """Return a figure whose panels of ``width`` [inch] have the shape of their content."""
     low, high = box
     left, right, top, bottom, legend = 0.65, 0.15, 0.35, 0.5, 0.35
     inner = width - left - right
@@ -160,7 +160,7 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
 
 
 def _legend(figure: Figure, turn: _Turn) -> None:
-    """The links by colour, below everything that moves."""
+    """Draw the links by colour, below everything that moves."""
     colours = colours_of(turn.scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
     if turn.arrows is not None:
@@ -173,7 +173,7 @@ def _legend(figure: Figure, turn: _Turn) -> None:
 
 
 def _draw(axes: Axes, turn: _Turn, index: int) -> None:
-    """One position with the paths of the points behind it."""
+    """Draw one position with the paths of the points behind it."""
     scene, motion = turn.scene, turn.motion
     low, high = turn.box
     axes.set_xlim(low[0], high[0])
@@ -207,10 +207,10 @@ def _draw(axes: Axes, turn: _Turn, index: int) -> None:
 def draw_bodies(
     axes: Axes, scene: Scene, motion: Motion, path: Motion, index: int, line: float
 ) -> float:
-    """Paths (lines of ``line`` points), guides, blocks, links and pins, without a letter.
+    """Draw paths (lines of ``line`` points), guides, blocks, links and pins, without a letter.
 
     They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn. Returns the size of
-    what moves [m].
+    the moving parts [m].
     """
     size = size_of_motion(path)
     for name, point in path.points.items():
@@ -234,7 +234,7 @@ def draw_bodies(
 
 
 def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
-    """A bar between two points; with more points a plate."""
+    """Draw a bar between two points; with more points a plate."""
     places = np.array(corners)
     if len(places) > 2:
         axes.fill(*places.T, color=colour, alpha=0.25, linewidth=0, zorder=3)
@@ -251,7 +251,7 @@ def _slider(
     index: int,
     size: float,
 ) -> None:
-    """The guide as far as the slider runs on it, and the block."""
+    """Draw the guide as far as the slider runs on it, and the block."""
     travel = path.sliders[slider.name].displacement
     place = motion.points[slider.point].position[index]
     along = float(motion.sliders[slider.name].displacement[index])

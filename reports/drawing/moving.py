@@ -1,5 +1,4 @@
-"""A mechanism to be drawn by the page: its shape, how the reference moves, and how far an engine is
-off it.
+"""A mechanism to be drawn by the page: shape, reference motion, and displacement of an engine.
 
 The page draws ``reference + factor * displacement``; so the two are kept apart, each with its own
 scale, and an error of 1e-9 can be magnified a millionfold. Nothing here knows of cells or sections:
@@ -32,7 +31,7 @@ from reports.output.numbers import DIGITS, finite
 
 LEVELS = 32767
 MISSING = -32768
-"""What stands for a sample that is not finite."""
+"""Integer for a sample that is not finite."""
 ESCAPES = {
     "<": "\\u003c",
     ">": "\\u003e",
@@ -43,7 +42,7 @@ ESCAPES = {
 
 
 def embedded(value: object) -> Markup:
-    """A value as JSON that may stand inside a script element: no ``</script>``, no ``<!--``."""
+    """Return a value as JSON that may stand in a script element: no ``</script>``, no ``<!--``."""
     text = json.dumps(finite(value, DIGITS), allow_nan=False, separators=(",", ":"))
     for character, escape in ESCAPES.items():
         text = text.replace(character, escape)
@@ -51,7 +50,7 @@ def embedded(value: object) -> Markup:
 
 
 def packed(rows: Array) -> dict[str, object]:
-    """Rows of samples (R, T) as one text: 16-bit integers, little-endian, in base64.
+    """Return rows of samples (R, T) as one text: 16-bit integers, little-endian, in base64.
 
     Every row has a scale of its own: sample = scale * integer, so that each is known to 1/65534 of
     the row's largest. Samples that are not finite are `MISSING`.
@@ -72,20 +71,20 @@ def packed(rows: Array) -> dict[str, object]:
 
 
 def singles(row: Array) -> dict[str, object]:
-    """Samples (T,) as one text: 32-bit floats, little-endian, in base64, for what is read off to
-    its last digits; what is not finite stays so."""
+    """Return samples (T,) as one text: 32-bit floats, little-endian, in base64, for values that are
+    read to their last digits; samples that are not finite stay so."""
     with np.errstate(over="ignore"):  # beyond 3.4e38 it has no end
         numbers = np.asarray(row, dtype=np.float64).astype("<f4")
     return {"samples": numbers.size, "singles": base64.b64encode(numbers.tobytes()).decode("ascii")}
 
 
 def size_of(series: int, samples: int) -> int:
-    """How many characters ``series`` packed rows of ``samples`` take."""
+    """Return the characters of ``series`` packed rows of ``samples``."""
     return series * (samples * 8 // 3 + 12)
 
 
 def policy(scripts: list[str]) -> str:
-    """The content security policy of a page that runs these scripts alone, and loads nothing.
+    """Return the content security policy of a page that runs only these scripts and loads nothing.
 
     Plotly writes styles as it draws, and makes pictures of diagrams out of blobs.
     """
@@ -101,35 +100,35 @@ def _hash(script: str) -> str:
 
 
 INSTANTS = 91
-"""Over one period, both ends included, where no trace says which."""
+"""Instants over one period, both ends included, where no trace gives them."""
 FARTHEST = 20.0
-"""Displacements are cut off at so many lengths of the longest link: a run that has come apart is
-far out of the picture, and its first errors are to be seen."""
+"""Lengths of the longest link at which displacements are cut off: a run that has come apart is far
+out of the picture, and its first errors are to be seen."""
 
 
 def instants(scene: Scene, turns: float = 1.0) -> Array:
-    """The last period of a run of some turns [s], shape (91,)."""
+    """Return instants in the last period of a run of some turns [s], shape (91,)."""
     period = scene.driver.law.period_s
     return np.linspace((turns - 1.0) * period, turns * period, INSTANTS)
 
 
 def drawn_links(scene: Scene) -> list[str]:
-    """The links whose angle a drawing needs: those that carry a guide."""
+    """Return the links whose angle a drawing needs: those that carry a guide."""
     return list(dict.fromkeys(s.on for s in scene.sliders.values() if s.on != GROUND))
 
 
 def moving_points(scene: Scene) -> list[str]:
-    """The points that displacements are of, in their order."""
+    """Return the points of the displacements, in their order."""
     return [name for name in scene.pins if name not in scene.ground] + [
         s.point for s in scene.sliders.values() if s.point not in scene.pins
     ]
 
 
 def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[str, object]:
-    """The shape of a scene and the motion of the reference at some times [s], to be embedded.
+    """Return the shape of a scene and the reference motion at some times [s], to be embedded.
 
     Series by point (x, then y), by guide-bearing link (angle) and by slider (displacement).
-    ``truth`` takes the place of the driven reference, where something else is true.
+    ``truth`` replaces the driven reference, where there is another.
     """
     motion = true_motion(scene, time_s) if truth is None else truth
     points = {name: motion.points[name].position for name in moving_points(scene)}
@@ -160,10 +159,10 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
 def displacements(
     scene: Scene, trace: Trace, time_s: Array, truth: Motion | None = None
 ) -> dict[str, object] | None:
-    """How far a traced run is off the reference, or off ``truth`` at the times of the trace, at the
-    instants of a drawing.
+    """Return the displacement of a traced run from the reference, or from ``truth`` at the times of
+    the trace, at the instants of a drawing.
 
-    The rows are those of the drawing's places and angles: x and y by point [m], then angles of the
+    The rows are as the drawing's places and angles: x and y by point [m], then angles of the
     guide-bearing links [rad]. None for a trace without times, or of another motion.
     """
     own = trace.get("time_s")
@@ -186,7 +185,7 @@ def displacements(
 
 
 def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
-    """A slider: whose point on which guide, the guide's angle there, and how far it runs."""
+    """Return a slider: its point and guide, the guide's angle there, and its travel."""
     slider = scene.sliders[name]
     travel = motion.sliders[name].displacement
     return {
@@ -199,22 +198,22 @@ def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
 
 
 def goes_round(scene: Scene) -> bool:
-    """Whether the driver goes on turning: what is told of it by its place, else by its period."""
+    """True if the driver goes on turning: curves are over its place then, else over its period."""
     return scene.driver.slider is None and not isinstance(scene.driver.law, Oscillating)
 
 
 def told_places(scene: Scene, place: Array) -> Array:
-    """The driver's places [rad or m] as they are told [deg or m], angles from the first turn on."""
+    """Return the driver's places [rad or m] as shown [deg or m], angles from the first turn on."""
     return place if scene.driver.slider is not None else np.degrees(first_turn(place))
 
 
 def first_turn(angle_rad: Array) -> Array:
-    """Angles that start in the first turn: whole turns are taken off."""
+    """Return angles that start in the first turn: whole turns are taken off."""
     return np.asarray(angle_rad - math.tau * math.floor(float(angle_rad[0]) / math.tau + 1e-9))
 
 
 def _rows(vectors: Iterable[Array], samples: int) -> Array:
-    """Vectors (T, 2) as rows: x and y of each."""
+    """Return vectors (T, 2) as rows: x and y of each."""
     return _stacked([row for vector in vectors for row in vector.T], samples)
 
 
@@ -223,20 +222,20 @@ def _stacked(series: list[Array], samples: int) -> Array:
 
 
 def _at(time_s: Array, own_s: Array, row: Array, period_s: float) -> Array:
-    """A row at other times: as it is where they are the same, else by straight lines between."""
+    """Return a row at other times: unchanged at equal times, else by straight lines between."""
     if len(own_s) == len(time_s) and np.allclose(own_s, time_s, rtol=0.0, atol=1e-9 * period_s):
         return row
     return np.interp(time_s, own_s, row, left=math.nan, right=math.nan)
 
 
 SHOWN = 0.06
-"""Of the size of what moves: about how far the largest displacement is drawn."""
+"""Drawn size of the largest displacement, roughly, over the size of the moving parts."""
 
 
 def magnification(
     elastic: Motion, rigid: Motion, bent: Mapping[str, Array], size_m: float
 ) -> float:
-    """The factor, 1, 2 or 5 times a power of ten and at least 1, that makes displacements seen."""
+    """Return the factor, 1, 2 or 5 times a power of ten and at least 1, to see displacements."""
     moved = [
         np.hypot(*(point.position - rigid.points[name].position).T).max()
         for name, point in elastic.points.items()
@@ -251,8 +250,8 @@ def magnification(
 
 @dataclass(frozen=True)
 class Magnified:
-    """Both motions at the same instants; ``bent`` are deflections (T, K) at equal parts of each
-    elastic link [m]."""
+    """Both motions at the same instants; ``bent`` are deflections (T, K) along each elastic link
+    [m]."""
 
     scene: Scene
     elastic: Motion
@@ -261,13 +260,13 @@ class Magnified:
     factor: float
 
     def place(self, point: str, index: int) -> Array:
-        """A point at a sample [m], (2,)."""
+        """Return a point at a sample [m], (2,)."""
         exact = self.rigid.points[point].position[index]
         moved = self.elastic.points[point].position[index] - exact
         return np.asarray(exact + self.factor * moved)
 
     def outline(self, link: str, index: int) -> Array:
-        """The line or the corners of a link at a sample [m], (K, 2)."""
+        """Return the line or the corners of a link at a sample [m], (K, 2)."""
         if link not in self.bent:
             return np.array([self.place(p, index) for p in self.scene.links[link].points])
         start, end = (self.place(pin, index) for pin in line_of(self.scene, link).pins)

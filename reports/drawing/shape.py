@@ -1,4 +1,4 @@
-"""How a mechanism stands and moves on paper: a turn of it, the box that holds that, and colours."""
+"""Positions and motion of a mechanism on paper: a turn of it, its box, and colours."""
 
 import itertools
 import math
@@ -15,23 +15,23 @@ from reports.way.way import way_of
 
 PATH_SAMPLES = 361
 MARGIN = 0.14
-"""Room around what moves, over its size."""
+"""Room around the moving parts, over their size."""
 COLOURS = ("#d1495b", "#2e6f9e", "#3a7d44", "#b7791f", "#6b4e9b", "#00798c")
-"""Driver first; told apart in grey as well, by brightness."""
+"""Colours of links, driver first; distinct in grey as well, by brightness."""
 TRIED = 24
 """Positions of a turn of which the clearest is drawn."""
 
 BESIDE = 5.0 / 360.0
-"""The part of a turn on either side of a locked range that is not drawn."""
+"""Part of a turn on either side of a locked range that is not drawn."""
 
 
 def turn_of(
     scene: Scene, samples: int, most_s: float = math.inf, *, with_forces: bool = False
 ) -> Motion:
-    """One turn, or the first ``most_s`` of it, both ends included; of a scene that is let go its
-    free motion. A driver that swings begins at an end of its swing, so that an even number of equal
-    parts of its period shows the other end as well. Its forces are those outside of dead points,
-    and clear of where friction locks."""
+    """Return one turn, or the first ``most_s`` of it, both ends included; of a free scene its free
+    motion. A driver that swings begins at an end of its swing, so that an even number of equal
+    parts of its period shows the other end as well. Its forces are outside of dead points, and
+    clear of where friction locks."""
     law, way = scene.driver.law, way_of(scene)
     time_s = np.linspace(0.0, min(law.period_s, most_s), samples)
     if isinstance(law, Oscillating):
@@ -41,7 +41,7 @@ def turn_of(
 
 
 def clearest(path: Motion) -> int:
-    """The index of the position in which the points stand farthest apart, of some over a turn."""
+    """Return the index of the position, among some of a turn, with the points farthest apart."""
     places = np.stack([point.position for point in path.points.values()], axis=1)
     tried = np.linspace(0, len(places) - 1, TRIED, endpoint=False).round().astype(int)
     apart = np.linalg.norm(places[tried][:, :, None] - places[tried][:, None, :], axis=-1)
@@ -50,7 +50,7 @@ def clearest(path: Motion) -> int:
 
 
 def box_of(path: Motion) -> tuple[Array, Array]:
-    """The corners of the box that is shown: all points at all times, and a margin."""
+    """Return the corners of the shown box: all points at all times, and a margin."""
     places = np.concatenate([point.position for point in path.points.values()])
     low, high = places.min(axis=0), places.max(axis=0)
     size = float(np.max(high - low))
@@ -60,13 +60,13 @@ def box_of(path: Motion) -> tuple[Array, Array]:
 
 
 def size_of_motion(path: Motion) -> float:
-    """How large what moves is [m]: the longer side of its box, without the margin."""
+    """Return the size of the moving parts [m]: the longer side of their box, without the margin."""
     low, high = box_of(path)
     return float(np.max(high - low)) / (1 + 2 * MARGIN)
 
 
 def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
-    """The unit vector along a guide at a sample."""
+    """Return the unit vector along a guide at a sample."""
     angle = slider.direction_rad
     if slider.on != GROUND:
         angle += float(motion.links[slider.on].theta[index])
@@ -74,14 +74,14 @@ def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
 
 
 def colours_of(scene: Scene) -> dict[str, str]:
-    """A colour for every link, the driver's first."""
+    """Return a colour for every link, the driver's first."""
     names = sorted(scene.links, key=lambda name: name != scene.driver.link)
     return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
 
 
 def clear_of_locking(acting: Forces) -> Forces:
-    """The forces of a turn to be drawn: those beside where friction locks grow past all bounds, and
-    would leave the others too small to see."""
+    """Return the forces of a turn to be drawn, without those near locking, which grow past all
+    bounds and would leave the others too small to see."""
     locked = acting.has_equilibria(0)
     if not locked.any():
         return acting
@@ -95,24 +95,24 @@ def clear_of_locking(acting: Forces) -> Forces:
 
 
 def true_motion(scene: Scene, time_s: Array) -> Motion:
-    """How a scene moves in truth at times [s], driven or let go, without bounds. Raises
-    CrankcheckError where it does not."""
+    """Return the reference motion of a scene at times [s], driven or free, without bounds. Raises
+    CrankcheckError where there is none."""
     return way_of(scene).motion(scene, time_s)
 
 
 CLEAR = 0.05
-"""More room than this to the nearest obstacle is no better [inch]."""
+"""Room to the nearest obstacle beyond which more is no better [inch]."""
 AWAY = (0.04, 0.08, 0.14, 0.22)
-"""How far the edge of a label may be from what it names [inch]."""
+"""Distances of the edge of a label from its anchor [inch]."""
 AROUND = 24
 NEAR_COST, LIGHT_COST, OUT_COST = 0.12, 0.1, 10.0
-"""Costs of an inch away from what is named, of standing on a light line, of leaving the frame."""
+"""Costs of an inch away from the anchor, of standing on a light line, of leaving the frame."""
 
 
 @dataclass(frozen=True)
 class Label:
     """A text of a size (width, height) [inch], to stand beside one of ``anchors`` (n, 2) [inch];
-    ``radius`` is half the thickness of what it names."""
+    ``radius`` is half the thickness of the labelled part."""
 
     text: str
     size: tuple[float, float]
@@ -123,12 +123,12 @@ class Label:
 def place(
     labels: Sequence[Label], heavy: Array, light: Array, frame: tuple[float, float]
 ) -> list[tuple[float, float]]:
-    """The centre of each label [inch], in the order given; those first have the first choice.
+    """Return the centre of each label [inch], in the order given; earlier ones choose first.
 
     Parameters
     ----------
     heavy, light : Array
-        Points that no label may cover, and those that it should not, shape (n, 3) and (m, 2); the
+        Points that no label may cover, and points that it should not, shape (n, 3) and (m, 2); the
         third number is a radius [inch].
     frame : tuple
         Width and height of the drawing [inch]; all is measured from its lower left corner.
@@ -145,7 +145,7 @@ def place(
 
 
 def _rings(label: Label) -> Iterator[Array]:
-    """Centres around each anchor, shape (k, 2), so that the edge is some way off it."""
+    """Yield centres around each anchor, shape (k, 2), so that the edge is some way off it."""
     angle = np.linspace(0.0, math.tau, AROUND, endpoint=False) + math.pi / 4
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     half = np.array(label.size) / 2
@@ -165,7 +165,7 @@ def _costs(
     boxes: Sequence[tuple[float, float, float, float]],
     frame: tuple[float, float],
 ) -> Array:
-    """What speaks against each place (k, 2), shape (k,)."""
+    """Return the cost of each place (k, 2), shape (k,)."""
     half = np.array(label.size) / 2
     room = np.min(_distance(heavy[:, :2], centres, half) - heavy[:, 2], axis=1, initial=CLEAR)
     for x, y, width, height in boxes:
@@ -182,7 +182,7 @@ def _costs(
 
 
 def _distance(points: Array, centres: Array, half: Array) -> Array:
-    """From points (n, 2) to boxes around centres (k, 2), shape (k, n); below 0 inside of one."""
+    """Return distances of points (n, 2) to boxes around centres (k, 2), (k, n); below 0 inside."""
     away = np.abs(points - centres[:, None]) - half
     across, along = away[..., 0], away[..., 1]
     outside = np.hypot(np.maximum(across, 0.0), np.maximum(along, 0.0))
@@ -194,11 +194,11 @@ RAIL = 200
 BAR, PIN, BLOCK = 0.035, 0.05, 0.09
 """Half the thickness of a link, radius of a pin, and of a slider's block [inch]."""
 FOOT, FOOT_BELOW = 0.08, 0.1
-"""Radius of what a pin of the ground stands on, and how far below the pin its middle is [inch]."""
+"""Radius of the foot of a ground pin, and distance of its middle below the pin [inch]."""
 Side = tuple[Array, Array]
-"""The two ends of a bar, or of a side of a plate [inch]."""
+"""Both ends of a bar, or of a side of a plate [inch]."""
 Size = Callable[[str, bool], tuple[float, float]]
-"""Width and height [inch] of a text, which is the letter of a point or the name of a link."""
+"""Width and height [inch] of a text: the letter of a point or the name of a link."""
 
 
 @dataclass(frozen=True)
@@ -225,13 +225,13 @@ class Sheet:
     block: float = BLOCK
 
     def place(self, point: Array) -> Array:
-        """Where a point [m], or several, (..., 2), stand on it [inch]."""
+        """Return the place on it [inch] of a point [m], or several, (..., 2)."""
         return np.asarray((point - self.low) * self.per_m)
 
 
 @dataclass(frozen=True)
 class _Spot:
-    """A point of the mechanism on the paper, and the radius of what is drawn there [inch]."""
+    """A point of the mechanism on the paper, and the radius of its mark [inch]."""
 
     place: Array
     radius: float
@@ -245,7 +245,7 @@ def names(
     size: Size,
     taken: Sequence[Array] = (),
 ) -> list[Name]:
-    """The letters of the points, then the names of the links, where there is room.
+    """Return the letters of the points, then the names of the links, where there is room.
 
     The mechanism stands as at sample ``at`` of ``path``, a whole turn; places [m] that are
     ``taken``, (n, 2) each, are kept clear.
@@ -279,7 +279,7 @@ def names(
 def _obstacles(
     scene: Scene, spots: Mapping[str, _Spot], bars: Mapping[str, Sequence[Side]]
 ) -> Array:
-    """What no label may cover: points and radii [inch] of links, pins, and feet on the ground."""
+    """Return obstacles of labels: points and radii [inch] of links, pins, and ground feet."""
     circles = [(*spot, BAR) for bar in bars.values() for side in bar for spot in _sampled(*side)]
     circles += [(*spot.place, spot.radius) for spot in spots.values()]
     feet = (spots[name].place for name in scene.ground)
@@ -287,24 +287,24 @@ def _obstacles(
 
 
 def _sides(corners: Sequence[Array]) -> list[Side]:
-    """The bar between two points; of more points, all sides of the plate."""
+    """Return the bar between two points; of more points, all sides of the plate."""
     ends = [*corners, corners[0]] if len(corners) > 2 else corners
     return list(itertools.pairwise(ends))
 
 
 def _middle(sides: Sequence[Side]) -> Array:
-    """Where on a link its name may stand: along the middle part of each side."""
+    """Return places on a link for its name: along the middle part of each side."""
     parts = np.linspace(0.25, 0.75, 7)[:, None]
     return np.concatenate([a + parts * (b - a) for a, b in sides])
 
 
 def _sampled(a: Array, b: Array) -> Array:
-    """Points along a side, closely."""
+    """Return points along a side, closely."""
     return np.linspace(a, b, max(int(np.linalg.norm(b - a) / BAR), 1) + 1)
 
 
 def rail(slider: Slider, path: Motion, at: int, spare_m: float) -> Array:
-    """Points along the guide of a slider, as far as it runs and a little farther [m], (n, 2)."""
+    """Return points along the guide of a slider, a little farther than it runs [m], (n, 2)."""
     travel = path.sliders[slider.name].displacement
     along = np.linspace(travel.min() - spare_m, travel.max() + spare_m, RAIL) - travel[at]
     direction = guide_direction(slider, path, at)

@@ -1,7 +1,7 @@
 """A mechanism in one position as an SVG picture, for a page whose colours are not known.
 
-Lines and letters have the colour of the text around them, links one that is seen on white and on
-black. It stands on its own: no script, no style sheet, nothing to load.
+Lines and letters have the colour of the text around them, links a colour that is seen on white and
+on black. It is complete in itself: no script, no style sheet, nothing to load.
 """
 
 import math
@@ -29,7 +29,7 @@ from reports.drawing.shape import (
 )
 
 WIDTH, HEIGHT = 440, 320
-"""The largest picture [px]; the mechanism's own shape makes it narrower or lower."""
+"""Largest picture [px]; the mechanism's own shape makes it narrower or lower."""
 INCH = 96
 SAMPLES = 181
 BLOCK = (11.0, 7.0)
@@ -37,19 +37,19 @@ BLOCK = (11.0, 7.0)
 LETTER, LINK_NAME = 14, 12
 """Size of letters and names [px]."""
 COLOURS = ("#d9596b", "#4a86c8", "#459150", "#b97f1f", "#9070c8", "#15889a")
-"""Links, the driver first: at least 3 to 1 against white and against black."""
+"""Colours of links, the driver first: at least 3 to 1 against white and against black."""
 
 
 @dataclass(frozen=True)
 class _Paper:
-    """What turns metres into pixels: the upper left corner [m] and the scale."""
+    """Conversion from metres to pixels: the upper left corner [m] and the scale."""
 
     left: float
     top: float
     per_m: float
 
     def at(self, places: Array) -> Array:
-        """Places [m], (..., 2), in pixels from the upper left corner, y down."""
+        """Return places [m], (..., 2), in pixels from the upper left corner, y down."""
         return np.asarray((places - (self.left, self.top)) * (self.per_m, -self.per_m))
 
 
@@ -60,11 +60,10 @@ def svg(
     *,
     with_forces: bool = False,
 ) -> str:
-    """The mechanism where its points stand farthest apart, and their paths over a turn, or over the
-    first ``most_s`` of it; where they are wanted, with its forces as arrows, where these are
-    largest.
+    """Draw the mechanism where its points stand farthest apart, and their paths over a turn, or
+    over its first ``most_s``; if requested, with its forces as arrows, where these are largest.
 
-    Paths of ``logged``, the motion of a run, are drawn over those of the reference. Raises
+    Paths of ``logged``, the motion of a run, are drawn over the reference paths. Raises
     CrankcheckError where the mechanism can not go through all of that, or there are no forces.
     """
     path = turn_of(scene, SAMPLES, most_s, with_forces=with_forces)
@@ -101,13 +100,13 @@ def svg(
 
 
 def colours_of(scene: Scene) -> dict[str, str]:
-    """A colour for every link, the driver's first."""
+    """Return a colour for every link, the driver's first."""
     order = sorted(scene.links, key=lambda name: name != scene.driver.link)
     return {name: COLOURS[index % len(COLOURS)] for index, name in enumerate(order)}
 
 
 def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[str]:
-    """The ways of the points that move, as far as they are finite."""
+    """Yield the paths of the moving points, as far as they are finite."""
     for name, point in motion.points.items():
         places = point.position[np.isfinite(point.position).all(axis=1)]
         few = places[:: max(1, len(places) // SAMPLES)]
@@ -118,7 +117,7 @@ def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[s
 def _guides(
     scene: Scene, path: Motion, at: int, paper: _Paper, spare_m: float, colours: dict[str, str]
 ) -> Iterable[str]:
-    """The lines that sliders run on, as far as they do."""
+    """Yield the lines of sliders, as far as they run on them."""
     for slider in scene.sliders.values():
         ends = rail(slider, path, at, spare_m)[[0, -1]]
         colour = "currentColor" if slider.on == GROUND else colours[slider.on]
@@ -129,7 +128,7 @@ def _guides(
 
 
 def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: str) -> str:
-    """A bar between two points; of more points a plate."""
+    """Return a bar between two points; of more points a plate."""
     corners = [path.points[point].position[at] for point in scene.links[name].points]
     places = _points(paper.at(np.array(corners)))
     inside = f'fill="{colour}" fill-opacity="0.2"' if len(corners) > 2 else ""
@@ -140,7 +139,7 @@ def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: 
 
 
 def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
-    """The block of a slider, along its line."""
+    """Return the block of a slider, along its line."""
     direction = guide_direction(slider, path, at)
     across = np.array([-direction[1], direction[0]])
     half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * BLOCK / paper.per_m
@@ -152,7 +151,7 @@ def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
 
 
 def _feet(place: Array, paper: _Paper, size: float) -> str:
-    """What a pin of the ground stands on."""
+    """Return the foot of a pin of the ground."""
     foot = 0.035 * size
     corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
     return (
@@ -167,7 +166,7 @@ def _pin(place: Array, paper: _Paper) -> str:
 
 
 def _arrow(arrow: Arrow, paper: _Paper, size: float, colours: dict[str, str]) -> str:
-    """A force in the colour of the body that it acts on; a block's has that of the text."""
+    """Return a force in the colour of the body that it acts on; on a block in the text colour."""
     colour = colours.get(arrow.body, "currentColor")
     head = arrow.head(size)
     ends = np.array([arrow.tail, head[1:].mean(axis=0) if arrow.is_whole else arrow.tip])
@@ -179,7 +178,7 @@ def _arrow(arrow: Arrow, paper: _Paper, size: float, colours: dict[str, str]) ->
 
 
 def _scale_bar(arrows: ForceArrows, paper: _Paper, size: tuple[float, float]) -> Iterable[str]:
-    """How long a force is drawn, in the lower right corner of a picture of a size [px]."""
+    """Yield the scale bar of forces, in the lower right corner of a picture of a size [px]."""
     if arrows.bar_n:
         right, low = size[0] - 10.0, size[1] - 8.0
         left = right - arrows.bar_n * arrows.m_per_n * paper.per_m
@@ -202,11 +201,11 @@ def _text(name: Name, paper: _Paper) -> str:
 
 
 def _size(text: str, is_point: bool) -> tuple[float, float]:
-    """About the width and height of a text [inch], whose font is the reader's own."""
+    """Return the approximate width and height of a text [inch], whose font is the reader's own."""
     pixels = LETTER if is_point else LINK_NAME
     return 0.6 * pixels * len(text) / INCH, 0.75 * pixels / INCH
 
 
 def _points(places: Sequence[Array] | Array) -> str:
-    """Corners as SVG has them."""
+    """Return corners in SVG format."""
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in places)

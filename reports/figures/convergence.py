@@ -1,8 +1,8 @@
-"""Convergence plot: the error at every step, and the order or floor that a fit finds.
+"""Convergence plot: the error at every step, and the order or floor of the fit.
 
-Points are measured. The curve of a fit goes over the steps that it stands on; the other points
-hang on a hairline. A floor that is seen is drawn on to the left edge. A run that did not end well
-stands in a strip along the top, at its step.
+Points are measured. The curve of a fit goes over its own steps; the other points hang on a
+hairline. A floor that is seen is drawn on to the left edge. A run that did not end well stands in a
+strip along the top, at its step.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ ALONG = 60
 
 
 def draw(report: Report, scene: str) -> Figure:
-    """The plot of one scene, with steps per turn along the top."""
+    """Draw the plot of one scene, with steps per turn along the top."""
     own, mark_of = report.lines_of(scene), marks(report.lines)
     panels = Panels(top=0.27)
     title, under = f"Convergence: {scene}", notes(report, own)
@@ -60,8 +60,8 @@ def draw(report: Report, scene: str) -> Figure:
 
 
 def draw_all(report: Report) -> Figure:
-    """The plots of all scenes side by side, over steps per turn; over steps of time where all were
-    let go."""
+    """Draw the plots of all scenes side by side, over steps per turn; over time for free
+    motions."""
     lines, scenes, mark_of = report.lines, list(report.scenes), marks(report.lines)
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], **mark.style), report.looks[name].name) for name, mark in mark_of.items()
@@ -84,17 +84,17 @@ def draw_all(report: Report) -> Figure:
 
 
 def _over(lines: Sequence[Line]) -> Over:
-    """What steps are drawn over."""
+    """Return the axis of the steps."""
     return OVER[common_clock(line.drive for line in lines)]
 
 
 def _error_of(lines: Sequence[Line]) -> str:
-    """What the errors of lines are of; rigid and elastic links are not drawn together."""
+    """Return the label of the errors; rigid and elastic links are not drawn together."""
     return min((line.kind for line in lines), key=lambda kind: kind.leads).axis
 
 
 def _panel(axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float) -> None:
-    """Points, fits and floors of one scene; steps in ``unit_s``."""
+    """Draw points, fits and floors of one scene; steps in ``unit_s``."""
     left = axes.get_xlim()[0]
     for line in lines:
         mark, rows, fit = mark_of[named(line)], measured(line), line.fit
@@ -112,7 +112,7 @@ def _panel(axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], uni
 def _failed(
     axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float, strip: float
 ) -> None:
-    """The runs that did not end well, in rows of a strip along the top."""
+    """Draw the runs that did not end well, in rows of a strip along the top."""
     rows = [line for line in lines if ends(line)]
     if not rows:
         return
@@ -128,13 +128,13 @@ def _failed(
 
 
 def _strip(lines: Sequence[Line]) -> float:
-    """The share of a panel's height that failed runs take, where there are any."""
+    """Return the share of a panel's height for failed runs, where there are any."""
     failed = Counter(line.scene for line in lines if ends(line))
     return min(0.075 * max(failed.values(), default=0), 0.3)
 
 
 def _limits(axes: Sequence[Axes], lines: Sequence[Line], unit_s: float) -> None:
-    """The same limits for all panels; steps in ``unit_s``, a share of a turn for 0."""
+    """Set the same limits for all panels; steps in ``unit_s``, a share of a turn for 0."""
     steps = [
         float(s) / unit_s if unit_s else 1.0 / float(s)
         for line in lines
@@ -149,7 +149,7 @@ def _limits(axes: Sequence[Axes], lines: Sequence[Line], unit_s: float) -> None:
 
 
 def _upper(axes: Axes, lines: Sequence[Line]) -> None:
-    """Steps per turn along the top."""
+    """Draw steps per turn along the top."""
     upper = axes.twiny()
     upper.set_xscale("log")
     upper.set_xlim(axes.get_xlim())
@@ -159,20 +159,20 @@ def _upper(axes: Axes, lines: Sequence[Line]) -> None:
 
 
 def _count(axes: Axes, lines: Sequence[Line], period_s: float = 1.0) -> None:
-    """Ticks of an axis over steps at the steps per turn that were run, as many as have room."""
+    """Set ticks of an axis over steps at the steps per turn that were run, as many as have room."""
     numbers = {float(n) for line in lines for n in line.cells["steps_per_turn"]}
     _ticks(axes, {period_s / n: f"{n:g}" for n in numbers})
 
 
 def _time(axes: Axes, lines: Sequence[Line]) -> None:
-    """Ticks of an axis over steps of time at those that were run, as many as have room."""
+    """Set ticks of an axis over steps of time at the ones that were run, as many as have room."""
     steps = {float(s) for line in lines for s in line.cells["dt_s"]}
     parts = {step: duration(step).split() for step in steps}
     _ticks(axes, {step: f"{float(size):g} {unit}" for step, (size, unit) in parts.items()})
 
 
 def _ticks(axes: Axes, texts: Mapping[float, str]) -> None:
-    """Ticks of an axis over steps at some of these places: from the coarsest on every one,
+    """Set ticks of an axis over steps at some of these places: from the coarsest on every one,
     every second, or as many as have room."""
     places = sorted(texts, reverse=True)
     low, high = axes.get_xlim()
@@ -196,7 +196,7 @@ def _ticks(axes: Axes, texts: Mapping[float, str]) -> None:
 def _entries(
     report: Report, lines: Sequence[Line], mark_of: Mapping[Named, Mark]
 ) -> list[tuple[Artist, str]]:
-    """The legend: each variant with its fit, and how its other runs ended."""
+    """Return the legend: each variant with its fit, and the ending of its other runs."""
     return [
         (
             Line2D([], [], **mark_of[named(line)].style),
@@ -210,8 +210,7 @@ def _entries(
 
 @dataclass(frozen=True)
 class Over:
-    """How steps stand along an axis: in one panel, and in those of all scenes in the unit of time
-    that is given, 0 for a turn of each."""
+    """Axis of steps: in one panel, and in panels of all scenes in a unit of time, 0 for a turn."""
 
     label: str
     ticks: Callable[[Axes, Sequence[Line]], None]

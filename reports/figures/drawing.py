@@ -1,4 +1,4 @@
-"""What a figure of a store is, and what of a line it draws or says in words."""
+"""A figure of a store, and the marks and words of its lines."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from reports.results.overview import Report
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a figure shows, of one scene and over all of them; None where it has no such form.
+    """Functions of a figure, for one scene and over all of them; None where it has no such form.
 
     Each gives None where a store has nothing to draw. Files are called ``name-scene`` and ``name``.
     ``drives`` are the kinds of cells that it shows (`reports.way.way.Way.kinds`).
@@ -36,26 +36,26 @@ WORDS = {
 
 
 def measured(line: Line) -> pd.DataFrame:
-    """The cells that ended well with an error above 0, from coarse to fine."""
+    """Return the cells that ended well with an error above 0, from coarse to fine."""
     cells = line.cells
     return cells[(cells["status"] == "ok") & _positive(cells["place_pure"])]
 
 
 def timed(line: Line) -> pd.DataFrame:
-    """Those of them that were timed."""
+    """Return the timed cells among them."""
     cells = measured(line)
     return cells[_positive(cells["s_per_turn"])]
 
 
 def ends(line: Line) -> str:
-    """How the other runs of a line ended, such as "2 of 7 diverged"; empty where all ended well."""
+    """Return the endings of the other runs of a line, such as "2 of 7 diverged"; or ""."""
     statuses = Counter(str(status) for status in line.cells["status"])
     del statuses["ok"]
     return ", ".join(f"{n} of {len(line.cells)} {status}" for status, n in statuses.items())
 
 
 def fitted(line: Line) -> str:
-    """What the fit of a line says, in two or three words."""
+    """Return the fit of a line, in two or three words."""
     fit = line.fit
     order = f"order {fit.order:.2f} ± {fit.order_error:.2f}"
     if fit.kind == "order":
@@ -66,7 +66,7 @@ def fitted(line: Line) -> str:
 
 
 def around(values: Iterable[float], least: float = 1.6, spare: float = 0.2) -> tuple[float, float]:
-    """Limits of a logarithmic axis around values, some room beside them [decades]."""
+    """Return limits of a logarithmic axis around values, with some room beside them [decades]."""
     powers = [math.log10(value) for value in values]
     low, high = (min(powers), max(powers)) if powers else (-0.5, 0.5)
     more = max(least - (high - low), 0.0) / 2 + spare
@@ -87,21 +87,21 @@ DASHES: tuple[tuple[float, ...], ...] = (
     (6.0, 1.2, 1.0, 1.2, 1.0, 1.2),
     (9.0, 2.0),
 )
-"""Lengths of dashes and gaps in line widths; none is a whole line."""
+"""Lengths of dashes and gaps in line widths; the empty one is a whole line."""
 COLOURS = (
     ("#0a2a4d", "#1f5f9e", "#4a90c9", "#79b1dc"),
     ("#7a1f0f", "#c04a1d", "#d97b35", "#dc9f66"),
     ("#0f4023", "#2f7d4c", "#55a572", "#84bf97"),
     ("#3b1a5a", "#71479f", "#9877bd", "#b89fd3"),
 )
-"""One hue an engine, from dark to light."""
+"""Hues of the engines, from dark to light."""
 SIZES = {True: (3.0, 3.4, 3.8, 4.2), False: (2.6, 4.0, 5.4, 6.0)}
-"""Of filled and open markers [point]: open ones of equal curves stand around each other."""
+"""Sizes of filled and open markers [point]: open ones of equal curves stand around each other."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """How the curve of a variant looks."""
+    """Look of the curve of a variant."""
 
     marker: str
     filled: bool
@@ -110,23 +110,23 @@ class Mark:
     size: float
 
     def scaled(self, factor: float) -> Mark:
-        """The same with smaller markers, for smaller panels."""
+        """Return the same with smaller markers, for smaller panels."""
         return replace(self, size=factor * self.size)
 
     @property
     def style(self) -> dict[str, Any]:
-        """What `Axes.plot` takes for it."""
+        """Arguments of `Axes.plot`."""
         return {**self.line, **self.points}
 
     @property
     def line(self) -> dict[str, Any]:
-        """The line alone."""
+        """Arguments of the line alone."""
         dashes: object = (0, self.dashes) if self.dashes else "-"
         return {"color": self.colour, "linestyle": dashes, "linewidth": 1.0}
 
     @property
     def points(self) -> dict[str, Any]:
-        """The marker alone."""
+        """Arguments of the marker alone."""
         return {
             "marker": self.marker,
             "markersize": self.size,
@@ -137,7 +137,7 @@ class Mark:
 
 
 def marks(lines: Iterable[Line]) -> Mapping[Named, Mark]:
-    """A mark for each variant, the same in all figures of a store.
+    """Return a mark for each variant, the same in all figures of a store.
 
     No two have the same marker and dashes; engines differ in filling and hue as well.
     """
@@ -159,7 +159,7 @@ def marks(lines: Iterable[Line]) -> Mapping[Named, Mark]:
 
 
 def _dashes(turn: int) -> tuple[float, ...]:
-    """The dashes of a number: those of the list, then the same ones longer and longer."""
+    """Return the dashes of a number: from the list, then the same ones longer and longer."""
     round_, at = divmod(turn, len(DASHES))
     if not round_:
         return DASHES[at]

@@ -40,16 +40,16 @@ from reports.way.way import way_of
 ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}
 RIGID: Look = {"color": "#c04a1d", "linewidth": 0.9, "linestyle": (0, (4.0, 2.0))}
 WITHOUT = RIGID | {"linestyle": "-"}
-"""Without control."""
+"""Look of the motion without control."""
 COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a3e9d", "#b97f1f", "#15889a")
-"""Of elastic links, in the order of the scene."""
+"""Colours of elastic links, in the order of the scene."""
 DASHES = ("-", (0, (5.0, 1.5)), (0, (1.2, 1.2)), (0, (6.0, 1.5, 1.0, 1.5)))
 TURN = 1.0001
-"""Periods of a constant speed up to which an axis is that of the driver's angle."""
+"""Periods of a constant speed up to which an axis shows the driver's angle."""
 SEEN = 1e-12
-"""An extension, over the longest link, below which there is none."""
+"""Extension, over the longest link, below which there is none."""
 MOST = 8
-"""Links and sliders that one figure has room for: those that are furthest apart."""
+"""Most links and sliders of one figure: the furthest apart are shown."""
 COLUMNS, ROWS = 3, 2
 GHOST: Look = {"color": "#a9b3bd", "linewidth": 1.0, "zorder": 1}
 
@@ -74,7 +74,7 @@ class CourseAxis:
         return CourseAxis(time_s, "time [s]")
 
     def mark(self, axes: Axes, *, labelled: bool = True) -> None:
-        """Limits and label of the axis, short numbers on the other, and a line at 0."""
+        """Set limits and label of the axis, short numbers on the other, and a line at 0."""
         axes.set_xlim(float(self.values.min()), float(self.values.max()))
         if self.step:
             axes.xaxis.set_major_locator(MultipleLocator(self.step))
@@ -89,7 +89,7 @@ class CourseAxis:
 
 
 def _notes(course: ElasticCourse) -> list[str]:
-    """What stands under each figure."""
+    """Return the notes under each figure."""
     return [note(course.scene, course.words, course.scene.driver.link)]
 
 
@@ -98,8 +98,7 @@ def _beside_rigid() -> list[tuple[Artist, str]]:
 
 
 def _deflection(course: ElasticCourse) -> Figure | None:
-    """How far the middle of each elastic link is from the line between its pins; None where no link
-    bends."""
+    """Draw the deflection of the middle of each elastic link; None where no link bends."""
     curves = {}
     for name in (name for name, own in course.scene.elastic.items() if own.bends):
         line = line_of(course.scene, name)
@@ -109,8 +108,8 @@ def _deflection(course: ElasticCourse) -> Figure | None:
 
 
 def _extension(course: ElasticCourse) -> Figure | None:
-    """By how much the pins of each elastic link are further apart than at rest: it stretches, and
-    what bends is shorter; None where no link is longer or shorter."""
+    """Draw the extension between the pins of each elastic link against rest: it stretches, and a
+    bent one is shorter; None where no link is longer or shorter."""
     shapes = course.motion.elastic
     largest = max(float(abs(shape.extension).max()) for shape in shapes.values())
     if largest <= SEEN * course.scene.longest_m:
@@ -120,7 +119,7 @@ def _extension(course: ElasticCourse) -> Figure | None:
 
 
 def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, label: str) -> Figure:
-    """One panel with a curve for each elastic link, by what the legend says of it."""
+    """Draw one panel with a curve for each elastic link, by its text in the legend."""
     looks: list[Look] = [
         {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k % len(DASHES)]}
         for k in range(len(curves))
@@ -136,8 +135,8 @@ def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, la
 
 
 def _torque(course: ElasticCourse) -> Figure | None:
-    """The driving torque with elastic links and with rigid ones, and their difference; None without
-    a drive."""
+    """Draw the driving torque with elastic links and with rigid ones, and their difference; None
+    without a drive."""
     if course.torques is None:
         return None
     elastic, rigid = course.torques
@@ -156,8 +155,8 @@ def _torque(course: ElasticCourse) -> Figure | None:
 
 
 def _angles(course: ElasticCourse) -> Figure | None:
-    """The angles of links, and displacements of sliders, with elastic links beside those with rigid
-    ones, as the thesis draws them, and by how much they are apart; None where nothing is."""
+    """Draw the angles of links, and displacements of sliders, with elastic links beside rigid ones,
+    as in the thesis, and their differences; None where there are none."""
     each = _chosen(course)
     if not each:
         return None
@@ -179,7 +178,7 @@ def _angles(course: ElasticCourse) -> Figure | None:
 
 
 def _chosen(course: ElasticCourse) -> list[Apart]:
-    """At most so many, in the order of the scene; links that only a told driver moves are none."""
+    """Return at most so many, in the order of the scene; none that follow a driver's law alone."""
     every = [one for one in course.apart() if np.any(one.difference)]
     sizes = sorted((float(np.max(np.abs(one.difference))) for one in every), reverse=True)
     least = sizes[min(MOST, len(sizes)) - 1] if sizes else 0.0
@@ -190,11 +189,11 @@ BESIDE = {
     TURNS: ("rigid links", "Displacements from rigid links", 1.0),
     SECONDS: ("lines between pins", "Deflections", 0.0),
 }
-"""What is thin beside bent links, what is magnified, and turns from which on times are told."""
+"""Name of the thin mechanism, magnified quantity, and turns from which on times are shown."""
 
 
 def _positions(course: ElasticCourse) -> Figure | None:
-    """The mechanism at six instants, evenly spread over the motion, from its start on, its
+    """Draw the mechanism at six instants, evenly spread over the motion, from its start on, its
     deflection magnified, over the same with rigid links."""
     scene, base = course.scene, course.base
     size = size_of_motion(base)
@@ -229,7 +228,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
 
 
 def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -> None:
-    """Links, sliders and pins at a sample, the rigid mechanism behind them."""
+    """Draw links, sliders and pins at a sample, the rigid mechanism behind them."""
     for name, link in own.scene.links.items():
         ghost = np.array([own.rigid.points[p].position[index] for p in link.points])
         outline = own.outline(name, index)
@@ -249,9 +248,8 @@ def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -
 
 
 def _control(course: ElasticCourse) -> Figure | None:
-    """What a controller makes of elastic links, over the same with the torque of the rigid
-    mechanism alone: deflections, the driver's speed, and how far it is ahead of what it was told;
-    None without a controller."""
+    """Draw elastic links under a controller, over the same with the torque of rigid links alone:
+    deflections, the driver's speed, and its lead over its command; None without a controller."""
     law = course.scene.driver.law
     if course.uncontrolled is None or not isinstance(law, Controlled):
         return None
@@ -277,7 +275,7 @@ def _control(course: ElasticCourse) -> Figure | None:
 
 
 def _controlled(panes: list[Axes], course: ElasticCourse, motion: Motion, look: Look) -> None:
-    """One of the two motions in all panels; several elastic links differ in their dashes."""
+    """Draw one of the two motions in all panels; several elastic links differ in their dashes."""
     driver, time_s = course.scene.driver, course.time_s
     bending = [name for name, own in course.scene.elastic.items() if own.bends]
     for name, dash in zip(bending, DASHES * len(bending), strict=False):
@@ -298,4 +296,4 @@ ELASTIC_FIGURES: FigureSet[ElasticCourse] = FigureSet(
         "control": _control,
     },
 )
-"""What is let go has no drive, few are controlled."""
+"""Figures of elastic links; a free motion has no drive, few scenes are controlled."""

@@ -1,8 +1,7 @@
-"""The error over the driver's place, split into what a user can turn.
+"""The error over the driver's place, split into parts that a user can adjust.
 
-A panel for each variant, at one step. The parts are those of `reports.results.error_parts`, with
-sign: drive, model floor and discretisation add up to the total; the gap of the pins stands beside
-them.
+A panel for each variant, at one step. The parts come from `reports.results.error_parts`, with sign:
+drive, model floor and discretisation add up to the total; the gap of the pins stands beside them.
 """
 
 import math
@@ -26,7 +25,7 @@ from reports.results.lines import Line, label, named
 from reports.results.overview import Report, notes
 
 STEPS = 720
-"""Steps per turn of the cells that are shown, or the nearest that ended well: those of verify."""
+"""Steps per turn of the shown cells, or the nearest that ended well: as in verify."""
 LOOKS: dict[str, tuple[str, Look]] = {
     "total": ("total", {"color": "#cccccc", "linewidth": 3.0}),
     "drive": ("drive: crank not where it is told to be", {"color": "#2f7d4c", "dashes": (1, 1)}),
@@ -39,7 +38,7 @@ LOOKS: dict[str, tuple[str, Look]] = {
 
 
 def draw(report: Report, name: str) -> Figure | None:
-    """The panels of a scene; None where there is nothing to split."""
+    """Draw the panels of a scene; None where there is nothing to split."""
     lines, scene = report.lines_of(name), report.scenes[name]
     body = None if scene is None else worst_body(lines, report.stored.trace, scene.longest_m)
     if scene is None or body is None:
@@ -66,8 +65,7 @@ def draw(report: Report, name: str) -> Figure | None:
 
 @dataclass(frozen=True)
 class ShownCell:
-    """The cell of a line that is shown, what there is to say of its floor, and the power of ten
-    that its errors are drawn in."""
+    """The shown cell of a line, words on its floor, and the power of ten of its errors."""
 
     steps_per_turn: float
     parts: ErrorParts
@@ -79,7 +77,7 @@ class ShownCell:
 
 
 def _cell(line: Line, parts: Split) -> ShownCell | None:
-    """The cell that ended well with the number of steps nearest to `STEPS`; None without one."""
+    """Return the cell that ended well with steps nearest to `STEPS`; None without one."""
     rows = line.cells[(line.cells["status"] == "ok") & line.cells["key"].isin(list(parts.cells))]
     if rows.empty:
         return None
@@ -93,7 +91,7 @@ def _cell(line: Line, parts: Split) -> ShownCell | None:
 
 
 def _panel(axes: Axes, cell: ShownCell, scene: Scene, unit: str) -> None:
-    """The curves of a cell over the driver's place, angles from the first turn on."""
+    """Draw the curves of a cell over the driver's place, angles from the first turn on."""
     turn = told_places(scene, cell.parts.driver_rad)
     for name, curve in cell.parts.curves.items():
         axes.plot(turn, curve / cell.scale, **LOOKS[name][1])

@@ -33,11 +33,11 @@ Curve = tuple[str, Array, Look]
 
 
 def _torque(turn: ForceTurn) -> Figure | None:
-    """The driving torque, its mean, and what of it inertia, loads and friction take; None without
-    forces.
+    """Draw the driving torque, its mean, and its shares for inertia, loads and friction; None
+    without forces.
 
-    Shares are drawn where weights or loads act, or friction: the drive holds against the reduced
-    torque and friction, and the rest is inertia. Where friction locks, a turn has no mean.
+    Shares are drawn where weights or loads act, or friction: the drive balances the reduced torque
+    and friction, and the rest is inertia. A turn has no mean where friction locks.
     """
     if not turn.has_forces:
         return None
@@ -72,7 +72,7 @@ def _torque(turn: ForceTurn) -> Figure | None:
 
 
 def _of_friction(turn: ForceTurn) -> Array | None:
-    """What of the torque overcomes friction; None without friction."""
+    """Return the part of the torque that overcomes friction; None without friction."""
     flow = flow_of(turn.scene, turn.motion, turn.acting)
     if flow is None:
         return None
@@ -82,15 +82,15 @@ def _of_friction(turn: ForceTurn) -> Array | None:
 
 
 def mean_torque(turn: ForceTurn) -> float:
-    """Over the turn, by time; what is nothing but rounding is 0."""
+    """Return the mean over the turn, by time; 0 where it is rounding alone."""
     torque = turn.acting.torque[:-1]  # the last instant is the first again
     mean = float(np.nanmean(torque))
     return mean if abs(mean) > 1e-9 * float(np.nanmax(np.abs(torque))) else 0.0
 
 
 def _reactions(turn: ForceTurn) -> Figure | None:
-    """How large the reactions are: lengths of the forces of pins and signed normal forces of guides
-    in one panel, moments of guides in one below where there are any; None without reactions."""
+    """Draw the sizes of the reactions: lengths of pin forces and signed normal forces of guides in
+    one panel, moments of guides in one below where there are any; None without reactions."""
     if not turn.has_forces:
         return None
     colours, guides = colours_of(turn.scene), turn.acting.sliders
@@ -111,7 +111,7 @@ def _reactions(turn: ForceTurn) -> Figure | None:
 
 
 def _dashed(rows: Sequence[tuple[str, Array, str]]) -> list[Curve]:
-    """Curves in their colours, with dashes of their own: bodies share colours."""
+    """Return curves in their colours, with dashes of their own: bodies share colours."""
     dashes = [DASHES[k % len(DASHES)] for k in range(len(rows))]
     return [
         (name, series, {"color": colour, "linestyle": (0, dash) if dash else "-"})
@@ -126,8 +126,7 @@ def _stacked(
     notes: Sequence[str],
     top: float = 0.15,
 ) -> tuple[Figure, list[Axes]]:
-    """Panels below each other, each with its label and its curves, those with a name in the
-    legend."""
+    """Draw panels below each other, each with its label and curves, named ones in the legend."""
     height = 2.1 if len(groups) == 1 else 1.6
     panels = Panels(len(groups), 1, height, *SIDES, top, between=(0, 0.22))
     curves = [curve for _, own in groups for curve in own]
@@ -144,8 +143,8 @@ def _stacked(
 
 
 def _efficiency(turn: ForceTurn) -> Figure | None:
-    """The instantaneous efficiency, from 0 to 1, that of the cycle, and where it locks; None
-    without friction, or where the loads drive all the time."""
+    """Draw the instantaneous efficiency, from 0 to 1, the efficiency of the cycle, and where it
+    locks; None without friction, or where the loads drive all the time."""
     assert turn.motion.forces is not None
     flow = flow_of(turn.scene, turn.motion, turn.motion.forces)
     if flow is None or not np.isfinite(flow.efficiency).any():
@@ -176,8 +175,8 @@ def _efficiency(turn: ForceTurn) -> Figure | None:
 
 
 def _reduced(turn: ForceTurn) -> Figure:
-    """The machine reduced to its driver: moment of inertia, and below it the torque where weights
-    or loads act."""
+    """Draw the machine reduced to its driver: inertia, and below it torque if weights or loads
+    act."""
     reduced, notes, drive = turn.reduced, turn.notes, turn.scene.driver
     mass = "moment of inertia [kg m²]" if drive.slider is None else "mass [kg]"
     groups = [(mass, [("", reduced.inertia, CURVE)])]
@@ -203,5 +202,5 @@ FORCE_FIGURES: FigureSet[ForceTurn] = FigureSet(
         "reactions-polar": hodographs,
     },
 )
-"""With redundant links there are no reactions, without friction there is no efficiency, and where
-friction locks nearly all of a turn there are no forces."""
+"""Figures of forces: there are no reactions with redundant links, no efficiency without friction,
+and no forces where friction locks nearly all of a turn."""

@@ -1,5 +1,5 @@
-"""A turn of a scene under forces: the axis that figures go over, and forces as vectors, in polar
-diagrams of pins and on the mechanism."""
+"""A turn of a scene under forces: the axis of its figures, and forces as vectors, in polar diagrams
+of pins and on the mechanism."""
 
 import math
 from dataclasses import dataclass
@@ -46,8 +46,7 @@ from reports.output.numbers import readable
 class ForceTurn:
     """The first turn of a scene: its motion with forces, and the machine reduced to its driver.
 
-    ``x`` is what curves go over, called ``label``, between ``ends``; ``order`` are the samples that
-    stand there.
+    ``x`` is the axis of curves, called ``label``, between ``ends``; ``order`` are its samples.
     """
 
     scene: Scene
@@ -64,7 +63,7 @@ class ForceTurn:
         axes.plot(self.x, series[self.order], **look)
 
     def mark_axis(self, axes: Axes) -> None:
-        """Limits and ticks of the horizontal axis; short numbers on the other."""
+        """Set limits and ticks of the horizontal axis; short numbers on the other."""
         axes.set_xlim(*self.ends)
         shorten(axes)
         if self.label.endswith("[deg]"):
@@ -72,12 +71,12 @@ class ForceTurn:
 
     @property
     def has_forces(self) -> bool:
-        """Whether any forces are left to draw, beside where friction locks."""
+        """True if any forces are left to draw, beside where friction locks."""
         return bool(np.isfinite(self.acting.torque).any())
 
     @property
     def notes(self) -> list[str]:
-        """What stands under each figure."""
+        """Notes under each figure."""
         scene = self.scene
         notes = [note(scene, "closed form", "driver", loads_told(scene))]
         notes += force_notes(scene, self.motion)
@@ -88,7 +87,7 @@ class ForceTurn:
 
 
 def force_turn(scene: Scene) -> ForceTurn:
-    """The turn of a scene. Raises CrankcheckError as `with_forces`."""
+    """Return the turn of a scene. Raises CrankcheckError as `with_forces`."""
     motion = turn_with_forces(scene)
     assert motion.forces is not None
     reduced = reduced_machine(scene, motion.time_s)
@@ -109,7 +108,7 @@ def force_turn(scene: Scene) -> ForceTurn:
 
 
 def _is_cyclic(scene: Scene, theta: Array) -> bool:
-    """Whether every turn of a driver of one speed is like the others: no load follows time, and
+    """True if every turn of a driver of one speed is like the others: no load follows time, and
     none follows the angle otherwise than turn by turn (a four-stroke's does)."""
     for load in scene.loads.values():
         own = load.characteristic
@@ -128,14 +127,14 @@ def _is_cyclic(scene: Scene, theta: Array) -> bool:
 
 COLUMNS = 3
 EVERY_DEG, NAMED_DEG = 30, 90
-"""Angles of the driver that have a dot, and those that have their number beside it."""
+"""Angles of the driver with a dot, and angles with their number beside it."""
 ROOM = 0.12
 """Room around a curve, over its size."""
 
 
 def hodographs(turn: ForceTurn) -> Figure | None:
-    """Polar diagrams, the way of the tip of each pin's reaction over a turn, drawn from one point,
-    a panel per pin, with equal axes each; None where there are no reactions."""
+    """Draw polar diagrams, the way of the tip of each pin's reaction over a turn, drawn from one
+    point, a panel per pin, with equal axes each; None where there are no reactions."""
     pins = list(acted_on(turn.acting))
     if not (pins and turn.has_forces):
         return None
@@ -163,7 +162,7 @@ def hodographs(turn: ForceTurn) -> Figure | None:
 
 
 def _panel(axes: Axes, turn: ForceTurn, force: Array, colour: str, side: float) -> None:
-    """The diagram of one reaction, (T, 2), in a square of ``side`` [inch]."""
+    """Draw the diagram of one reaction, (T, 2), in a square of ``side`` [inch]."""
     there = force[np.isfinite(force).all(axis=1)]
     every = np.vstack([there, [[0.0, 0.0]]])
     low, high = every.min(axis=0), every.max(axis=0)
@@ -187,7 +186,7 @@ def _panel(axes: Axes, turn: ForceTurn, force: Array, colour: str, side: float) 
 def _numbers(
     axes: Axes, dots: dict[int, int], force: Array, low: Array, per_n: float, side: float
 ) -> None:
-    """The driver's angle beside some dots, clear of the curve and of one another."""
+    """Draw the driver's angle beside some dots, clear of the curve and of one another."""
     named = [
         (k, deg) for k, deg in dots.items() if deg % NAMED_DEG == 0 and np.isfinite(force[k]).all()
     ]
@@ -209,8 +208,8 @@ def _numbers(
 
 
 def _dots(turn: ForceTurn) -> dict[int, int]:
-    """The samples whose driver stands at a multiple of `EVERY_DEG`, with that angle [deg]; none of
-    a driver that swings or slides."""
+    """Return the samples with the driver at a multiple of `EVERY_DEG`, with that angle [deg]; none
+    of a driver that swings or slides."""
     if not goes_round(turn.scene):
         return {}
     degrees = driver_shown(turn.scene, turn.motion)
@@ -222,8 +221,8 @@ def _dots(turn: ForceTurn) -> dict[int, int]:
 
 
 def loaded(turn: ForceTurn) -> Figure | None:
-    """The mechanism where its reactions are largest, with the forces as arrows to one scale; None
-    without reactions."""
+    """Draw the mechanism where its reactions are largest, with the forces as arrows to one scale;
+    None without reactions."""
     if not turn.has_forces or not (turn.acting.pins or turn.acting.sliders):
         return None
     scene = turn.scene

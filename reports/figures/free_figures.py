@@ -41,7 +41,7 @@ ROUNDING = 1e-9
 @dataclass(frozen=True)
 class FreeCourse:
     """A free motion at instants, closely sampled: its driver and the energies [J], kinetic,
-    potential, and the work that is done on it from outside of both."""
+    potential, and the work of external forces on both."""
 
     free: FreeMotion
     time_s: Array
@@ -55,7 +55,7 @@ class FreeCourse:
         return self.free.scene
 
     def mark_time(self, axes: Axes) -> None:
-        """Limits of a time axis, short numbers on the other, and the limit positions."""
+        """Set limits of a time axis, short numbers on the other, and draw the limit positions."""
         axes.set_xlim(float(self.time_s[0]), float(self.time_s[-1]))
         shorten(axes)
         for one in self.free.passages:
@@ -63,7 +63,7 @@ class FreeCourse:
 
     @property
     def notes(self) -> list[str]:
-        """What stands under each figure."""
+        """Notes under each figure."""
         scene, end = self.scene, self.time_s[-1:]
         how = f"integrated to {error_text(float(self.free.error_rad(end)[0]))} rad"
         springs = [f"springs: {', '.join(scene.springs)}"] if scene.springs else []
@@ -71,13 +71,13 @@ class FreeCourse:
 
     @property
     def notes_over_time(self) -> list[str]:
-        """What stands under a figure over time."""
+        """Notes under a figure over time."""
         dotted = "Dotted: limit positions, in which the driver turns back."
         return [*self.notes, *([dotted] * bool(self.free.passages))]
 
 
 def free_course(free: FreeMotion) -> FreeCourse:
-    """The motion from its start to its end. Raises CrankcheckError as `FreeMotion.at`."""
+    """Return the motion from its start to its end. Raises CrankcheckError as `FreeMotion.at`."""
     turns = free.peak_speed_rad_s * free.until_s / math.tau
     count = int(np.clip(IN_A_TURN * turns, LEAST, MOST))
     time_s = np.linspace(0.0, free.until_s, count)
@@ -87,7 +87,7 @@ def free_course(free: FreeMotion) -> FreeCourse:
 
 
 def _over_time(course: FreeCourse) -> Figure:
-    """The driver's angle and angular velocity over time, in two panels."""
+    """Draw the driver's angle and angular velocity over time, in two panels."""
     driver, name = course.driver, course.scene.driver.link
     panels = Panels(2, 1, 1.25, *SIDES, 0.15, between=(0.15, 0.12))
     title = f"Free motion: {course.scene.name}"
@@ -107,8 +107,8 @@ def _over_time(course: FreeCourse) -> Figure:
 
 
 def _energy(course: FreeCourse) -> Figure:
-    """Kinetic and potential energy over time, which counts from its lowest on the way, their sum,
-    and the work that is done on them; what stays at 0 is left out."""
+    """Draw kinetic and potential energy over time, from the lowest potential on the way, their sum,
+    and the work done on them; energies that stay at 0 are left out."""
     potential = course.potential - np.min(course.potential)
     largest = float(max(np.max(course.kinetic), np.max(potential)))
     lines = [("kinetic", course.kinetic, KINETIC)]
@@ -130,7 +130,7 @@ def _energy(course: FreeCourse) -> Figure:
 
 
 def _phase(course: FreeCourse) -> Figure:
-    """The phase diagram, the driver's angular velocity over its angle; where the driver turns
+    """Draw the phase diagram, the driver's angular velocity over its angle; where the driver turns
     round, all turns lie over one another."""
     degrees, omega, label = np.degrees(course.driver.theta), course.driver.omega, "angle of"
     turning = float(np.ptp(degrees)) > 360.0
@@ -152,8 +152,8 @@ def _phase(course: FreeCourse) -> Figure:
 
 
 def _over_one_turn(degrees: Array, omega: Array) -> tuple[Array, Array]:
-    """Angles within a turn, the curve cut where one turn goes over into the next: there it ends at
-    one side and goes on at the other."""
+    """Return angles within a turn, the curve cut where one turn goes over into the next: there it
+    ends at one side and goes on at the other."""
     turn = np.floor(np.round(degrees, 9) / 360.0)
     cuts = np.flatnonzero(np.diff(turn)) + 1
     before, after = turn[cuts - 1], turn[cuts]

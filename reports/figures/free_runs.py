@@ -1,4 +1,4 @@
-"""Figures of a store's free runs beside the truth: of each line its finest run that ended well."""
+"""Figures of a store's free runs beside the reference: per line the finest run that ended well."""
 
 import math
 from dataclasses import dataclass
@@ -22,14 +22,14 @@ from reports.results.lines import named
 from reports.results.overview import Report, notes
 
 INSTANTS = 2401
-"""At which the truth is drawn."""
+"""Instants of the drawn reference."""
 BETWEEN = 8
 """Parts of the way from one sample to the next in a phase diagram."""
 TURNS = 4
-"""From so many turns on, angles are told in turns."""
+"""Number of turns from which on angles are shown in turns."""
 TRUTH: Look = {"color": "#cccccc", "linewidth": 3.0}
 LEAST = 1e-12
-"""Errors of phase below are rounding."""
+"""Errors of phase below which there is rounding alone."""
 RAW: Look = {"linewidth": 0.5}
 MEANS: Look = {"linewidth": 1.6}
 
@@ -49,21 +49,21 @@ class FreeRun:
 
     @property
     def angle(self) -> Array:
-        """The driver's angle [rad], its turns counted as the truth counts them."""
+        """The driver's angle [rad], its turns counted as in the reference."""
         return self.trace["driver_rad"] + self.trace["phase"]
 
     @property
     def energy(self) -> Array | None:
-        """What the energy changed by since the start, over the largest kinetic energy; None where
-        the engine has none."""
+        """Change of energy since the start, over the largest kinetic energy; None without
+        energy."""
         if "energy" not in self.trace:
             return None
         largest = float(np.max(self.trace["kinetic"]))
         return self.trace["energy"] / largest if largest > 0.0 else None
 
     def portrait(self) -> tuple[Array, Array]:
-        """Angle [rad] and angular velocity [rad/s] between the samples as well: cubics with the
-        logged angles and speeds at both of their ends (Hermite)."""
+        """Return angle [rad] and angular velocity [rad/s] between the samples as well: cubics with
+        the logged angles and speeds at both of their ends (Hermite)."""
         t, angle, omega = self.time_s, self.angle, self.trace["omega"]
         h, share = np.diff(t)[:, None], np.linspace(0.0, 1.0, BETWEEN, endpoint=False)
         a, v, w = angle[:-1, None], omega[:-1, None] * h, omega[1:, None] * h
@@ -74,14 +74,14 @@ class FreeRun:
         return np.append(places, angle[-1]), np.append(speeds, omega[-1])
 
     def energy_means(self, scene: Scene) -> Array:
-        """The energy as means over the windows of its drift, NaN at both ends."""
+        """Return the energy as means over the windows of its drift, NaN at both ends."""
         assert self.energy is not None
         return window_means(scene, self.time_s, self.energy)
 
 
 @dataclass(frozen=True)
 class FreeRuns:
-    """The runs of a scene beside the truth, whose driver has ``angle`` [rad] and ``omega`` at
+    """The runs of a scene beside the reference; its driver has ``angle`` [rad], ``omega`` at
     ``time_s``."""
 
     scene: Scene
@@ -93,19 +93,19 @@ class FreeRuns:
 
     @property
     def unit(self) -> tuple[str, float]:
-        """What angles are told in: its name, and its size [rad]."""
+        """Unit of angles: its name, and its size [rad]."""
         if float(np.ptp(self.angle)) > TURNS * math.tau:
             return "turns", math.tau
         return "deg", math.radians(1.0)
 
     @property
     def steps(self) -> str:
-        """The steps of the runs, in words."""
+        """Steps of the runs, in words."""
         return " and ".join(duration(dt) for dt in sorted({run.dt_s for run in self.runs}))
 
 
 def free_runs(report: Report, name: str) -> FreeRuns | None:
-    """The runs of a scene; None where the store has no scene, or no run of it with its course."""
+    """Return the runs of a scene; None where the store has no scene, or no traced run of it."""
     scene = report.scenes[name]
     mark_of = marks(report.lines)
     lines = [line for line in report.of_kind("let go") if line.scene == name]
@@ -130,8 +130,8 @@ def free_runs(report: Report, name: str) -> FreeRuns | None:
 
 
 def courses(report: Report, name: str) -> Figure | None:
-    """Angle and angular velocity of the driver over time, the truth and the runs over it, and what
-    they are off by; None where nothing of the scene was let go."""
+    """Draw angle and angular velocity of the driver over time, the runs over the reference, and
+    their error; None where nothing of the scene is a free motion."""
     shown = free_runs(report, name)
     if shown is None:
         return None
@@ -170,8 +170,8 @@ def courses(report: Report, name: str) -> Figure | None:
 
 
 def energy_change(report: Report, name: str) -> Figure | None:
-    """What the energy of each run changed by: as it is, and as means over windows, whose last less
-    the first is the drift. A panel for each, with a scale of its own; None where none has an
+    """Draw the change of the energy of each run: as it is, and as means over windows, whose last
+    less the first is the drift. A panel for each, with its own scale; None where none has an
     energy."""
     shown = free_runs(report, name)
     runs = [run for run in shown.runs if run.energy is not None] if shown else []
@@ -200,8 +200,8 @@ def energy_change(report: Report, name: str) -> Figure | None:
 
 
 def phase_diagrams(report: Report, name: str) -> Figure | None:
-    """The driver's angular velocity over its angle, of each run over the truth, all with the same
-    axes; None where no run has an angular velocity."""
+    """Draw the driver's angular velocity over its angle, of each run over the reference, all with
+    the same axes; None where no run has an angular velocity."""
     shown = free_runs(report, name)
     runs = [run for run in shown.runs if "omega" in run.trace] if shown else []
     if shown is None or not runs:

@@ -27,16 +27,16 @@ from reports.way.length import SECONDS, TURNS
 from reports.way.way import way_of
 
 FREE_SAMPLES = 2401
-"""Of the paths of what was let go, which are gone along many times."""
+"""Samples of the paths of a free motion, which are passed many times."""
 NUMBER_IN = 0.38
 """Room for a number of the horizontal axis [inch]."""
 
 OF_CLOCK = {TURNS: ("closed form", PATH_SAMPLES), SECONDS: ("integrated", FREE_SAMPLES)}
-"""Where a motion comes from, and samples of its paths."""
+"""Origin of a motion, and samples of its paths."""
 
 
 def draw(report: Report, name: str) -> Figure | None:
-    """The drawing; None for a scene whose text in the store can not be read."""
+    """Draw the mechanism; None for a scene whose text in the store can not be read."""
     scene = report.scenes[name]
     if scene is None:
         return None
@@ -56,8 +56,7 @@ def mechanism_at(
     notes: Sequence[str],
     arrows: ForceArrows | None = None,
 ) -> Figure:
-    """The drawing of a scene at a sample of its path, within a box, with arrows of its forces where
-    there are any."""
+    """Draw a scene at a sample of its path, within a box, with arrows of its forces if any."""
     low, high = box
     panels = Panels(top=0.05, right=0.1)
     wide = COLUMN_IN - panels.left - panels.right
@@ -78,7 +77,7 @@ def mechanism_at(
 
 
 def _frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
-    """Axes in metres from corner to corner, ``per_m`` inches each, with numbers that have room."""
+    """Set axes in metres from corner to corner, ``per_m`` inches each, with numbers that fit."""
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     axes.set_aspect("equal", adjustable="box", anchor="N")
     room = per_m * float(high[0] - low[0])
@@ -88,19 +87,19 @@ def _frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
 
 
 def _write_name(axes: Axes, each: Name) -> None:
-    """A letter or a name in its place."""
+    """Write a letter or a name in its place."""
     size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
     axes.text(each.x, each.y, each.text, size=size, style=style, ha="center", va="center", zorder=8)
 
 
 def _name_size(text: str, is_point: bool) -> tuple[float, float]:
-    """Width and height of a text [inch]."""
+    """Return width and height of a text [inch]."""
     points = SIZE if is_point else SMALL
     return width_in(text, points), 0.75 * points / POINTS
 
 
 def _origin(report: Report, scene: Scene) -> str:
-    """Where the drawing comes from: it is the closed form's, and no engine's."""
+    """Return the origin of the drawing: the closed form, and no engine."""
     own = facts_of(report).get("crankcheck", "")
     longest = f"longest link L = {scene.longest_m:g} m"
     truth, _ = OF_CLOCK[way_of(scene).clock]

@@ -36,7 +36,7 @@ from reports.figures.style import (
 EDGE = 0.04
 """Room at the edges of the sheet [inch]."""
 FITTED = 0.98
-"""The share of a line that is filled: pixels make small letters up to 2 % wider than they are."""
+"""Share of a line that is filled: pixels make small letters up to 2 % wider than they are."""
 HANDLE, GAP = 0.31, 0.08
 """Width of a sample of a curve in a legend, and between its columns [inch]."""
 
@@ -45,7 +45,7 @@ HANDLE, GAP = 0.31, 0.08
 class Panels:
     """Panels of one size [inch] in rows and columns, and the room on their sides for axis labels.
 
-    ``between`` is the room for what stands between two columns and between two rows.
+    ``between`` is the room between two columns and between two rows.
     """
 
     rows: int = 1
@@ -71,7 +71,7 @@ def sheet(
     notes: Sequence[str],
     columns: int = 0,
 ) -> tuple[Figure, list[Axes]]:
-    """An empty figure with its panels, row by row, its legend and its notes.
+    """Return an empty figure with its panels, row by row, its legend and its notes.
 
     ``entries`` are samples and labels of the legend, in ``columns`` (0: as many as have room).
     """
@@ -104,7 +104,7 @@ def sheet(
 
 
 def _columns(labels: Sequence[str], room: float) -> int:
-    """How many columns of the widest label have room."""
+    """Return how many columns of the widest label have room."""
     widest = max((width_in(text) for text in labels), default=0.0) + HANDLE + GAP
     return max(1, min(int((room + GAP) / widest), len(labels) or 1))
 
@@ -116,7 +116,7 @@ def _legend(
     corner: tuple[float, float],
     room: float,
 ) -> None:
-    """The legend with its upper left corner at ``corner`` (shares of the figure)."""
+    """Draw the legend with its upper left corner at ``corner`` (shares of the figure)."""
     each = (room + GAP) / columns - GAP - HANDLE
     figure.legend(
         handles=[artist for artist, _ in entries],
@@ -136,7 +136,7 @@ def _legend(
 
 
 def folded(text: str, room: float, size: float = TINY) -> list[str]:
-    """A text in lines that have room; a word that has none alone is cut."""
+    """Return a text in lines that have room; a word that has none alone is cut."""
     room *= FITTED
     lines: list[str] = []
     for word in text.split():
@@ -160,9 +160,9 @@ def grid(
     apart: bool = False,
     height: float = 1.35,
 ) -> tuple[Figure, list[Axes]]:
-    """A page with a panel per name; ``labels`` are those of the two axes.
+    """Return a page with a panel per name; ``labels`` are for the two axes.
 
-    Where panels are ``apart`` each has numbers of its own on its vertical axis.
+    Panels that are ``apart`` have numbers of their own on their vertical axes.
     """
     columns = min(MOST_COLUMNS, len(names))
     rows = math.ceil(len(names) / columns)
@@ -190,12 +190,12 @@ def grid(
 
 
 def tenfold(largest: float) -> float:
-    """The power of ten that a panel of series up to ``largest`` is drawn in."""
+    """Return the power of ten of a panel with series up to ``largest``."""
     return 10.0 ** math.floor(math.log10(largest)) if largest > 0.0 else 1.0
 
 
 def corner_words(axes: Axes, room: float, left: str, right: str) -> None:
-    """Words in the upper corners of a panel, which is made higher by that part of itself."""
+    """Write words in the upper corners of a panel, which is made higher by that part of itself."""
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + room * (high - low))
     paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind

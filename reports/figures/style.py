@@ -37,12 +37,12 @@ from reports.output.numbers import count
 from reports.output.write import clean, crankcheck_version, write
 
 Look = dict[str, Any]
-"""How a line is drawn, as matplotlib names it."""
+"""Look of a line, in keywords of matplotlib."""
 COLUMN_IN, PAGE_IN = 3.4, 7.0
 """Widths of a column and of a page of two [inch]."""
 POINTS = 72.0
 FONT = "DejaVu Sans"
-"""Comes with matplotlib: a figure looks the same wherever it is drawn."""
+"""Font of matplotlib: a figure looks the same wherever it is drawn."""
 LARGE, SIZE, SMALL, TINY = 8.0, 7.0, 6.0, 4.6
 """Type of titles, of labels, of ticks and legends, and of the notes under a figure [point]."""
 INK, QUIET, FRONT = "#1a1a1a", "#6b6b6b", "#d2d2d2"
@@ -85,7 +85,7 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """In this context figures are drawn and written in the style; nothing outside changes."""
+    """Draw and write figures in the style within this context; nothing outside changes."""
     with (
         rc_context(RC),  # type: ignore[arg-type]  # the names are matplotlib's, the values ours
         warnings.catch_warnings(),
@@ -97,13 +97,13 @@ def styled() -> Iterator[None]:
 
 @lru_cache(maxsize=4096)
 def width_in(text: str, size: float = SMALL) -> float:
-    """How wide a text is [inch]."""
+    """Return the width of a text [inch]."""
     font = FontProperties(family=FONT, size=size)
     return float(text_to_path.get_text_width_height_descent(text, font, False)[0]) / POINTS
 
 
 def cut(text: str, room_in: float, size: float = SMALL) -> str:
-    """A text in one line, without its middle where it is too wide."""
+    """Return a text in one line, without its middle where it is too wide."""
     text = " ".join(text.split())
     if width_in(text, size) <= room_in:
         return text
@@ -115,7 +115,7 @@ def cut(text: str, room_in: float, size: float = SMALL) -> str:
 
 
 def wrapped(text: str, room_in: float, size: float = SMALL) -> list[str]:
-    """A text in lines that are no wider than there is room; a longer word is broken."""
+    """Return a text in lines that are no wider than there is room; a longer word is broken."""
     lines = [""]
     for word in text.split():
         joined = f"{lines[-1]} {word}".lstrip()
@@ -132,19 +132,19 @@ def wrapped(text: str, room_in: float, size: float = SMALL) -> list[str]:
 
 
 def power_of_ten(value: float) -> str:
-    """10⁻³ and the like."""
+    """Return 10⁻³ and the like."""
     return f"10{str(round(math.log10(value))).translate(RAISED)}"
 
 
 def decades(low: float, high: float, ticks: int) -> list[float]:
-    """Powers of ten within an axis, at most about ``ticks`` of them."""
+    """Return powers of ten within an axis, at most about ``ticks`` of them."""
     first, last = math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9)
     every = max(1, math.ceil((last - first + 1) / max(ticks, 1)))
     return [10.0**n for n in range(first, last + 1) if n % every == 0]
 
 
 def logarithmic(axes: Axes, which: str, low: float, high: float, ticks: int = 8) -> None:
-    """A logarithmic axis with numbers at powers of ten, and small ticks where these are few."""
+    """Set a logarithmic axis with numbers at powers of ten, and small ticks where these are few."""
     axis = axes.xaxis if which == "x" else axes.yaxis
     (axes.set_xscale if which == "x" else axes.set_yscale)("log")
     (axes.set_xlim if which == "x" else axes.set_ylim)(low, high)
@@ -156,14 +156,14 @@ def logarithmic(axes: Axes, which: str, low: float, high: float, ticks: int = 8)
 
 
 def mark_zero(axes: Axes, *series: Array) -> None:
-    """A line at 0 where the series come near to it; else they have the axis for themselves."""
+    """Draw a line at 0 where the series come near to it; else they have the axis for themselves."""
     low, high = min(map(np.min, series)), max(map(np.max, series))
     if low <= 0.2 * high and high >= 0.2 * low:
         axes.axhline(0.0, color=QUIET, linewidth=0.5)
 
 
 def shorten(axes: Axes) -> None:
-    """Short numbers on the vertical axis, with one power of ten for all of them."""
+    """Set short numbers on the vertical axis, with one power of ten for all of them."""
     axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
     axes.yaxis.get_offset_text().set_fontsize(SMALL)
 
@@ -171,14 +171,14 @@ def shorten(axes: Axes) -> None:
 FORMATS = ("svg", "pdf")
 Face = Literal["normal", "italic"]
 LETTERS = frozenset(map(chr, range(32, 127))) | frozenset("⁻⁰¹²³⁴⁵⁶⁷⁸⁹±…\N{MINUS SIGN}")
-"""Always there, so that most figures share the same cut of a font."""
+"""Letters in every file, so that most figures share the same cut of a font."""
 FACES: dict[Face, str] = {"normal": "", "italic": "italic"}
-"""Styles of the font, and what an SVG has that needs them."""
+"""Styles of the font, and the sign in an SVG that needs them."""
 TEXT = re.compile(r"<text[^>]*>(.*?)</text>", re.DOTALL)
 
 
 def saved(figure: Figure, kind: str, title: str) -> bytes:
-    """The file of a figure, of a kind in `FORMATS`, without a date.
+    """Return the file of a figure, of a kind in `FORMATS`, without a date.
 
     In an SVG all text is text, and the letters that it needs of its font go with it; in a PDF the
     fonts are TrueType (type 42), so that text can be searched and edited.
@@ -192,7 +192,7 @@ def saved(figure: Figure, kind: str, title: str) -> bytes:
 
 
 def _with_fonts(svg: str) -> str:
-    """The drawing with the letters of its texts as fonts in a style sheet."""
+    """Return the drawing with the letters of its texts as fonts in a style sheet."""
     texts = TEXT.findall(svg)
     letters = "".join(sorted(LETTERS.union(unescape("".join(texts))) - {"\n"}))
     rules = "".join(_rule(style, letters) for style, sign in FACES.items() if sign in svg)
@@ -200,7 +200,7 @@ def _with_fonts(svg: str) -> str:
 
 
 def _rule(style: Face, letters: str) -> str:
-    """The style sheet's rule for a face; its bytes are those of a WOFF file."""
+    """Return the style sheet's rule for a face; its bytes are a WOFF file."""
     code = base64.b64encode(_letters_of(style, letters)).decode()
     return (
         f"@font-face{{font-family:'{FONT}';font-style:{style};"
@@ -210,7 +210,7 @@ def _rule(style: Face, letters: str) -> str:
 
 @lru_cache(maxsize=64)
 def _letters_of(style: Face, letters: str) -> bytes:
-    """A face cut down to some letters, as a WOFF file."""
+    """Return a face cut down to some letters, as a WOFF file."""
     logging.getLogger("fontTools.subset").setLevel(logging.ERROR)  # it tells of tables it drops
     path = findfont(FontProperties(family=FONT, style=style))
     options = Options()
@@ -226,7 +226,7 @@ def _letters_of(style: Face, letters: str) -> bytes:
 
 
 class Solved(Protocol):
-    """What such figures are drawn of."""
+    """Input of such figures."""
 
     @property
     def scene(self) -> Scene: ...
@@ -237,23 +237,23 @@ Of = TypeVar("Of", bound=Solved)
 
 @dataclass(frozen=True)
 class FigureSet(Generic[Of]):
-    """Figures by name, which is that of their file, and ``of`` what they are in words. Each gives
-    None where there is nothing to draw. To add one, add a function and its line."""
+    """Figures by the name of their file, and ``of``, their subject in words. Each gives None where
+    there is nothing to draw. To add one, add a function and its line."""
 
     of: str
     draws: Mapping[str, Callable[[Of], Figure | None]]
 
     @property
     def files(self) -> list[str]:
-        """The names of all files that may be written."""
+        """Names of all files that may be written."""
         return [f"{name}.{kind}" for name in self.draws for kind in FORMATS]
 
     def pictures(self, solved: Of) -> dict[str, bytes]:
-        """The figures as SVG files by name."""
+        """Return the figures as SVG files by name."""
         return {name: self._saved(solved, name, each) for name, each in self._drawn(solved)}
 
     def written(self, solved: Of, folder: Path) -> str:
-        """Write all figures; returns what was written, in a line. Raises CrankcheckError where the
+        """Write all figures; returns a line on the written files. Raises CrankcheckError where the
         system refuses."""
         names = []
         for name, figure in self._drawn(solved):
@@ -277,7 +277,7 @@ class FigureSet(Generic[Of]):
 
 
 def note(scene: Scene, how: str, driver: str, *more: str) -> str:
-    """What stands under a figure: how it was solved, the law of the driver, and the loads."""
+    """Return the note under a figure: its method, the law of the driver, and the loads."""
     gravity = float(np.hypot(*scene.gravity_m_s2))
     parts = [
         f"crankcheck {crankcheck_version()}, {how}",
@@ -289,5 +289,5 @@ def note(scene: Scene, how: str, driver: str, *more: str) -> str:
 
 
 def loads_told(scene: Scene) -> str:
-    """The loads of a scene by name."""
+    """Return the loads of a scene by name."""
     return f"loads: {', '.join(scene.loads)}" if scene.loads else "no loads"

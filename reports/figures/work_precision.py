@@ -1,8 +1,8 @@
-"""Work-precision diagram, the error that a second of computing buys and what nothing beats, and
+"""Work-precision diagram, the error that a second of computing buys with its Pareto front, and
 performance profile, how often a variant is the fastest to an error.
 
 Both axes are logarithmic. A curve is a variant from its coarsest step (left) to its finest; the
-broad grey stair is the Pareto front: whatever is below it takes longer. Source: Hairer, Norsett,
+broad grey stair is the Pareto front: anything below it takes longer. Source: Hairer, Norsett,
 Wanner, Solving Ordinary Differential Equations I, section II.4.
 """
 
@@ -30,7 +30,7 @@ CostAndError = tuple[float, float]
 
 
 def draw(report: Report, scene: str) -> Figure | None:
-    """The diagram of one scene; None where none of its cells was timed."""
+    """Draw the diagram of one scene; None where none of its cells was timed."""
     own, mark_of = report.lines_of(scene), marks(report.lines)
     if not _points(own):
         return None
@@ -45,7 +45,7 @@ def draw(report: Report, scene: str) -> Figure | None:
 
 
 def draw_all(report: Report) -> Figure | None:
-    """The diagrams of all scenes side by side, and one over all of them; None as for `draw`."""
+    """Draw the diagrams of all scenes side by side, and one over all; None as for `draw`."""
     lines, scenes = report.lines, list(report.scenes)
     if not _points(lines):
         return None
@@ -65,7 +65,7 @@ def draw_all(report: Report) -> Figure | None:
 def _panel(
     axes: Axes, report: Report, lines: Sequence[Line], mark_of: Mapping[Named, Mark]
 ) -> None:
-    """The curves of one scene over its front."""
+    """Draw the curves of one scene over its front."""
     cells = pd.concat([line.cells for line in lines])
     best = cells.set_index("key").loc[front(cells, report.noise)]
     _stair(axes, zip(best["s_per_turn"], best["place_pure"], strict=True))
@@ -75,7 +75,7 @@ def _panel(
 
 
 def _over(axes: Axes, report: Report, mark_of: Mapping[Named, Mark]) -> None:
-    """The curves over all scenes: variants that fail on one of them have no point."""
+    """Draw the curves over all scenes: variants that fail on one of them have no point."""
     over = report.candidates
     best = front_over_all(over, report.noise)
     _stair(axes, ((one.s_per_turn, one.worst_error) for one in best))
@@ -86,7 +86,7 @@ def _over(axes: Axes, report: Report, mark_of: Mapping[Named, Mark]) -> None:
 
 
 def _stair(axes: Axes, points: Iterable[CostAndError]) -> None:
-    """The front: from each point on its error is had, until a slower cell has less."""
+    """Draw the front: from each point on its error holds, until a slower cell has less."""
     corners = sorted((float(time_s), float(error)) for time_s, error in points)
     if not corners:
         return
@@ -113,14 +113,14 @@ def _points(lines: Sequence[Line]) -> list[CostAndError]:
 
 
 def _limits(axes: Sequence[Axes], points: Sequence[CostAndError]) -> None:
-    """The same limits for all panels."""
+    """Set the same limits for all panels."""
     for one in axes:
         logarithmic(one, "x", *around(time_s for time_s, _ in points))
         logarithmic(one, "y", *around(error for _, error in points))
 
 
 def _entries(lines: Sequence[Line], mark_of: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
-    """The legend: a variant each; how runs ended that have no point, where it is one scene."""
+    """Return the legend of variants; for one scene, with the endings of runs without a point."""
     single = len({line.scene for line in lines}) == 1
     entries: dict[Named, tuple[Artist, str]] = {}
     for line in lines:
@@ -141,9 +141,9 @@ ROUND = (1, 2, 5)
 
 
 def draw_profile(report: Report) -> Figure | None:
-    """How often each variant is the fastest to an error, and by how much it is slower where it is
-    not, over all scenes: a panel per target error; None where nothing was timed. Source: Dolan and
-    More, Benchmarking optimization software with performance profiles, 2002."""
+    """Draw how often each variant is the fastest to an error, and by how much it is slower
+    elsewhere, over all scenes: a panel per target error; None where nothing was timed. Source:
+    Dolan and More, Benchmarking optimization software with performance profiles, 2002."""
     if not report.timed:
         return None
     lines, mark_of = report.lines, marks(report.lines)
@@ -163,7 +163,7 @@ def draw_profile(report: Report) -> Figure | None:
 
 
 def _axes(axes: Axes, last: float) -> None:
-    """Factors from 1 to ``last``, shares from 0 to 100 %."""
+    """Set factors from 1 to ``last``, shares from 0 to 100 %."""
     axes.set_xscale("log")
     axes.set_xlim(0.9, 1.3 * last)
     every = [n * 10.0**k for k in range(math.ceil(math.log10(last)) + 1) for n in ROUND]
@@ -174,7 +174,7 @@ def _axes(axes: Axes, last: float) -> None:
 
 
 def _profile(axes: Axes, corners: pd.DataFrame, mark: Mark, end: float) -> None:
-    """The stair of a variant, with a marker where it rises; none where it never does."""
+    """Draw the stair of a variant, with a marker where it rises; none where it never does."""
     rises = corners[corners["share"] > 0.0]
     if rises.empty:
         return

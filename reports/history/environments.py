@@ -25,8 +25,8 @@ LEAK = re.compile(
     "PIP_(CONSTRAINT|NO_DEPS|PREFIX|PYTHON|ROOT|TARGET|USER)|"
     "UV_(CONSTRAINT|OVERRIDE|PROJECT_ENVIRONMENT|PYTHON|SYSTEM_PYTHON|TARGET)"
 )
-"""Variables that would put packages of another environment in front of those of a new one, install
-into another place, or hold the engine at another version."""
+"""Variables that would put packages of another environment in front of a new one's, install into
+another place, or keep the engine at another version."""
 
 
 class NotMeasuredError(Exception):
@@ -50,8 +50,8 @@ class EngineVersion:
 
 
 def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
-    """The versions that a user named, each once, the oldest first. Raises CrankcheckError for a
-    text that is no version."""
+    """Return the versions that a user named, each once, the oldest first. Raises CrankcheckError
+    for a text that is no version."""
     versions = set()
     for text in texts:
         try:
@@ -65,17 +65,17 @@ def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
 
 
 def uv_here() -> str | None:
-    """The command uv, on the path or beside this Python; None without one."""
+    """Return the command uv, on the path or beside this Python; None without one."""
     return shutil.which("uv") or shutil.which("uv", path=str(Path(sys.executable).parent))
 
 
 def python_of(folder: Path) -> Path:
-    """The interpreter of an environment."""
+    """Return the interpreter of an environment."""
     return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
 def place(cache: Path, asked: EngineVersion) -> Path:
-    """The folder of an environment: another for every Python and every numpy."""
+    """Return the folder of an environment: another for every Python and every numpy."""
     python = platform.python_version()
     build = (sysconfig.get_config_var("SOABI"), platform.machine(), sys.base_prefix)
     short = hashlib.sha256(repr(build).encode()).hexdigest()[:8]
@@ -84,14 +84,14 @@ def place(cache: Path, asked: EngineVersion) -> Path:
 
 
 def held_numpy() -> str:
-    """The version of numpy that runs now: every version of the engine is run with this one."""
+    """Return the version of numpy that runs now, which every version of the engine is run with."""
     return installed_version("numpy")
 
 
 def commands(
     uv: str | None, folder: Path, asked: EngineVersion, constraint: Path
 ) -> list[list[str]]:
-    """What makes an environment and installs an engine, with its own dependencies, into it.
+    """Return the commands that make an environment, and install engine and dependencies into it.
 
     Wheels only: an engine that has to be compiled first would be another one on every machine.
     """
@@ -109,14 +109,14 @@ def commands(
 
 
 def clean_variables(variables: Mapping[str, str] = os.environ) -> dict[str, str]:
-    """The environment variables without those that lead a new environment astray."""
+    """Return the environment variables without those that lead a new environment astray."""
     return {name: text for name, text in variables.items() if not LEAK.fullmatch(name.upper())}
 
 
 def ready(cache: Path, asked: EngineVersion, uv: str | None, run: Runner) -> Path:
-    """The interpreter of the version's environment, which is made if it is not there yet.
+    """Return the interpreter of the version's environment, which is made if it is not there yet.
 
-    An environment counts as there once it is complete: what a killed install left is made anew.
+    An environment counts as there once it is complete: the rest of a killed install is made anew.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def ready(cache: Path, asked: EngineVersion, uv: str | None, run: Runner) -> Pat
 
 
 def _check(python: Path, asked: EngineVersion, run: Runner) -> None:
-    """Ask the new interpreter for the version that it finds. Raises NotMeasuredError."""
+    """Check the version in the new interpreter. Raises NotMeasuredError."""
     package = declaration(asked.engine).install
     question = f"from importlib.metadata import version; print(version({package!r}))"
     ended = run([str(python), "-P", "-c", question], clean_variables(), None)
@@ -162,7 +162,7 @@ def _check(python: Path, asked: EngineVersion, run: Runner) -> None:
 
 
 def _clear(folder: Path) -> None:
-    """Take away what is left of an environment. Raises CrankcheckError."""
+    """Remove the rest of an environment. Raises CrankcheckError."""
     if not folder.exists():
         return
     try:
@@ -194,7 +194,7 @@ NOISE = ("WARNING:", "Looking in", "[notice]", "hint:", "DEPRECATION", "Tracebac
 
 
 def reason(*outputs: str) -> str:
-    """The one line that matters in what pip or uv wrote."""
+    """Return the one line that matters in the output of pip or uv."""
     text = _named("\n".join(outputs))
     flat = " ".join(text.split())
     if NETWORK.search(flat):
@@ -207,12 +207,12 @@ def reason(*outputs: str) -> str:
 
 
 def shortened(text: str) -> str:
-    """One line of bounded length."""
+    """Return one line of bounded length."""
     return cut(" ".join(text.split()), LONGEST)
 
 
 def _named(output: str) -> str:
-    """The output with hosts, URLs and what only draws lines taken out."""
+    """Return the output without hosts, URLs and line drawing."""
     hosts = {*HOST_OF_URL.findall(output), *HOST.findall(output)}
     text = URL.sub("the package index", output)
     for host in sorted(hosts, key=len, reverse=True):
@@ -221,7 +221,7 @@ def _named(output: str) -> str:
 
 
 def _network(text: str) -> str:
-    """No answer from where packages come from, and why as far as it is told."""
+    """Say that the package index did not answer, and why as far as known."""
     lines = [line.strip() for line in text.splitlines() if CAUSE.search(line)]
     parts = [part for line in lines[-1:] for part in re.split(r": (?=\S)", line)]
     cause = "".join([part for part in parts if CAUSE.search(part)][-1:])
@@ -230,7 +230,7 @@ def _network(text: str) -> str:
 
 
 def _not_offered(name: str, version: str, offered: Iterable[str]) -> str:
-    """There is no such version for this Python; and which are near."""
+    """Say that there is no such version for this Python; and which are near."""
     near = _nearest(version, offered)
     python = ".".join(platform.python_version_tuple()[:2])
     here = f"Python {python} on {platform.system()} {platform.machine()}"
@@ -239,7 +239,7 @@ def _not_offered(name: str, version: str, offered: Iterable[str]) -> str:
 
 
 def _nearest(version: str, offered: Iterable[str]) -> list[str]:
-    """The two offered versions below one, and the one above."""
+    """Return the two offered versions below one, and the one above."""
     try:
         asked = Version(version)
         others = sorted(Version(text.strip()) for text in offered if text != "none")
@@ -251,7 +251,7 @@ def _nearest(version: str, offered: Iterable[str]) -> list[str]:
 
 
 def _telling(text: str) -> str:
-    """pip's first error; uv's cause, which says more than its error; else the last line."""
+    """Return pip's first error; uv's cause, which says more than its error; else the last line."""
     lines = [line.strip() for line in text.splitlines()]
     lines = [line for line in lines if line and not line.startswith(NOISE)]
     for number, line in enumerate(lines):

@@ -1,4 +1,4 @@
-"""Versions side by side on the terminal: how each did, what stands out, the scenes that changed."""
+"""Versions side by side on the terminal: results, headlines, the scenes that changed."""
 
 import csv
 import io
@@ -27,7 +27,7 @@ COLUMNS: Mapping[str, tuple[str, ...]] = {
     "place\n/ L": ("place",),
     "gap\n/ L": ("pin gap", "slider gap"),
 } | {QUANTITIES[name].head: (name,) for name in named("derived") if QUANTITIES[name].head}
-"""Head, and the quantities that the column shows the largest of."""
+"""Head, and the quantities of which the column shows the largest."""
 NARROW = ("angle\nrad", "gap\n/ L")
 WIDE = 100
 LINES = 9
@@ -36,7 +36,7 @@ HEADLINES = 10
 
 
 def show(console: Console, results: Sequence[VersionResult], footer: str) -> None:
-    """Print the whole history, what stands out first."""
+    """Print the whole history, headlines first."""
     _versions(console, results)
     _headlines(console, results)
     for profile in profiles_of(results):
@@ -45,7 +45,7 @@ def show(console: Console, results: Sequence[VersionResult], footer: str) -> Non
 
 
 def _versions(console: Console, results: Sequence[VersionResult]) -> None:
-    """One row per version; one that could not be measured shows why."""
+    """Print one row per version; one that could not be measured shows why."""
     heads, rows = overview(results)
     table = plain_table()
     for head in heads:
@@ -56,10 +56,10 @@ def _versions(console: Console, results: Sequence[VersionResult]) -> None:
 
 
 def _headlines(console: Console, results: Sequence[VersionResult]) -> None:
-    """What stands out between the versions."""
+    """Print the headlines between the versions."""
     styles = {True: "green", False: "bold red", None: ""}
     lines = [line for step in steps(results) for line in headlines(step)]
-    lines.sort(key=lambda line: line.good is not False)  # what became worse goes first
+    lines.sort(key=lambda line: line.good is not False)  # changes for the worse go first
     for line in lines[:HEADLINES]:
         hanging(console, "* ", line.text, styles[line.good])
     if len(lines) > HEADLINES:
@@ -71,7 +71,7 @@ def _headlines(console: Console, results: Sequence[VersionResult]) -> None:
 
 
 def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) -> None:
-    """The scenes of one profile that changed most, a row for each version."""
+    """Print the scenes of one profile that changed most, a row for each version."""
     cells = {
         (result.version, cell.name): cell
         for result in measured
@@ -99,8 +99,8 @@ def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) 
 
 
 def ranking(names: Sequence[CellName], changes: Sequence[FollowedChange]) -> list[CellName]:
-    """The cells: those that became worse first, then by the largest factor of any error; the
-    largest errors first where nothing changed."""
+    """Return the cells: worsened ones first, then by the largest factor of any error; the largest
+    errors first where nothing changed."""
 
     def rank(name: CellName) -> tuple[float, float, float]:
         own = [change for change in changes if change.cell == name]
@@ -115,7 +115,7 @@ def ranking(names: Sequence[CellName], changes: Sequence[FollowedChange]) -> lis
 def _part(
     shown: Sequence[CellName], ranked: Sequence[CellName], changes: Sequence[FollowedChange]
 ) -> str:
-    """Which of the scenes a table shows."""
+    """Say which of the scenes a table shows."""
     if len(shown) == len(ranked):
         return "largest errors"
     by = "changed most" if any(change.changed for change in changes) else "have the largest errors"
@@ -125,7 +125,7 @@ def _part(
 def _row(
     cell: StoredCell | None, changes: Sequence[FollowedChange], heads: Sequence[str], later: bool
 ) -> list[Text]:
-    """The numbers of a version, those that changed coloured, and the largest change in words."""
+    """Return the numbers of a version, changed ones coloured, and the largest change in words."""
     if cell is None:
         return [Text("-")] * len(heads) + [Text("")]
     errors, numbers = errors_of(cell), []
@@ -139,7 +139,7 @@ def _row(
 
 
 def compared(changes: Sequence[FollowedChange]) -> Text:
-    """The largest change of a cell in two or three words."""
+    """Return the largest change of a cell in two or three words."""
     top = largest(change for change in changes if not change.about.rate)
     top = top if top and top.changed else largest(changes)
     if top is None:
@@ -152,7 +152,7 @@ def compared(changes: Sequence[FollowedChange]) -> Text:
 
 
 def _style(change: FollowedChange | None) -> str:
-    """Green and red for what stands out."""
+    """Return green or red for a change that stands out."""
     if change is None or not change.stands_out:
         return ""
     return "green" if change.word() == "better" else "bold red"
@@ -175,8 +175,8 @@ FILE_COLUMNS = (
 
 
 def table_text(results: Sequence[VersionResult]) -> str:
-    """history.csv: one line per version, scene, profile and quantity; a version without a result
-    and a cell without errors are one line each, with the reason."""
+    """Return history.csv: one line per version, scene, profile and quantity; a version without a
+    result and a cell without errors are one line each, with the reason."""
     changes = by_cell(results)
     buffer = io.StringIO()
     writer = csv.DictWriter(buffer, FILE_COLUMNS, lineterminator="\n")
@@ -199,7 +199,7 @@ def table_text(results: Sequence[VersionResult]) -> str:
 
 
 def _lines(cell: StoredCell, changes: Sequence[FollowedChange]) -> Iterator[dict[str, object]]:
-    """What the lines of one cell say of each error."""
+    """Yield the columns of each error of one cell."""
     errors = errors_of(cell)
     changed = {change.quantity: change for change in changes}
     for name in (name for name in FOLLOWED if name in errors or name in changed):
@@ -211,7 +211,7 @@ def _lines(cell: StoredCell, changes: Sequence[FollowedChange]) -> Iterator[dict
 
 
 def page(results: Sequence[VersionResult], footer: str) -> str:
-    """history.md: versions, what stands out, and the errors of every scene."""
+    """Return history.md: versions, headlines, and the errors of every scene."""
     heads, rows = overview(results)
     parts = [f"# {results[0].asked.engine} {', '.join(result.version for result in results)}", ""]
     parts.append(table([" ".join(head.split()) for head in heads], rows))
@@ -244,5 +244,5 @@ def _numbers(cell: StoredCell) -> list[str]:
 
 
 def _last(cell: StoredCell, changes: Sequence[FollowedChange]) -> str:
-    """The largest change of a cell, or how it ended."""
+    """Return the largest change of a cell, or its ending."""
     return compared(changes).plain if cell.ok else f"{cell.status}: {cell.reason}"

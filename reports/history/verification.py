@@ -31,12 +31,12 @@ from reports.workers.signals import Ended, Runner, leave_to_parent, run_child
 from sim.registry import declaration
 
 ROOMS = Path(__file__).parents[2]
-"""The folder of the packages of crankcheck: the checkout, or `crankcheck` where it is installed."""
+"""Folder of the packages of crankcheck: the checkout, or `crankcheck` where it is installed."""
 FOLDER = Path(__file__).parents[__name__.count(".")]
-"""The folder that those who import crankcheck look into."""
+"""Folder from which crankcheck is imported."""
 RESULT = "verify.csv"
 UNWIND_S = 2.0
-"""Less than `reports.workers.signals.PATIENCE_S`: the child ends before this process is ended."""
+"""Time below `reports.workers.signals.PATIENCE_S`: the child ends before this process is ended."""
 LAUNCH = """\
 import sys
 from importlib.util import find_spec
@@ -49,19 +49,18 @@ from crankcheck.__main__ import main
 sys.argv[0] = "crankcheck"
 main()
 """
-"""What the other interpreter runs: its own packages, the engine among them, go before all that is
-borrowed from here."""
+"""Code of the other interpreter: its own packages, such as the engine, go before borrowed ones."""
 patient: Runner = partial(run_child, patience_s=UNWIND_S)
 
 
 def borrowed() -> list[str]:
-    """The folders of crankcheck and of all the packages that run it here, in order."""
+    """Return the folders of crankcheck and of all the packages that run it here, in order."""
     folders = [FOLDER, *(Path(folder) for folder in sys.path if folder)]
     return list(dict.fromkeys(str(folder.resolve()) for folder in folders if folder.is_dir()))
 
 
 def code_key() -> str:
-    """A name for crankcheck as it is: its version, and the text of its code."""
+    """Return a name for crankcheck as it is: from its version, and the text of its code."""
     digest = hashlib.sha256(crankcheck_version().encode())
     for package in sorted(ROOMS.glob("*/__init__.py")):
         for path in sorted(package.parent.rglob("*.py")):
@@ -71,22 +70,21 @@ def code_key() -> str:
 
 
 def key_of(what: Iterable[object]) -> str:
-    """A name for all that a result depends on, but for the version of the engine.
+    """Return a name for everything that a result depends on, but for the version of the engine.
 
-    ``what`` are the cells to verify, each of which shows its scene and settings in full, and what
-    else there is.
+    ``what`` are the cells to verify, with scene and settings in full, and any further inputs.
     """
     parts = [code_key(), held_numpy(), platform.python_version(), processor()]
     return hashlib.sha256("\n".join([*parts, *map(repr, what)]).encode()).hexdigest()[:16]
 
 
 def place(cache: Path, asked: EngineVersion, key: str) -> Path:
-    """The folder of the result of a version."""
+    """Return the folder of the result of a version."""
     return cache / "results" / f"{asked.name}-{key}"
 
 
 def kept(folder: Path) -> bool:
-    """Whether there is a result; it is written aside, so what is there is whole."""
+    """True if there is a result; it is written aside, so it is whole."""
     return (folder / RESULT).is_file()
 
 
@@ -125,7 +123,7 @@ def measure(
 
 
 def _not_run(ended: Ended) -> str:
-    """How a verification ended that left no result."""
+    """Say how a verification ended that left no result."""
     lines = [line.strip() for line in ended.complaint.splitlines() if line.strip()]
     if ended.code < 0:
         return f"not run: the process was ended by signal {-ended.code}"
@@ -136,9 +134,9 @@ def _not_run(ended: Ended) -> str:
 def user_cache(
     platform: str = sys.platform, variables: Mapping[str, str] = os.environ
 ) -> Path | None:
-    """The folder of crankcheck among the user's caches, as the system has it; None without a home.
+    """Return the folder of crankcheck among the user's caches on this system; None without a home.
 
-    A variable that names no absolute path counts for nothing, as the XDG specification has it.
+    A variable that names no absolute path is ignored, as the XDG specification says.
     """
     named = variables.get("LOCALAPPDATA" if platform == "win32" else "XDG_CACHE_HOME", "")
     if named and Path(named).is_absolute():
@@ -152,7 +150,7 @@ def user_cache(
 
 
 def cache_folder(named: Path | None) -> Path:
-    """The folder that a user named, or the usual one, absolute and known to be writable.
+    """Return the folder that a user named, or the usual one, absolute and known to be writable.
 
     Raises
     ------
@@ -170,7 +168,7 @@ def cache_folder(named: Path | None) -> Path:
 
 @contextmanager
 def alone(path: Path, waiting: Callable[[], None]) -> Iterator[None]:
-    """The block is done by one process at a time; ``waiting`` is told when another is in it."""
+    """Run the block in one process at a time; ``waiting`` is called when another is in it."""
     path.parent.mkdir(parents=True, exist_ok=True)
     lock = FileLock(path)
     try:
@@ -189,8 +187,8 @@ NO_RUN = StoredRun("no result", {})
 class FollowedError:
     """An error that is followed over versions: the largest of some stored ones, as a pure number.
 
-    ``tolerance`` is the one that says what rounding makes of it. ``rate`` marks those that come of
-    the others: where places are wrong, rates are too.
+    ``tolerance`` gives the effect of rounding on it. ``rate`` marks errors that come of the others:
+    where places are wrong, rates are too.
     """
 
     unit: str
@@ -211,7 +209,7 @@ FOLLOWED: Mapping[str, FollowedError] = {
 
 
 def errors_of(cell: StoredCell) -> dict[str, float]:
-    """The errors of a cell that are followed, where it has a number for them."""
+    """Return the followed errors of a cell, where it has a number for them."""
     numbers = {
         name: [
             cell.errors[each]
@@ -246,12 +244,12 @@ class VersionResult:
 
     @property
     def calls_itself(self) -> str:
-        """The version that the engine told, which need not be that of its package."""
+        """Version that the engine reports, which may differ from its package."""
         return self.run.facts.get(self.asked.engine, "")
 
     @property
     def misnamed(self) -> bool:
-        """Whether the engine gives itself another number than its package has."""
+        """True if the engine gives itself another number than its package has."""
         try:
             told_version = Version(self.calls_itself)
         except InvalidVersion:
@@ -261,7 +259,7 @@ class VersionResult:
 
 
 def read_version(folder: Path) -> StoredRun:
-    """The verification in a folder of the cache. Raises CrankcheckError if it is damaged there."""
+    """Return the verification in a folder of the cache. Raises CrankcheckError if it is damaged."""
     try:
         return read_run(folder)
     except CrankcheckError as error:
@@ -274,12 +272,12 @@ GAPS = ("pin gap", "slider gap")
 
 
 def profiles_of(results: Sequence[VersionResult]) -> list[str]:
-    """The profiles that were measured, in order."""
+    """Return the profiles that were measured, in order."""
     return list(dict.fromkeys(cell.name.variant for each in results for cell in each.cells))
 
 
 def overview(results: Sequence[VersionResult]) -> tuple[list[str], list[list[str]]]:
-    """Heads, and one row of texts per version."""
+    """Return heads, and one row of texts per version."""
     profiles = profiles_of(results)
     heads = ["version"]
     for profile in profiles:
@@ -297,13 +295,13 @@ def _row(result: VersionResult, profiles: Sequence[str]) -> list[str]:
 
 
 def _worst(cells: Sequence[StoredCell]) -> str:
-    """The largest gap, over the longest link."""
+    """Return the largest gap, over the longest link."""
     gaps = [error for cell in cells for name, error in errors_of(cell).items() if name in GAPS]
     return f"{max(gaps):.1e} L" if gaps else "-"
 
 
 def _ended(result: VersionResult) -> str:
-    """Whether the result is new, and the cells that did not run to their end."""
+    """Say if the result is new, and which cells did not run to their end."""
     failed = [cell for cell in result.cells if not cell.ok]
     made = "kept from before" if result.kept else "new"
     if result.misnamed:

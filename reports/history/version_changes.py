@@ -1,4 +1,4 @@
-"""What changed from one version of an engine to the next."""
+"""Changes from one version of an engine to the next."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,7 +19,7 @@ from reports.results.changes import (
 from reports.results.runs import CellName
 
 STANDS_OUT = 2.0
-"""The factor from which on an error that changed is told of in words."""
+"""Factor from which on a changed error is described in words."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class FollowedChange(ErrorChange):
 
     @property
     def times_better(self) -> float:
-        """How many times better the later version is; under 1 it is worse."""
+        """Ratio by which the later version is better; under 1 it is worse."""
         return 1.0 / self.growth if self.growth else math.inf
 
     @property
@@ -46,7 +46,7 @@ class FollowedChange(ErrorChange):
 
 @dataclass(frozen=True)
 class Headline:
-    """One line of what stands out, and whether it is good news."""
+    """One line on a change that stands out, and whether it is good news."""
 
     text: str
     good: bool | None
@@ -65,7 +65,7 @@ class VersionStep:
 
     @cached_property
     def changes(self) -> tuple[FollowedChange, ...]:
-        """Every error that is followed, of the cells that ended well in both versions."""
+        """Every followed error, of the cells that ended well in both versions."""
         return tuple(change for pair in self.diff.pairs for change in self._followed(pair))
 
     def _followed(self, pair: CellPair) -> Iterator[FollowedChange]:
@@ -86,18 +86,18 @@ class VersionStep:
 
 
 def steps(results: Sequence[VersionResult]) -> list[VersionStep]:
-    """The steps from version to version."""
+    """Return the steps from version to version."""
     return [VersionStep(*pair) for pair in pairwise(each for each in results if each.cells)]
 
 
 def headlines(step: VersionStep) -> list[Headline]:
-    """What stands out of one step, the worst first; one line where nothing does."""
+    """Return the headlines of one step, the worst first; one line where nothing stands out."""
     before, after = step.before.version, step.after.version
     lines = [*_ended(step), *_judged(step), *_factors(step.changes)]
     lines.sort(key=lambda line: line.good is True)  # stable: bad news, then the good
     if not lines:
         lines = [Headline(_calm(step), None)]
-    # What never ran holds what it was given.
+    # A cell that never ran has the settings that it was given.
     others = other_settings(pair for pair in step.diff.pairs if pair.changes)
     if names := sorted({name for settings in others.values() for name in settings}):
         text = f"{after} holds other settings than {before}: {', '.join(names)}"
@@ -106,7 +106,7 @@ def headlines(step: VersionStep) -> list[Headline]:
 
 
 def _calm(step: VersionStep) -> str:
-    """That nothing stands out, and how much the two differ all the same."""
+    """Say that nothing stands out, and how much the two differ all the same."""
     before, after = step.before.version, step.after.version
     if not step.changes:
         return f"{after} and {before} have no error in common to compare"
@@ -117,14 +117,14 @@ def _calm(step: VersionStep) -> str:
 
 
 def largest(changes: Iterable[FollowedChange]) -> FollowedChange | None:
-    """The change by the largest factor; of two alike the worse one."""
+    """Return the change by the largest factor; of two alike the worse one."""
     return max(
         changes, key=lambda each: (each.changed, each.factor, each.growth > 1.0), default=None
     )
 
 
 def _ended(step: VersionStep) -> list[Headline]:
-    """Runs that end well in one version alone: by profile and by how they end, one line each."""
+    """Return runs that end well in one version alone: a line per profile and ending."""
     groups: dict[tuple[str, str, str], list[CellPair]] = {}
     for pair in step.diff.pairs:
         if pair.turned:
@@ -143,7 +143,7 @@ def _ended(step: VersionStep) -> list[Headline]:
 
 
 def _judged(step: VersionStep) -> list[Headline]:
-    """Cells that come within tolerance, or leave it: one line for each profile and direction."""
+    """Return cells that come within tolerance, or leave it: a line per profile and direction."""
     groups: dict[tuple[str, str], list[CellPair]] = {}
     for pair in step.diff.pairs:
         if pair.old.ok and pair.new.ok and pair.old.verdict != pair.new.verdict:
@@ -160,14 +160,14 @@ def _judged(step: VersionStep) -> list[Headline]:
 
 
 def _scenes(members: Sequence[CellPair]) -> str:
-    """One scene by its name, several by their number."""
+    """Return one scene by its name, several by their number."""
     return members[0].name.scene if len(members) == 1 else count(len(members), "scene")
 
 
 def _factors(changes: Sequence[FollowedChange]) -> list[Headline]:
-    """The largest change of each quantity that stands out, by profile and direction.
+    """Return the largest change of each quantity that stands out, by profile and direction.
 
-    Rates are told of only where no place tells it: they follow from the places.
+    Rates are included only where no place stands out: they follow from the places.
     """
     groups: dict[tuple[str, str], list[FollowedChange]] = {}
     for change in changes:
@@ -183,12 +183,12 @@ def _factors(changes: Sequence[FollowedChange]) -> list[Headline]:
                 able = sum(max(change.old, change.new) > change.floor for change in every)
                 line = Headline(_told(top, len(alike), able), word == "better")
                 lines.append((profile != "as-shipped", -top.factor, line))
-    # The settings as shipped are what most users run: theirs come first.
+    # Most users run the settings as shipped: these come first.
     return [line for *_, line in sorted(lines, key=lambda entry: entry[:2])]
 
 
 def _told(top: FollowedChange, alike: int, scenes: int) -> str:
-    """The largest change of a quantity in words, and how many scenes share it."""
+    """Return the largest change of a quantity in words, and how many scenes share it."""
     share = ""
     if scenes > 1:
         share = f"; by {STANDS_OUT:g} or more in {alike} of {scenes} scenes"
@@ -200,19 +200,19 @@ def _told(top: FollowedChange, alike: int, scenes: int) -> str:
 
 
 def called(profile: str) -> str:
-    """A profile in a sentence."""
+    """Return a profile in a sentence."""
     return "as shipped" if profile == "as-shipped" else f"with profile {profile}"
 
 
 def times(factor: float) -> str:
-    """A factor in as many digits as it deserves."""
+    """Return a factor in as many digits as it deserves."""
     if math.isinf(factor):
         return "infinitely many"
     return f"{float(f'{factor:.3g}'):.0f}" if factor >= 10.0 else f"{factor:.2g}"
 
 
 def by_cell(results: Sequence[VersionResult]) -> dict[tuple[str, CellName], list[FollowedChange]]:
-    """The changes of each version against the one before it, cell by cell."""
+    """Return the changes of each version against the one before it, cell by cell."""
     changes: dict[tuple[str, CellName], list[FollowedChange]] = {}
     for change in (change for step in steps(results) for change in step.changes):
         changes.setdefault((change.after, change.cell), []).append(change)

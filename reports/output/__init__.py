@@ -1,1 +1,1 @@
-"""How anything leaves: console, Markdown, numbers, JSON, files, provenance."""
+"""Output of any kind: console, Markdown, numbers, JSON, files, provenance."""

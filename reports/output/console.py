@@ -1,4 +1,4 @@
-"""The terminal as wide as it is, or a file or pipe that may be full or closed; what is printed."""
+"""The terminal at its width, or a file or pipe that may be full or closed; and printing to them."""
 
 import contextlib
 import errno
@@ -29,37 +29,35 @@ class Terminal(Console):
 
 
 def terminal(stderr: bool = False) -> Terminal:
-    """The terminal as wide as it is; a file or a pipe as wide as the tables need."""
+    """Return the terminal at its width; a file or a pipe at the width of the tables."""
     stream = sys.stderr if stderr else sys.stdout
     wide = stream is not None and stream.isatty()
     return Terminal(stderr=stderr, width=None if wide else TABLE_WIDTH)
 
 
 def forget_odd_sizes() -> None:
-    """Leave out a size of the terminal that is none: libraries take for a number what is not one,
-    and make lines of any width."""
+    """Remove an invalid size of the terminal: libraries make lines of any width from it."""
     for name in ("COLUMNS", "LINES"):
         if not re.fullmatch("[1-9][0-9]{0,3}", os.environ.get(name, "80"), re.ASCII):
             del os.environ[name]
 
 
 def readable_everywhere() -> None:
-    """Write what the encoding of the output can not hold (ASCII) as an escape."""
+    """Write characters that the encoding of the output can not hold (ASCII) as escapes."""
     for stream in (sys.stdout, sys.stderr):
         if stream is not None and hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
 
 
 def tell(lines: Sequence[str]) -> None:
-    """Print what is wrong with what was read, where there is anything, on standard error; one that
-    takes nothing is no fault."""
+    """Print the faults of a read file, if any, on standard error; an unwritable one is no fault."""
     if lines:
         with contextlib.suppress(OSError):
             typer.echo("\n".join((f"crankcheck: {lines[0]}", *lines[1:])), err=True)
 
 
 def give_up_output() -> None:
-    """Send the rest of the output nowhere: what is still buffered could not be written either."""
+    """Send the rest of the output nowhere: buffered text could not be written either."""
     with contextlib.suppress(OSError, ValueError):  # not a real file, in a test
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
@@ -89,7 +87,7 @@ def put(console: Console, path: Path | None, text: str, what: str) -> None:
 
 
 def plain_table(title: str | None = None, style: str = "bold", gap: int = 1) -> Table:
-    """A table without lines, ``gap`` spaces after every column; its title stands on the left."""
+    """Return a table without lines, ``gap`` spaces after every column; its title on the left."""
     padding = (0, gap, 0, 0)
     return Table(title=title, title_justify="left", title_style=style, box=None, padding=padding)
 

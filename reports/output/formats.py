@@ -16,11 +16,11 @@ from xml.etree import ElementTree as Xml
 from reports.output.write import clean, crankcheck_version, write
 
 if TYPE_CHECKING:
-    import pandas as pd  # a third of a second: not for what is only shown
+    import pandas as pd  # a third of a second: for files alone
 
 
 def junit(*suites: Xml.Element) -> str:
-    """The text of a file of these suites."""
+    """Return the text of a file of these suites."""
     root = Xml.Element("testsuites")
     root.extend(suites)
     Xml.indent(root)
@@ -34,7 +34,7 @@ def suite_of(
     time: str = "0",
     **attributes: str,
 ) -> Xml.Element:
-    """Cases with their counts, and where they come from."""
+    """Return cases with their counts, and their provenance."""
     count = Counter(told.tag for case in cases for told in case)
     heads = {
         "name": f"crankcheck {name}",
@@ -53,7 +53,7 @@ def suite_of(
 
 
 def case_of(group: str, name: str, time: str = "0") -> Xml.Element:
-    """A cell; what became of it is told by `remark`, and nothing where it is as it should be."""
+    """Return a cell; `remark` adds its outcome, and nothing for a good one."""
     heads = {"classname": f"crankcheck.{group}", "name": name, "time": time}
     return Xml.Element("testcase", {head: clean(value) for head, value in heads.items()})
 
@@ -65,14 +65,14 @@ def remark(case: Xml.Element, tag: str, text: str = "", **attributes: str) -> No
 
 
 SPECIAL = re.compile(r"([\\`*_\[\]<>|~#&$])")
-"""What would start a cell, tag, link, reference, entity, formula or emphasis."""
+"""Characters that would start a cell, tag, link, reference, entity, formula or emphasis."""
 JOINER = "\N{WORD JOINER}"
 LONGEST = 600
 """Characters of a cell: a reason may hold the whole output of an engine."""
 
 
 def plain(text: object) -> str:
-    """A text that means itself, on one line; it notifies nobody either."""
+    """Return a text that means itself, on one line; it notifies nobody either."""
     words = " ".join(str(text).split())
     words = words if len(words) <= LONGEST else words[: LONGEST - 1] + "…"
     return SPECIAL.sub(r"\\\1", words).replace("@", f"@{JOINER}")
@@ -84,10 +84,9 @@ def table(
     room: float = math.inf,
     what: str = "",
 ) -> str:
-    """A table whose cells mean themselves, in ``room`` bytes; what has none is counted below it.
+    """Return a table whose cells mean themselves, in ``room`` bytes; rows beyond are counted below.
 
-    A head that ends in a colon is over numbers, and stands on the right. ``what`` the rows are
-    called where they are counted.
+    A head that ends in a colon is over numbers, on the right. ``what`` names the counted rows.
     """
     rules = ["--:" if head.endswith(":") else "---" for head in heads]
     lines = [_row(head.removesuffix(":") for head in heads), _row(rules)]
@@ -96,13 +95,13 @@ def table(
 
 
 def counted(texts: Iterable[str], room: float, what: str = "") -> list[str]:
-    """The first of the texts that have ``room`` bytes together, then how many others there are."""
+    """Return the first texts that fit ``room`` bytes together, then the number of the others."""
     kept, left = fitted(texts, room)
     return [*kept, f"\nand {left} more {what}".rstrip()] if left else kept
 
 
 def fitted(texts: Iterable[str], room: float) -> tuple[list[str], int]:
-    """The first of the texts that have ``room`` bytes together, and the number of the others."""
+    """Return the first texts that fit ``room`` bytes together, and the number of the others."""
     kept: list[str] = []
     left = 0
     for text in texts:
@@ -115,12 +114,12 @@ def fitted(texts: Iterable[str], room: float) -> tuple[list[str], int]:
 
 
 def folded(title: str, body: str) -> str:
-    """What is shown on a click; the empty lines make it Markdown inside of HTML."""
+    """Return a body that is shown on a click; the empty lines make it Markdown inside of HTML."""
     return f"<details><summary>{_inside_html(title)}</summary>\n\n{body}\n\n</details>"
 
 
 def code(text: str, language: str) -> str:
-    """A block of code; its fence is longer than any in it."""
+    """Return a block of code; its fence is longer than any in it."""
     runs = [len(run) for run in re.findall("`+", text)]
     fence = "`" * max(3, 1 + max(runs, default=0))
     return f"{fence}{language}\n{text.rstrip()}\n{fence}"
@@ -131,7 +130,7 @@ def _row(cells: Iterable[str]) -> str:
 
 
 def _inside_html(text: str) -> str:
-    """A text on one line of HTML."""
+    """Return a text on one line of HTML."""
     return escape(" ".join(text.split()), quote=False).replace("@", f"@{JOINER}")
 
 
@@ -149,9 +148,9 @@ def write_frame(
 ) -> None:
     """Write a table whole, or not at all.
 
-    A workbook has it in ``sheet``, and beside it where it comes from, and what ``more`` puts into
-    the openpyxl workbook; the other kinds have no room for that. Raises CrankcheckError where the
-    system refuses.
+    A workbook has it in ``sheet``, beside it its origin, and the additions of ``more`` to the
+    openpyxl workbook; the other kinds have no room. Raises CrankcheckError where the system
+    refuses.
     """
     ending = path.suffix.lower()
     if ending == ".csv":
@@ -163,12 +162,12 @@ def write_frame(
 
 
 def csv(frame: pd.DataFrame) -> str:
-    """The text of a CSV file that holds the frame, without its index."""
+    """Return the text of a CSV file that holds the frame, without its index."""
     return frame.to_csv(index=False, lineterminator="\n")
 
 
 def parquet(frame: pd.DataFrame) -> bytes:
-    """The content of a Parquet file that holds the frame, without its index."""
+    """Return the content of a Parquet file that holds the frame, without its index."""
     buffer = io.BytesIO()
     frame.to_parquet(buffer, index=False)
     return buffer.getvalue()
@@ -180,7 +179,7 @@ def workbook(
     origin: Mapping[str, str],
     more: Callable[[Any], None] | None = None,
 ) -> bytes:
-    """The content of a workbook: the frame, where it comes from, and what ``more`` puts into it."""
+    """Return the content of a workbook: the frame, its origin, and the additions of ``more``."""
     facts = {**origin, "crankcheck": crankcheck_version()}
     buffer = io.BytesIO()
     import pandas as pd

@@ -1,4 +1,4 @@
-"""Numbers as a reader takes them in: short in tables and sentences, thinned in what is embedded."""
+"""Numbers for a reader: short in tables and sentences, thinned where they are embedded."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,19 +6,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 NONE = "\N{EN DASH}"
-"""What stands where there is no number."""
+"""Text for a missing number."""
 DIGITS = 6
 """Significant digits of an embedded number: more than a screen shows."""
 
 
 def short(value: float, digits: int = 2) -> str:
-    """7.5e-4 for 0.00075; what is not finite by its name."""
+    """Return 7.5e-4 for 0.00075; a number that is not finite by its name."""
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}" if exponent else mantissa
 
 
 def error_text(value: float | None, digits: int = 2) -> str:
-    """A pure error with few digits, such as 2.7e-4; a dash where there is none."""
+    """Return a pure error with few digits, such as 2.7e-4; a dash where there is none."""
     if value is None or not math.isfinite(value):
         return NONE
     if value == 0.0:
@@ -27,7 +27,7 @@ def error_text(value: float | None, digits: int = 2) -> str:
 
 
 def readable(value: float, digits: int = 3) -> str:
-    """A number with few digits: 0.0123, 345, 6.7e-5; what is not finite by its name."""
+    """Return a number with few digits: 0.0123, 345, 6.7e-5; one that is not finite by its name."""
     if value == 0.0 or 1e-3 <= abs(value) < 1e5:
         return f"{value:.{digits}g}" if abs(value) < 10.0**digits else f"{value:.0f}"
     mantissa, e, exponent = short(value, digits).partition("e")
@@ -35,7 +35,7 @@ def readable(value: float, digits: int = 3) -> str:
 
 
 def duration(value_s: float | None) -> str:
-    """A time in the unit that gives it one to three digits before the point."""
+    """Return a time in the unit that gives it one to three digits before the point."""
     if value_s is None or not math.isfinite(value_s):
         return NONE
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("\N{MICRO SIGN}s", 1e-6)):
@@ -45,27 +45,27 @@ def duration(value_s: float | None) -> str:
 
 
 def _three(value: float) -> str:
-    """Three significant digits, without an exponent."""
+    """Return three significant digits, without an exponent."""
     places = 2 if value < 9.995 else 1 if value < 99.95 else 0
     return f"{value:.{places}f}"
 
 
 def count(number: int, noun: str, plural: str | None = None) -> str:
-    """A number of things: 1 scene, 2 scenes."""
+    """Return a number with its noun: 1 scene, 2 scenes."""
     return f"{number} {noun if number == 1 else plural or noun + 's'}"
 
 
 def listed(words: Sequence[str], last: str = "and") -> str:
-    """Words as a list in a sentence: a, b and c."""
+    """Return words as a list in a sentence: a, b and c."""
     if len(words) < 2:
         return "".join(words)
     return f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
 def finite(value: object, digits: int | None = None) -> object:
-    """A value, and all that it holds, as JSON knows it: what is not finite is None.
+    """Return a value, and all that it holds, for JSON: numbers that are not finite are None.
 
-    With ``digits`` numbers are cut to so many significant ones, and whole ones have no point.
+    Numbers are cut to so many significant ``digits``, if given, and whole ones have no point.
     """
     if isinstance(value, Mapping):
         return {str(key): finite(each, digits) for key, each in value.items()}
@@ -84,7 +84,7 @@ VALUES = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
 
 
 def roman(number: int) -> str:
-    """IV for 4; of numbers from 1 to 39."""
+    """Return IV for 4; of numbers from 1 to 39."""
     letters = ""
     for value, own in VALUES:
         letters += own * (number // value)

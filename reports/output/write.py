@@ -1,9 +1,9 @@
 """The one place that writes files: checked before the work, whole or not at all after it; and the
 provenance of a result: versions, processor, system, time.
 
-A symbolic link is never followed to what it leads to. One that a user names as a file is refused;
-one that stands where a file of ours goes is replaced, as a file would be. A folder that he names
-may be a link, those of ours in it may not.
+A symbolic link is never followed to its target. A link that a user names as a file is refused; a
+link in the place of a file of ours is replaced, as a file would be. A folder that he names may be a
+link, ours in it may not.
 """
 
 import contextlib
@@ -22,8 +22,8 @@ from pathlib import Path
 from models.errors import CrankcheckError
 
 DEVICES, PROCESSES = Path("/dev"), Path("/proc")
-"""Where the system has links to what a process reads and writes (`/dev/stdout`, `>(gzip)`); users
-have theirs in folders of the first (`/dev/shm`), not in it."""
+"""Folders of the system's links to the streams of a process (`/dev/stdout`, `>(gzip)`); users have
+theirs in folders of the first (`/dev/shm`), not in it."""
 NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML 1.0 can not hold, escaped or not."""
 
@@ -54,7 +54,7 @@ def check_file(
 
 
 def refuse_link(path: Path, option: str) -> None:
-    """Refuse a symbolic link. Raises CrankcheckError that tells where it leads."""
+    """Refuse a symbolic link. Raises CrankcheckError that names its target."""
     if path.is_symlink():
         raise CrankcheckError(
             f"{option} {path}: a link, to {os.path.realpath(path)}; name that itself, or remove "
@@ -81,15 +81,15 @@ def _check_place(path: Path, option: str) -> None:
 
 
 def _try_in(folder: Path) -> None:
-    """Have a file there for a moment: in some folders (/proc) none can be, whatever the rights.
+    """Make a file there for a moment: in some folders (/proc) none can be, whatever the rights.
     Raises OSError."""
     with tempfile.TemporaryFile(dir=folder):
         pass
 
 
 def _is_stream(path: Path) -> bool:
-    """Whether it is a device or a pipe, which is written into and not replaced; or a link of the
-    system's own, whatever file that leads to."""
+    """True for a device or a pipe, which is written into and not replaced; or a link of the
+    system's own, to any file."""
     if not path.exists() or path.is_dir():
         return False
     folder = path.parent.resolve()
@@ -99,8 +99,8 @@ def _is_stream(path: Path) -> bool:
 
 
 def _write_into(stream: Path, raw: bytes) -> None:
-    """Write into a stream; into one that this process has open already, where that stands: what
-    was written there before stays, and what is written next comes after."""
+    """Write into a stream; into one that this process has open already, at its position: earlier
+    text stays, and later text comes after."""
     if stream.is_symlink() and stream.parent.resolve() == DEVICES:
         stream = stream.parent / stream.readlink()  # /dev/stdout: /proc/self/fd/1
     if stream.parent.resolve() == Path("/proc/self/fd").resolve():
@@ -146,8 +146,8 @@ def check_outputs(
     inputs: Iterable[Path | None] = (),
 ) -> None:
     """Refuse files, by their options, and ``names`` in the folder of -o, that could not be written,
-    two of all these that are one file, and one that is read (``inputs``). Raises CrankcheckError.
-    """
+    two of all these that are one file, and one that is read (``inputs``). Raises
+    CrankcheckError."""
     outputs = [(option, path) for option, path in files.items() if path is not None]
     read = list(inputs)
     for option, path in outputs:
@@ -169,8 +169,8 @@ def check_outputs(
 
 @dataclass(frozen=True)
 class Outputs:
-    """The files that a request names, each None where it names none, by their options, and a folder
-    for all of them; ``names`` are those of the folder, with the option of the same content."""
+    """Files that a request names, each None where it names none, by their options, and a folder for
+    all of them; ``names`` in the folder come with the option of the same content."""
 
     files: Mapping[str, Path | None]
     folder: Path | None = None
@@ -181,8 +181,8 @@ class Outputs:
         check_outputs(self.files, self.folder, tuple(self.names), inputs=inputs)
 
     def write(self, contents: Mapping[str, Callable[[], bytes | str]]) -> None:
-        """Write what was asked for of contents by name, or by option; each whole or not at all.
-        Raises CrankcheckError."""
+        """Write the requested contents, by name, or by option; each whole or not at all. Raises
+        CrankcheckError."""
         for name, content in contents.items():
             inside = self.folder / name if self.folder and name in self.names else None
             places = [*filter(None, (self.files.get(self.names.get(name, name)), inside))]
@@ -192,7 +192,7 @@ class Outputs:
 
     @contextlib.contextmanager
     def written(self, contents: Mapping[str, Callable[[], bytes | str]]) -> Iterator[None]:
-        """Write, and show in the block; a full disk costs the file, and not what is shown."""
+        """Write, and show in the block; a full disk costs the file, and not the shown text."""
         try:
             self.write(contents)
         finally:
@@ -214,7 +214,7 @@ def _refuse_input(path: Path, option: str, inputs: Iterable[Path | None]) -> Non
 
 @contextlib.contextmanager
 def _looking_at(path: Path, option: str) -> Iterator[None]:
-    """A path that may not even be looked at is a user's fault."""
+    """Turn the refusal of a look at a path into a user's fault."""
     try:
         yield
     except (OSError, RuntimeError) as error:  # RuntimeError: links that lead to each other
@@ -239,7 +239,7 @@ def write(path: Path, content: bytes | str) -> None:
         aside = path.with_name(f".{path.name[:100]}.{os.getpid()}.tmp")
         try:
             aside.unlink(missing_ok=True)  # of a process of the same number that was killed
-            with aside.open("xb") as file:  # never what stands there already, or a link
+            with aside.open("xb") as file:  # never an existing file, or a link
                 file.write(raw)
                 file.flush()
                 os.fsync(file.fileno())  # a name that stands for nothing is all that a crash leaves
@@ -256,12 +256,12 @@ def write(path: Path, content: bytes | str) -> None:
 
 
 def clean(text: str) -> str:
-    """The text with the characters replaced that neither XML nor a workbook can hold."""
+    """Return the text with the characters replaced that neither XML nor a workbook can hold."""
     return NOT_XML.sub("\ufffd", text)
 
 
 def crankcheck_version() -> str:
-    """The installed version of crankcheck."""
+    """Return the installed version of crankcheck."""
     try:
         return version("crankcheck")
     except PackageNotFoundError:  # run from a source tree that was not installed
@@ -269,7 +269,7 @@ def crankcheck_version() -> str:
 
 
 def provenance(engines: Mapping[str, str]) -> dict[str, str]:
-    """What a result needs to be repeated; ``engines`` maps name to version."""
+    """Return the facts that a result needs to be repeated; ``engines`` maps name to version."""
     return {
         "crankcheck": crankcheck_version(),
         **engines,
@@ -283,7 +283,7 @@ def provenance(engines: Mapping[str, str]) -> dict[str, str]:
 
 
 def processor() -> str:
-    """The processor by its own name where the system tells it."""
+    """Return the processor by its own name where the system has it."""
     if sys.platform == "linux":
         try:
             for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():

@@ -1,4 +1,4 @@
-"""Put the page together: sections, style, scripts and Plotly, in one file that loads nothing."""
+"""Build the page: sections, style, scripts and Plotly, in one file that loads nothing."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -22,18 +22,18 @@ from reports.store.reader import Stored
 
 HERE = Path(__file__).parent
 MOST_BYTES = 7_900_000
-"""Over this, drawings and curves give way: fewer steps of each line are drawn."""
+"""Size limit of a page; above it fewer steps of each line are drawn in drawings and curves."""
 ALONE = 6_500_000
 """Characters for the moving pictures of hard cases on a page of their own."""
 FIRST = ("page.js", "tables.js")
-"""Scripts that every page has, before those of its sections."""
+"""Scripts of every page, before the scripts of its sections."""
 
 
 @dataclass(frozen=True)
 class Head:
-    """What stands over a page: its title, and what was measured; ``made`` is when, as text.
+    """Head of a page: its title, and the facts of the measurement; ``made`` is the date, as text.
 
-    ``first`` says what the first section is, ``looks`` are those of the diagrams.
+    ``first`` names the first section, ``looks`` are the looks of the diagrams.
     """
 
     title: str
@@ -44,7 +44,7 @@ class Head:
 
 
 def page(stored: Stored, matrix: Matrix | None = None) -> str:
-    """The report of a store as one HTML file, with the hard cases that were run beside it.
+    """Return the report of a store as one HTML file, with the hard cases that were run beside it.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
 
 
 def stability_page(matrix: Matrix) -> str:
-    """The hard cases alone as one HTML file."""
+    """Return a page of the hard cases alone as one HTML file."""
     head, section = _stability_head(matrix), hard(matrix, ALONE)
     text = assembled(head, [section])
     over = len(text.encode()) - MOST_BYTES
@@ -93,7 +93,7 @@ def _stability_head(matrix: Matrix) -> Head:
 
 
 def render(report: Report, sections: Iterable[Section | None]) -> str:
-    """A page of some sections of a report."""
+    """Return a page of some sections of a report."""
     head = Head(
         title="crankcheck report",
         facts=(
@@ -110,7 +110,7 @@ def render(report: Report, sections: Iterable[Section | None]) -> str:
 
 
 def assembled(head: Head, shown: Iterable[Section | None]) -> str:
-    """A page of some sections under a head, without those that have nothing to show."""
+    """Return a page of some sections under a head, without the empty sections (None)."""
     sections = [each for each in shown if each is not None]
     environment = _environment()
     bodies = [Markup(_template(environment, one.template).render(one.words)) for one in sections]
@@ -136,7 +136,7 @@ def assembled(head: Head, shown: Iterable[Section | None]) -> str:
 
 
 def _template(environment: Environment, template: str | Path) -> Template:
-    """That of a section, of ours by its name, of others by its file."""
+    """Return the template of a section: a name for our own, a file for others."""
     if isinstance(template, Path):
         return environment.from_string(template.read_text(encoding="utf-8"))
     return environment.get_template(f"sections/{template}")
@@ -144,7 +144,7 @@ def _template(environment: Environment, template: str | Path) -> Template:
 
 @cache
 def _environment() -> Environment:
-    """Templates that escape everything and know every name that they use."""
+    """Return an environment that escapes everything and refuses undefined names."""
     environment = Environment(
         loader=FileSystemLoader(HERE / "templates"),
         autoescape=True,
@@ -163,7 +163,7 @@ def _asset(name: str) -> str:
 
 @cache
 def _script(name: str) -> str:
-    """A script of ours, which may stand inside a script element."""
+    """Return a script of our own, which may stand inside a script element."""
     text = _asset(name)
     assert "</script" not in text.lower(), f"{name} would end its own element"
     return text
@@ -171,7 +171,7 @@ def _script(name: str) -> str:
 
 @cache
 def _plotly() -> str:
-    """Plotly as it is installed."""
+    """Return the script of the installed Plotly."""
     from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]  # ships no stubs
 
     return str(get_plotlyjs()).replace("</script", "<\\/script")

@@ -1,5 +1,5 @@
-"""A store as Markdown for a comment on a pull request: verdict, what to set, orders and floors,
-failures, and where it all comes from."""
+"""A store as a Markdown comment on a pull request: verdict, settings to use, orders and floors,
+failures, and origin."""
 
 import math
 from collections.abc import Iterator
@@ -42,7 +42,7 @@ HEADLINES = {"within": "within tolerance", "out": "OUT OF TOLERANCE", "none": "n
 
 
 def summary(stored: Stored) -> str:
-    """The text, below 60,000 bytes however large the store."""
+    """Return the text, below 60,000 bytes for any size of the store."""
     report = Report(stored)
     gated = report.cells[report.cells["gated"]]
     parts = [
@@ -63,14 +63,14 @@ def summary(stored: Stored) -> str:
 
 
 def _ended(report: Report) -> str:
-    """How many runs ended well."""
+    """Say how many runs ended well."""
     number, bad = len(report.cells), int((report.cells["status"] != "ok").sum())
     rest = f"{bad} did not end well" if bad else "none failed to end well"
     return f"Of all {count(number, 'cell')}, whatever the settings, {rest}."
 
 
 def _damaged(report: Report) -> Iterator[str]:
-    """What can not be read of the store."""
+    """Yield the parts of the store that can not be read."""
     kept, left = fitted(report.stored.notice, ROOM["damage"])
     if kept:
         yield "### State of the store"
@@ -78,7 +78,7 @@ def _damaged(report: Report) -> Iterator[str]:
 
 
 def _outside(report: Report) -> Iterator[str]:
-    """The gated cells that are out of tolerance, with the rules that they fail."""
+    """Yield the gated cells that are out of tolerance, with the rules that they fail."""
     cells = report.cells[report.cells["gated"] & (report.cells["verdict"] != "within")]
     if cells.empty:
         return
@@ -97,12 +97,12 @@ def _outside(report: Report) -> Iterator[str]:
 
 
 def _rule(name: str) -> str:
-    """A rule by its number and title."""
+    """Return the number and title of a rule."""
     return f"{name} {RULES[name].title}" if name in RULES else name
 
 
 def _recommended(report: Report) -> str:
-    """The cheapest settings per target and engine."""
+    """Return the cheapest settings per target and engine."""
     rows = [_recommendation(one) for one in report.recommendations]
     scenes = count(len(report.scenes), "scene")
     words = (
@@ -119,7 +119,7 @@ def _recommended(report: Report) -> str:
 
 
 def _recommendation(one: Recommendation) -> tuple[str, ...]:
-    """A row."""
+    """Return the row of a recommendation."""
     target, best = short_target(one.target), one.best
     if one.reason:
         return (target, best.engine, "none", *[""] * 5)
@@ -131,7 +131,7 @@ def _recommendation(one: Recommendation) -> tuple[str, ...]:
 
 
 def _remark(one: Recommendation) -> str:
-    """What is to be said of a recommendation; empty where there is nothing."""
+    """Return the remark on a recommendation; empty where there is none."""
     which = f"{one.best.engine}, {short_target(one.target)}"
     if one.reason:
         return f"{which}: none; {one.reason}"
@@ -145,7 +145,7 @@ def _remark(one: Recommendation) -> str:
 
 
 def _snippets(report: Report) -> Iterator[str]:
-    """Text to be copied, each behind a click; once where it is for several targets."""
+    """Yield text to be copied, each behind a click; once where it serves several targets."""
     groups: dict[tuple[str, str, Drive, float], list[Recommendation]] = {}
     for one in report.recommendations:
         if not one.reason:
@@ -167,7 +167,7 @@ def _snippets(report: Report) -> Iterator[str]:
 
 
 def _times(report: Report) -> Iterator[str]:
-    """What a step of each variant costs, and a turn that comes to each target."""
+    """Yield the cost of a step of each variant, and of a turn that reaches each target."""
     if not report.timed:
         return
     targets = list(report.costs[0].s_to)
@@ -178,7 +178,7 @@ def _times(report: Report) -> Iterator[str]:
 
 
 def _time(costs: Costs) -> list[str]:
-    """A row; where something is not so on all scenes, on how many it is."""
+    """Return a row; a value that does not hold on all scenes has the number of scenes beside it."""
     name, part = label((costs.engine, costs.variant, costs.drive)), costs.part(costs.timed)
     steps = [
         f"{us:.2f}" if costs.timed else "" for us in (costs.us_per_step, costs.us_per_step_median)
@@ -194,7 +194,7 @@ def _time(costs: Costs) -> list[str]:
 
 
 def _fits(report: Report) -> str:
-    """Order or floor in words, a row for each scene and variant."""
+    """Return order or floor in words, a row for each scene and variant."""
     rows = [(line.scene, label(named(line)), line.words, *_finest(line)) for line in report.lines]
     heads = ("scene", "variant", "error of place", "finest error:", "at steps per turn:")
     title = f"{count(len(rows), 'line')}: scene by scene and variant by variant"
@@ -202,7 +202,7 @@ def _fits(report: Report) -> str:
 
 
 def _finest(line: Line) -> tuple[str, str]:
-    """The error at the finest step that ended well, and its steps per turn."""
+    """Return the error at the finest step that ended well, and its steps per turn."""
     if not line.fit.runs:
         return "", ""
     dt_s, error = line.fit.runs[0]
@@ -210,18 +210,18 @@ def _finest(line: Line) -> tuple[str, str]:
 
 
 def steps_told(steps: float, drive: str) -> str:
-    """Steps per turn, or of what was let go per second, which is said."""
+    """Return steps per turn, or with "per second" for a free motion."""
     return f"{steps:g}{_per(drive)}"
 
 
 def _per(drive: str) -> str:
-    """What stands behind a number of a second."""
+    """Return the unit behind a number that counts per second; empty for turns."""
     per = clock_of(drive).per
     return f" {per}" if per else ""
 
 
 def _failures(report: Report) -> Iterator[str]:
-    """What did not end well, a row for each line and way of ending."""
+    """Yield the runs that did not end well, a row for each line and status."""
     rows, number = [], 0
     for line in report.lines:
         bad = line.cells[line.cells["status"] != "ok"]
@@ -238,7 +238,7 @@ def _failures(report: Report) -> Iterator[str]:
 
 
 def _footer(report: Report) -> str:
-    """Versions, processor, study, noise, and all settings."""
+    """Return versions, processor, study, noise, and all settings."""
     lines = report.lines
     texts = [f"{versions(report, lines)}.", f"{made(report, report.timed)}.", f"{study(lines)}."]
     texts += [noise_line(report.stored)]

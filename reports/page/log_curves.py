@@ -1,4 +1,4 @@
-"""The channels of a log as the page draws them: in the units of their columns, beside the truth."""
+"""Curves of the channels of a log, in the units of their columns, beside the reference."""
 
 from __future__ import annotations
 
@@ -19,21 +19,20 @@ from reports.logs.kinds import UNITS
 from reports.own_log.judged import JudgedLog, LogRow, log_rows
 
 LEAST, MOST = 240, 6_000
-"""Rows that are drawn of a channel, however many there are and however long the log."""
+"""Bounds on the rows drawn of a channel, for any number of channels and any length of the log."""
 NEAR = 0.1
-"""The part of them that shows the turn of the largest error alone, where the log is thinned."""
+"""Share of the rows that shows the turn of the largest error alone, where the log is thinned."""
 BYTES = 16
-"""Characters that a drawn row takes in the page: its instant, log, error and phase."""
+"""Characters of a drawn row in the page: its instant, log, error and phase."""
 AT_ZERO = 1e-9
-"""An angle that is below a whole turn by so many degrees is that turn: rounding alone."""
+"""Distance to a whole turn [deg] below which an angle is that turn: rounding alone."""
 
 
 @dataclass(frozen=True)
 class Samples:
-    """What is drawn of some rows of a channel: their instants [s], what was ``logged`` and its
-    ``error``, both in the unit and with the sign of the column, and the driver's ``phase``
-    (`_phase`). ``worst`` is the place among them of the largest error; ``is_thinned`` says that
-    rows between them are left out."""
+    """Drawn rows of a channel: their instants [s], the ``logged`` values and their ``error``, both
+    in the unit and with the sign of the column, and the driver's ``phase`` (`_phase`). ``worst`` is
+    the index of the largest error; ``is_thinned`` says that rows between them are left out."""
 
     time_s: Array
     phase: Array
@@ -44,7 +43,7 @@ class Samples:
 
 
 class Both(TypedDict):
-    """The two pictures of a channel."""
+    """Both pictures of a channel."""
 
     whole: Samples
     near: Samples | None
@@ -53,12 +52,12 @@ class Both(TypedDict):
 @dataclass(frozen=True)
 class DrawnChannel:
     """A channel as it is drawn, in ``unit``: ``whole``, and ``near`` its largest error, None where
-    nothing of it is left out.
+    ``whole`` leaves nothing out.
 
-    ``judged`` are the errors of the table that the channel is part of, ``limit`` what its own may
-    be [unit], None where there is none; ``total`` counts the rows of the log. ``turn`` is a whole
-    turn [unit] of an angle that is wrapped, else None; ``turns`` are those that another angle is
-    ahead of the truth by.
+    ``judged`` are the errors of the table that the channel is part of, ``limit`` the limit of its
+    own error [unit], None without; ``total`` counts the rows of the log. ``turn`` is a whole turn
+    [unit] of a wrapped angle, else None; ``turns`` is the lead of another angle over the reference
+    [turns].
     """
 
     column: str
@@ -75,7 +74,7 @@ class DrawnChannel:
 
     @property
     def taken(self) -> float:
-        """The largest part of a limit that is taken, below 0 where there is none."""
+        """The largest used share of a limit, below 0 where there is none."""
         return max((row.taken for row in self.judged), default=-1.0)
 
     @property
@@ -85,12 +84,12 @@ class DrawnChannel:
 
     @property
     def worst_s(self) -> float:
-        """When that is [s]."""
+        """Instant of the largest error [s]."""
         return float(self.whole.time_s[self.whole.worst])
 
 
 def curves(judged: JudgedLog, room: int) -> list[DrawnChannel]:
-    """What is drawn of each channel, in ``room`` characters, the worst first."""
+    """Return the drawn part of each channel, in ``room`` characters, the worst first."""
     number = len(judged.log.readings) + len(judged.beside.run.gaps)
     most = round(room / (BYTES * max(number, 1) * (1.0 + NEAR)))
     drawing = _Drawing(judged, log_rows(judged), min(max(most, LEAST), MOST), turn_s(judged))
@@ -99,7 +98,7 @@ def curves(judged: JudgedLog, room: int) -> list[DrawnChannel]:
 
 
 def turn_s(judged: JudgedLog) -> float:
-    """How long the driver takes for a turn [s], or for its period where it swings."""
+    """Return the time of a turn of the driver [s], or its period where it swings."""
     scene = judged.beside.scene
     if not goes_round(scene):
         return scene.driver.law.period_s
@@ -110,7 +109,7 @@ def turn_s(judged: JudgedLog) -> float:
 
 
 def _share(curve: DrawnChannel) -> float:
-    """The part of its limit that a channel takes by itself; of two of a point, one is worse."""
+    """Return the used share of a channel's own limit; of two of a point, one is worse."""
     if curve.limit is None:
         return 0.0
     return abs(curve.largest) / curve.limit if math.isfinite(curve.largest) else math.inf
@@ -118,8 +117,8 @@ def _share(curve: DrawnChannel) -> float:
 
 @dataclass(frozen=True)
 class _Drawing:
-    """What channels are drawn from: the ``table`` of errors, about how many rows each may have, and
-    how long a turn takes [s]."""
+    """Input of the drawn channels: the ``table`` of errors, about how many rows each may have, and
+    the time of a turn [s]."""
 
     judged: JudgedLog
     table: Sequence[LogRow]
@@ -127,8 +126,7 @@ class _Drawing:
     turn_s: float
 
     def of_readings(self) -> Iterator[DrawnChannel]:
-        """The channels, those of the same instants one after the other: the truth is solved for
-        them once."""
+        """Yield the channels, grouped by equal instants: the reference is solved for these once."""
         own = self.judged.log.time_s
         apart = []
         for reading in self.judged.log.readings:
@@ -163,7 +161,7 @@ class _Drawing:
         )
 
     def of_gaps(self) -> Iterator[DrawnChannel]:
-        """The gaps that are judged: each is its own error."""
+        """Yield the gaps that are judged: each is its own error."""
         for row in self.table:
             if (row.error.quantity, row.error.kind) != ("gap", "total"):
                 continue
@@ -182,7 +180,7 @@ class _Drawing:
             )
 
     def _samples(self, truth: Motion, logged: Array, error: Array) -> Both:
-        """What is drawn of the whole, and near the largest error where that is not all."""
+        """Return the drawn rows of the whole, and near the largest error if that is thinned."""
         rows = extreme_rows((logged, error), self.most)
         whole = self._at(truth, logged, error, rows, rows.size < error.size)
         if not whole.is_thinned:
@@ -202,7 +200,7 @@ class _Drawing:
         self, truth: Motion, logged: Array, error: Array, rows: Rows, is_thinned: bool
     ) -> Samples:
         off = error[rows]
-        # What is not finite is larger than all.
+        # A value that is not finite is larger than all.
         worst = int(np.argmax(np.where(np.isfinite(off), np.abs(off), np.inf)))
         return Samples(
             time_s=truth.time_s[rows],
@@ -215,14 +213,14 @@ class _Drawing:
 
 
 def _limit(row: LogRow, unit: float) -> float | None:
-    """What an error may be in a unit; None where it may be anything."""
+    """Return the limit of an error in a unit; None where there is no limit."""
     limit = row.limit.number * row.error.scale / unit
     return limit if math.isfinite(limit) else None
 
 
 def _phase(judged: JudgedLog, truth: Motion, rows: Rows) -> Array:
-    """Where the driver is at some rows: its angle within a turn [deg], or, where it swings, the
-    part of its period [%]."""
+    """Return the phase of the driver at some rows: its angle within a turn [deg], or, where it
+    swings, the part of its period [%]."""
     scene = judged.beside.scene
     if not goes_round(scene):
         since = truth.time_s[rows] - judged.log.time_s[0]
@@ -235,9 +233,9 @@ Rows = NDArray[np.intp]
 
 
 def extreme_rows(series: Sequence[Array], most: int) -> Rows:
-    """The rows to be drawn of series that belong together, about ``most`` of them: all where there
-    are no more, else the first, the last, and those at which a series is smallest or largest in a
-    stretch. All series are of shape (T,)."""
+    """Return the rows to be drawn of series that belong together, about ``most`` of them: all where
+    there are no more, else the first, the last, and the smallest and largest of each series in
+    every stretch. All series are of shape (T,)."""
     number = series[0].size
     if number <= most:
         return np.arange(number)
@@ -251,7 +249,7 @@ def extreme_rows(series: Sequence[Array], most: int) -> Rows:
 
 
 def _lowest(series: Array, length: int) -> Rows:
-    """The row of the smallest number in each stretch of so many rows."""
+    """Return the row of the smallest number in each stretch of so many rows."""
     spare = -series.size % length
     stretches = np.pad(series, (0, spare), mode="edge").reshape(-1, length)
     rows: Rows = np.argmin(stretches, axis=1) + length * np.arange(len(stretches))

@@ -1,7 +1,6 @@
-"""The mechanism in motion: the truth, and over it what the log has of it, its error magnified.
+"""The mechanism in motion: the reference, and over it the logged bodies, their error magnified.
 
-What a log does not hold is left out; how the rest is placed is said in
-`reports.page.log_placing`.
+Bodies that the log does not place are left out; `reports.page.log_placing` places the rest.
 """
 
 from __future__ import annotations
@@ -25,16 +24,16 @@ from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section
 
 WHOLE = 1.25
-"""A log of no more turns is drawn whole."""
+"""Turns up to which a log is drawn whole."""
 ROOM = 0.6
-"""How far beyond the truth a log is kept in the picture, over the truth's size."""
+"""Margin beyond the reference in which a log is kept in the picture, over the reference's size."""
 LIKE = 0.25
-"""Stretches that begin within so much of a turn are one."""
+"""Distance of two starts [turns] below which their stretches are one."""
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of the log that is drawn: what it is called, and from when until when [s]."""
+    """A part of the log that is drawn: its name, start and end [s]."""
 
     name: str
     start_s: float
@@ -42,7 +41,7 @@ class Stretch:
 
 
 def log_motion(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | None:
-    """The section; None where the log has no place of a body. Raises CrankcheckError."""
+    """Return the section; None where the log has no place of a body. Raises CrankcheckError."""
     if not has_places(judged):
         return None
     shown = [(each, _instants(each)) for each in stretches(judged, drawn)]
@@ -77,7 +76,7 @@ def log_motion(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | No
 
 
 def _drawing(truth: Motion, bodies: LoggedBodies) -> dict[str, object]:
-    """The truth to be drawn, with room for what the log has of it."""
+    """Return the drawing of the reference, with room for the logged bodies."""
     shape = drawing(bodies.scene, truth.time_s, truth)
     right = np.concatenate([point.position for point in truth.points.values()])
     low, high = right.min(axis=0), right.max(axis=0)
@@ -92,7 +91,7 @@ def _drawing(truth: Motion, bodies: LoggedBodies) -> dict[str, object]:
 
 
 def has_places(judged: JudgedLog) -> bool:
-    """Whether the log says of any body where it is."""
+    """True if the log has a place or an angle of any body."""
     return any(reading.channel.kind.order == 0 for reading in judged.log.readings)
 
 
@@ -101,8 +100,8 @@ def _instants(stretch: Stretch) -> Array:
 
 
 def stretches(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> list[Stretch]:
-    """The whole of a short log; of a longer one the turn of the largest error of a place, the first
-    and the last."""
+    """Return the whole of a short log; of a longer one the turn of the largest error of a place,
+    the first and the last."""
     first, last = float(judged.log.time_s[0]), float(judged.log.time_s[-1])
     turn = turn_s(judged)
     if last - first <= WHOLE * turn:
@@ -120,7 +119,7 @@ def stretches(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> list[Stretch]
 
 
 def _worst_start(drawn: Sequence[DrawnChannel], first: float, last: float, turn: float) -> float:
-    """Where the turn begins in whose middle the worst place is, as far as the log goes."""
+    """Return the start of the turn with the worst place at its middle, within the log."""
     worst = next(
         (x for x in drawn if x.reading is not None and x.reading.channel.kind.order == 0), None
     )
@@ -129,15 +128,15 @@ def _worst_start(drawn: Sequence[DrawnChannel], first: float, last: float, turn:
 
 
 def _told(bodies: LoggedBodies) -> list[tuple[str, str]]:
-    """Of each body that is drawn, from what of the log: links first, in their order."""
+    """Return the bodies that are drawn with their channels: links first, in their order."""
     links = {name: n for n, name in enumerate(bodies.scene.links)}
     return sorted(bodies.origins.items(), key=lambda pair: links.get(pair[0], len(links)))
 
 
 @dataclass(frozen=True)
 class LoggedBodies:
-    """What a log says of the bodies at some instants: the pieces that it is drawn in, the error of
-    the angles of links (T,) [rad], and in words, of each body that is drawn, from what."""
+    """Logged bodies at some instants: the pieces that are drawn, the error of the angles of links
+    (T,) [rad], and the origin in words of each body that is drawn."""
 
     scene: Scene
     pieces: tuple[LogPlacement, ...]
@@ -146,12 +145,12 @@ class LoggedBodies:
 
     @property
     def left_out(self) -> list[str]:
-        """The links that the log does not place."""
+        """Links that the log does not place."""
         drawn = {name for piece in self.pieces for name in piece.links}
         return [name for name in self.scene.links if name not in drawn]
 
     def embedded(self, samples: int) -> list[dict[str, object]]:
-        """The pieces as the script reads them, with rows as `reports.drawing.moving` has them."""
+        """Return the pieces as the script reads them, with rows as in `reports.drawing.moving`."""
         return [
             {
                 "name": piece.name,
@@ -171,12 +170,12 @@ class LoggedBodies:
 
 
 def truth_of_all(judged: JudgedLog) -> Truth:
-    """The truth that the log is judged by, of every body: what is judged may need fewer."""
+    """Return the reference of the log for every body: the judged quantities may need fewer."""
     return replace(judged.beside.truth, bound=False, links=None, points=None, _motions={})
 
 
 def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBodies:
-    """What the log says of the bodies at instants (T,), beside a truth of every point. Raises
+    """Return the logged bodies at instants (T,), beside a reference of every point. Raises
     CrankcheckError."""
     scene, truth = judged.beside.scene, truth_of.at(time_s)
     errors = [
@@ -192,14 +191,14 @@ def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBo
 
 
 def _angles_out(judged: JudgedLog) -> frozenset[str]:
-    """The links whose angle is out of tolerance."""
+    """Return the links with an angle out of tolerance."""
     angles = [row for row in log_rows(judged) if row.error.quantity in ("angle", "drive")]
     return frozenset(row.error.body for row in angles if row.verdict == "out")
 
 
 def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
-    """The error of a reading between its instants by straight lines, NaN beyond them; whole turns
-    that an angle loses on the way are no error."""
+    """Return the error of a reading between its instants by straight lines, NaN beyond them; whole
+    turns that an angle loses on the way are no error."""
     after = np.searchsorted(reading.instants, time_s)
     near = np.unique(np.concatenate([after - 1, after]))
     rows = near[(near >= 0) & (near < reading.instants.size)]
@@ -211,8 +210,8 @@ def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
 
 
 def _turned(errors: Sequence[tuple[Reading, Array]], samples: int) -> dict[str, Array]:
-    """The errors of the angles of links: one that was logged relative to another link has that
-    one's as well."""
+    """Return the angle errors of links; a relative angle has the error of the other link as
+    well."""
     own = {e.channel.of: (e.channel.relative_to, off) for e, off in errors if e.channel.kind.turns}
     found: dict[str, Array] = {}
     for link in own:

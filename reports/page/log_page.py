@@ -33,12 +33,12 @@ ROOM = 2_000_000
 
 
 def log_page(judged: JudgedLog, facts: Mapping[str, str]) -> str:
-    """The page of a judged log; ``facts`` are versions and the like.
+    """Return the page of a judged log; ``facts`` are versions and the like.
 
     Raises
     ------
     CrankcheckError
-        A motion that there is no reference for, between the instants of the log.
+        A motion without a reference between the instants of the log.
     """
     drawn = curves(judged, ROOM)
     sections = [
@@ -66,12 +66,12 @@ def _head(judged: JudgedLog, facts: Mapping[str, str]) -> Head:
 
 
 MOST_UNUSED = 300
-"""Columns that are listed as not used."""
+"""Number of unused columns that are listed."""
 
 
 def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
-    """The verdict in one line, why, what to write in the map, and every error; columns lead to
-    their curves, by their numbers among those ``drawn``."""
+    """Return the verdict in one line, its reasons, text for the map, and every error; columns link
+    to their curves, by their numbers among those ``drawn``."""
     numbers = {curve.column: number for number, curve in enumerate(drawn)}
     rows = sorted(shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
     unused = judged.log.unused
@@ -102,13 +102,13 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
 
 
 def _unexplained(judged: JudgedLog) -> str:
-    """The columns that no cause explains; of what was let go none is looked for."""
+    """Return the columns that no cause explains; causes of a free motion are not searched."""
     is_explained = judged.scene.is_free or not judged.failures
     return "" if is_explained else sentence_text(few(unexplained(judged), 6))
 
 
 def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
-    """A row of the table; a gap leads to its curve as well."""
+    """Return a row of the table; a gap links to its curve as well."""
     error = row.error
     gap = f"gap of {error.body}"
     columns = row.columns or ((gap,) if gap in numbers else ())
@@ -129,7 +129,7 @@ def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
 
 
 def map_lines(cause: Cause) -> str:
-    """What to write in the map if the log means it as the cause says; "" where no map mends it."""
+    """Return the text for the map if the log means it as the cause says; "" if no map mends it."""
     tables = []
     for column in cause.columns:
         told = {**cause.correction, **cause.of_column.get(column, {})}
@@ -140,12 +140,11 @@ def map_lines(cause: Cause) -> str:
 
 
 TITLE = 24
-"""Characters of a column that stand along its axis, on a phone as well."""
+"""Characters of a column that fit along its axis, on a phone as well."""
 
 
 def _channels(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool) -> Section:
-    """Channel by channel, the worst first: the log over the truth, and below it the error with its
-    limit."""
+    """Return the channels, worst first: the log over the reference, below it error and limit."""
     axes: dict[str, int] = {}
     channels = [_embedded(judged, curve, axes) for curve in drawn]
     scene = judged.beside.scene
@@ -175,13 +174,13 @@ def _channels(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool
 
 
 def _option(curve: DrawnChannel) -> str:
-    """A channel in the list: how it stands, its column, and what that was read as."""
+    """Return a channel for the list: its state, its column, and the quantity read from it."""
     head = f"{standing(curve)}: {name_text(curve.column, 40)}"
     return head if curve.column == curve.name else f"{head} ({curve.name})"
 
 
 def standing(curve: DrawnChannel) -> str:
-    """How a channel stands against its limit, in a word or two."""
+    """Return the state of a channel against its limit, in a word or two."""
     if curve.taken < 0.0:
         return "not judged"
     verdict = "ok" if all(row.verdict == "within" for row in curve.judged) else "OUT"
@@ -189,7 +188,7 @@ def standing(curve: DrawnChannel) -> str:
 
 
 def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> dict[str, object]:
-    """A channel as the script reads it."""
+    """Return a channel as the script reads it."""
     near = None if curve.near is None else _samples(curve.near, axes)
     return {
         "label": name_text(curve.column, TITLE),
@@ -204,7 +203,7 @@ def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> d
 
 
 def _samples(samples: Samples, axes: dict[str, int]) -> dict[str, object]:
-    """Rows of a channel as the script reads them. Those at the same instants share one axis."""
+    """Return rows of a channel as the script reads them; rows at equal instants share an axis."""
     start = float(samples.time_s[0])
     axis = json.dumps(
         {
@@ -224,7 +223,7 @@ def _samples(samples: Samples, axes: dict[str, int]) -> dict[str, object]:
 
 
 def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
-    """A channel in sentences: what it was read as, how far it is off, and what that may be."""
+    """Yield a channel in sentences: its quantity, its largest error, and the limits."""
     yield f"{name_text(curve.column)}: {curve.name}, in {curve.unit}."
     largest = f"{readable(abs(curve.largest), 4)} {curve.unit}"
     yield f"Its largest error is {largest}, at t = {curve.worst_s:.6g} s."
@@ -255,7 +254,7 @@ MOST_CHANNELS = 400
 
 
 def _made(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
-    """How the log was read and judged: columns, drive, limits, versions."""
+    """Return the settings of reading and judging: columns, drive, limits, versions."""
     log = judged.log
     channels = [(each.channel, "") for each in log.readings]
     channels += [(each.channel, "a further copy, for the gap") for each in log.copies]
@@ -273,7 +272,7 @@ def _made(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
 
 
 def _settings(judged: JudgedLog) -> dict[str, str]:
-    """What the log was judged by."""
+    """Return the settings that the log was judged with."""
     log = judged.log
     time_s = log.time_s
     stamp = f"{name_text(log.stamp[0])}, in {log.stamp[1]}"
@@ -296,7 +295,7 @@ def _settings(judged: JudgedLog) -> dict[str, str]:
 
 
 def _channel_row(channel: Channel, note: str) -> dict[str, str]:
-    """A column with all that was made of it; empty where there is nothing to say."""
+    """Return a column with its corrections; empty where there are none."""
     told = [
         f"sign {channel.sign}" if channel.sign != 1 else "",
         f"offset {channel.offset:g}" if channel.offset else "",

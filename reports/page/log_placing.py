@@ -1,7 +1,7 @@
-r"""Where bodies stand of which a log holds some places and angles.
+r"""Place the bodies of a log that holds some places and angles.
 
-A point stands where it was logged. A link lies between its points where two of these are known, or
-at its logged angle about one that is. So of a four-bar of which the three angles are logged::
+A point stands where it was logged. A link lies between its points where two are known, else at its
+logged angle about a known point. A four-bar with three logged angles::
 
         B ------- C     C'      crank     about A, to B
        /           \   /        coupler   about B, to C
@@ -9,7 +9,7 @@ at its logged angle about one that is. So of a four-bar of which the three angle
     -----          --D--
 
 Readings that contradict each other come apart in the picture, as they do in the log. A link between
-logged points whose logged angle is out of tolerance is drawn at that angle as well.
+logged points is drawn at its logged angle as well if that is out of tolerance.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,8 +30,8 @@ Off = dict[str, Array]
 
 @dataclass(frozen=True)
 class LogPlacement:
-    """Links, blocks (by their points) and lone points that are drawn with the same places: how far
-    points are ``off`` the truth (T, 2) [m]. ``apart`` is a link that has ends of its own."""
+    """Links, blocks (by their points) and lone points that are drawn with the same places: points
+    are ``off`` the reference by (T, 2) [m]. ``apart`` is a link with ends of its own."""
 
     name: str
     links: tuple[str, ...]
@@ -43,8 +43,8 @@ class LogPlacement:
 
 @dataclass
 class Placing:
-    """Bodies that find their places one after the other: ``off`` of points, links ``joined`` there,
-    and ``ends`` of links that have ends of their own. Angles ``out`` of tolerance are shown."""
+    """Bodies placed one after the other: ``off`` of points, links ``joined`` there, and ``ends`` of
+    links that have ends of their own. Angles ``out`` of tolerance are shown."""
 
     scene: Scene
     truth: Motion
@@ -58,12 +58,12 @@ class Placing:
 
     @cached_property
     def guided(self) -> frozenset[str]:
-        """The links that slide on the ground, and do not turn."""
+        """Links that slide on the ground, and do not turn."""
         sliders = self.scene.sliders.values()
         return frozenset(s.link for s in sliders if s.link is not None and s.on == GROUND)
 
     def take_points(self, errors: Sequence[tuple[Reading, Array]]) -> None:
-        """The points that are logged; of a coordinate that is not, the truth."""
+        """Place the logged points; the reference gives a coordinate that is not logged."""
         logged: dict[str, dict[int, Array]] = {}
         for reading, off in errors:
             if (axis := reading.channel.kind.axis) is not None:
@@ -77,7 +77,7 @@ class Placing:
             self.marks.append(name)
 
     def take_sliders(self, errors: Sequence[tuple[Reading, Array]]) -> None:
-        """The points of sliders, along their guides."""
+        """Place the points of sliders, along their guides."""
         for reading, off in errors:
             if reading.channel.kind.body_kind != "slider":
                 continue
@@ -91,8 +91,8 @@ class Placing:
             self.origins[slider.name] = "its displacement"
 
     def take_links(self) -> None:
-        """The links: those between places that are known, those about one of them, and any of
-        which the angle is logged, over and over, as each gives places to the next."""
+        """Place the links: between known points, about one of them, and at any logged angle, over
+        and over, as each gives places to the next."""
         left = dict(self.scene.links)
         ways = (self._take_spanned, self._take_hanging, self._take_free)
         while left:
@@ -102,13 +102,13 @@ class Placing:
             del left[taken]
 
     def _placed(self, link: Link) -> list[str]:
-        """The points of a link that have a place, those of the ground first."""
+        """Return the points of a link that have a place, ground points first."""
         ground = [name for name in link.points if name in self.scene.ground]
         return ground + [name for name in link.points if name in self.off]
 
     def _take_spanned(self, link: Link) -> bool:
-        """Place a link between its points, if two of them at least are known, and its angle does
-        not say otherwise."""
+        """Place a link between its points, if at least two are known, and its angle does not
+        contradict them. Return False if not."""
         placed = self._placed(link)
         logged = all(name in self.scene.ground or name in self.marks for name in placed)
         by_angle = link.name in self.turned
@@ -124,7 +124,7 @@ class Placing:
         return True
 
     def _take_hanging(self, link: Link) -> bool:
-        """Place a link at its angle about a point that is known."""
+        """Place a link at its angle about a known point."""
         placed = self._placed(link)
         by = {**dict.fromkeys(self.guided, "guide"), **dict.fromkeys(self.turned, "angle")}
         if not placed or link.name not in by:
@@ -140,7 +140,7 @@ class Placing:
         return True
 
     def _take_free(self, link: Link) -> bool:
-        """Place a link at its angle, where nothing says about which point: the truth does."""
+        """Place a link at its angle about its first point of the reference; no other is known."""
         if link.name not in self.turned:
             return False
         about = next(iter(link.points))
@@ -149,7 +149,7 @@ class Placing:
         return True
 
     def _direction_off(self, first: str, second: str) -> Array:
-        """How far the direction from a point to another is off (T,) [rad]."""
+        """Return the error of the direction from a point to another (T,) [rad]."""
         right = self.truth.points[second].position - self.truth.points[first].position
         nothing = np.zeros_like(right)
         off = self.off.get(second, nothing) - self.off.get(first, nothing)
@@ -157,7 +157,7 @@ class Placing:
         return np.asarray(np.arctan2(cross, np.sum(right * (right + off), axis=1)))
 
     def _ends(self, link: Link, about: str, turned: Array) -> Off:
-        """The points of a link that is turned about one of them by angles (T,)."""
+        """Return the points of a link that is turned about one of them by angles (T,)."""
         base = self.off.get(about, np.zeros((turned.size, 2)))
         middle = self.truth.points[about].position
         return {
@@ -167,7 +167,7 @@ class Placing:
         }
 
     def pieces(self) -> Iterator[LogPlacement]:
-        """What goes together first, then the links with ends of their own."""
+        """Yield the piece of all joined bodies first, then the links with ends of their own."""
         joined = tuple(self.joined)
         blocks = tuple(s.point for s in self.scene.sliders.values() if s.point in self.off)
         drawn = {*blocks, *(point for name in joined for point in self.scene.links[name].points)}
@@ -179,6 +179,6 @@ class Placing:
 
 
 def _swung(arm: Array, angle: Array) -> Array:
-    """How far the ends of arms (T, 2) go when these turn by angles (T,)."""
+    """Return the displacement of the ends of arms (T, 2) that turn by angles (T,)."""
     c, s = np.cos(angle) - 1.0, np.sin(angle)
     return np.column_stack([c * arm[:, 0] - s * arm[:, 1], s * arm[:, 0] + c * arm[:, 1]])

@@ -35,7 +35,7 @@ from reports.results.lines import DASHES, Look, value_text
 
 
 def model_page(judged: JudgedModel, facts: Mapping[str, str]) -> str:
-    """The page of a judged model; ``facts`` are versions and the like."""
+    """Return the page of a judged model; ``facts`` are versions and the like."""
     sections = [
         _verdict(judged),
         _lines(judged),
@@ -65,13 +65,13 @@ def _head(judged: JudgedModel, facts: Mapping[str, str]) -> Head:
 
 
 COLOURS = (4, 6, 2)
-"""As written, contacts off, recommended: colours of the style sheet."""
+"""Colours of the style sheet: as written, contacts off, recommended."""
 SYMBOLS = ("circle", "square", "diamond")
 SIZES = (11.0, 9.0, 7.0)
 
 
 def line_looks(judged: JudgedModel) -> Mapping[str, Look]:
-    """A look for each of the three lines that are told, by the name of the line."""
+    """Return a look for each of the three shown lines, by the name of the line."""
     return {
         one.cell.profile: Look(
             number=number,
@@ -88,7 +88,7 @@ def line_looks(judged: JudgedModel) -> Mapping[str, Look]:
 
 
 def _verdict(judged: JudgedModel) -> Section:
-    """The verdict in one line, why, the lines with what they gain, every joint."""
+    """Return the verdict in one line, its reasons, the lines with their gains, every joint."""
     return Section(
         anchor="verdict",
         title="Verdict",
@@ -113,7 +113,7 @@ def _verdict(judged: JudgedModel) -> Section:
 
 
 def _row(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
-    """A line of the table: at each step its error, and what it gains."""
+    """Return a line of the table: its error and its gain at each step."""
     worst = worst_place(one.errors) if one.errors else None
     steps = len(step_heads(judged))
     first = math.nan if worst is None else worst.pure
@@ -136,7 +136,7 @@ def _gain(factor: float) -> str:
 
 
 def _joint(judged: JudgedModel, joint: JointGap) -> dict[str, object]:
-    """A joint: how far open it is drawn, and its widest gap in each line."""
+    """Return a joint: its opening in the drawing, and its widest gap in each line."""
     names = [one.cell.profile for one in judged.three]
     return {
         "name": name_text(joint.name, 40),
@@ -149,8 +149,7 @@ def _joint(judged: JudgedModel, joint: JointGap) -> dict[str, object]:
 
 
 def _lines(judged: JudgedModel) -> Section | None:
-    """The error of the three lines over time and against the step; None where no line logged
-    anything."""
+    """Return the error of the three lines over time and against the step; None without a log."""
     if not any(one.course for one in judged.three):
         return None
     return Section(
@@ -169,7 +168,7 @@ def _lines(judged: JudgedModel) -> Section | None:
 
 
 def _line(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
-    """A line as the script reads it."""
+    """Return a line as the script reads it."""
     dt_s, course = judged.account.dt_s, one.course
     return {
         "look": line_looks(judged)[one.cell.profile].number,
@@ -186,7 +185,7 @@ def _line(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
 
 
 def _limit(judged: JudgedModel) -> float | None:
-    """The limit of the quantity whose error is largest as written."""
+    """Return the limit of the quantity with the largest error as written."""
     worst = worst_place(judged.own.errors) if judged.own.errors else None
     return None if worst is None else _limit_of(judged, worst.tolerance)
 
@@ -197,7 +196,7 @@ def _limit_of(judged: JudgedModel, name: str) -> float | None:
 
 
 def _motion(judged: JudgedModel) -> Section:
-    """The mechanism as it was read, in motion: the closed form, and over it the lines."""
+    """Return the mechanism as it was read, in motion: the closed form, and over it the lines."""
     time_s = _instants(judged)
     looks = line_looks(judged)
     off = {
@@ -228,7 +227,7 @@ def _motion(judged: JudgedModel) -> Section:
 
 
 def _instants(judged: JudgedModel) -> Array:
-    """The instants of the longest last turn of a line; where there is none, those of a turn."""
+    """Return the instants of the longest last turn of a line; of the last period without any."""
     empty = np.zeros(0)
     times = [one.last_turn.get("time_s", empty) for one in judged.three if one.status == "ok"]
     longest = max(times, key=len, default=empty)
@@ -241,12 +240,11 @@ def _instants(judged: JudgedModel) -> Array:
 
 
 MOST = 300
-"""Things of a kind that are listed."""
+"""Number of texts of one kind that are listed."""
 
 
 def _disturbing(judged: JudgedModel) -> Section | None:
-    """What a model holds beside its linkage that can disturb the comparison, kind by kind; None
-    where there is nothing."""
+    """Return parts beside the linkage that can disturb the comparison, by kind; None if none."""
     found = groups(judged)
     if not found:
         return None
@@ -271,7 +269,7 @@ def _disturbing(judged: JudgedModel) -> Section | None:
 
 
 def _recommended(judged: JudgedModel) -> Section:
-    """The recommended settings, to be copied into the file."""
+    """Return the recommended settings, to be copied into the file."""
     last = judged.lines[-1]
     gain = judged.gains(last)[0]
     return Section(
@@ -292,7 +290,7 @@ def _recommended(judged: JudgedModel) -> Section:
 
 
 def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
-    """How the model was read, driven and run: settings of every line, versions."""
+    """Return how the model was read, driven and run: settings of every line, versions."""
     account = judged.account
     told = {"file": str(account.request.path), **reading(account)}
     return Section(
@@ -311,7 +309,7 @@ def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
 
 
 def _settings(judged: JudgedModel) -> list[tuple[str, list[tuple[str, bool]]]]:
-    """Each setting with its value in every line, and whether that is another than as written."""
+    """Return each setting with its value in every line, and whether it differs from as written."""
     names = dict.fromkeys(name for one in judged.lines for name in one.settings)
     rows = []
     for name in names:

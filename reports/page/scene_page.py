@@ -1,5 +1,5 @@
-"""The page of a solved scene: one HTML file with its motion, and its forces where asked for, or
-with its free motion, or with its elastic links."""
+"""The page of a solved scene: one HTML file with its motion, and its forces if requested, or with
+its free motion, or with its elastic links."""
 
 import base64
 import math
@@ -43,7 +43,7 @@ from reports.plan.singular import continued_note
 
 
 def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
-    """The page of a scene; ``figures`` are those of its forces (SVG files by name), None for a page
+    """Return the page of a scene; ``figures`` are SVG files of its forces by name, None for a page
     without forces.
 
     Raises CrankcheckError where the driver goes through no turn, or there are no forces.
@@ -55,14 +55,14 @@ def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
 
 
 def free_page(free: FreeMotion, figures: Mapping[str, bytes]) -> str:
-    """The page of a free motion; ``figures`` are SVG files by name."""
+    """Return the page of a free motion; ``figures`` are SVG files by name."""
     words = f"free motion over {free.until_s:g} s"
     return assembled(_head(free.scene, words), [_free(free, figures)])
 
 
 def elastic_page(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, bytes]) -> str:
-    """The page of a motion with elastic links; ``fine`` is the same closely sampled, ``figures``
-    are SVG files by name. Raises CrankcheckError where there is no motion."""
+    """Return the page of a motion with elastic links; ``fine`` is the same closely sampled,
+    ``figures`` are SVG files by name. Raises CrankcheckError where there is no motion."""
     links = count(len(motion.scene.elastic), "elastic link")
     return assembled(_head(motion.scene, links), [_elastic(motion, fine, figures)])
 
@@ -84,7 +84,7 @@ def _head(scene: Scene, what: str) -> Head:
 def _pictures(
     figures: Mapping[str, bytes], captions: Mapping[str, str]
 ) -> list[tuple[str, str, str]]:
-    """SVG files with what stands under each; one that has no caption has its name."""
+    """Return SVG files with their captions; a file without a caption has its name."""
     return [
         (name, captions.get(name, name), base64.b64encode(svg).decode("ascii"))
         for name, svg in figures.items()
@@ -92,7 +92,7 @@ def _pictures(
 
 
 def _motion(scene: Scene, *, with_forces: bool) -> Section:
-    """A scene in motion as the closed form has it, with its forces where asked for. Raises
+    """Return a scene in motion by the closed form, with its forces if requested. Raises
     CrankcheckError where the driver goes through no turn."""
     turn = turn_of(scene, INSTANTS, with_forces=with_forces)
     drawn = drawing(scene, turn.time_s, turn)
@@ -116,7 +116,7 @@ def _motion(scene: Scene, *, with_forces: bool) -> Section:
 
 
 def _effort(scene: Scene, turn: Motion) -> dict[str, object] | None:
-    """What drives at the instants of the drawing: a torque, or a force."""
+    """Return the driving torque or force at the instants of the drawing."""
     if turn.forces is None:
         return None
     series = packed(np.atleast_2d(turn.forces.torque))
@@ -134,7 +134,7 @@ FORCE_CAPTIONS: Mapping[str, str] = {
 
 
 def _forces(scene: Scene, figures: Mapping[str, bytes]) -> Section:
-    """Reactions and driving torque: the largest of a turn in a table, and the figures."""
+    """Return reactions and driving torque: the largest of a turn in a table, and the figures."""
     turn = turn_with_forces(scene)
     assert turn.forces is not None
     return Section(
@@ -163,11 +163,11 @@ FREE_CAPTIONS: Mapping[str, str] = {
     "phase": "The driver's angular velocity over its angle.",
 }
 SHORTEST_MS, LONGEST_MS = 4000, 12000
-"""What a round may take."""
+"""Bounds on the time of one round of the animation [ms]."""
 
 
 def _free(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
-    """A scene that is let go, in motion, and the figures of its free motion."""
+    """Return a scene in free motion, and the figures of this motion."""
     time_s = np.linspace(0.0, free.until_s, instants(free))
     motion = free.at(time_s, bound=False)
     drawn = drawing(free.scene, time_s, motion)
@@ -197,16 +197,16 @@ ELASTIC_CAPTIONS: Mapping[str, str] = {
     "positions": "The mechanism at six instants, magnified as it says.",
 }
 MOST = 1201
-"""Instants of the drawing."""
+"""Most instants of the drawing."""
 EVERY = 2
-"""Of the places of a link at which it is looked at, so many make one of the drawing."""
+"""Stride of the drawn places among the sampled places of a link."""
 STEPS = (1.0, 2.0, 5.0)
-"""Of the factors that are offered, within a power of ten."""
+"""Factors that are offered within a power of ten."""
 
 
 def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, bytes]) -> Section:
-    """A scene with elastic links in motion, its deflections magnified, over the same with rigid
-    links; what they come to, and the figures."""
+    """Return a scene with elastic links in motion, its deflections magnified, over the same with
+    rigid links; its extreme values, and the figures."""
     scene = motion.scene
     turns = motion.until_s / scene.driver.law.period_s
     count = int(np.clip(round((INSTANTS - 1) * turns), INSTANTS - 1, MOST - 1)) + 1
@@ -244,8 +244,8 @@ def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, 
 
 
 def factors(chosen: float) -> list[tuple[str, str]]:
-    """Magnifications that a reader may choose, by value and name, ``chosen`` among them, from 1 to
-    ten times as much."""
+    """Return magnifications that a reader may choose, by value and name, ``chosen`` among them,
+    from 1 to ten times as much."""
     last = math.ceil(math.log10(chosen)) + 1
     every = [step * 10.0**power for power in range(last) for step in STEPS]
     each = [one for one in every if one == 1.0 or chosen / 50.0 <= one <= 10.0 * chosen * 1.001]
@@ -253,8 +253,8 @@ def factors(chosen: float) -> list[tuple[str, str]]:
 
 
 def _moved(course: ElasticCourse) -> Array:
-    """How far points and guides are off those of the drawing: x and y by point [m], then angles
-    of the links that carry guides [rad], (R, T), as the rows of the drawing."""
+    """Return the offset of points and guides from the drawing: x and y by point [m], then angles of
+    the links that carry guides [rad], (R, T), as the rows of the drawing."""
     elastic, rigid = course.motion, course.base
     rows = [
         row
@@ -267,7 +267,7 @@ def _moved(course: ElasticCourse) -> Array:
 
 
 def _bent(course: ElasticCourse) -> dict[str, object]:
-    """Links that bend by name: their pins, and deflections at equal parts between them."""
+    """Return links that bend by name: their pins, and deflections at equal parts between them."""
     bending = [name for name, link in course.scene.elastic.items() if link.bends]
     return {
         name: {"pins": list(line_of(course.scene, name).pins), "rows": packed(each[:, ::EVERY].T)}

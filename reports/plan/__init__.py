@@ -1,1 +1,1 @@
-"""What is asked for, checked before anything runs."""
+"""Requests, checked before anything runs."""

@@ -27,7 +27,7 @@ PROFILES = ("tuned", "as-shipped")
 def chosen_scenes(
     names: str | Sequence[str], check: Callable[[Scene], None] | None = None
 ) -> list[Scene]:
-    """The named scenes and kinds, each scene once; all of kinematics where none is named.
+    """Return the named scenes and kinds, each scene once; all of kinematics where none is named.
 
     ``check`` raises for a scene that can not be run, by default `refuse_unfollowed`.
 
@@ -49,8 +49,7 @@ def chosen_scenes(
 
 
 def left_out_note(names: str | Sequence[str]) -> str:
-    """What is said of scenes that named kinds have and do not stand for; "" where there are
-    none."""
+    """Return the note on scenes of named kinds that are left out; "" where there are none."""
     asked = names_in(names, "scenes")
     named = [name for name in asked if name in kinds()]
     alone = _left_out(named, asked, reference_alone)
@@ -73,7 +72,7 @@ def left_out_note(names: str | Sequence[str]) -> str:
 def _left_out(
     named: Sequence[str], asked: Sequence[str], of: Callable[[str], list[str]]
 ) -> list[str]:
-    """What kinds that are named leave out, and nobody asked for."""
+    """Return the scenes that named kinds leave out, and that are not named themselves."""
     return [one for one in dict.fromkeys(x for name in named for x in of(name)) if one not in asked]
 
 
@@ -83,8 +82,8 @@ def refuse_unfollowed(scene: Scene) -> None:
     Raises
     ------
     CrankcheckError
-        Also a tolerance of something that is no quantity; a StructureError or ReachError of the
-        reference, which names group or range.
+        Also a tolerance for an unknown quantity; a StructureError or ReachError of the reference,
+        which names group or range.
     """
     check_names(scene)
     if scene.is_free:
@@ -97,8 +96,8 @@ def refuse_unfollowed(scene: Scene) -> None:
 
 
 def chosen_engines(names: str | Sequence[str]) -> list[str]:
-    """The names of the engines, each once, installed all of them; the usual where none is named.
-    One that is spelled by module and attribute is known by its own name from here on."""
+    """Return the names of the engines, each once, all installed; the usual ones where none is
+    named. An engine given as module and attribute is known by its own name from here on."""
     engines = [engine(name) for name in names_in(names, "engines") or usual()]
     for each in engines:
         each.version()
@@ -106,7 +105,7 @@ def chosen_engines(names: str | Sequence[str]) -> list[str]:
 
 
 def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
-    """Profiles with whether they are gated: those named are; by default `tuned` alone is.
+    """Return profiles with whether they are gated: named ones are; by default `tuned` alone is.
 
     Raises
     ------

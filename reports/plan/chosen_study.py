@@ -1,4 +1,4 @@
-"""A study with what a user says in place of it."""
+"""A study with a user's choices in place of its own."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ Overrides = Mapping[str, Mapping[str, StudyValue | list[StudyValue]]]
 
 @dataclass(frozen=True)
 class StudyChoice:
-    """What is said in place of a study's own; what is empty, or None, leaves that."""
+    """Choices in place of a study's own; an empty one, or None, leaves the study's own."""
 
     scenes: Sequence[str] = ()
     engines: Sequence[str] = ()
@@ -34,12 +34,12 @@ class StudyChoice:
 
 
 def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Study:
-    """The study with a choice in place of what it says itself.
+    """Return the study with a choice in place of its own values.
 
     Settings are varied in every variant of their engine; of the shipped study, in profile tuned
-    alone, or in those profiles that are named. An engine that is named and of which the shipped
-    study has no variant is there with all its profiles. Raises CrankcheckError for an unknown
-    engine or profile, and for an engine of which another study has no variant.
+    alone, or in the named profiles. A named engine without a variant in the shipped study is there
+    with all its profiles. Raises CrankcheckError for an unknown engine or profile, and for an
+    engine of which another study has no variant.
     """
     engines = chosen_engines(choice.engines)
     variants = [_by_name(variant) for variant in study.variants]
@@ -51,7 +51,7 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
         profiles = list(dict.fromkeys(choice.profiles or ("tuned",)))
         named = [(e, profile_of(engine(e), p).name) for p in profiles for e in engines]
         variants = [Variant(engine=e, profile=p) for e, p in named]
-    if choice.engines:  # what a study names itself is named
+    if choice.engines:  # variants of a study are named
         variants = [variant for variant in variants if variant.engine in engines]
     for name, overrides in choice.overrides.items():
         variants = [
@@ -77,7 +77,7 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
 
 
 def _driven(study: Study, choice: StudyChoice) -> dict[str, object]:
-    """What is said of scenes that are driven. Raises CrankcheckError for what is of others."""
+    """Return the fields for driven scenes. Raises CrankcheckError for options of free motion."""
     for option, value in (("--dt", choice.dt_s), ("--duration", choice.duration_s)):
         if value:
             raise CrankcheckError(f"{option}: it is of scenes that are let go; add --free")
@@ -90,8 +90,8 @@ def _driven(study: Study, choice: StudyChoice) -> dict[str, object]:
 
 
 def _free_lines(study: Study, choice: StudyChoice) -> dict[str, object]:
-    """What is said of scenes that are let go: those of free motion, where the study is of others
-    and none is named. Raises CrankcheckError for turns."""
+    """Return the fields for free motion: the shipped free scenes, where the study is driven and
+    none is named. Raises CrankcheckError for turns."""
     if choice.steps_per_turn or choice.turns is not None:
         option = "--steps-per-turn" if choice.steps_per_turn else "--turns"
         raise CrankcheckError(
@@ -110,20 +110,20 @@ def _free_lines(study: Study, choice: StudyChoice) -> dict[str, object]:
 
 
 def study_engines(study: Study, named: Sequence[str]) -> list[str]:
-    """The engines that are named, or else the usual and those of the study."""
+    """Return the named engines, or else the usual ones and the study's own."""
     own = [] if named else [_by_name(variant).engine for variant in study.variants]
     return list(dict.fromkeys([*chosen_engines(named), *own]))
 
 
 def _by_name(variant: Variant) -> Variant:
-    """The variant with the name of its engine, where that is spelled by module and attribute."""
+    """Return the variant with the name of its engine, also if given as module and attribute."""
     if ":" not in variant.engine:
         return variant
     return variant.model_copy(update={"engine": engine(variant.engine).name})
 
 
 def refuse_other_engine(owner: str, engines: Sequence[str], place: str) -> None:
-    """Refuse settings of an engine that is none of those. Raises CrankcheckError."""
+    """Refuse settings of an engine that is not in ``engines``. Raises CrankcheckError."""
     if owner not in engines:
         raise CrankcheckError(
             f"{place}: {shown(owner)} is no engine of this sweep; it has {', '.join(engines)}"

@@ -24,16 +24,16 @@ from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 
 MOST_CELLS = 100_000
-"""A day's work for one machine, and more settings than anybody looks at."""
+"""Most cells of a sweep: a day's work for one machine, and more settings than anybody looks at."""
 ENDLESS = 10**15
 """Variants beyond which none are counted."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A cell with its names: ``key`` of its own, ``line`` of the cells that differ in step only.
+    """A cell with its names: its own ``key``, and the ``line`` of cells that differ in step only.
 
-    ``settings`` is the complete set that the engine is asked for.
+    ``settings`` is the complete set for the engine.
     """
 
     cell: Cell
@@ -104,8 +104,8 @@ def grid(study: Study) -> Grid:
 
 
 def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]]:
-    """Steps [s] and numbers of steps of a scene. Raises CrankcheckError where it can not be run for
-    so long."""
+    """Return steps [s] and numbers of steps of a scene. Raises CrankcheckError where it can not be
+    run for so long."""
     way = way_of(scene)
     steps = [way.counted(scene, each, given) for each in way.lengths(scene, study, given)]
     longest = max(steps, key=lambda step: step[0] * step[1])
@@ -115,7 +115,7 @@ def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]
 
 def refuse_endless(study: Study) -> None:
     """Refuse more cells than anybody waits for, before they are laid out. Raises CrankcheckError
-    that tells what there are many of."""
+    that names the large factors."""
     scenes, steps = len(names_of_scenes(study.scenes) or shipped()), len(study.steps)
     lists = [
         {name: len(values) for name, values in variant.lists.items() if len(values) > 1}
@@ -137,14 +137,14 @@ def refuse_endless(study: Study) -> None:
 
 
 def _acting(cell: Cell, settings: Mapping[str, SettingValue]) -> dict[str, SettingValue]:
-    """Those of a complete set that may change anything: where no beam is given, none of beams."""
+    """Return the settings of a complete set that can have an effect: of beams, only with beams."""
     beams = bool(cell.scene.elastic) and cell.springs == "beam"
     own = profile_of(engine(cell.engine), cell.profile).settings
     return {name: value for name, value in settings.items() if beams or not own[name].of_beams}
 
 
 def _complete(variant: Variant) -> dict[str, SettingValue]:
-    """All settings of a variant.
+    """Return all settings of a variant.
 
     Raises
     ------
@@ -175,11 +175,11 @@ def _refuse_twins(complete: Iterable[tuple[Variant, Mapping[str, SettingValue]]]
 
 
 MEASURE = 2
-"""Raised whenever the same run would be measured differently: older rows are then not reused."""
+"""Version of the measurement, raised with any change of it: older rows are then not reused."""
 
 
 def digest(text: str) -> str:
-    """The hash of a scene's text, in which comments and layout do not count.
+    """Return the hash of a scene's text, in which comments and layout do not count.
 
     The order of its tables does: engines solve joints in that order, and err otherwise in another.
     """
@@ -187,9 +187,9 @@ def digest(text: str) -> str:
 
 
 def shape_digest(text: str) -> str:
-    """The hash of a scene's text, in which the size and direction of the driver's speed do not
-    count either: without a time scale of their own, scenes alike in this have the same angles at
-    the same steps in a turn."""
+    """Return the hash of a scene's text, in which the size and direction of the driver's speed do
+    not count either: without a time scale of their own, scenes alike in this have the same angles
+    at the same steps in a turn."""
     table = tomllib.loads(text)
     driver = table.get("driver")
     if isinstance(driver, dict):
@@ -200,9 +200,9 @@ def shape_digest(text: str) -> str:
 def line_key(
     cell: Cell, turns: float, scene_digest: str, version: str, settings: Mapping[str, SettingValue]
 ) -> str:
-    """What all cells share that differ in step only.
+    """Return the key of all cells that differ in step only.
 
-    ``turns`` is what was asked for, which the steps of a cell may not divide; ``settings`` is the
+    ``turns`` is the requested number, which the steps of a cell may not divide; ``settings`` is the
     complete set. Engines did not always take loads and friction: rows of that time, which say
     "unsupported", have another name than those of today.
     """
@@ -224,11 +224,11 @@ def line_key(
 
 
 def cell_key(line: str, cell: Cell) -> str:
-    """The key of a cell on its line."""
+    """Return the key of a cell on its line."""
     return _hash([line, cell.dt_s.hex(), cell.steps])
 
 
 def _hash(value: object) -> str:
-    """160 bits are enough for any store, and short enough for a file name."""
+    """Return a hash of 160 bits: enough for any store, and short enough for a file name."""
     text = json.dumps(value, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:40]

@@ -1,5 +1,4 @@
-"""Requirements of free motion and of elastic links: segments, springs, and steps that these
-hold."""
+"""Requirements of free motion and of elastic links: segments, springs, and steps for these."""
 
 from __future__ import annotations
 
@@ -31,13 +30,13 @@ if TYPE_CHECKING:
 
 
 FREE = "free"
-"""The kind of shipped scenes that are let go."""
+"""Kind of the shipped scenes of free motion."""
 LOOK = 1e-3
-"""The part of a run that is integrated to see whether it can be."""
+"""Part of a run that is integrated as a test."""
 
 
 def free_names(names: Sequence[str]) -> list[str]:
-    """The names of the scenes that are to be let go; all shipped ones of free motion for none.
+    """Return the names of the scenes for free motion; all shipped ones of that kind for none.
     Raises CrankcheckError where there are none of these."""
     every = list(names) or list(shipped(FREE))
     if not every:
@@ -46,8 +45,8 @@ def free_names(names: Sequence[str]) -> list[str]:
 
 
 def scenes_of(names: Sequence[str], *, free: bool) -> list[Scene]:
-    """The scenes of a study, which are all driven, or all let go, with the torque of its controller
-    where that gives way to elastic links. Raises CrankcheckError."""
+    """Return the scenes of a study, all driven or all released, with the torque of the controller
+    where the driver gives way to elastic links. Raises CrankcheckError."""
     if not free:
         scenes = chosen_scenes(names)
         for scene in scenes:
@@ -58,13 +57,13 @@ def scenes_of(names: Sequence[str], *, free: bool) -> list[Scene]:
 
 
 def gives_way(scene: Scene) -> bool:
-    """Whether its driver is controlled and its links bend, so that it follows its law nearly."""
+    """True if its driver is controlled and its links bend, so that it follows its law nearly."""
     return bool(scene.elastic) and isinstance(scene.driver.law, Controlled)
 
 
 def under_control(scene: Scene) -> Scene:
-    """A scene whose links bend and whose driver is controlled as what engines are given of it: let
-    go, with the torque of the controller as loads; others as they are. Raises CrankcheckError as
+    """Return the scene that engines are given of a controlled driver with elastic links: released,
+    with the torque of the controller as loads; others as they are. Raises CrankcheckError as
     `analytic.elastic.control.released_under_control`."""
     if not gives_way(scene):
         return scene
@@ -74,8 +73,8 @@ def under_control(scene: Scene) -> Scene:
 
 
 def refuse_giving_way(scene: Scene, instead: str) -> None:
-    """Refuse a scene whose controlled driver gives way, where turns are asked for; ``instead`` says
-    what takes it. Raises CrankcheckError."""
+    """Refuse a scene whose controlled driver gives way, where turns are requested; ``instead``
+    names an alternative. Raises CrankcheckError."""
     if gives_way(scene):
         raise CrankcheckError(
             f"{scene.name}: {', '.join(scene.elastic)} bends, and engines are given it let go, "
@@ -84,13 +83,13 @@ def refuse_giving_way(scene: Scene, instead: str) -> None:
 
 
 def refuse_unreleased(scene: Scene, duration_s: float) -> None:
-    """Refuse a scene that can not be let go, or not for so long.
+    """Refuse a scene that can not move freely, or not for so long.
 
     Raises
     ------
     CrankcheckError
-        Friction that grows with what a joint bears, a load over time whose table ends before, no
-        mass that moves, a start that can not be assembled or contradicts itself.
+        Friction that grows with the reaction of a joint, a load over time whose table ends before,
+        no mass that moves, a start that can not be assembled or contradicts itself.
     """
     from analytic.free.release import release  # slow to import, for free motion alone
 
@@ -107,8 +106,8 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
 
 
 def refuse_other_options(scenes: Iterable[Scene], options: Mapping[str, object]) -> None:
-    """Refuse a length that was asked for, by option, where it says nothing of any scene: steps in a
-    turn of what is let go, a duration of what is driven. Raises CrankcheckError."""
+    """Refuse a requested length, by option, that applies to no scene: steps in a turn of a free
+    motion, a duration of a driven one. Raises CrankcheckError."""
     ways = [way_of(scene) for scene in scenes]
     for option, value in options.items():
         if value is not None and not any(option in each.lengths_by for each in ways):
@@ -117,18 +116,18 @@ def refuse_other_options(scenes: Iterable[Scene], options: Mapping[str, object])
 
 SPRINGS: tuple[Springs, ...] = ("plain", "corrected", "beam")
 MOST_SEGMENTS = 64
-"""Their exact chain takes minutes, and a turn 100 000 steps."""
+"""Most segments: their exact chain takes minutes, and a turn 100 000 steps."""
 SWINGS = 5
-"""Of the slowest elastic link of what is let go, in a run for which no time is asked for."""
+"""Swings of the slowest elastic link of a free motion, in a run without a requested duration."""
 MOST_LOGGED = 720
-"""Samples of a turn of elastic links, whose springs ask for far more steps than anybody looks at;
-or of the whole of what is let go for less than a second."""
+"""Most logged samples of a turn of elastic links, whose springs need far more steps than anybody
+looks at; or of a whole free motion of less than a second."""
 PART = 360
-"""Of which the steps of a turn are a multiple, or those of a whole run that is let go."""
+"""Divisor of the steps of a turn, or of a whole free run."""
 
 
 def chosen_springs(text: str, option: str = "--springs") -> Springs:
-    """The springs of that name. Raises CrankcheckError for any other."""
+    """Return the springs of that name. Raises CrankcheckError for any other."""
     if text not in SPRINGS:
         *most, last = SPRINGS
         words = f"{', '.join(most)} or {last}"
@@ -137,7 +136,7 @@ def chosen_springs(text: str, option: str = "--springs") -> Springs:
 
 
 def chosen_segments(count: int | None, option: str = "--segments") -> int:
-    """The number of segments, the usual for None. Raises CrankcheckError for one out of range."""
+    """Return the number of segments, the usual for None. Raises CrankcheckError if out of range."""
     if count is None:
         return SEGMENTS
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_SEGMENTS:
@@ -149,8 +148,8 @@ def chosen_segments(count: int | None, option: str = "--segments") -> int:
 
 
 def given_as(study: StudyLinks) -> list[GivenAs]:
-    """All that a study gives elastic links as. Raises CrankcheckError for a number of segments out
-    of range."""
+    """Return all forms in which a study gives elastic links to engines. Raises CrankcheckError for
+    a number of segments out of range."""
     counts = [chosen_segments(count, "segments") for count in study.segments or [SEGMENTS]]
     return [
         GivenAs(count, springs, _words(count, springs))
@@ -166,14 +165,14 @@ def _words(count: int, springs: Springs) -> str:
 
 
 def given_of(scenes: Iterable[Scene], segments: int | None, springs: str | None) -> GivenAs:
-    """What the elastic links of scenes are given as. Raises CrankcheckError as `refuse_rigid`,
-    `chosen_segments` and `chosen_springs`."""
+    """Return the form in which engines get the elastic links of scenes. Raises CrankcheckError as
+    `refuse_rigid`, `chosen_segments` and `chosen_springs`."""
     refuse_rigid(scenes, segments, springs)
     return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
 
 
 def rigid_alone(what: str) -> Callable[[Scene], None]:
-    """A check of scenes for a command that has no elastic links; it raises CrankcheckError."""
+    """Return a check of scenes for a command without elastic links; it raises CrankcheckError."""
 
     def check(scene: Scene) -> None:
         if scene.elastic:
@@ -189,19 +188,19 @@ def rigid_alone(what: str) -> Callable[[Scene], None]:
 
 
 def cut_scene(scene: Scene, given: GivenAs) -> Scene:
-    """What an engine is given of a scene with elastic links. Raises CrankcheckError."""
+    """Return the scene that an engine gets for one with elastic links. Raises CrankcheckError."""
     from reports.compare.elastic_truth import cut  # where links bend alone
 
     return cut(scene, given.segments, given.springs).given
 
 
 def logged_every(steps: float) -> int:
-    """Every how manieth of so many steps is logged."""
+    """Return the stride of logging for so many steps."""
     return max(1, math.ceil(steps / MOST_LOGGED - 1e-9))
 
 
 def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:
-    """Refuse what is asked of segments, where no scene has any. Raises CrankcheckError."""
+    """Refuse options of segments, where no scene has any. Raises CrankcheckError."""
     if any(scene.elastic for scene in scenes):
         return
     for option, given in (("--segments", count), ("--springs", springs)):
@@ -214,7 +213,7 @@ def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> Non
 def refuse_unelastic(
     truth_of: Callable[[Scene, GivenAs], ElasticTruth], scene: Scene, given: GivenAs
 ) -> None:
-    """Refuse elastic links whose motion is not known, by what they start from.
+    """Refuse elastic links whose motion is not known, by their start.
 
     Raises
     ------
@@ -230,8 +229,8 @@ def refuse_unelastic(
 
 
 def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
-    """Steps in a turn that explicit methods hold so many segments with, at least the usual, which
-    is what the implicit ones of engines that have beams are given."""
+    """Return the steps in a turn with which explicit methods hold so many segments, at least the
+    usual number, which also goes to the implicit methods of engines with beams."""
     if springs == "beam":
         return float(STEPS_PER_TURN)
     needed = scene.driver.law.period_s * _held_steps_s(scene, segments, springs)
@@ -239,8 +238,8 @@ def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
 
 
 def _held_steps_s(scene: Scene, segments: int, springs: Springs) -> float:
-    """Steps in a second that explicit methods hold so many segments with; 0 where a link stretches
-    alone, and is no chain of them."""
+    """Return the steps in a second with which explicit methods hold so many segments; 0 where a
+    link only stretches, and is no chain of them."""
     from analytic.elastic.discretisation import Segments
     from analytic.elastic.elastic_motion import fastest_rad_s
     from reports.compare.elastic_truth import STEADY
@@ -261,9 +260,9 @@ def counted_released(
     every: int = 1,
     least: int = LEAST_STEPS,
 ) -> tuple[float, int]:
-    """Step [s] and number of steps for elastic links that are let go, as of `counted_free`; for a
-    few swings of the slowest link, and by steps that hold the segments, if nothing else is asked
-    for. Raises CrankcheckError as that."""
+    """Return step [s] and number of steps for elastic links in free motion, as `counted_free`; by
+    default for a few swings of the slowest link, and with steps that hold the segments. Raises
+    CrankcheckError as that."""
     if duration_s is not None:
         lasts_s = positive("--duration", duration_s, "seconds, such as 1")
     else:
@@ -275,8 +274,8 @@ def counted_released(
 
 
 def few_swings_s(scene: Scene) -> float:
-    """For how long elastic links are let go if nothing else is asked for [s]: what rings is
-    followed through all of its swings, so that the truth of a longer time takes as much longer."""
+    """Return the default duration of elastic links in free motion [s]: vibrations are followed
+    through all swings, so that the reference of a longer time takes as much longer."""
     from analytic.elastic.natural import lowest_rad_s
 
     swings_s = SWINGS * math.tau / lowest_rad_s(scene)
@@ -284,8 +283,7 @@ def few_swings_s(scene: Scene) -> float:
 
 
 def shortened_note(scene: Scene, lasts_s: float) -> str:
-    """What is said of a run of elastic links that ends before the scene does, as nothing else was
-    asked for; "" where it does not."""
+    """Return the note on a run of elastic links that ends before its scene by default; or ""."""
     whole_s = scene.driver.law.period_s
     if few_swings_s(scene) >= whole_s or not math.isclose(lasts_s, few_swings_s(scene)):
         return ""

@@ -19,14 +19,14 @@ from reports.compare.hardness import near
 from sim.registry import engine
 
 SINGULAR = 1e-6
-"""A sine of a transmission angle below which velocities are lost: rounding is over its square."""
+"""Sine of a transmission angle below which velocities are lost: rounding is over its square."""
 GRID = 721
 ZOOMS = 5
 FINER = 65
 """Looks at a range, and at the neighbourhood of every smallest sine in each zoom."""
 SHOWN = 4
 SAME_RAD = 1e-3
-"""A singular position nearer than this to a change point of its dyad is that change point."""
+"""Distance to a change point of its dyad below which a singular position is that change point."""
 
 
 def refuse_singular(scene: Scene, duration_s: float) -> None:
@@ -69,7 +69,7 @@ def refuse_singular(scene: Scene, duration_s: float) -> None:
 
 
 def passage_note(scene: Scene, duration_s: float) -> str:
-    """The change points that a run goes through, for its reader; "" where there is none."""
+    """Return the change points that a run goes through, for its reader; "" where there is none."""
     time_s = np.linspace(0.0, duration_s, GRID)
     crossings = solve(scene, time_s, links=(), points=(), sliders=(), bound=False).crossings
     if not crossings:
@@ -79,14 +79,14 @@ def passage_note(scene: Scene, duration_s: float) -> str:
 
 
 def continued_note(scene: Scene, motion: Motion) -> str:
-    """The change points on the way of a reference from its start; "" where there is none."""
+    """Return the change points on the way of a reference from its start; "" where there is none."""
     if not motion.crossings:
         return ""
     return f"continued smoothly through {_places(scene, motion.crossings)}"
 
 
 def singular_note(scene: Scene, motion: Motion) -> str:
-    """Which samples of a reference are singular, for the reader of a table; "" where none is."""
+    """Return the singular samples of a reference, for the reader of a table; "" where none is."""
     theta = driver_course(scene, motion)[0]
     places = [
         f"{place_in_words(float(place), scene.driver.unit)} ({key})"
@@ -99,25 +99,25 @@ def singular_note(scene: Scene, motion: Motion) -> str:
 
 
 def _range(scene: Scene, duration_s: float) -> tuple[float, float]:
-    """The driver angles of a run, at most until the mechanism repeats [rad]."""
+    """Return the driver angles of a run, at most until the mechanism repeats [rad]."""
     theta = scene.driver.law.at(np.linspace(0.0, duration_s, GRID))[0]
     low = float(np.min(theta))
     return low, min(float(np.max(theta)), low + repeats_after(scene))
 
 
 def _steady(scene: Scene, theta: Array) -> Motion:
-    """How the mechanism is conditioned at driver angles, at unit speed."""
+    """Return the mechanism's conditioning at driver angles, at unit speed."""
     one, zero = np.ones_like(theta), np.zeros_like(theta)
     return solve_driven(scene, theta, one, zero, links=(), points=(), sliders=(), bound=False)
 
 
 def _is_passed(crossings: Iterable[Crossing], key: str, theta: Array) -> Mask:
-    """Whether driver angles are in a change point of a dyad."""
+    """Return True where driver angles are in a change point of a dyad."""
     return near((crossing for crossing in crossings if crossing.dyad == key), theta, SAME_RAD)
 
 
 def _places(scene: Scene, crossings: Iterable[Crossing]) -> str:
-    """Change points by dyad, in words."""
+    """Return change points by dyad, in words."""
     angles: dict[str, list[str]] = {}
     unit = driver_unit(scene)
     by = 1.0 if unit == "m" else math.degrees(1.0)
@@ -131,7 +131,7 @@ def _places(scene: Scene, crossings: Iterable[Crossing]) -> str:
 
 
 def _valleys(sine: Array) -> Mask:
-    """Where a series is no larger than its neighbours and smaller than one of them, (T,) bool."""
+    """Return where a series is a local minimum, smaller than one neighbour at least, (T,) bool."""
     before = np.concatenate([[np.inf], sine[:-1]])
     after = np.concatenate([sine[1:], [np.inf]])
     return np.asarray((sine <= before) & (sine <= after) & ((sine < before) | (sine < after)))
@@ -143,7 +143,7 @@ LOOKS = 721
 
 def refuse_short_tables(scene: Scene, duration_s: float) -> None:
     """Refuse a run in which a load has no magnitude, over the displacements of a whole period and
-    the times of the run. Raises CrankcheckError that names the load and how far it has to go."""
+    the times of the run. Raises CrankcheckError that names the load and the range that it needs."""
     loads = [load for load in scene.loads.values() if load.over != "angle"]
     if not loads:
         return
@@ -169,12 +169,12 @@ def refuse_forceless(scene: Scene, duration_s: float) -> None:
 
 
 def gives_forces(name: str) -> bool:
-    """Whether an engine reports forces."""
+    """True if an engine reports forces."""
     return engine(name).forces_of != "nothing"
 
 
 def silent_note(engines: Iterable[str]) -> str:
-    """What is said of engines that report no forces and are run without; "" where all do."""
+    """Return the note on engines that report no forces and are run without; "" where all do."""
     silent = [name for name in dict.fromkeys(engines) if not gives_forces(name)]
     if not silent:
         return ""

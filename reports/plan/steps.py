@@ -1,4 +1,4 @@
-"""How long a step is and how many there are, checked before anything runs.
+"""Length and number of steps, checked before anything runs.
 
 The error of a sound run falls with the square of the step or faster, so each run says about where
 the next should be. It need not fall: two errors of opposite sign cancel at one step, and a soft
@@ -18,23 +18,22 @@ from reports.way.length import LEAST_STEPS
 
 LEAST_STEPS_PER_TURN = 8
 MOST_STEPS = 300_000
-"""All steps are logged: as many take about 1 GB with a six-bar."""
+"""Most logged steps: as many take about 1 GB with a six-bar."""
 MOST_SEARCHED = 200_000
-"""Of a run of a search: some seconds. A finer step can not be what a search for the cheapest one is
-after."""
+"""Most steps of a run of a search: some seconds. A search for the cheapest needs none finer."""
 MOST_UNLOGGED = 1_000_000_000
-"""Some hours of work, where few of the steps are logged."""
+"""Most steps where few are logged: some hours of work."""
 STEPS_PER_TURN = 720.0
 TURNS = 2.0
-"""Of a verification."""
+"""Turns of a verification."""
 FREE_STEP_S = 1e-3
-"""The longest step of what is let go, which has no turns."""
+"""Longest step of a free motion, which has no turns."""
 FREE_STEPS = 5000
-"""The least in what a scene says it is left free for: what is fast is over soon."""
+"""Least number of steps in the scene's duration of free motion: fast motions are over soon."""
 FREE_STEPS_S = (4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
-"""Those of a sweep over it."""
+"""Steps of a sweep over free motion."""
 TIMES_HELD = (1.0, 2.0, 4.0)
-"""Those of a sweep over elastic links that are let go, over the fewest that their segments hold."""
+"""Ratios of a sweep over elastic links in free motion, over the fewest steps for their segments."""
 
 
 def counted(
@@ -46,7 +45,7 @@ def counted(
     every: int = 1,
     least: int = LEAST_STEPS,
 ) -> tuple[float, int]:
-    """Step [s] and number of steps for a scene, from --dt or --steps-per-turn (default 720).
+    """Return step [s] and number of steps for a scene, from --dt or --steps-per-turn (default 720).
 
     Every ``every``-th step is logged; there are at least ``least``.
 
@@ -98,8 +97,8 @@ def counted_free(
     every: int = 1,
     least: int = LEAST_STEPS,
 ) -> tuple[float, int]:
-    """Step [s] and number of steps for a scene that is let go, from --dt (default 1e-3 s, or a
-    5000th of the time that the scene says) and --duration (default: that time).
+    """Return step [s] and number of steps for a free motion, from --dt (default 1e-3 s, or a 5000th
+    of the scene's duration) and --duration (default: the scene's duration).
 
     Every ``every``-th step is logged; there are at least ``least``.
 
@@ -136,7 +135,7 @@ def _refuse_unlogged(scene: Scene, every: int, steps: float, longer: str) -> Non
 
 
 def positive(option: str, value: float, unit: str) -> float:
-    """The number, which is above 0. Raises CrankcheckError that names the unit for any other."""
+    """Return a number above 0. Raises CrankcheckError that names the unit for any other."""
     if not isinstance(value, Real) or isinstance(value, bool):
         raise CrankcheckError(f"{option}: found {shown(value)}; give a number above 0, in {unit}")
     try:
@@ -149,28 +148,28 @@ def positive(option: str, value: float, unit: str) -> float:
 
 
 RESOLUTION = 1.01
-"""How far apart, as a ratio, a step that reaches the target and one that misses it may be."""
+"""Largest ratio of a step that misses the target to one that reaches it."""
 FINER = (math.sqrt(2.0), 2.0)
-"""How much finer the steps are that have to reach the target as well."""
+"""Factors of the finer steps that have to reach the target as well."""
 FALL = 0.8
-"""An error that is not under so much of itself at half the step does not fall."""
+"""Share of an error, at half the step, above which it does not fall."""
 LEAP = 8.0
-"""The most that the number of steps grows by from one run to the next."""
+"""Largest growth of the number of steps from one run to the next."""
 
 
 def coarsest(
     error_at: Callable[[int], float], target: float, start: int, least: int, most: int
 ) -> int | None:
-    """The coarsest step, as a number of steps in a turn, or in whatever ``least`` and ``most``
-    are in; None where none reaches.
+    """Return the coarsest step that reaches the target, as a number of steps, in a turn or in the
+    unit of ``least`` and ``most``; None without one.
 
     Parameters
     ----------
     error_at : Callable
-        From a number of steps to the error; what is not a number counts as infinite. It is called
-        once for each step at most; up to twice ``most`` to hold a step against finer ones.
+        From a number of steps to the error; NaN counts as infinite. It is called once for each step
+        at most; up to twice ``most`` to compare a step with finer ones.
     start : int
-        Where to look first.
+        The first number of steps.
     """
     looks, failed = _Looks(error_at, target), least - 1
     steps = min(max(start, least), most)
@@ -183,7 +182,7 @@ def coarsest(
         worse = [n for n in (math.ceil(f * steps) for f in FINER) if not looks.reach(n)]
         if not worse:
             return steps
-        failed = max(worse)  # what was reached at a coarser step was luck
+        failed = max(worse)  # a coarser step reached it by luck
         if failed >= most:
             return None
         steps = failed + 1
@@ -208,7 +207,7 @@ class _Looks:
 
 
 def _finer(looks: _Looks, steps: int, most: int) -> int | None:
-    """A step that reaches the target, from ``steps`` on to finer ones; None where none does."""
+    """Return a step that reaches the target, from ``steps`` on to finer ones; None without one."""
     run = [steps]
     while not looks.reach(steps):
         if steps >= most or _stays(looks, run):
@@ -219,7 +218,7 @@ def _finer(looks: _Looks, steps: int, most: int) -> int | None:
 
 
 def _leap(looks: _Looks, run: list[int]) -> float:
-    """How many times more steps should reach the target."""
+    """Return the factor of steps that should reach the target."""
     error = looks.error(run[-1])
     if math.isinf(error):
         return 2.0
@@ -231,7 +230,7 @@ def _leap(looks: _Looks, run: list[int]) -> float:
 
 
 def _stays(looks: _Looks, run: list[int]) -> bool:
-    """Whether the error has stopped to fall: twice in a row, over a doubling of steps each."""
+    """True if the error has stopped to fall: twice in a row, over a doubling of steps each."""
     pairs = list(itertools.pairwise(run))[-2:]
     return len(pairs) == 2 and all(
         looks.error(fine) > looks.error(coarse) * FALL ** math.log2(fine / coarse)
@@ -240,7 +239,7 @@ def _stays(looks: _Looks, run: list[int]) -> bool:
 
 
 def _between(looks: _Looks, failed: int, reached: int, least: int) -> int:
-    """The coarsest that reaches the target, to within the resolution.
+    """Return the coarsest that reaches the target, to within the resolution.
 
     ``failed`` is a number of steps that misses it, or one under ``least``, which was not run.
     """
@@ -256,7 +255,7 @@ def _between(looks: _Looks, failed: int, reached: int, least: int) -> int:
 
 
 def _guess(looks: _Looks, failed: int, reached: int, least: int, turn: int) -> int:
-    """Where to look next between two numbers of steps."""
+    """Return the next number of steps to run between two."""
     high, target = looks.error(reached), looks.target
     if failed < least:  # nothing is known to miss: as for order 2, and a bit further
         guess = 0.97 * reached * math.sqrt(max(high, target / LEAP**2) / target)

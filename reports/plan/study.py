@@ -9,17 +9,17 @@
 
     segments = [4, 8, 16, 32]          # of each elastic link; 16 if left out
     springs = ["plain", "corrected"]   # between them, or "beam"; plain if left out
-    times_held = [1, 2, 4]             # steps of these, over the fewest that the segments hold with
+    times_held = [1, 2, 4]             # steps over the fewest for the segments
 
-    # or, of mechanisms that are let go, in place of steps_per_turn and turns:
+    # or, for free motion, in place of steps_per_turn and turns:
     free = true
     dt_s = [2e-3, 1e-3, 5e-4]
-    duration_s = 10                    # that of each scene if left out
+    duration_s = 10                    # the scene's own if left out
 
     [[variants]]
-    name = "stiff"                     # how tables and legends call it
+    name = "stiff"                     # its name in tables and legends
     engine = "mujoco"
-    profile = "as-shipped"             # the settings it starts from
+    profile = "as-shipped"             # the basis of its settings
     settings = { solref_timeconst_steps = [2, 4], solimp_dmin = 0.9999 }
 
 A list of values makes a variant for each of them, or for each combination of several lists.
@@ -44,12 +44,12 @@ from sim.engine import SettingValue
 DEFAULT = Path(__file__).parent / "studies" / "default.toml"
 StudyValue = StrictInt | StrictFloat | str
 UNITS = {"steps_per_turn": " in a turn", "dt_s": ""}
-"""What the steps of a study are in, by its field."""
+"""Unit of the steps of a study, by its field."""
 VariantName = Annotated[str, Field(min_length=1, max_length=80)]
 
 
 class Variant(BaseModel):
-    """An engine with settings: a profile, and what of it is overridden, by one value or several."""
+    """An engine with settings: a profile, and its overrides, by one value or several."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -63,11 +63,11 @@ class Variant(BaseModel):
 
     @property
     def lists(self) -> dict[str, list[StudyValue]]:
-        """The values of each setting."""
+        """Values of each setting."""
         return {k: v if isinstance(v, list) else [v] for k, v in self.settings.items()}
 
     def each(self) -> list[Variant]:
-        """One variant per combination of the listed values, named after them."""
+        """Return one variant per combination of the listed values, named after them."""
         lists = self.lists
         several = [name for name, values in lists.items() if len(values) > 1]
         variants = []
@@ -82,13 +82,12 @@ class Variant(BaseModel):
 
     @property
     def chosen(self) -> dict[str, SettingValue]:
-        """The overrides of a variant with one value each."""
+        """Overrides of a variant with one value each."""
         return {k: v for k, v in self.settings.items() if not isinstance(v, list)}
 
 
 class Study(BaseModel):
-    """What a sweep runs, and how; with ``times_held`` scenes whose links bend have steps of their
-    own, that their segments hold with."""
+    """Content of a sweep; ``times_held`` gives elastic links steps for their segments."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -107,17 +106,17 @@ class Study(BaseModel):
 
     @property
     def lists(self) -> tuple[str, ...]:
-        """The field that has the steps of its scenes, and the one of other scenes."""
+        """Field with the steps of its scenes, and the one of other scenes."""
         return tuple(UNITS)[:: -1 if self.free else 1]
 
     @property
     def steps(self) -> list[float]:
-        """What the cells of a line differ in: steps in a turn, or of free motion seconds."""
+        """Steps of the cells of a line: steps in a turn, or of free motion seconds."""
         return list(getattr(self, self.lists[0]))
 
 
 def load_study(path: Path | None) -> Study:
-    """The study of a file, by its ending, or the shipped one for None.
+    """Return the study of a file, by its ending, or the shipped one for None.
 
     Raises
     ------
@@ -148,7 +147,7 @@ def load_study(path: Path | None) -> Study:
 
 
 def _unsaid(study: Study) -> Iterator[str]:
-    """What is missing where scenes are driven or let go, and what belongs to the other."""
+    """Yield the missing fields of driven or free scenes, and fields that belong to the other."""
     needed, other = study.lists
     if not study.steps:
         yield f"{needed}: missing; add it"
@@ -161,7 +160,7 @@ def _unsaid(study: Study) -> Iterator[str]:
 
 
 def _fault(fault: ErrorDetails) -> str:
-    """One fault of a study file: key, what was found, what would work."""
+    """Return one fault of a study file: key, value found, and a cure."""
     parts = [str(part) for part in fault["loc"] if not str(part).startswith(("list[", "constr"))]
     key, message = ".".join(map(cut, parts)) or "study", fault["msg"]
     if fault["type"] == "extra_forbidden":
@@ -175,16 +174,16 @@ def _fault(fault: ErrorDetails) -> str:
 
 
 def _short(value: object) -> str:
-    """A value as short as it can be told."""
+    """Return a value as short text."""
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 MOST_VALUES = 5_000
-"""Each counted as often as it is named by an alias: ten lines can stand for a billion values."""
+"""Most values, each counted per alias: ten lines can stand for a billion values."""
 LONG = 40
 """Characters of a text that count as one value more."""
 DIGITS = 100
-"""Characters of a number. One to the base 60 takes time with the square of them."""
+"""Most characters of a number. A number to the base 60 takes time with the square of them."""
 TOO_MANY = f"more than {MOST_VALUES} values, those of an alias counted each time; leave some out"
 TOO_DEEP = f"values nested more than {DEEPEST} deep; a study nests them 5 deep"
 IN_ITSELF = "an alias for what it stands in; name something before it"
@@ -192,7 +191,7 @@ KINDS = ("bool", "float", "int", "map", "merge", "null", "seq", "str")
 
 
 def value(text: str) -> object:
-    """What YAML text says. Raises UnreadableError, with the line, for what is no YAML, or has too
+    """Parse YAML text. Raises UnreadableError, with the line, for text that is no YAML, or has too
     many values, too deep ones, or numbers of too many digits."""
     loader = None
     try:
@@ -217,7 +216,7 @@ def value(text: str) -> object:
 
 
 class _Loader(yaml.SafeLoader):
-    """Reads no more than it is let, and values of few kinds."""
+    """A loader with limits on size, and values of few kinds."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
@@ -234,7 +233,7 @@ class _Loader(yaml.SafeLoader):
         self.values_of: dict[int, int] = {}
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """As the parser has it: called for each value, with those in it called for within."""
+        """Override of the parser: called for each value, and within for its inner values."""
         mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]  # as all of it is
         alias, before = self.check_event(yaml.AliasEvent), self.values
         self.depth += 1
@@ -252,7 +251,7 @@ class _Loader(yaml.SafeLoader):
         return node
 
     def construct_scalar(self, node: Any) -> Any:
-        """The text of a value, which a number is made of if it is short."""
+        """Return the text of a value, from which a number is made if it is short."""
         text: str = super().construct_scalar(node)
         if node.tag.rpartition(":")[2] in ("int", "float") and len(text) > DIGITS:
             why = f"found {cut(text)}, a number of {len(text)} characters; use at most {DIGITS}"
@@ -261,7 +260,7 @@ class _Loader(yaml.SafeLoader):
         return text
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
-        """A value; a text that its tag does not fit is a fault of the file."""
+        """Return a value; a text that its tag does not fit is a fault of the file."""
         try:
             return super().construct_object(node, deep)
         except (ValueError, LookupError):

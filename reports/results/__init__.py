@@ -1,1 +1,1 @@
-"""What stored cells say."""
+"""Results of stored cells."""

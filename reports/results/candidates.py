@@ -22,9 +22,9 @@ NOT_RUN = "not run"
 
 @dataclass(frozen=True)
 class Candidate:
-    """Settings that may be recommended, with what was measured of them.
+    """Settings that may be recommended, with their measurements.
 
-    ``errors`` are place errors by scene [pure] of the runs that ended well, or those of deflections
+    ``errors`` are place errors by scene [pure] of the runs that ended well, or deflection errors
     where links bend, as its ``way`` says; ``faults`` say why a scene has none. ``us_per_step`` and
     ``s_per_turn`` are geometric means over the scenes, in which each counts the same however slow
     it is; NaN where a scene was not timed.
@@ -44,36 +44,36 @@ class Candidate:
 
     @property
     def kind(self) -> ResultKind:
-        """What is said of such cells."""
+        """Kind of the results of such cells."""
         return (self.way or way(WAYS[-1])).results
 
     @property
     def scenes(self) -> int:
-        """How many scenes there are."""
+        """Number of scenes."""
         return len(self.errors) + len(self.faults)
 
     @property
     def name(self) -> str:
-        """As a sentence calls it."""
+        """Name in a sentence."""
         return f"{called(self.variant, self.drive)} at {self.steps_told}"
 
     @property
     def steps_told(self) -> str:
-        """Its step in words."""
+        """Step in words."""
         return f"{self.steps_per_turn:g} steps a {clock_of(self.drive).name}"
 
     @property
     def worst_scene(self) -> str | None:
-        """The scene with the largest error; None where no run ended well."""
+        """Scene with the largest error; None where no run ended well."""
         return max(self.errors, key=lambda scene: self.errors[scene], default=None)
 
     @property
     def worst_error(self) -> float:
-        """The largest error over the scenes; infinite where one has no run that ended well."""
+        """Largest error over the scenes; infinite where one has no run that ended well."""
         return math.inf if self.faults else max(self.errors.values(), default=math.inf)
 
     def same_settings(self, other: Candidate) -> bool:
-        """Whether another one differs in its step at most."""
+        """True if another candidate differs in its step at most."""
         return (self.engine, self.variant, self.drive, self.settings) == (
             other.engine,
             other.variant,
@@ -82,7 +82,7 @@ class Candidate:
         )
 
     def holds(self, line: Line) -> bool:
-        """Whether a line is of these settings."""
+        """True if a line has these settings."""
         return (self.engine, self.variant, self.drive, self.settings) == (
             line.engine,
             line.variant,
@@ -91,19 +91,19 @@ class Candidate:
         )
 
     def reaching(self, target: float) -> int:
-        """On how many scenes the error is at most ``target``."""
+        """Return the number of scenes with an error of at most ``target``."""
         return sum(error <= target for error in self.errors.values())
 
     def reaches(self, target: float) -> bool:
-        """Whether it is on all of them."""
+        """True if the error is at most ``target`` on all scenes."""
         return self.reaching(target) == self.scenes
 
 
 def candidates(lines: Sequence[Line]) -> tuple[Candidate, ...]:
-    """All settings and steps of a study, by variant, from coarse to fine.
+    """Return all settings and steps of a study, by variant, from coarse to fine.
 
-    Settings count as the same where all of them are, drive included; a scene on which they were
-    not run is a fault.
+    Settings count as the same where all of them are, drive included; a scene on which they were not
+    run is a fault.
     """
     scenes = list(dict.fromkeys(line.scene for line in lines))
     groups: dict[tuple[str, ...], dict[str, Line]] = {}
@@ -115,7 +115,7 @@ def candidates(lines: Sequence[Line]) -> tuple[Candidate, ...]:
 
 
 def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candidate]:
-    """The candidates of one set of settings."""
+    """Return the candidates of one set of settings."""
     by_step: dict[float, dict[str, pd.Series]] = {}
     for scene, line in group.items():
         for _, row in line.cells.iterrows():
@@ -146,7 +146,7 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
 
 
 def _fault(row: pd.Series | None) -> str:
-    """Why a cell promises nothing; empty where it does."""
+    """Say why a cell promises nothing; empty where it does."""
     if row is None:
         return NOT_RUN
     if row["status"] != "ok":
@@ -158,10 +158,10 @@ CellKey = TypeVar("CellKey", bound=Hashable)
 
 
 def front(cells: pd.DataFrame, noise: float = 0.0) -> list[str]:
-    """Keys of the cells that no other beats in both error and time, from the slowest on.
+    """Return keys of the cells that no other beats in both error and time, from the slowest on.
 
-    ``cells`` are rows of a store, of one scene; those that did not end well, or were not timed,
-    take no part. With ``noise`` a time counts as shorter only where it is so by more than that.
+    ``cells`` are rows of a store, of one scene; cells that did not end well, or were not timed,
+    take no part. A time counts as shorter only if it is shorter by more than ``noise``.
     """
     good = cells[(cells["status"] == "ok") & cells["s_per_turn"].notna()]
     rows = good[["key", "place_pure", "s_per_turn"]].itertuples(index=False)
@@ -169,7 +169,7 @@ def front(cells: pd.DataFrame, noise: float = 0.0) -> list[str]:
 
 
 def front_over_all(candidates: Iterable[Candidate], noise: float = 0.0) -> tuple[Candidate, ...]:
-    """The settings that no other beats in both the worst error over all scenes and the mean time.
+    """Return the settings that no other beats in both worst error over all scenes and mean time.
 
     Settings that fail on a scene take no part.
     """
@@ -179,7 +179,7 @@ def front_over_all(candidates: Iterable[Candidate], noise: float = 0.0) -> tuple
 
 
 def _unbeaten(points: Iterable[tuple[CellKey, float, float]], noise: float) -> list[CellKey]:
-    """Names of (name, error, time) that are faster than all that are as accurate."""
+    """Return names of (name, error, time) that are faster than all of at least their accuracy."""
     unbeaten: list[CellKey] = []
     least = math.inf
     finite = [p for p in points if math.isfinite(p[1]) and math.isfinite(p[2])]
@@ -191,17 +191,17 @@ def _unbeaten(points: Iterable[tuple[CellKey, float, float]], noise: float) -> l
 
 
 def _known(noise: float) -> float:
-    """The noise, none where it was not measured."""
+    """Return the noise, 0 where it was not measured."""
     return noise if math.isfinite(noise) else 0.0
 
 
 def performance_profile(lines: Sequence[Line], target: float, noise: float = 0.0) -> pd.DataFrame:
-    """On which share of the scenes each variant reaches ``target`` within a factor of the fastest.
+    """Return shares of scenes where variants reach ``target`` within a factor of the fastest.
 
     Columns engine, variant (as `Line.name` has it), factor, share; rows of a variant are the
     corners of a rising stair (``share`` holds from ``factor`` on), which starts at factor 1. Scenes
-    on which no variant reaches the target count as well, so that no stair need rise to 1. Times are
-    those of `reports.results.cost.time_to`; within ``noise`` of the fastest they are called equal.
+    on which no variant reaches the target count as well, so that no stair need rise to 1. Times
+    come from `reports.results.cost.time_to`; within ``noise`` of the fastest they are called equal.
     Source: Dolan and More, Benchmarking optimization software with performance profiles, 2002.
     """
     times = pd.DataFrame(

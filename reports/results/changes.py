@@ -1,4 +1,4 @@
-"""What became better and what became worse, quantity by quantity and cell by cell."""
+"""Improvements and regressions, quantity by quantity and cell by cell."""
 
 import json
 import math
@@ -14,7 +14,7 @@ from reports.results.runs import COMPARED, CellName, StoredCell, StoredRun
 from reports.store.manifest import BUSY
 
 FACTOR = 1.1
-"""How much an error may grow before it is called worse."""
+"""Growth of an error up to which it is not called worse."""
 Word = Literal["worse", "better", "equal"]
 
 
@@ -22,7 +22,7 @@ Word = Literal["worse", "better", "equal"]
 class ErrorChange:
     """One error, old and new, as pure numbers; infinite where there is no number.
 
-    Both may be off by ``floor`` for no other reason than rounding.
+    Rounding alone may change both by ``floor``.
     """
 
     quantity: str
@@ -32,21 +32,21 @@ class ErrorChange:
 
     @property
     def ratio(self) -> float:
-        """New over old, as they stand; infinite where something came of nothing."""
+        """Error ratio new over old, without the floor; infinite where the old one is 0."""
         if self.old == self.new:
             return 1.0
         return self.new / self.old if self.old else math.inf
 
     @property
     def growth(self) -> float:
-        """New over old where the floor under both keeps what is near zero from counting."""
+        """Ratio new over old where the floor under both keeps values near zero from counting."""
         if self.old == self.new:
             return 1.0
         return (self.new + self.floor) / (self.old + self.floor)
 
     @property
     def factor(self) -> float:
-        """By how many times the one exceeds the other, whichever does; at least 1."""
+        """Ratio of the larger to the smaller error; at least 1."""
         return max(self.growth, 1.0 / self.growth) if self.growth else math.inf
 
     @property
@@ -54,7 +54,7 @@ class ErrorChange:
         return self.word() != "equal"
 
     def word(self, factor: float = FACTOR) -> Word:
-        """Worse or better if one exceeds ``factor`` times the other by more than the floor."""
+        """Return worse or better if one exceeds ``factor`` times the other by more than floor."""
         if self.new > factor * self.old + self.floor:
             return "worse"
         return "better" if self.old > factor * self.new + self.floor else "equal"
@@ -64,9 +64,9 @@ class ErrorChange:
 class CellPair:
     """A cell that both runs have.
 
-    One that did not end well has no errors to compare: that it did or did not is the change, and
-    two that failed are equal, however they failed. ``word`` is worse where any error is worse,
-    better where some are better and none is worse.
+    A run that did not end well has no errors to compare: its ending is the change, and two failed
+    runs are equal, however they failed. ``word`` is worse where any error is worse, better where
+    some are better and none is worse.
     """
 
     old: StoredCell
@@ -81,17 +81,17 @@ class CellPair:
 
     @property
     def turned(self) -> bool:
-        """Whether it ended well in one run and not in the other."""
+        """True if it ended well in one run and not in the other."""
         return self.old.ok != self.new.ok
 
     @property
     def failed(self) -> bool:
-        """Whether it ended well in neither."""
+        """True if it ended well in neither run."""
         return not (self.old.ok or self.new.ok)
 
     @property
     def worst(self) -> ErrorChange | None:
-        """The change that is to be told: the largest in the direction of ``word``."""
+        """Change that is shown: the largest in the direction of ``word``."""
         alike = [c for c in self.changes if c.word(self.factor) == self.word]
         if self.word == "better":
             return min(alike, key=lambda change: change.growth, default=None)
@@ -99,7 +99,7 @@ class CellPair:
 
     @property
     def factor_of_change(self) -> float:
-        """By how many times it is worse or better; infinite where it ended in another way."""
+        """Factor by which it is worse or better; infinite where it ended in another way."""
         if self.turned:
             return math.inf
         return self.worst.factor if self.worst else 1.0
@@ -122,15 +122,15 @@ class Diff:
     other_scene: tuple[StoredCell, ...]
 
     def those(self, word: Word) -> tuple[CellPair, ...]:
-        """The cells that are worse, better or equal, the largest change first."""
+        """Return the cells that are worse, better or equal, the largest change first."""
         alike = [pair for pair in self.pairs if pair.word == word]
         return tuple(sorted(alike, key=lambda pair: -pair.factor_of_change))
 
     def code(self, strict: bool = False) -> int:
-        """The exit code: 1 where something is worse; ``strict``: or could not be compared.
+        """Return the exit code: 1 where something is worse; ``strict``: or could not be compared.
 
         A run that failed is a row with its status, so a cell is missing only where it was not
-        asked for: that is told, and is no fault unless one says so.
+        requested: that is reported, and is no fault unless ``strict``.
         """
         lost = strict and (self.missing or self.other_scene)
         return int(bool(lost or any(pair.word == "worse" for pair in self.pairs)))
@@ -142,8 +142,8 @@ def compare(old: StoredRun, new: StoredRun, factor: float = FACTOR) -> Diff:
     Raises
     ------
     CrankcheckError
-        A factor that is not at least 1; no cell that both runs have, of the same scene; a cell
-        that may be lost in a damaged run.
+        A factor that is not at least 1; no cell that both runs have, of the same scene; a cell that
+        may be lost in a damaged run.
     """
     if not (math.isfinite(factor) and factor >= 1.0):
         raise CrankcheckError(f"--factor {factor:g}: give a number of at least 1, such as 1.1")
@@ -171,9 +171,9 @@ def compare(old: StoredRun, new: StoredRun, factor: float = FACTOR) -> Diff:
 
 
 def floor(quantity: str, steps_per_turn: float) -> float:
-    """What rounding alone may make of an error, as a pure number (see `reports.judge.tolerance`).
+    """Return the share of an error that rounding may cause, pure (see `reports.judge.tolerance`).
 
-    The step is taken as an equal part of a turn, which it is for a driver of constant speed.
+    The step is taken as an equal part of a turn, as for a driver of constant speed.
     """
     tolerance = {**FREE, **ELASTIC}[quantity]
     step_rad = math.tau / steps_per_turn
@@ -181,8 +181,8 @@ def floor(quantity: str, steps_per_turn: float) -> float:
 
 
 def other_settings(pairs: Iterable[CellPair]) -> Mapping[tuple[str, str], Mapping[str, str]]:
-    """The settings that an engine held otherwise, by engine and variant: not the version alone
-    changed. Each comes with both values of one example."""
+    """Return the settings that an engine held otherwise, by engine and variant: not the version
+    alone changed. Each comes with both values of one example."""
     differing: dict[tuple[str, str], dict[str, str]] = {}
     for pair in pairs:
         was, now = pair.old.settings, pair.new.settings
@@ -195,13 +195,13 @@ def other_settings(pairs: Iterable[CellPair]) -> Mapping[tuple[str, str], Mappin
 
 
 def _same_scene(old: StoredCell, new: StoredCell) -> bool:
-    """Whether both are of one scene, as far as the runs tell."""
+    """True if both are of one scene, as far as the runs know."""
     told = old.scene_digest and new.scene_digest
     return not told or old.scene_digest == new.scene_digest
 
 
 def _pair(old: StoredCell, new: StoredCell, factor: float) -> CellPair:
-    """A cell of both runs, judged."""
+    """Judge a cell of both runs."""
     if not (old.ok and new.ok):
         word: Word = "equal" if old.ok == new.ok else "better" if new.ok else "worse"
         return CellPair(old, new, (), word, factor)
@@ -212,7 +212,7 @@ def _pair(old: StoredCell, new: StoredCell, factor: float) -> CellPair:
 
 
 def _changes(old: StoredCell, new: StoredCell) -> Iterator[ErrorChange]:
-    """Every quantity that both runs know, and either has a number for."""
+    """Yield the change of every quantity that both runs know, and either has a number for."""
     for quantity in (q for q in COMPARED if q in old.errors and q in new.errors):
         was, now = old.errors[quantity], new.errors[quantity]
         if math.isfinite(was) or math.isfinite(now):
@@ -222,14 +222,14 @@ def _changes(old: StoredCell, new: StoredCell) -> Iterator[ErrorChange]:
 def refuse_gone(old: StoredRun, new: StoredRun) -> None:
     """Refuse to compare where a lost cell may be one that the other run has.
 
-    What is damaged in a run is of no account where it has every cell that the other one has: what
-    is lost then was not asked for. Otherwise there is no telling whether a cell was never there or
-    is lost, and whether it would be worse; nor where both have lost some, which may be the same.
+    Damage in a run does not matter where it has every cell of the other one: a lost cell was not
+    requested then. Otherwise a cell may be lost or may never have existed, and could be worse; so
+    too where both have lost some, which may be the same.
 
     Raises
     ------
     CrankcheckError
-        Says which cells are missing, and what is damaged.
+        Names the missing cells, and the damage.
     """
     for run, other in ((old, new), (new, old)):
         if not run.gone:

@@ -1,4 +1,4 @@
-"""What a step costs, how well that is known, and the time that a target error takes."""
+"""The cost of a step, its uncertainty, and the time that a target error takes."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from reports.store.reader import Stored
 from sim.engine import Drive
 
 SHARE = 0.95
-"""The share of A/A pairs whose halves differ by no more than the noise."""
+"""Share of A/A pairs whose halves differ by no more than the noise."""
 
 
 def pairs(stored: Stored) -> pd.Series[float]:
-    """How far apart the A/A pair of every timed cell is: two timings of one run in one sweep."""
+    """Return the difference in each timed cell's A/A pair: two timings of a run in one sweep."""
     cells = comparable(stored.cells)
     a, b = cells["us_per_step_a"], cells["us_per_step_b"]
     both = a.notna() & b.notna()
@@ -27,26 +27,26 @@ def pairs(stored: Stored) -> pd.Series[float]:
 
 
 def noise(stored: Stored) -> float:
-    """The relative difference up to which two costs are called equal; NaN where nothing was timed.
+    """Return the relative difference up to which two costs are called equal; NaN without timings.
 
-    95 of 100 pairs of timings of the same thing differ by less.
+    95 of 100 pairs of timings of the same cell differ by less.
     """
     return noise_of(pairs(stored))
 
 
 def apart(a: float, b: float) -> float:
-    """The relative difference of two costs: |a - b| / min(a, b)."""
+    """Return the relative difference of two costs: |a - b| / min(a, b)."""
     return abs(a - b) / min(a, b)
 
 
 def noise_of(differences: Iterable[float]) -> float:
-    """The difference that 95 of 100 stay below; NaN of none."""
+    """Return the difference that 95 of 100 stay below; NaN of none."""
     found = list(differences)
     return float(np.quantile(found, SHARE)) if found else math.nan
 
 
 def equal(a: float, b: float, within: float) -> bool:
-    """Whether two costs differ by no more than the noise ``within``."""
+    """True if two costs differ by no more than the noise ``within``."""
     return a == b or abs(a - b) <= within * min(a, b)
 
 
@@ -54,8 +54,8 @@ def equal(a: float, b: float, within: float) -> bool:
 class Reached:
     """A target error reached on a line: steps a turn, and time per simulated turn [s].
 
-    ``s_per_turn`` is NaN where the cells were not timed. Where the coarsest step that ended well
-    reaches the target already, it stands for itself: a coarser one may do, but was not run.
+    ``s_per_turn`` is NaN where the cells were not timed. The coarsest step that ended well is taken
+    if it already reaches the target: a coarser one may do, but was not run.
     """
 
     steps_per_turn: float
@@ -63,7 +63,7 @@ class Reached:
 
 
 def reached(line: Line, target: float) -> Reached | None:
-    """Where a line comes to an error of at most ``target`` and stays below it; None: nowhere."""
+    """Return where a line reaches an error of at most ``target`` and stays below; None: nowhere."""
     dt_s = line.fit.dt_for(target)
     if dt_s is not None:
         return Reached(line.period_s / dt_s, _cost(line, dt_s))
@@ -75,7 +75,7 @@ def reached(line: Line, target: float) -> Reached | None:
 
 
 def time_to(line: Line, target: float) -> float | None:
-    """Time per simulated turn [s] that an error of ``target`` takes (see `reached`).
+    """Return the time per simulated turn [s] that an error of ``target`` takes (see `reached`).
 
     Interpolated along the fit, never extrapolated; None where the line does not reach the target,
     or was not timed.
@@ -85,7 +85,7 @@ def time_to(line: Line, target: float) -> float | None:
 
 
 def _cost(line: Line, dt_s: float) -> float:
-    """Time per turn [s] at a step, between the measured ones; NaN where those were not timed."""
+    """Return the time per turn [s] at a step, between measured ones; NaN where not timed."""
     timed = line.cells.dropna(subset=["s_per_turn"])
     costs = [float(cost) for cost in timed["s_per_turn"]]
     found = interpolate([float(dt) for dt in timed["dt_s"]], costs, dt_s)
@@ -100,11 +100,11 @@ MEANS = (
 
 @dataclass(frozen=True)
 class Costs:
-    """What a variant costs, as geometric means over the scenes.
+    """Costs of a variant, as geometric means over the scenes.
 
     ``us_per_step`` is of the least and ``us_per_step_median`` of the median repeat, over the
-    ``timed`` scenes, which have cells that were timed. ``s_to`` is the time per turn [s] to reach
-    each target, NaN where it is not reached on every scene; ``reached`` on how many scenes it is.
+    ``timed`` scenes, which have timed cells. ``s_to`` is the time per turn [s] to reach each
+    target, NaN where it is not reached on every scene; ``reached`` on how many scenes it is.
     """
 
     engine: str
@@ -118,12 +118,12 @@ class Costs:
     scenes: int
 
     def part(self, number: int) -> str:
-        """On how many scenes something is so, as m/n; empty where it is on all of them."""
+        """Return a number of scenes as m/n; empty where it is all of them."""
         return "" if number == self.scenes else f"{number}/{self.scenes}"
 
 
 def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ...]:
-    """The costs of each variant."""
+    """Return the costs of each variant."""
     scenes = len({line.scene for line in lines})
     groups: dict[tuple[str, str, Drive], list[Line]] = {}
     for line in lines:
@@ -148,6 +148,6 @@ def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ..
 
 
 def mean(values: Iterable[float]) -> float:
-    """The geometric mean, NaN of nothing."""
+    """Return the geometric mean, NaN of nothing."""
     logs = np.log(np.fromiter(values, dtype=np.float64))
     return float(np.exp(logs.mean())) if len(logs) else math.nan

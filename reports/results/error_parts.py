@@ -1,4 +1,4 @@
-"""Split an error over the crank angle into what a user can turn.
+"""Split an error over the crank angle into parts that a user can adjust.
 
 For the cells of a line, which differ in step only, at the instants that they share::
 
@@ -24,20 +24,20 @@ from reports.results.line_fit import LineFit
 from reports.results.lines import Line
 
 SHARED = 12
-"""Instants that two steps must have in common: fewer make no curve."""
+"""Least number of instants that two steps must share: fewer make no curve."""
 SAME = 1e-9
-"""Instants nearer than this part of a period are one."""
+"""Part of a period below which two instants are equal."""
 UNTOLD_ORDER = 1.0
-"""Taken where the points do not tell an order because the floor is all of the error: at such a line
-the two finest errors hardly differ, and the order hardly matters."""
+"""Order where the points show none because the floor is all of the error: at such a line the two
+finest errors hardly differ, and the order hardly matters."""
 LEAST_ORDER = 0.3
-"""Below this there is nothing that falls with the step."""
+"""Order below which nothing falls with the step."""
 LEFT = "the logged crank left the reach of the mechanism"
 
 
 @dataclass(frozen=True)
 class CurveBody:
-    """The link or slider that a curve is of: the series of its trace, and what it is divided by.
+    """Link or slider of a curve: the series of its trace, and the divisor of that.
 
     ``scale`` is 1 for a link angle [rad] and the longest link [m] for a slider.
     """
@@ -53,9 +53,9 @@ class CurveBody:
 
 @dataclass(frozen=True)
 class ErrorParts:
-    """The parts of the error of one cell, pure, with sign, shape (T,) each; their sum is ``total``.
+    """Parts of the error of one cell, pure, with sign, shape (T,) each; their sum is ``total``.
 
-    ``floor`` and ``discretisation`` are None where no floor can be told, and ``drive`` and
+    ``floor`` and ``discretisation`` are None where no floor is known, and ``drive`` and
     ``geometric`` where the logged crank left the reach of the mechanism.
     """
 
@@ -70,7 +70,7 @@ class ErrorParts:
 
     @property
     def curves(self) -> dict[str, Array]:
-        """The parts that there are, by name; what is told apart is not there whole."""
+        """Parts that exist, by name; ``geometric`` only if it is not split."""
         names = ("total", "drive", "floor", "discretisation", "geometric", "gap")
         every = {name: getattr(self, name) for name in names}
         if self.floor is not None:
@@ -80,11 +80,11 @@ class ErrorParts:
 
 @dataclass(frozen=True)
 class Split:
-    """The parts of every cell of a line that has a trace, by key.
+    """Parts of every cell of a line that has a trace, by key.
 
-    ``floor`` is the largest of the extrapolated error, and ``doubt`` what it is uncertain by: as
-    the order is, as the next coarser steps tell otherwise, and all of it where the line shows no
-    floor (both NaN where there is none; ``why`` then says why). Only a floor above is seen.
+    ``floor`` is the largest extrapolated error, and ``doubt`` its uncertainty: from the order, from
+    the next coarser steps, and all of it where the line shows no floor (both NaN where there is
+    none; ``why`` then says why). Only a floor above its doubt is seen.
     """
 
     cells: Mapping[str, ErrorParts]
@@ -109,9 +109,9 @@ class _Extrapolated:
 def worst_body(
     lines: Sequence[Line], trace: Callable[[str], Trace], longest_m: float
 ) -> CurveBody | None:
-    """The link or slider of a scene with the largest error, over all its lines.
+    """Return the link or slider of a scene with the largest error, over all its lines.
 
-    Of each line that ended well the finest cell counts, by the logarithm of its largest error: one
+    The finest cell of each line that ended well counts, by the logarithm of its largest error: one
     line that is far off does not decide for the others.
     """
     sums: dict[str, float] = {}
@@ -131,7 +131,7 @@ def worst_body(
 
 
 def split(line: Line, trace: Callable[[str], Trace], body: CurveBody, longest_m: float) -> Split:
-    """The parts of the error of every cell of a line.
+    """Return the parts of the error of every cell of a line.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def split(line: Line, trace: Callable[[str], Trace], body: CurveBody, longest_m:
         From the key of a cell to its trace (`reports.compare.last_turn`), empty where there is
         none.
     body : CurveBody
-        What the curves are of.
+        The body of the curves.
     longest_m : float
         The longest link, which gaps are divided by [m].
     """
@@ -156,18 +156,18 @@ def split(line: Line, trace: Callable[[str], Trace], body: CurveBody, longest_m:
     if extrapolated is None:
         return Split(cells, why=str(limit))
     floor = float(np.max(np.abs(extrapolated.error)))
-    # A line that falls as far as it was run has no floor: what is left is doubt.
+    # A line that falls as far as it was run has no floor: the rest is doubt.
     doubt = extrapolated.doubt if line.fit.kind == "floor" else max(extrapolated.doubt, floor)
     return Split(cells, floor=floor, doubt=doubt)
 
 
 def _limit(line: Line, traces: Mapping[str, Trace], body: CurveBody) -> _Extrapolated | str:
-    """The error at dt = 0 by Richardson's extrapolation, or why there is none."""
+    """Return the error at dt = 0 by Richardson's extrapolation, or why there is none."""
     order = _order(line.fit)
     if order is None:
         return "the error follows no order of the step"
     name = f"geometric.{body.series}"
-    # Not the finest cells: one that timed out, or is at rounding, is none that the fit stands on.
+    # Not the finest cells: the fit does not use one that timed out, or is at rounding.
     stood_on = line.cells.loc[list(line.fit.used), ["key", "dt_s"]]
     finest = [
         _Logged(float(dt), traces[key][name] / body.scale, traces[key]["time_s"])
@@ -183,7 +183,7 @@ def _limit(line: Line, traces: Mapping[str, Trace], body: CurveBody) -> _Extrapo
         return "the two finest steps were logged at different instants"
     if coarse is None:
         return fine
-    # What the next coarser steps tell otherwise is doubt as well.
+    # The difference to the next coarser steps is doubt as well.
     here, there = shared(fine.time_s, coarse.time_s, line.period_s)
     other = float(np.max(np.abs(fine.error[here] - coarse.error[there]), initial=0.0))
     return replace(fine, doubt=max(fine.doubt, other))
@@ -201,7 +201,7 @@ class _Logged:
 def _extrapolated(
     fine: _Logged, coarse: _Logged, order: tuple[float, float], period_s: float
 ) -> _Extrapolated | None:
-    """Richardson's extrapolation of two runs; None where they share too few instants."""
+    """Return Richardson's extrapolation of two runs; None where they share too few instants."""
     here, there = shared(fine.time_s, coarse.time_s, period_s)
     if len(here) < SHARED:
         return None
@@ -209,14 +209,14 @@ def _extrapolated(
     ratio = coarse.dt_s / fine.dt_s
     growth = ratio**p
     step = fine.error[here] - coarse.error[there]
-    # d floor / d p, times what p is uncertain by
+    # d floor / d p, times the uncertainty of p
     slope = growth * math.log(ratio) / (growth - 1.0) ** 2
     doubt = slope * more * float(np.max(np.abs(step)))
     return _Extrapolated(fine.time_s[here], fine.error[here] + step / (growth - 1.0), doubt)
 
 
 def _order(fit: LineFit) -> tuple[float, float] | None:
-    """The order to extrapolate with and twice its uncertainty; None where there is none."""
+    """Return the order to extrapolate with and twice its uncertainty; None where there is none."""
     if fit.kind == "floor" and not math.isfinite(fit.order):
         return UNTOLD_ORDER, 1.0
     if fit.kind not in ("order", "floor") or not fit.order > LEAST_ORDER:
@@ -227,7 +227,7 @@ def _order(fit: LineFit) -> tuple[float, float] | None:
 def _parts(
     trace: Trace, body: CurveBody, longest_m: float, limit: _Extrapolated | None, period_s: float
 ) -> ErrorParts:
-    """The parts of one cell, at the instants where all of them are known."""
+    """Return the parts of one cell, at the instants where all of them are known."""
     series = {
         "time_s": trace["time_s"],
         "driver_rad": trace["driver_rad"],
@@ -250,7 +250,7 @@ def _parts(
 
 
 def shared(a_s: Array, b_s: Array, period_s: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Indices of the instants that two rising series of times [s] have in common."""
+    """Return indices of the instants that two rising series of times [s] have in common."""
     if not (len(a_s) and len(b_s)):
         return np.zeros(0, np.intp), np.zeros(0, np.intp)
     right = np.clip(np.searchsorted(b_s, a_s), 1, max(len(b_s) - 1, 1))

@@ -1,4 +1,4 @@
-"""The forms that an error may have, and how many points of a line each goes through."""
+"""The possible forms of an error, and the number of points of a line that each goes through."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,24 +9,24 @@ from models.array import Array
 from reports.results.floor_fit import ORDERS, ErrorCurve, added, curvature, opposed, straight
 
 LEAST_SCATTER = 0.02
-"""The largest error of a run is not known better than this: samples miss its peak."""
+"""Least scatter: the largest error of a run is not known better, as samples miss its peak."""
 UNKNOWN_SCATTER = 0.05
-"""Scatter, as a share of the error, where a curve goes through its points whatever they are."""
+"""Scatter, as a share of the error, of a curve that goes through any points."""
 WILD = 0.25
 """Scatter beyond which points lie on no curve."""
 CLEARLY = 3.0
-"""How many times the scatter a curve must be better than one with fewer parameters."""
+"""Factor of the scatter by which a curve must be better than one with fewer parameters."""
 OFF = (10.0, 7.0, 4.5, 3.7, 3.4, 3.1, 3.0)
-"""How many times the scatter of the others a point must be off to be left out, by their degrees of
+"""Distance of a point, over the scatter of the others, at which it is left out, by their degrees of
 freedom from 1: Student's t for one in fifty (32 for the first, which would see nothing)."""
 BEYOND_DOUBT = 2.0
-"""So many times that far is the finest point off where the line of the others ends before it."""
+"""Factor of that distance at which the finest point is off where the line of the others ends."""
 FLAT = 0.3
-"""Slopes within this of 0 are none."""
+"""Slope below which there is none."""
 LOWEST, LEVEL = 1.0, 0.75
-"""The lowest order of an integrator, and a slope at the finest step that is clearly less."""
+"""Lowest order of an integrator, and a slope at the finest step that is clearly less."""
 LEAST_REST, MOST_REST = 0.5, 2.0
-"""A floor is seen where it is at least half the finest error; more than twice of it is a guess."""
+"""Bounds of a seen floor over the finest error; a floor of more than twice that is a guess."""
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,12 @@ OPPOSED = Form(opposed, 5)
 
 
 def scatter(curve: ErrorCurve) -> float:
-    """The scatter of the points of a curve, at least what is unavoidable."""
+    """Return the scatter of the points of a curve, at least the unavoidable one."""
     return max(curve.scatter, LEAST_SCATTER if curve.freedom else UNKNOWN_SCATTER)
 
 
 def uncertainty(curve: ErrorCurve) -> float:
-    """The root of what a misfit may be larger by, for an uncertainty that holds 68.3 %.
+    """Return the root of the increase of a misfit for an uncertainty that holds 68.3 %.
 
     Scatter times Student's t (Cornish-Fisher series; 1 % low at one degree of freedom).
     """
@@ -57,7 +57,7 @@ def uncertainty(curve: ErrorCurve) -> float:
 
 
 def longest(form: Form, dts: Array, errors: Array) -> ErrorCurve | None:
-    """A form through as many points as lie on one curve, the coarsest left out one after another.
+    """Fit a form to as many points as lie on one curve, the coarsest left out one after another.
 
     Points are finest first, at three different steps or more. None where no curve exists.
     """
@@ -76,7 +76,7 @@ def longest(form: Form, dts: Array, errors: Array) -> ErrorCurve | None:
 
 
 def _off(others: ErrorCurve) -> float:
-    """By how much a point that is off the curve of the others makes the misfit larger."""
+    """Return the increase of the misfit by a point that is off the curve of the others."""
     return (_times(others.freedom) * scatter(others)) ** 2
 
 
@@ -85,7 +85,7 @@ def _times(freedom: int) -> float:
 
 
 def _curved(dts: Array, errors: Array) -> bool:
-    """Whether points on a straight line would be better on a parabola: the order changes."""
+    """True if points on a straight line would be better on a parabola: the order changes."""
     line, parabola = curvature(dts, errors)
     freedom = len(dts) - 3
     spread = max(parabola / max(freedom, 1), LEAST_SCATTER**2)
@@ -93,13 +93,13 @@ def _curved(dts: Array, errors: Array) -> bool:
 
 
 def slower(than: float, dts: Array, errors: Array) -> bool:
-    """Whether the error falls with less than an order between the two finest steps."""
+    """True if the error falls with less than an order between the two finest steps."""
     last = dts <= np.unique(dts)[1]
     return abs(straight(dts[last], errors[last]).order) < than
 
 
 def floor_seen(curve: ErrorCurve, dts: Array, errors: Array) -> bool:
-    """Whether the points of a curve show its floor: it is most of the finest error, the curve has
+    """True if the points of a curve show its floor: it is most of the finest error, the curve has
     all but stopped to fall, and no power of dt alone goes through the same points."""
     if not LEAST_REST <= curve.rest <= MOST_REST or abs(curve.slope) > LEVEL:
         return False
@@ -110,7 +110,7 @@ def floor_seen(curve: ErrorCurve, dts: Array, errors: Array) -> bool:
 
 
 def opposed_seen(dts: Array, errors: Array) -> ErrorCurve | None:
-    """A floor that works against the step, through as many points as show it; None without."""
+    """Return a floor that works against the step, through as many points as show it, or None."""
     if not slower(LEVEL, dts, errors):
         return None
     for number in range(len(dts), OPPOSED.least - 1, -1):
@@ -124,12 +124,12 @@ def opposed_seen(dts: Array, errors: Array) -> ErrorCurve | None:
 
 
 def better(curve: ErrorCurve, than: ErrorCurve) -> bool:
-    """Whether a curve is clearly better than one with fewer parameters, through the same points."""
+    """True if a curve is clearly better than one with fewer parameters, through the same points."""
     return than.misfit - curve.misfit > (CLEARLY * scatter(curve)) ** 2
 
 
 def leaves(dts: Array, errors: Array) -> bool:
-    """Whether the finest point leaves the straight line of the others (five points or more)."""
+    """True if the finest point leaves the straight line of the others (five points or more)."""
     if len(dts) < 5:
         return False
     line, rest = straight(dts, errors), straight(dts[1:], errors[1:])

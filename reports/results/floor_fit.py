@@ -10,7 +10,7 @@ With y the step over the finest one and a the alignment the curve
 so that q, the share that still falls with the step, is 1 without a floor, 0 for an error that no
 step changes, and, with full alignment (a = 1), below 0 where the error comes up to its floor. The
 best E for given a, p and q is a mean of logarithms; these three are scanned. The best curve of any
-alignment needs no scan but that of p: error^2 is linear in the other three numbers.
+alignment needs a scan of p alone: error^2 is linear in the other three numbers.
 
     error^2 = floor^2 + 2 a floor C dt^p + (C dt^p)^2
 
@@ -31,11 +31,10 @@ from models.array import Array
 
 @dataclass(frozen=True)
 class ErrorCurve:
-    """A curve through points; ``coefficient`` is C [unit / s^order], below 0 where the error comes
-    up to its floor.
+    """A curve through points; ``coefficient`` is C [unit / s^order], below 0 for errors that come
+    up to the floor.
 
-    ``misfit`` is the sum of squared residuals of ln error, ``points`` and ``parameters`` say how
-    many there are.
+    ``misfit`` is the sum of squared residuals of ln error, ``points`` and ``parameters`` counts.
     """
 
     order: float
@@ -58,14 +57,14 @@ class ErrorCurve:
 
     @property
     def slope(self) -> float:
-        """d ln error / d ln dt at the finest step."""
+        """Slope d ln error / d ln dt at the finest step."""
         step = self.coefficient * self.finest_s**self.order
         square = self.at(self.finest_s) ** 2
         return float(self.order * step * (self.alignment * self.floor + step) / square)
 
     @property
     def rest(self) -> float:
-        """The floor as a share of the error at the finest step."""
+        """Floor as a share of the error at the finest step."""
         return self.floor / self.at(self.finest_s)
 
     def at(self, dt_s: float) -> float:
@@ -83,7 +82,7 @@ class Allowed:
 
 
 def straight(dt_s: Array, error: Array) -> ErrorCurve:
-    """C dt^p, p of any sign, through two points or more (shape (n,))."""
+    """Fit C dt^p, p of any sign, through two points or more (shape (n,))."""
     x, e = np.log(dt_s / dt_s.min()), np.log(error)
     away = x - x.mean()
     order = float(away @ e / (away @ away))
@@ -94,7 +93,7 @@ def straight(dt_s: Array, error: Array) -> ErrorCurve:
 
 
 def curvature(dt_s: Array, error: Array) -> Array:
-    """Misfits of a straight line and of a parabola in the logarithms, shape (2,).
+    """Return misfits of a straight line and of a parabola in the logarithms, shape (2,).
 
     One order after another leaves much between the two, and scatter does not.
     """
@@ -105,7 +104,7 @@ def curvature(dt_s: Array, error: Array) -> Array:
 
 
 STEPS_OF_HALVING = 60
-"""Halvings of an interval of ln dt: to rounding."""
+"""Number of halvings of an interval of ln dt: to rounding."""
 
 
 def reach(
@@ -113,11 +112,11 @@ def reach(
     target: float,
     error_at: Callable[[float], float | None] = lambda dt_s: None,
 ) -> float | None:
-    """The coarsest step at which, and at all finer ones, the error is at most ``target``.
+    """Return the coarsest step at which, and at all finer ones, the error is at most ``target``.
 
-    ``knots`` are (step, error), finest first; between two of them the error is that of
-    ``error_at``, or where that is None a straight line in the logarithms. None where the finest
-    error is over the target already, and where none is: the step is then outside of the knots.
+    ``knots`` are (step, error), finest first; the error between two comes from ``error_at``, or
+    where that is None from a straight line in the logarithms. None where the finest error is over
+    the target already, and where no error is: the step is then outside of the knots.
     """
     pairs = itertools.pairwise(knots)
     rise = next((x for x in pairs if x[0][1] > target or x[1][1] >= target), None)
@@ -136,7 +135,7 @@ def reach(
 
 
 def interpolate(dt_s: Sequence[float], values: Sequence[float], at_s: float) -> float | None:
-    """A positive quantity, such as the time per turn, at a step between measured ones.
+    """Interpolate a positive quantity, such as the time per turn, at a step between measured ones.
 
     A straight line in the logarithms; None outside of the measured steps.
     """
@@ -155,18 +154,18 @@ ORDERS = np.linspace(0.3, 5.0, 48)
 OPPOSED_ORDERS = np.linspace(0.5, 3.0, 101)
 """Orders that are tried where floor and step do not point the same way."""
 ALIGNMENTS = (*np.linspace(-0.8, 0.8, 9), 1.0)
-"""Alignments that are tried for what floors the points allow."""
+"""Alignments that are tried for the range of floors."""
 NEAR = np.array([-0.1, -0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03, 0.1])
-"""Where the points tell the alignment, those about it are tried too."""
+"""Offsets of further alignments about a known one."""
 LEAST_SHARE = 1e-9
-"""Shares below this are none: an error that falls by nine decades to its floor fits."""
+"""Share below which there is none: an error that falls by nine decades to its floor fits."""
 BELOW = -0.3
-"""How far the finest error may be below a floor that it rises to, as a share of itself: more would
-be a guess about steps that nobody ran."""
+"""Farthest that the finest error may be below a floor that it rises to, as a share of itself: more
+would be a guess about steps that nobody ran."""
 
 
 def added(dt_s: Array, error: Array) -> ErrorCurve:
-    """floor + C dt^p through three points or more (shape (n,))."""
+    """Fit floor + C dt^p through three points or more (shape (n,))."""
     scan, same = _Scan(dt_s, error), np.ones(1)
     near, width = ORDERS, ORDERS[1] - ORDERS[0]
     for _ in range(4):  # closer and closer around the best order
@@ -182,11 +181,10 @@ def added(dt_s: Array, error: Array) -> ErrorCurve:
 
 
 def opposed(dt_s: Array, error: Array) -> ErrorCurve | None:
-    """The curve of any alignment through four points or more (shape (n,)); None where there is
-    none.
+    """Fit the curve of any alignment through four points or more (shape (n,)); None without one.
 
-    Residuals are half the relative ones of error^2 = floor^2 + b y^p + c y^(2 p), which for a small
-    scatter are those of the logarithm.
+    Residuals are half the relative ones of error^2 = floor^2 + b y^p + c y^(2 p), for a small
+    scatter equal to those of the logarithm.
     """
     finest = float(dt_s.min())
     powers = (dt_s / finest) ** OPPOSED_ORDERS[:, None]
@@ -213,8 +211,8 @@ def within(
     more: Sequence[float],
     alignments: Sequence[float] = (),
 ) -> list[Allowed]:
-    """Orders and floors of the curves whose misfit is at most that of ``best`` and ``more``, for
-    each of several; of the alignment of ``best`` alone, or also of others, and all near it."""
+    """Return orders and floors of the curves with at most the misfit of ``best`` and ``more``, for
+    each of several; for the alignment of ``best`` alone, or also for others, and all near it."""
     scan, limits = _Scan(dt_s, error), [best.misfit + each for each in more]
     own, orders = best.alignment + NEAR * bool(len(alignments)), np.union1d(ORDERS, [best.order])
     a = np.union1d(alignments, own.clip(-1.0, 1.0))
@@ -234,8 +232,8 @@ def within(
 
 
 def _allowed(best: ErrorCurve, orders: Array, rest: Array, level: Array, slack: Array) -> Allowed:
-    """Least and largest order and floor of ``best`` and the curves that leave a ``slack`` per
-    point; ``rest`` is the share of E that is floor. Shapes (i, k, m)."""
+    """Return least and largest order and floor of ``best`` and the curves that leave a ``slack``
+    per point; ``rest`` is the share of E that is floor. Shapes (i, k, m)."""
     inside = slack >= 0.0
     order = orders[np.nonzero(inside)[1]]
     level, rest, free = level[inside], rest[inside], np.sqrt(slack[inside])  # of E alone
@@ -256,7 +254,7 @@ class _Scan:
         self._e = np.log(error)[:, None, None, None]
 
     def fit(self, alignments: Array, orders: Array, units: Array) -> tuple[Array, Array]:
-        """Levels and misfits, shape (i, k, m); infinite where the error would not be positive."""
+        """Return levels and misfits, shape (i, k, m); infinite where no error would be positive."""
         rise, share = np.expm1(orders[:, None] * self._x), _share(units)
         curve = share * rise
         square = curve * (2.0 + curve)
@@ -270,7 +268,7 @@ class _Scan:
         return level, np.where(bad.any(axis=0), np.inf, misfit)
 
     def best(self, alignments: Array, orders: Array) -> tuple[Array, Array]:
-        """The units with the least misfit for each alignment and order, and that, shape (i, k)."""
+        """Return units of least misfit per alignment and order, with the misfit, shape (i, k)."""
         middle = np.full((len(alignments), len(orders)), 0.5 * (_LOW + _HIGH))
         width = 0.5 * (_HIGH - _LOW)
         for number in (41, *[11] * 4):
@@ -282,13 +280,13 @@ class _Scan:
         return middle, np.take_along_axis(misfit, at, axis=-1)[..., 0]
 
     def clipped(self, alignments: Array, units: Array) -> Array:
-        """Units in their range: shares below 0 with full alignment only."""
+        """Clip units to their range: shares below 0 with full alignment only."""
         low = np.where(alignments == 1.0, _LOW, 0.0)[:, None, None]
         return np.asarray(np.clip(units, low, _HIGH))
 
 
 def _share(units: Array) -> Array:
-    """The share q of scanning units: evenly spaced in ln |q| on both sides of 0."""
+    """Return the share q of scanning units: evenly spaced in ln |q| on both sides of 0."""
     return np.asarray(LEAST_SHARE * np.sinh(units))
 
 

@@ -1,10 +1,10 @@
 """Fit error = floor + C dt^p to a line of cells that differ only in their step.
 
-A fit stands on points that ended well, at their own and at every finer step, and are above
-rounding; from the finest on, on as many coarser ones as one curve goes through. A floor is said to
-be seen only where it is most of the finest error, the error has all but stopped to fall, and no
-power of dt alone goes through the same points. Where the two parts work against each other
-(`reports.results.floor_fit`), five points can tell.
+A fit uses points that ended well, at their own and at every finer step, and are above rounding;
+from the finest on, it uses as many coarser ones as one curve goes through. A floor counts as seen
+only where it is most of the finest error, the error has all but stopped to fall, and no power of dt
+alone goes through the same points. Five points can show parts that work against each other
+(`reports.results.floor_fit`).
 """
 
 import math
@@ -40,20 +40,20 @@ FitKind = Literal[
 
 @dataclass(frozen=True)
 class LineFit:
-    """What the errors of a line say; runs in the order in which they were given.
+    """Fit of the errors of a line; runs in the order in which they were given.
 
-    ``used`` says which runs the fit stands on, ``measured`` which ended well, as did every finer
-    one. ``stable_from_s`` is the coarsest step of those (NaN: none); ``failed`` the status of the
-    finest run that did not end well, "" where all did, and ``fails_from_s`` its step.
+    ``used`` marks the runs of the fit, ``measured`` the runs that ended well, as did every finer
+    one. ``stable_from_s`` is their coarsest step (NaN: none); ``failed`` the status of the finest
+    run that did not end well, "" where all did, and ``fails_from_s`` its step.
 
-    ``floor`` and ``floor_error`` are NaN where no floor is seen, ``order`` where the error
-    follows no power of the step. Uncertainties hold the true value two times in three, and more
-    often next to a floor, where they allow floor and step to add or to oppose in any proportion
-    (`reports.results.floor_fit`). ``floor_below`` is the largest floor that two
-    such uncertainties allow, NaN where the line says nothing about it; a floor that works against
-    the step, rather than adds to it, may hide up to about the finest error where none is seen.
-    ``scatter`` is by what share of itself an error is off its curve. ``curve`` is None where no
-    curve goes through the points.
+    ``floor`` and ``floor_error`` are NaN where no floor is seen, ``order`` where the error follows
+    no power of the step. Uncertainties hold the true value two times in three, and more often next
+    to a floor, where they allow floor and step to add or to oppose in any proportion
+    (`reports.results.floor_fit`). ``floor_below`` is the largest floor that two such uncertainties
+    allow, NaN where the line says nothing about it; a floor that works against the step, rather
+    than adds to it, may hide up to about the finest error where none is seen. ``scatter`` is the
+    distance of errors from the curve as a share of them. ``curve`` is None where no curve goes
+    through the points.
     """
 
     dt_s: tuple[float, ...]
@@ -75,23 +75,23 @@ class LineFit:
 
     @property
     def runs(self) -> tuple[tuple[float, float], ...]:
-        """(step [s], error) of the runs that ended well, finest first."""
+        """Pairs (step [s], error) of the runs that ended well, finest first."""
         every = zip(self.dt_s, self.error, self.measured, strict=True)
         return tuple(sorted((dt, e) for dt, e, well in every if well))
 
     @property
     def finest_error(self) -> float:
-        """The error at the finest step that ended well; NaN where none did."""
+        """Error at the finest step that ended well; NaN where none did."""
         return self.runs[0][1] if self.runs else math.nan
 
     @property
     def used_range_s(self) -> tuple[float, float]:
-        """Finest and coarsest step that the fit stands on; NaN where it stands on none."""
+        """Finest and coarsest step of the fit; NaN where it uses none."""
         steps = [dt for dt, yes in zip(self.dt_s, self.used, strict=True) if yes]
         return (min(steps), max(steps)) if steps else (math.nan, math.nan)
 
     def error_at(self, dt_s: float) -> float | None:
-        """The error at a step, along the fit; None outside the steps that it stands on."""
+        """Return the error at a step, along the fit; None outside the steps of the fit."""
         low, high = self.used_range_s
         near = 1e-12 * high  # a step that was computed as period / n
         if self.curve is None or not low - near <= dt_s <= high + near:
@@ -99,7 +99,7 @@ class LineFit:
         return self.curve.at(dt_s)
 
     def dt_for(self, target: float) -> float | None:
-        """The coarsest step from which on every error is at most ``target`` [s].
+        """Return the coarsest step from which on every error is at most ``target`` [s].
 
         Along the fit, or between measured points where there is none; None where the target is
         below the floor or the finest error, or every measured step reaches it: nothing is
@@ -153,7 +153,7 @@ def fit_line(
 
 
 def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
-    """The form that goes through the points ``fit`` (indices, finest first)."""
+    """Fit a form to the points ``fit`` (indices, finest first)."""
     dts, errors = np.array(line.dt_s)[list(fit)], np.array(line.error)[list(fit)]
     if not slower(LOWEST, dts, errors):  # a floor would not be seen: do not look for one
         return _without_floor(line, fit, dts, errors)
@@ -167,7 +167,7 @@ def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
 
 
 def _with_floor(line: LineFit, dts: Array, errors: Array, curve: ErrorCurve) -> LineFit:
-    """A floor, with the doubt of curves of any alignment; its order where the points tell it."""
+    """Return a floor, with the doubt of curves of any alignment; its order if points show it."""
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
     (alone,) = within(dts, errors, curve, [more**2])
     ordered = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]
@@ -184,7 +184,7 @@ def _with_floor(line: LineFit, dts: Array, errors: Array, curve: ErrorCurve) -> 
 
 
 def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Array) -> LineFit:
-    """A power of dt, where one goes through the points."""
+    """Fit a power of dt, where one goes through the points."""
     curve = longest(POWER, dts, errors) or straight(dts, errors)
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
     if curve.scatter > WILD or abs(curve.order) < FLAT or leaves(dts, errors):
@@ -201,7 +201,7 @@ def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Arra
 
 
 def _on(line: LineFit, fit: tuple[int, ...], curve: ErrorCurve) -> LineFit:
-    """The line with a curve, and the points that it goes through."""
+    """Return the line with a curve, and the points of that curve."""
     used = _mask(fit[: curve.points], len(line.used))
     return replace(line, used=used, curve=curve, scatter=curve.scatter)
 
@@ -212,22 +212,22 @@ def _mask(indices: Sequence[int], number: int) -> tuple[bool, ...]:
 
 
 def _farthest(value: float, bounds: tuple[float, float]) -> float:
-    """How far the farther bound is off the value."""
+    """Return the distance of the farther bound from the value."""
     return max(bounds[1] - value, value - bounds[0])
 
 
 NEVER_RUN = ("timeout", "unsupported")
 """Statuses that say nothing about the step."""
 NEAR_ROUNDING = 10.0
-"""Up to so many times the rounding an error at the finest steps is still taken for rounding."""
+"""Factor of rounding up to which an error at the finest steps still counts as rounding."""
 
 
 @dataclass(frozen=True)
 class Points:
-    """The runs of a line by their step, as indices into what was given, finest first.
+    """Runs of a line by their step, as indices into the input, finest first.
 
-    ``well`` ended well, as did every finer run; ``fit`` are those of them above rounding.
-    ``bad`` is the finest run that did not end well, None where all did.
+    ``well`` ended well, as did every finer run; ``fit`` are those of them above rounding. ``bad``
+    is the finest run that did not end well, None where all did.
     """
 
     well: tuple[int, ...]
@@ -258,7 +258,7 @@ def points(
     coarsest = max((dt_s[i] for i in well if error[i] <= rounding), default=0.0)
 
     def rounded(i: int) -> bool:
-        """Finer than a step at rounding an error is rounding too, and grows a little."""
+        """True if at rounding: finer than a step at rounding, it may grow a little."""
         near = NEAR_ROUNDING if dt_s[i] < coarsest else 1.0
         return error[i] <= near * rounding
 
@@ -274,13 +274,13 @@ FAILS = {
 }
 NOT_RUN = {"timeout": "timed out at every step", "unsupported": "unsupported"}
 VAGUE = 0.15
-"""An order that is known no better than this is told with its uncertainty."""
+"""Uncertainty of an order above which it is stated."""
 
 
 def words(fit: LineFit, unit: str, period_s: float, turn: str = "turn") -> str:
-    """The verdict in a few words: 'order 2.0, no floor seen', 'diverges below 90 steps per turn'.
+    """Return the verdict in words: 'order 2.0, no floor seen', 'diverges below 90 steps per turn'.
 
-    ``period_s`` is the time of a turn [s], or of what else is called ``turn``.
+    ``period_s`` is the time of a ``turn`` [s], which may have another name.
     """
     if fit.kind == "diverges":
         verb = FAILS.get(fit.failed, "fails")
@@ -295,7 +295,7 @@ def words(fit: LineFit, unit: str, period_s: float, turn: str = "turn") -> str:
 
 
 def _told(fit: LineFit, unit: str) -> str:
-    """The verdict on the runs that ended well."""
+    """Return the verdict on the runs that ended well."""
     if fit.kind == "order":
         return _order(fit)
     if fit.kind == "floor":
@@ -313,7 +313,7 @@ def _told(fit: LineFit, unit: str) -> str:
 
 
 def _order(fit: LineFit) -> str:
-    """An order, and that no floor is seen."""
+    """Return the words for an order without a floor."""
     if fit.order + fit.order_error < LEVEL:
         return f"order {fit.order:.1f}: slower than any integrator, a floor may be near"
     vague = f" +- {fit.order_error:.1f}" if fit.order_error > VAGUE else ""
@@ -321,7 +321,7 @@ def _order(fit: LineFit) -> str:
 
 
 def _irregular(fit: LineFit, unit: str) -> str:
-    """How far an error falls that follows no curve."""
+    """Say how far an error falls that follows no curve."""
     least, last = min(error for _, error in fit.runs), fit.finest_error
     if least < last:
         return f"irregular: falls to {short(least)} {unit}, then rises to {short(last)}"

@@ -27,8 +27,8 @@ from sim.engine import Drive, SettingValue
 class Line:
     """Cells that differ in their step only.
 
-    ``cells`` are rows of the store, from the coarse to the fine step; ``settings`` are those that
-    were asked for. ``fit`` and ``words`` speak of one quantity.
+    ``cells`` are rows of the store, from the coarse to the fine step; ``settings`` are the
+    requested ones. ``fit`` and ``words`` describe one quantity.
     """
 
     scene: str
@@ -44,52 +44,52 @@ class Line:
 
     @property
     def name(self) -> str:
-        """The variant as a sentence calls it, without the engine."""
+        """Variant as a sentence calls it, without the engine."""
         return called(self.variant, self.drive)
 
     @cached_property
     def way(self) -> Way:
-        """How its cells were run and compared."""
+        """Way in which its cells were run and compared."""
         return way_of_row(self.cells.iloc[0].to_dict())
 
     @property
     def kind(self) -> ResultKind:
-        """What is said of its cells."""
+        """Kind of results of its cells."""
         return self.way.results
 
     @property
     def lasts_s(self) -> float:
-        """How long each run is [s]."""
+        """Duration of each run [s]."""
         return self.period_s * float(self.cells.iloc[0]["turns"])
 
     @property
     def period_s(self) -> float:
-        """The period of the driver [s]; a second of what is let go."""
+        """Period of the driver [s]; a second in a free motion."""
         first = self.cells.iloc[0]
         return float(first["dt_s"] * first["steps_per_turn"])
 
 
 Named = tuple[str, str, Drive]
-"""Engine, variant and drive: what settings are told by in tables, legends and looks."""
+"""Engine, variant and drive: the name of settings in tables, legends and looks."""
 
 
 def named(line: Line) -> Named:
-    """What the settings of a line are told by."""
+    """Return the name of the settings of a line."""
     return line.engine, line.variant, line.drive
 
 
 def called(variant: str, drive: Drive) -> str:
-    """A variant by its name, and its drive where that is not the usual one."""
+    """Return the name of a variant, and its drive where that is not the usual one."""
     return variant if drive == "prescribed" else f"{variant}, {drive} drive"
 
 
 def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
-    """The lines of a store, by scene and variant in the order of its study.
+    """Return the lines of a store, by scene and variant in the order of its study.
 
-    ``quantity`` is the column of ``stored.cells`` that is fitted. Where a store holds several
-    lines of one scene, engine, variant and drive (of another version of the engine, with other
-    settings under the same name, over other turns), only the newest is given: the highest version,
-    and of that the one that was written last. Times are those of one processor (see `machines`).
+    ``quantity`` is the column of ``stored.cells`` that is fitted. Only the newest of several lines
+    of one scene, engine, variant and drive (of another version of the engine, with other settings
+    under the same name, over other turns) is given: the highest version, and the last written of
+    that. Times are from one processor (see `machines`).
     """
     cells = comparable(stored.cells)
     chosen = _newest(cells)
@@ -111,7 +111,7 @@ def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
 
 
 def _variants(manifest: Manifest) -> list[tuple[str, str]]:
-    """Engine and name of the variants of all runs, in the order of their studies."""
+    """Return engine and name of the variants of all runs, in the order of their studies."""
     names: dict[tuple[str, str], None] = {}
     for run in manifest.runs:
         try:
@@ -123,7 +123,7 @@ def _variants(manifest: Manifest) -> list[tuple[str, str]]:
 
 
 def _newest(cells: pd.DataFrame) -> set[str]:
-    """The names of the lines that no newer one replaces."""
+    """Return the names of the lines that no newer one replaces."""
     names = ["scene", "engine", "variant", "drive"]
     found: dict[tuple[str, ...], tuple[tuple[tuple[int, ...], int], str]] = {}
     for at, row in enumerate(cells[[*names, "version", "line"]].itertuples(index=False)):
@@ -135,12 +135,12 @@ def _newest(cells: pd.DataFrame) -> set[str]:
 
 
 def numbers(version: str) -> tuple[int, ...]:
-    """A version as numbers, which compare as versions do."""
+    """Return a version as numbers, which compare as versions do."""
     return tuple(int(part) for part in re.findall(r"\d+", version))
 
 
 def _line(rows: pd.DataFrame, quantity: str) -> Line:
-    """One line of its rows."""
+    """Return the line of some rows."""
     first = rows.iloc[0]
     fit = fit_line(
         [float(dt) for dt in rows["dt_s"]],
@@ -168,7 +168,7 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
 
 
 def _unit(quantity: str, row: Mapping[Any, Any]) -> str:
-    """The unit of a column of errors, of such cells."""
+    """Return the unit of a column of errors, in cells such as ``row``."""
     if quantity == "place_pure":
         return way_of_row(row).results.unit
     if quantity.endswith("_pure"):
@@ -181,32 +181,32 @@ def _unit(quantity: str, row: Mapping[Any, Any]) -> str:
 
 
 def _rounding(rows: pd.DataFrame) -> float:
-    """The pure error that rounding explains: that of the crank, and what the others are behind."""
-    drives = rows.get("drive_pure", ())  # what is let go has none
+    """Return the pure error from rounding: of the crank, and of the bodies behind it."""
+    drives = rows.get("drive_pure", ())  # a free motion has none
     drive = max((float(error) for error in drives if error <= EXACT_DRIVE), default=0.0)
     return max(AT_ROUNDING, BEHIND_DRIVE * drive)
 
 
 TIMES = ("us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn")
-"""The columns that hold times; NaN where a cell was not timed."""
+"""Columns of times; NaN where a cell was not timed."""
 
 
 def machine(cells: pd.DataFrame) -> str | None:
-    """The processor that timed last, None where nothing was timed."""
+    """Return the processor that timed last, None where nothing was timed."""
     timed = _timed(cells)
     return None if timed.empty else str(timed.sort_values("made")["processor"].iloc[-1])
 
 
 def left_out(cells: pd.DataFrame) -> tuple[str, ...]:
-    """The processors whose times are not compared."""
+    """Return the processors whose times are not compared."""
     names = {str(name) for name in _timed(cells)["processor"]}
     return tuple(sorted(names - {str(machine(cells))}))
 
 
 def comparable(cells: pd.DataFrame) -> pd.DataFrame:
-    """The cells with the times of the processor that timed last; other times are blanked.
+    """Return the cells with the times of the processor that timed last; other times are blanked.
 
-    Processors are told apart by name: two machines of one kind can not be.
+    Processors are distinguished by name: two machines of one kind can not be.
     """
     cleared = cells.reindex(columns=[*cells.columns, *(c for c in TIMES if c not in cells.columns)])
     name = machine(cells)
@@ -216,7 +216,7 @@ def comparable(cells: pd.DataFrame) -> pd.DataFrame:
 
 
 def _timed(cells: pd.DataFrame) -> pd.DataFrame:
-    """The cells with a time."""
+    """Return the cells with a time."""
     if "processor" not in cells.columns:  # a store without timings
         return cells.iloc[:0].assign(processor="", made="")
     return cells[cells["us_per_step"].notna()]
@@ -226,18 +226,18 @@ FAMILY = 4
 """Colours in a family; the style sheet has three families: cool, warm, and green with grey."""
 FAMILIES = 3
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "star")
-"""Plotly's names of the markers; the legends draw the same."""
+"""Names of the markers in Plotly; the legends draw the same."""
 DASHES = ("solid", "dash", "dot", "dashdot")
 SIZES = (11.0, 9.5, 8.0, 6.5)
-"""Of markers: equal curves of one engine are seen as rims around each other."""
+"""Sizes of markers: equal curves of one engine are seen as rims around each other."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """An engine with one set of settings: its number in the page, and how it is drawn.
+    """An engine with one set of settings: its number in the page, and its marks.
 
-    Engines differ in marker and in the family of their colours, the settings of an engine in
-    colour and dash: told apart without colours as well.
+    Engines differ in marker and in the family of their colours, the settings of an engine in colour
+    and dash: distinct without colours as well.
     """
 
     number: int
@@ -255,8 +255,8 @@ class Look:
 
 
 def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
-    """A look for every engine, variant and drive, in the order of the lines; where all were let go
-    the drive needs no word."""
+    """Return a look for every engine, variant and drive, in the order of the lines; without the
+    drive if all lines are free motions."""
     lines = tuple(lines)
     bare = common_clock(line.drive for line in lines) is SECONDS
     every: dict[Named, Look] = {}
@@ -280,7 +280,7 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
 
 
 def label(name: Named) -> str:
-    """A variant as a legend calls it; the drive where it is not the usual one."""
+    """Return the legend of a variant; with the drive where that is not the usual one."""
     engine, variant, drive = name
     return f"{engine} {called(variant, drive)}"
 
@@ -289,22 +289,22 @@ OWN = "every setting as the engine is shipped"
 
 
 def usual(lines: Sequence[Line], engine: str) -> Line:
-    """What the others of an engine are held against: it as shipped, or else its first variant."""
+    """Return the line to compare others of an engine with: as shipped, or its first variant."""
     own = [line for line in lines if line.engine == engine]
     return next((line for line in own if line.variant == "as-shipped"), own[0])
 
 
 def settings_told(lines: Sequence[Line]) -> Mapping[Named, str]:
-    """The settings of each variant, by engine, variant and drive.
+    """Return the settings of each variant, by engine, variant and drive.
 
-    Those of an engine as shipped go without saying; where it was not run so, its first variant is
-    told in full, and of the others what differs from that.
+    Settings of an engine as shipped are not named; where it was not run so, its first variant is
+    given in full, and the others by their differences from that.
     """
     return {named(line): _told(line, lines) for line in lines}
 
 
 def value_text(value: SettingValue | None) -> str:
-    """A value as it is shown; empty for a setting that is not there."""
+    """Return a value as text; empty for a missing setting."""
     if value is None:
         return ""
     return f"{value:g}" if isinstance(value, float) else str(value) or "none"
@@ -322,7 +322,7 @@ def _told(line: Line, lines: Sequence[Line]) -> str:
 
 
 def _differing(line: Line, other: Line) -> Mapping[str, SettingValue]:
-    """The settings of a line that another one has not, or otherwise."""
+    """Return the settings of a line that another one lacks, or has otherwise."""
     return {
         name: value
         for name, value in line.settings.items()

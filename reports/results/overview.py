@@ -1,4 +1,4 @@
-"""What pages, figures and tables are built from, and what stands under them."""
+"""The input of pages, figures and tables, and their notes."""
 
 from __future__ import annotations
 
@@ -35,28 +35,28 @@ from reports.way.way import TARGETS, WAYS, way_of_row
 
 @dataclass(frozen=True)
 class Report:
-    """A store as its readers see it: its newest lines, and the cells of those."""
+    """A store as its readers see it: its newest lines, and their cells."""
 
     stored: Stored
 
     @cached_property
     def lines(self) -> tuple[Line, ...]:
-        """The newest lines, by scene and variant in the order of the study."""
+        """Newest lines, by scene and variant in the order of the study."""
         return lines(self.stored)
 
     @cached_property
     def cells(self) -> pd.DataFrame:
-        """The cells of the lines, in their order, coarse steps first."""
+        """Cells of the lines, in their order, coarse steps first."""
         return pd.concat([line.cells for line in self.lines], ignore_index=True)
 
     @cached_property
     def looks(self) -> Mapping[Named, Look]:
-        """How each engine with its settings is drawn."""
+        """Look of each engine with its settings."""
         return looks(self.lines)
 
     @cached_property
     def recommendations(self) -> tuple[Recommendation, ...]:
-        """The cheapest settings per engine and target."""
+        """Cheapest settings per engine and target."""
         return recommendations(self.stored)
 
     @cached_property
@@ -66,17 +66,17 @@ class Report:
 
     @cached_property
     def costs(self) -> tuple[Costs, ...]:
-        """What each variant costs, and the time in which it comes to the targets."""
+        """Cost of each variant, and the time in which it reaches the targets."""
         return costs_of(self.lines, TARGETS)
 
     @cached_property
     def noise(self) -> float:
-        """The relative difference up to which costs are called equal; NaN if nothing was timed."""
+        """Relative difference up to which costs are called equal; NaN if nothing was timed."""
         return noise(self.stored)
 
     @cached_property
     def scenes(self) -> Mapping[str, Scene | None]:
-        """The scenes that were run, in order, let go where they were in all lines; None where the
+        """Scenes that were run, in order, released where all lines are free motions; None where the
         store has no readable text of one."""
         names = dict.fromkeys(line.scene for line in self.lines)
         texts = self.stored.manifest.scenes
@@ -89,7 +89,7 @@ class Report:
 
     @cached_property
     def engines(self) -> Mapping[str, str]:
-        """The engines with their versions, in the order of the study."""
+        """Engines with their versions, in the order of the study."""
         versions_of: dict[str, dict[str, None]] = {}
         for line in self.lines:
             versions_of.setdefault(line.engine, {})[line.version] = None
@@ -97,13 +97,13 @@ class Report:
 
     @property
     def timed(self) -> bool:
-        """Whether there is a cost to speak of."""
+        """True if any cell was timed."""
         return bool(self.cells["s_per_turn"].notna().any())
 
     @cached_property
     def driven(self) -> Report | None:
-        """What was driven alone and has rigid links: turns, and errors of place; None where
-        everything was let go or bends."""
+        """Report of the driven cells with rigid links: turns, and errors of place; None where every
+        cell is free or elastic."""
         cells = self.stored.cells
         rows = cells.drop_duplicates("line").to_dict("records")
         names = {row["line"]: way_of_row(row).name for row in rows}
@@ -116,20 +116,20 @@ class Report:
         return DrivenReport(replace(self.stored, cells=own), whole=self)
 
     def of_kind(self, kind: str) -> tuple[Line, ...]:
-        """The lines of a kind (`reports.way.way.Way.kinds`)."""
+        """Return the lines of a kind (`reports.way.way.Way.kinds`)."""
         return tuple(line for line in self.lines if kind in line.way.kinds)
 
     def look(self, line: Line) -> Look:
-        """How a line is drawn."""
+        """Return the look of a line."""
         return self.looks[named(line)]
 
     def lines_of(self, scene: str) -> tuple[Line, ...]:
-        """The lines of a scene."""
+        """Return the lines of a scene."""
         return tuple(line for line in self.lines if line.scene == scene)
 
     @cached_property
     def settings_told(self) -> Mapping[Named, str]:
-        """The settings of each variant, as what differs from the engine as shipped."""
+        """Settings of each variant, as differences from the engine as shipped."""
         return settings_told(self.lines)
 
 
@@ -146,7 +146,7 @@ class DrivenReport(Report):
 
 
 def _parsed(text: str | None, name: str) -> Scene | None:
-    """A scene of its text."""
+    """Return the scene of a text; None for a text that can not be read."""
     if text is None:
         return None
     try:
@@ -156,11 +156,11 @@ def _parsed(text: str | None, name: str) -> Scene | None:
 
 
 SHOWN = 10
-"""Variants whose settings a figure tells; Markdown and the page tell all of them."""
+"""Variants whose settings a figure shows; Markdown and the page show all of them."""
 
 
 def notes(report: Report, lines: Sequence[Line], timed: bool = False) -> list[str]:
-    """Paragraphs on the lines that a figure shows; ``timed`` where it shows times."""
+    """Return paragraphs on the lines that a figure shows; ``timed`` where it shows times."""
     return [
         f"{versions(report, lines)}. {study(lines)}. {made(report, timed)}.",
         *settings(report, lines),
@@ -168,7 +168,7 @@ def notes(report: Report, lines: Sequence[Line], timed: bool = False) -> list[st
 
 
 def versions(report: Report, lines: Sequence[Line]) -> str:
-    """crankcheck, and the engines of the lines, with their versions."""
+    """Return crankcheck, and the engines of the lines, with their versions."""
     own = {str(version) for line in lines for version in line.cells["crankcheck"]}
     engines = dict.fromkeys(f"{line.engine} {line.version}" for line in lines)
     facts = facts_of(report)
@@ -177,12 +177,12 @@ def versions(report: Report, lines: Sequence[Line]) -> str:
 
 
 def study(lines: Sequence[Line]) -> str:
-    """The size of the grid that the lines are of."""
+    """Return the size of the grid of the lines."""
     return _STUDIES[common_clock(line.drive for line in lines)](lines)
 
 
 def _where(lines: Sequence[Line]) -> str:
-    """The scenes and variants."""
+    """Return the scenes and variants."""
     scenes = dict.fromkeys(line.scene for line in lines)
     where = next(iter(scenes)) if len(scenes) == 1 else count(len(scenes), "scene")
     return f"Study: {where}, {count(len({named(line) for line in lines}), 'variant')}"
@@ -206,7 +206,7 @@ _STUDIES = {TURNS: _in_turns, SECONDS: _in_seconds}
 
 
 def made(report: Report, timed: bool) -> str:
-    """On which processor, and when; that of the timings where there are any."""
+    """Return processor, system and date; the processor of the timings where there are any."""
     facts = facts_of(report)
     name = machine(report.stored.cells) if timed else None
     parts = [name or facts.get("processor", ""), facts.get("system", ""), facts.get("made", "")]
@@ -214,7 +214,7 @@ def made(report: Report, timed: bool) -> str:
 
 
 def settings(report: Report, lines: Sequence[Line]) -> list[str]:
-    """What the variants set, in one paragraph; none where all of it is the engines' own."""
+    """Return the settings of the variants, in one paragraph; none if all are the engines' own."""
     told = {name: each for name, each in settings_of(report, lines).items() if each != OWN}
     words = [f"{name}: {each}" for name, each in list(told.items())[:SHOWN]]
     more = len(told) - len(words)
@@ -223,13 +223,13 @@ def settings(report: Report, lines: Sequence[Line]) -> list[str]:
 
 
 def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
-    """The settings of each variant, by its label (see `reports.results.lines`)."""
+    """Return the settings of each variant, by its label (see `reports.results.lines`)."""
     shown = dict.fromkeys(named(line) for line in lines)
     return {report.looks[name].name: report.settings_told[name] for name in shown}
 
 
 def facts_of(report: Report) -> Mapping[str, str]:
-    """What the last run of the store says of where it ran."""
+    """Return the provenance of the last run of the store."""
     runs = report.stored.manifest.runs
     facts = runs[-1].get("provenance") if runs else None
     return {str(k): str(v) for k, v in facts.items()} if isinstance(facts, Mapping) else {}

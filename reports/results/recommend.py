@@ -25,15 +25,15 @@ from sim.registry.offers import PERIOD_S, snippet
 
 @dataclass(frozen=True)
 class Recommendation:
-    """What to set for a target, or why there is nothing to set.
+    """Settings for a target, or the reason why there are none.
 
-    The promise rests on measured cells alone: the error of place of ``best`` is at most ``target``
-    on every scene. Where nothing reaches the target ``reason`` says so, and ``best`` comes nearest.
+    The promise uses measured cells alone: the error of place of ``best`` is at most ``target`` on
+    every scene. ``reason`` says that nothing reaches the target, and ``best`` comes nearest then.
 
     ``least_steps`` is where along the fits every scene meets the target, between measured steps;
-    None where a fit does not tell. ``equal_to`` cost the same, within the noise, and have the
+    None where a fit does not show it. ``equal_to`` cost the same, within the noise, and have the
     larger error. ``caution`` says at which finer steps the promise does not hold, and ``steadier``
-    is the cheapest of which that can not be said.
+    is the cheapest without such a caution.
     """
 
     target: float
@@ -45,8 +45,8 @@ class Recommendation:
     reason: str = ""
 
     def snippet(self, period_s: float = PERIOD_S) -> str:
-        """Text to copy and paste, headed by what it promises; empty where there is none. Of what
-        is let go, whose steps are counted over a second, it has no period."""
+        """Return text to copy and paste, headed by its promise; empty where there is none.
+        ``period_s`` is not used for a free motion, with its steps per second."""
         best = self.best
         if self.reason or best.engine not in offering("snippet"):
             return ""
@@ -67,13 +67,13 @@ class Recommendation:
 def recommendations(
     stored: Stored, targets: Sequence[float] | None = None
 ) -> tuple[Recommendation, ...]:
-    """One for each engine and target, of what was driven, of what was let go, and of both with
+    """Return one for each engine and target, of driven scenes, of free motion, and of both with
     elastic links, which have targets of their own.
 
-    Of all settings and measured steps whose error is at most the target on every scene of the
-    store, those with the least time per turn (geometric mean over the scenes) are chosen; of
-    settings that are equal within the noise, the ones with the least error. Of two steps of the
-    same settings the longer costs less: that takes no clock.
+    The settings and measured step with the least time per turn (geometric mean over the scenes) are
+    chosen, of all with an error of at most the target on every scene of the store; the least error
+    decides among settings that are equal within the noise. The longer of two steps of the same
+    settings costs less: that takes no clock.
     """
     within = noise(stored)
     every = lines(stored)
@@ -88,7 +88,7 @@ def recommendations(
 def _of_lines(
     every: Sequence[Line], targets: Sequence[float], within: float
 ) -> tuple[Recommendation, ...]:
-    """One for each engine and target, of some lines."""
+    """Return one for each engine and target, of some lines."""
     choice = candidates(every)
     engines = dict.fromkeys(line.engine for line in every)
     return tuple(
@@ -101,7 +101,7 @@ def _of_lines(
 def _recommended(
     target: float, choice: Sequence[Candidate], every: Sequence[Line], within: float
 ) -> Recommendation:
-    """The recommendation of one engine."""
+    """Return the recommendation of one engine."""
     good = [one for one in choice if one.reaches(target)]
     timed = [one for one in good if math.isfinite(one.s_per_turn)]
     if not timed:
@@ -119,9 +119,9 @@ def _recommended(
 
 
 def _cheapest(timed: Sequence[Candidate], within: float) -> tuple[Candidate, tuple[str, ...]]:
-    """The most accurate of those that cost least, within the noise; and what costs the same.
+    """Return the most accurate of the cheapest, within the noise; and the names of equal cost.
 
-    Of each set of settings only the one with the fewest steps takes part.
+    Only the fewest steps of each set of settings take part.
     """
     longest: dict[tuple[str, str], Candidate] = {}
     for one in sorted(timed, key=lambda one: one.steps_per_turn):
@@ -134,23 +134,23 @@ def _cheapest(timed: Sequence[Candidate], within: float) -> tuple[Candidate, tup
 
 
 def _least_steps(one: Candidate, every: Sequence[Line], target: float) -> float | None:
-    """Steps a turn from which on all scenes meet the target, along the fits."""
+    """Return the steps a turn from which on all scenes meet the target, along the fits."""
     meets = [reached(line, target) for line in every if one.holds(line)]
     steps = [each.steps_per_turn for each in meets if each is not None]
     return max(steps) if len(steps) == len(meets) else None
 
 
 SHOWN = 3
-"""Scenes that a sentence names; of more it gives the number."""
+"""Scenes that a sentence names; beyond, it gives their number."""
 
 
 def nearest(choice: Sequence[Candidate], target: float) -> Candidate:
-    """What reaches the target on most scenes, of those with the least error."""
+    """Return the candidate with the target reached on most scenes, and of these the least error."""
     return max(choice, key=lambda c: (c.reaching(target), -c.worst_error, -_worst(c), -_time(c)))
 
 
 def nothing(best: Candidate, good: Sequence[Candidate], target: float) -> str:
-    """Why nothing is recommended, where ``best`` comes nearest; ``good`` lack their times."""
+    """Say why nothing is recommended, where ``best`` comes nearest; ``good`` lack their times."""
     if good:
         names = ", ".join(dict.fromkeys(called(one.variant, one.drive) for one in good))
         return (
@@ -161,9 +161,9 @@ def nothing(best: Candidate, good: Sequence[Candidate], target: float) -> str:
 
 
 def broken(one: Candidate, choice: Sequence[Candidate], target: float) -> str:
-    """Where the same settings miss the target at a finer step; empty where they keep it.
+    """Say where the same settings miss the target at a finer step; empty where they keep it.
 
-    What was not run at a finer step says nothing.
+    Settings that were not run at a finer step say nothing.
     """
     finer = [
         c
@@ -177,7 +177,7 @@ def broken(one: Candidate, choice: Sequence[Candidate], target: float) -> str:
 
 
 def _shortfall(one: Candidate, target: float) -> str:
-    """On how many scenes, and what hinders the others; the nearest where it is on none."""
+    """Say on how many scenes, and the faults of the others; the nearest where on none."""
     if not one.reaching(target) and one.errors:
         scene = min(one.errors, key=lambda name: one.errors[name])
         return f"on no scene, {short(one.errors[scene])} on {scene} at best"
@@ -187,7 +187,7 @@ def _shortfall(one: Candidate, target: float) -> str:
 
 
 def _missed(one: Candidate, target: float) -> list[str]:
-    """The scenes that were run and miss the target, worst first, each with its error or fault."""
+    """Return the scenes that miss the target, worst first, each with error or fault."""
     failed = [f"{scene} {why}" for scene, why in one.faults.items() if why != NOT_RUN]
     over = sorted(((e, s) for s, e in one.errors.items() if e > target), reverse=True)
     return failed + [f"{scene} {short(error)}" for error, scene in over]
@@ -198,19 +198,19 @@ def _worst(one: Candidate) -> float:
 
 
 def _time(one: Candidate) -> float:
-    """Time, infinite where it is not known."""
+    """Return the time, infinite where it is not known."""
     return one.s_per_turn if math.isfinite(one.s_per_turn) else math.inf
 
 
 WIDE = 90
-"""Columns of a terminal that have room for the scene of the worst error in a column of its own."""
+"""Columns of a terminal with room for a column of the scene of the worst error."""
 
 
 def recommendation_table(
     recommendations: Sequence[Recommendation], width: int = WIDE
 ) -> RenderableType:
-    """The cheapest settings for each target and engine, with what is to be said of them below: a
-    table each of what was driven, of what was let go, and of elastic links."""
+    """Return the cheapest settings for each target and engine, with their notes below: a table each
+    of driven scenes, of free motion, and of elastic links."""
     kinds = dict.fromkeys(_kind(one) for one in recommendations)
     tables: list[RenderableType] = []
     for kind in kinds:
@@ -224,7 +224,7 @@ def _kind(one: Recommendation) -> tuple[ResultKind, str]:
 
 
 def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableType:
-    """What was driven, or what was let go, with rigid links or elastic ones."""
+    """Return the table of one kind: driven or free, with rigid links or elastic ones."""
     wide = width >= WIDE
     best = recommendations[0].best if recommendations else None
     kind = best.kind if best else way(WAYS[-1]).results
@@ -250,7 +250,7 @@ def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableT
 def _row(
     one: Recommendation, mark: str, wide: bool, *, steadier: bool = False
 ) -> Sequence[str | Text]:
-    """One row, with dashes where nothing reaches the target."""
+    """Return one row, with dashes where nothing reaches the target."""
     best = one.best
     name = Text(("or " if steadier else "") + called(best.variant, best.drive))
     numbers = [
@@ -271,12 +271,12 @@ def _row(
 
 
 def short_target(target: float) -> str:
-    """1e-3 for 0.001."""
+    """Return 1e-3 for 0.001."""
     return short(target, 1) if target < 1.0 else f"{target:g}"
 
 
 def _note(one: Recommendation) -> str:
-    """What is to be said of a row; empty where there is nothing."""
+    """Return the note on a row; empty where there is none."""
     if one.reason:
         return one.reason
     if one.caution:
@@ -285,14 +285,14 @@ def _note(one: Recommendation) -> str:
 
 
 def _mark(note: str, notes: list[str]) -> str:
-    """The number of a note, which is added to the others where it is new."""
+    """Return the number of a note, which is added to the others where it is new."""
     if note and note not in notes:
         notes.append(note)
     return str(notes.index(note) + 1) if note else ""
 
 
 def noise_line(stored: Stored) -> str:
-    """How well costs are known, in a line; and whose times are left out."""
+    """Return the noise of costs in a line; and whose times are left out."""
     apart = pairs(stored)
     if apart.empty:
         return "No cell was timed: no costs, and no recommendation rests on one."

@@ -1,4 +1,4 @@
-"""A run as it is compared: cells by what names them, whatever wrote them."""
+"""A run for comparison: cells by their names, from any writer."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from reports.results.cost import apart
 from reports.way.length import SECONDS, TURNS, Clock, clock_of, common_clock
 
 COMPARED = EVERY
-"""What is compared: the largest error of each, as a pure number."""
+"""Compared quantities: the largest error of each, as a pure number."""
 CellRow = Mapping[str, object]
 
 
 @dataclass(frozen=True)
 class CellName:
-    """What names a cell in every run; the version of the engine is what one compares across."""
+    """Name of a cell in every run; without the engine's version, which is compared across."""
 
     scene: str
     engine: str
@@ -33,7 +33,7 @@ class CellName:
 
     @property
     def line(self) -> tuple[str, str, str, str, float]:
-        """What it shares with the cells that differ in step only."""
+        """Name in common with the cells that differ in step only."""
         return self.scene, self.engine, self.variant, self.drive, self.turns
 
     @property
@@ -44,13 +44,12 @@ class CellName:
 
     @property
     def clock(self) -> Clock:
-        """What its steps and length are counted over."""
+        """Clock of its steps and length."""
         return clock_of(self.drive)
 
 
 def steps_told(names: Collection[CellName]) -> str:
-    """How many steps cells of one line have, in words: in a turn, or in a second of what was let
-    go."""
+    """Return the steps of cells of one line, in words: in a turn, or a second of free motion."""
     turn = common_clock(name.drive for name in names).name
     steps = sorted({name.steps_per_turn for name in names})
     return f"{', '.join(f'{each:g}' for each in steps)} steps a {turn}"
@@ -58,8 +57,7 @@ def steps_told(names: Collection[CellName]) -> str:
 
 @dataclass(frozen=True)
 class CellCost:
-    """What a step took [microseconds], how far apart two timings of it were (relative),
-    and where it was measured."""
+    """Cost of a step [microseconds], relative difference of two timings, and their processor."""
 
     us_per_step: float
     noise: float
@@ -68,12 +66,12 @@ class CellCost:
 
 @dataclass(frozen=True)
 class StoredCell:
-    """One cell of a run: how it ended, and its largest errors by quantity, as pure numbers.
+    """One cell of a run: its ending, and its largest errors by quantity, as pure numbers.
 
     An error is infinite where the run has no number for it: it was not finite, or nothing of the
-    kind was reported. A quantity that the run does not know at all is not there. Beside those that
-    are compared there are ``pin gap`` and ``slider gap``, of which ``gap`` is the larger.
-    ``verdict`` and ``scene_digest`` are empty where the run does not tell them.
+    kind was reported. A quantity that the run does not know is not there. Beside the compared ones
+    there are ``pin gap`` and ``slider gap``, of which ``gap`` is the larger. ``verdict`` and
+    ``scene_digest`` are empty where the run does not have them.
     """
 
     name: CellName
@@ -93,10 +91,10 @@ class StoredCell:
 
 @dataclass(frozen=True)
 class StoredRun:
-    """All cells of a run; ``label`` is what it is called, ``facts`` its versions, processor, time.
+    """All cells of a run; ``label`` is its name, ``facts`` its versions, processor, time.
 
-    ``notes`` say what was left out of it, and why. ``notice`` names what is damaged in it, and
-    ``gone`` which of that may hide cells that it had (``lost``), or was to have.
+    ``notes`` say which parts were left out, and why. ``notice`` names damage in it, and ``gone``
+    the damage that may hide cells that it had (``lost``), or was to have.
     """
 
     label: str
@@ -108,12 +106,12 @@ class StoredRun:
     lost: bool = False
 
     def only(self, names: Collection[CellName]) -> StoredRun:
-        """The same run with these cells alone."""
+        """Return the same run with these cells alone."""
         return replace(self, cells={n: cell for n, cell in self.cells.items() if n in names})
 
     @property
     def holds(self) -> str:
-        """What there is to compare, in a sentence."""
+        """Content to compare, in a sentence."""
         names = list(self.cells)
         driven, free = ([name for name in names if name.clock is each] for each in (TURNS, SECONDS))
         parts = [
@@ -133,14 +131,14 @@ def _each_long(names: Collection[CellName]) -> str:
 def run_of(
     checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]
 ) -> StoredRun:
-    """A verification that was just made; ``digests`` of the scenes by name."""
+    """Return the run of a verification just made; ``digests`` of the scenes by name."""
     rows = (cell_row(one) | {"scene_digest": digests.get(one.cell.scene.name)} for one in checked)
     cells = (stored_cell(row, facts) for row in rows)
     return StoredRun("this run", {cell.name: cell for cell in cells}, facts)
 
 
 def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> StoredRun:
-    """A verification that is still to be made: the names of its cells, without any error."""
+    """Return the run of a verification still to be made: the names of its cells, without errors."""
     planned = {}
     for cell in cells:
         steps, turns = same(cell.steps_per_turn), same(cell.turns)
@@ -150,8 +148,8 @@ def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> StoredRun:
 
 
 def stored_cell(row: CellRow, facts: Mapping[str, str]) -> StoredCell:
-    """One cell of a row as `reports.judge.rows.cell_row` makes it, of a store or of a CSV file,
-    with the ``scene_digest`` where that is known.
+    """Return one cell of a row as `reports.judge.rows.cell_row` makes it, of a store or of a CSV
+    file, with the ``scene_digest`` where that is known.
 
     Raises
     ------
@@ -183,7 +181,7 @@ def stored_cell(row: CellRow, facts: Mapping[str, str]) -> StoredCell:
 
 
 def _error(value: object) -> float:
-    """An error, infinite where there is no number."""
+    """Return an error, infinite where there is no number."""
     found = number(value)
     if found is not None and found < 0.0:
         raise ValueError(f"an error of {found:g}")
@@ -191,7 +189,7 @@ def _error(value: object) -> float:
 
 
 def _gaps(row: CellRow) -> dict[str, float]:
-    """The gaps of pins and of sliders over the longest link, which the larger of both tells."""
+    """Return the gaps of pins and of sliders over the longest link, from the larger of both."""
     pure = number(row.get("gap_pure"))
     measured_m = {kind: number(row.get(f"{kind}_gap_m")) for kind in ("pin", "slider")}
     gaps = {f"{kind} gap": gap_m for kind, gap_m in measured_m.items() if gap_m is not None}
@@ -223,12 +221,12 @@ def _cost(row: CellRow) -> CellCost | None:
 
 
 def same(value: float) -> float:
-    """A number of steps or turns, in the digits that are equal however it was computed."""
+    """Round a number of steps or turns to the digits that are equal however it was computed."""
     return float(f"{value:.9g}")
 
 
 def number(value: object) -> float | None:
-    """A number as it stands in a table, None where there is none. Raises ValueError for words."""
+    """Return a number of a table, None where there is none. Raises ValueError for words."""
     if value is None or value == "":
         return None
     found = float(str(value))
@@ -236,10 +234,10 @@ def number(value: object) -> float | None:
 
 
 def text(value: object) -> str:
-    """A text as it stands in a table, empty where there is none."""
+    """Return a text of a table, empty where there is none."""
     return value if isinstance(value, str) else ""
 
 
 def each_once(values: Iterable[str], most: int = 4) -> str:
-    """Each value once, and the number of those beyond the first few."""
+    """Return each value once, and the number of values beyond the first few."""
     return few(dict.fromkeys(values), most)

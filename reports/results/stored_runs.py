@@ -1,4 +1,4 @@
-"""Read a stored run, of either kind: the store of a sweep, or what `crankcheck verify -o` left."""
+"""Read a stored run of either kind: the store of a sweep, or files of `crankcheck verify -o`."""
 
 import csv
 import io
@@ -20,21 +20,20 @@ from reports.store.reader import STOPPED, read_store
 
 CELLS, FACTS = "verify.csv", "verify.json"
 MOST_BYTES = 100_000_000
-"""Of a file of a verification: a thousand cells take a hundredth of it."""
+"""Most bytes of a file of a verification: a thousand cells take a hundredth of it."""
 WRITERS = "`crankcheck sweep -o` or `crankcheck verify -o`"
 
 
 Contents = tuple[list[CellRow], StoredRun]
-"""The rows of the cells in a folder, and the run that they are of, still without them."""
+"""Rows of the cells in a folder, and their run, still without cells."""
 
 
 def read_run(folder: Path, version: str | None = None, option: str = "") -> StoredRun:
-    """The run in a folder.
+    """Return the run in a folder.
 
-    A store keeps every version of an engine that it was filled with. Of cells that differ in
-    nothing else the one written last counts, unless ``version`` is given: then an engine that
-    has cells of that version is taken with those alone. ``option`` is what chooses the version,
-    for messages.
+    A store keeps every version of an engine that it was filled with. The last written of otherwise
+    equal cells counts, unless ``version`` is given: then an engine that has cells of that version
+    is taken with these alone. ``option`` is the option for the version, for messages.
 
     Raises
     ------
@@ -56,12 +55,12 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Stor
 
 
 def scene_digests(names: Iterable[str]) -> dict[str, str]:
-    """The hash of each scene's text by the scene's own name; of all shipped ones for none."""
+    """Return the hash of each scene's text by the scene's name; of all shipped scenes for none."""
     return {name: digest(text) for name, text in scene_texts(names).items()}
 
 
 def _contents(folder: Path) -> Contents:
-    """What stands in a folder, by its kind."""
+    """Return the contents of a folder, by its kind."""
     kinds: dict[str, Callable[[Path], Contents]] = {MANIFEST: _store, CELLS: _verification}
     try:
         there = [name for name in kinds if (folder / name).is_file()]
@@ -78,7 +77,7 @@ def _contents(folder: Path) -> Contents:
 
 
 def _not_a_run(folder: Path, there: list[str]) -> str:
-    """What is wrong with a folder that holds no run, or two."""
+    """Say why a folder holds no single run: none, or two."""
     if there:
         return (
             f"holds a sweep ({MANIFEST}) and a verification ({CELLS}); move one of them to a "
@@ -146,7 +145,7 @@ def _verification(folder: Path) -> Contents:
 
 
 def _cut(rows: Sequence[CellRow], cells: object) -> str:
-    """How one sees that the file of the cells was cut short; the other one knows their number."""
+    """Say how the file of the cells was cut short, by the number in the other file; "" if whole."""
     number = len(cells) if isinstance(cells, list) and cells else len(rows)
     if number != len(rows):
         return f"{len(rows)} of the {number} cells that {FACTS} knows"
@@ -154,7 +153,7 @@ def _cut(rows: Sequence[CellRow], cells: object) -> str:
 
 
 def _texts(value: object) -> dict[str, str]:
-    """A mapping of texts, empty where there is none."""
+    """Return a mapping of texts, empty where there is none."""
     if not isinstance(value, Mapping):
         return {}
     return {str(key): text(item) for key, item in value.items()}
@@ -163,7 +162,7 @@ def _texts(value: object) -> dict[str, str]:
 def _chosen(
     cells: list[StoredCell], folder: Path, version: str | None, option: str
 ) -> tuple[dict[CellName, StoredCell], tuple[str, ...]]:
-    """One cell of each name, and what to say of those that were passed over."""
+    """Return one cell of each name, and notes on cells that were passed over."""
     versions: dict[str, dict[str, None]] = {}
     for cell in cells:
         versions.setdefault(cell.name.engine, {})[cell.version] = None

@@ -1,1 +1,1 @@
-"""What the verdict can see: faults planted on purpose, and the rule that must name each."""
+"""Self-test of the verdict: faults planted on purpose, and the rule that must name each."""

@@ -1,5 +1,4 @@
-"""Runs of elastic links that faults are planted in, and changes of what engines log of them, or are
-given as beams of their own."""
+"""Runs of elastic links to plant faults in, and changes of their logs, or of engines' beams."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -28,7 +27,7 @@ from sim.engine import Run
 from sim.run import run
 
 BENT, LOOSE = "fourbar-elastic", "fourbar-elastic-pulse"
-"""Driven on its periodic motion; and let go."""
+"""Driven on its periodic motion; and in free motion."""
 
 
 @dataclass(frozen=True)
@@ -53,25 +52,24 @@ ELASTIC_RUNS: dict[str, ElasticRun] = {
     BENT: ElasticRun(4, 2880),
     LOOSE: ElasticRun(4, 1440, lasts_s=0.4),
 }
-"""By scene: few segments, whose exact chain is soon found, and steps so short that the limit of
-what an engine may be off by (0.2 % of the largest deflection) is well below a hundredth."""
+"""Runs by scene: few segments, whose exact chain is soon found, and steps so short that the limit
+of the engine's error (0.2 % of the largest deflection) is well below a hundredth."""
 
 
 BEAM_RUNS: dict[str, ElasticRun] = {BENT: ElasticRun(8, 2880, "beam")}
-"""By scene, of engines that have beams of their own: elements that are within the truth's own
-doubt."""
+"""Runs by scene, for engines with their own beams: elements within the reference's own doubt."""
 
 
 @cache
 def _once(name: str) -> Scene:
-    """The elastic scene of that name, read once."""
+    """Read the elastic scene of that name, once."""
     return load_scene(name)
 
 
 def elastic_cell(
     name: str, engine: str, finer: float = 1.0, runs: Mapping[str, ElasticRun] = ELASTIC_RUNS
 ) -> Cell:
-    """One turn of that scene, or some time; ``finer`` times as many steps."""
+    """Return one turn of that scene, or some time; ``finer`` times as many steps."""
     scene, own = _once(name), runs[name]
     steps = round(own.steps * finer)
     dt_s = (own.lasts_s or scene.driver.law.period_s) / steps
@@ -89,14 +87,14 @@ def elastic_cell(
 
 
 def truth_of_chain(given: Scene) -> ChainTruth:
-    """That of the elastic scene whose segments an engine is ``given``."""
+    """Return the reference of the elastic scene of the segments that an engine is ``given``."""
     truth = elastic_cell(given.name, "").truth
     assert isinstance(truth, ChainTruth)
     return truth
 
 
 def truth_of_given(given: Scene) -> ElasticTruth:
-    """That of the elastic scene whose segments, or beams, an engine is ``given``."""
+    """Return the reference of the elastic scene of ``given`` segments, or beams."""
     return _truth(given.name, beams=bool(given.beams))
 
 
@@ -107,7 +105,7 @@ def _truth(scene: str, *, beams: bool) -> ElasticTruth:
 
 
 def sound_run(given: Scene, name: str, profile: str, options: Items) -> Run:
-    """The run of what an engine is given without any fault, the same for all sizes."""
+    """Return the run of the given scene without any fault, the same for all sizes."""
     return _sound_run(given.name, bool(given.beams), name, profile, options)
 
 
@@ -121,7 +119,7 @@ NodeChange = Callable[[ElasticTruth, Motion, float], Motion]
 
 
 def in_chain_log(change: NodeChange) -> Plant:
-    """The engine runs the chain as ever; what it has logged is changed afterwards."""
+    """Run the engine without a fault, and change its log afterwards."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _: object, name: str, profile: str, **options: Any) -> Run:
@@ -137,7 +135,7 @@ def in_chain_log(change: NodeChange) -> Plant:
 
 
 def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
-    """All nodes, as far from the line between the pins as the change has it."""
+    """Move all nodes to the changed distance from the line between the pins."""
 
     def changed(truth: ElasticTruth, motion: Motion, size: float) -> Motion:
         name = next(iter(truth.scene.elastic))
@@ -152,7 +150,7 @@ def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
 
 
 def at_next_node(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
-    """The middle is logged where the node before it is, of which it has the deflection."""
+    """Log the middle where the node before it is, with its deflection."""
     name = next(iter(truth.scene.elastic))
     nodes = truth.cut.nodes(name)
     first, across = _line(motion, nodes)
@@ -165,8 +163,8 @@ def at_next_node(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
 
 
 def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
-    """The first node, away from the middle, is elsewhere by a share of the deflection there, once
-    the start has been looked at."""
+    """Move the first node, away from the middle, by a share of the deflection there, after the
+    start has been looked at."""
     name = next(iter(truth.scene.elastic))
     nodes = truth.cut.nodes(name)
     first, across = _line(motion, nodes)
@@ -176,7 +174,7 @@ def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
 
 
 def of_beam(*, stiffened: bool, by: Discretisation = REFERENCE) -> NodeChange:
-    """Links, points and the middle of another theory, in the engine's place."""
+    """Put links, points and the middle of another theory in the engine's place."""
 
     def changed(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
         scene = truth.scene
@@ -187,14 +185,14 @@ def of_beam(*, stiffened: bool, by: Discretisation = REFERENCE) -> NodeChange:
 
 
 def of_exact_chain(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
-    """The exact chain, in the engine's place."""
+    """Put the exact chain in the engine's place."""
     exact = truth.exact_at(motion.time_s)
     assert exact is not None
     return _given_back(truth.cut, motion, exact)
 
 
 def _given_back(chain: CutScene, own: Motion, other: Motion) -> Motion:
-    """The log with the links, the points and the deflections of another motion."""
+    """Return the log with the links, the points and the deflections of another motion."""
     links = {**own.links, **{n: each for n, each in other.links.items() if n in own.links}}
     motion = replace(own, links=links, points={**own.points, **other.points})
     for name in chain.scene.elastic:
@@ -208,7 +206,7 @@ def _given_back(chain: CutScene, own: Motion, other: Motion) -> Motion:
 
 
 def _line(motion: Motion, nodes: tuple[str, ...]) -> tuple[Array, Array]:
-    """The first pin, and the unit vector across the line from it to the last (T, 2)."""
+    """Return the first pin, and the unit vector across the line from it to the last (T, 2)."""
     first, end = (motion.points[node].position for node in (nodes[0], nodes[-1]))
     way = end - first
     return first, np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
@@ -223,7 +221,7 @@ BeamChange = Callable[[Beam, float], Beam]
 
 
 def in_beam(change: BeamChange) -> Plant:
-    """The engine is given another beam, which starts where the right one does."""
+    """Give the engine another beam, which starts where the right one does."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
@@ -241,7 +239,7 @@ def in_beam(change: BeamChange) -> Plant:
 
 
 def begun(shape: Shape) -> Plant:
-    """The right beam starts with another shape, or as it should with a size of 0."""
+    """Start the right beam with another shape, or as it should with a size of 0."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:

@@ -1,7 +1,6 @@
-"""Faults of elastic links: in the chain of segments, or the beams, that an engine is given, in its
-steps, and in what it logs.
+"""Faults of elastic links: in an engine's segments or beams, in its steps, and in its log.
 
-The pins of the scene move as they should to a millionth: only the bending tells.
+The pins of the scene move as they should to a millionth: only the bending shows the fault.
 """
 
 from collections.abc import Callable
@@ -74,7 +73,7 @@ def _fault(
     needs: Callable[[str], bool] = lambda _: True,
     whole: bool = False,
 ) -> Fault:
-    """A fault of the elastic links of a scene."""
+    """Return a fault of the elastic links of a scene."""
     return Fault(
         group, name, what, rule, plant, size, unit, scenes=(scene,), needs=needs, whole=whole
     )

@@ -20,27 +20,27 @@ from sim.run import run
 from sim.run.spoil import Opening, Post, Spoiler, spoilt
 
 CLEAR_RAD = 0.01
-"""How far beyond the end of its swing a link does not touch what stands there."""
+"""Distance beyond the end of its swing at which a link does not touch the post."""
 TIMES = 36
-"""How often in a run something that changes over time is changed."""
+"""Number of changes in a run, for faults that change over time."""
 TOGETHER = 10
-"""Steps that are made explicit together: what they lack adds up to a change of velocity."""
+"""Steps that are made explicit together: their missing parts add up to a change of velocity."""
 Act = Callable[[Spoiler], Callable[[Session, float], object]]
-"""What is done to a session, by a size."""
+"""Change of a session, by a size."""
 
 
 def done_to(act: Act, at: Callable[[int], Iterable[int]] = lambda _: (0,)) -> Plant:
-    """What is done to a session before the first step, or after others of so many."""
+    """Change a session before the first step, or after others of so many."""
     return in_engine(at, lambda tools, session, _o, size, _: act(tools)(session, size))
 
 
 def after_a_third(act: Act) -> Plant:
-    """What is done to a session in mid-run."""
+    """Change a session in mid-run."""
     return done_to(act, lambda steps: (steps // 3,))
 
 
 def after_look(act: Act) -> Plant:
-    """What is done to a session after its first step, when the model was looked at."""
+    """Change a session after its first step, when the model was looked at."""
     return done_to(act, lambda _: (1,))
 
 
@@ -49,7 +49,7 @@ def now_and_then(steps: int) -> range:
 
 
 def explicit(share: float) -> CellRunner:
-    """Positions go on with the velocity before each step, as explicit Euler has it, or a share of
+    """Move positions on with the velocity before each step, as explicit Euler does, or a share of
     the way there: they are held back by the step times the change of velocity."""
 
     def runner(scene: Scene, state: Any, name: str, *args: Any, **options: Any) -> Run:
@@ -65,7 +65,7 @@ def explicit(share: float) -> CellRunner:
 
 
 def _dropped(turns: float) -> CellRunner:
-    """The loop opens so many turns before the end of one turn."""
+    """Open the loop so many turns before the end of one turn."""
     plant = done_to(
         lambda tools: lambda session, _: tools.open_loop(session),
         lambda steps: (steps - round(turns * steps),) if turns else (),
@@ -78,14 +78,12 @@ def soften(tools: Spoiler, session: Session, opening: Opening, share: float, ove
 
 
 def _block(tools: Spoiler, session: Session, opening: Opening, into_rad: float, _: float) -> None:
-    """A post that the last link would meet so far before the end of its swing, which it comes to
-    in mid-turn."""
+    """Put up a post that the last link would meet, in mid-turn, so far before its swing ends."""
     tools.block(session, opening, last(opening.scene), _post(opening.scene, into_rad))
 
 
 def _post(scene: Scene, into_rad: float) -> Post:
-    """Beside the last link, near its end, where it is as far round as it gets; clear of it where
-    the size is 0."""
+    """Return a post beside the last link, near its end, where its swing ends; clear at size 0."""
     name = last(scene)
     link = scene.links[name]
     pivot = next(point for point in link.points if point in scene.ground)
@@ -103,7 +101,7 @@ def _iterations(size: float) -> str:
 
 
 def _servo(size: float) -> CellRunner:
-    """The crank is turned by a motor that has to see an error first."""
+    """Turn the crank by a motor that has to see an error first."""
 
     def runner(*args: Any, drive: str, **options: Any) -> Run:
         return run(*args, drive="servo" if size else drive, **options)  # type: ignore[arg-type]
@@ -112,7 +110,7 @@ def _servo(size: float) -> CellRunner:
 
 
 def _misread(size: float) -> CellRunner:
-    """Velocities are taken for those of the instants of the positions, which Euler's are not."""
+    """Take velocities at the instants of the positions, where Euler's are not."""
 
     def runner(*args: Any, **options: Any) -> Run:
         done = in_settings("semi-implicit")(size)(*args, **options)

@@ -1,7 +1,7 @@
-"""What a fault is, and the four places where one is planted: scene, settings, engine, log.
+"""A fault, and the four places where one is planted: scene, settings, engine, log.
 
-A plant makes a runner of a size: something that runs a cell as `sim.run.run` does, with the fault
-in it. A size of 0 goes the same way and changes nothing, which must not be noticed.
+A plant makes a runner from a size: it runs a cell as `sim.run.run` does, with the fault in it. A
+size of 0 goes the same way and changes nothing, which must not be noticed.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -23,28 +23,28 @@ from sim.run import run
 from sim.run.spoil import Opening, Spoiler, WrongSetting, spoiler, spoilt
 
 PROFILE = "tuned"
-"""The profile of all runs that faults are planted in."""
+"""Profile of all runs that faults are planted in."""
 FOURBAR, SLIDER, SHAPER = "fourbar-lecture-1", "slider-crank-offset", "shaper"
 REFUSED = "the engine does not hold"
-"""What `sim.run.check` says where the model in the engine is not the scene."""
+"""Words of `sim.run.check` where the model in the engine is not the scene."""
 Plant = Callable[[float], CellRunner]
 Items = tuple[tuple[str, Any], ...]
 RunKind = str
-"""What the runs are that faults are planted in, by name (`FaultRuns`)."""
+"""Kind of the runs that faults are planted in, by name (`FaultRuns`)."""
 INSIDE = ("engine", "stepping", "vibration")
-"""The groups of what goes wrong inside an engine."""
+"""Groups of faults inside an engine."""
 
 
 @dataclass(frozen=True)
 class Fault:
     """Something that goes wrong, and the rule that must say so.
 
-    ``what`` says what it is. ``size`` is how large it is planted, in ``unit``; None for a fault
-    that is there or not; ``whole`` sizes are whole numbers. ``rule`` is the one that must fail,
-    with the words ``says`` in what it says. ``scenes`` are where it is planted; ``needs`` says
-    of an engine whether it can have it. A ``finer`` fault needs runs at half and a quarter of the
-    step to be seen. ``settings`` are those that its cell asks an engine for, on top of the profile.
-    ``kind`` is that of its runs, by its group.
+    ``what`` describes it. ``size`` is its planted size, in ``unit``; None for a fault without
+    sizes; ``whole`` sizes are whole numbers. ``rule`` is the one that must fail, with the words
+    ``says`` in its text. ``scenes`` are where it is planted; ``needs`` says if an engine can have
+    it. A ``finer`` fault needs runs at half and a quarter of the step to be seen. ``settings`` are
+    those that its cell requests of an engine, on top of the profile. ``kind`` is the kind of its
+    runs, by its group.
     """
 
     group: str
@@ -65,36 +65,36 @@ class Fault:
 
     @property
     def planted(self) -> float:
-        """The size that the plant is given."""
+        """Size that the plant is given."""
         return 1.0 if self.size is None else self.size
 
     def possible(self, name: str) -> bool:
-        """Whether an engine can have it; what goes wrong inside one needs its spoiler."""
+        """True if an engine can have it; a fault inside an engine needs its spoiler."""
         return (self.group not in INSIDE or name in offering("spoiler")) and self.needs(name)
 
     @property
     def engines(self) -> tuple[str, ...]:
-        """The engines that can have it, of those that are installed."""
+        """Installed engines that can have it."""
         here = (one.name for one in available() if one.version)
         return tuple(name for name in here if self.possible(name))
 
     @property
     def refused(self) -> bool:
-        """Whether it is the look at the model before the run that sees it."""
+        """True if the look at the model before the run sees it."""
         return REFUSED in self.says
 
     def words(self, size: float) -> str:
-        """A size with its unit."""
+        """Return a size with its unit."""
         digits = 3 if size > 1.0 else 2
         return self.shown(size) if self.shown else f"{size:.{digits}g} {self.unit}"
 
 
 @dataclass(frozen=True)
 class Unseen:
-    """Something that is not as it should be, passes every rule, and why that is right.
+    """A deviation that passes every rule, and why that is right.
 
-    ``needs`` says of an engine whether it can have it; where ``shows`` the errors are others with
-    it, if only in their last digits: else nothing was planted.
+    ``needs`` says if an engine can have it; where ``shows`` the errors change with it, if only in
+    their last digits: else nothing was planted.
     """
 
     name: str
@@ -106,7 +106,7 @@ class Unseen:
 
 
 def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
-    """The engine is given another scene than the reference, well assembled."""
+    """Give the engine another scene than the reference, well assembled."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _state: object, *args: Any, **options: Any) -> Run:
@@ -119,19 +119,19 @@ def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
 
 
 def integrates(name: str) -> bool:
-    """Whether the places of an engine are integrated: off by what a step leaves out, which numbers
-    of the reference are not. What joints are solved for may be as exact as these."""
+    """True if an engine integrates its places: a step leaves an error in them, unlike in numbers of
+    the reference. Places that joints are solved for may be as exact as these."""
     adapter = engine(name)
     return adapter.placing(resolved(profile_of(adapter, PROFILE), None)) == "integrated"
 
 
 def can_set(what: WrongSetting) -> Callable[[str], bool]:
-    """Whether an engine has such settings."""
+    """True if an engine has such settings."""
     return lambda name: what in spoiler(name).wrong_settings
 
 
 def in_settings(what: WrongSetting) -> Plant:
-    """The engine is set otherwise than asked for."""
+    """Set the engine otherwise than requested."""
 
     def plant(size: float) -> CellRunner:
         def runner(
@@ -150,10 +150,10 @@ def in_engine(
     at: Callable[[int], Iterable[int]],
     spoil: Callable[[Spoiler, Session, Opening, float, float], object],
 ) -> Plant:
-    """The engine is meddled with while it runs.
+    """Meddle with the engine while it runs.
 
-    ``at`` says after which of so many steps; ``spoil`` is given the size, and the share of the run
-    that is over.
+    ``at`` says after which of so many steps; ``spoil`` is given the size, and the run's elapsed
+    share.
     """
 
     def plant(size: float) -> CellRunner:
@@ -172,7 +172,7 @@ def in_engine(
 
 
 def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
-    """The engine runs the scene as ever; what it has logged is changed afterwards."""
+    """Run the scene without a fault, and change the log afterwards."""
 
     def plant(size: float) -> CellRunner:
         def runner(
@@ -194,8 +194,7 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
 
 @lru_cache(maxsize=3)
 def _healthy(same: Same, name: str, profile: str, settings: Items, options: Items) -> Run:
-    """A run as the profile says: the same for all sizes of a fault, at a step, its half and its
-    quarter."""
+    """Return a run as the profile says, once for all sizes: at a step, its half and its quarter."""
     given = dict(options)
     planned = Planned(same.scene, given["dt_s"], given["steps"])
     start = way_of(same.scene, given.get("drive")).truth(planned).start
@@ -203,7 +202,7 @@ def _healthy(same: Same, name: str, profile: str, settings: Items, options: Item
 
 
 def switched(change: Callable[[Scene, Run], Run]) -> Plant:
-    """What has been logged is changed, or is not."""
+    """Change the log, or leave it for a size of 0."""
     return in_log(lambda scene, done, size: change(scene, done) if size else done)
 
 
@@ -213,13 +212,13 @@ STEPS = 360
 
 @dataclass(frozen=True, eq=False)
 class FaultRuns:
-    """How the runs of a kind are made and shown.
+    """Set-up and words of the runs of a kind.
 
     ``groups`` are the headings of its faults, by group. ``cell`` gives the run of a scene in an
     engine, with so many steps in a turn where that is `STEPS`, and halved steps compared or not.
     ``words`` says how long the runs of some scenes are, ``settings`` the same as numbers.
-    ``unseen`` need not be seen in the scene ``unseen_in``. Faults of the kinds ``also`` are asked
-    for with it.
+    ``unseen`` need not be seen in the scene ``unseen_in``. Faults of the kinds ``also`` are
+    requested with it.
     """
 
     groups: Mapping[str, str]
@@ -233,7 +232,7 @@ class FaultRuns:
 
 @dataclass(frozen=True, eq=False)
 class FaultSet:
-    """The faults of a way, in the order of the table, and their runs by kind."""
+    """Faults of a way, in the order of the table, and their runs by kind."""
 
     faults: Sequence[Fault]
     runs: Mapping[RunKind, FaultRuns]

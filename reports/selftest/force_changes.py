@@ -1,6 +1,6 @@
 """Change the forces of a log, and leave its motion.
 
-What leaves an inertia or a weight out, or comes of another mechanism, is the healthy log with the
+A log without an inertia or a weight, or of another mechanism, is the healthy log with the
 difference that kinetostatics makes of it.
 """
 
@@ -25,7 +25,7 @@ QUARTER = np.pi / 2
 
 
 def in_forces(change: Change) -> Plant:
-    """The forces of a healthy log, changed by a size; as they are for a size of 0."""
+    """Change the forces of a healthy log by a size; leave them for a size of 0."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
         motion = moved(done)
@@ -39,12 +39,12 @@ def in_forces(change: Change) -> Plant:
 
 
 def each_force(change: Callable[[Array, float], Array]) -> Plant:
-    """Every series of forces, changed by a size."""
+    """Change every series of forces by a size."""
     return in_forces(lambda scene, done, own, size: own.each_series(lambda x: change(x, size)))
 
 
 def each_pin(own: Forces, change: Callable[[str, str, Array], Array]) -> Forces:
-    """The reactions of every pin and body changed."""
+    """Change the reactions of every pin and body."""
     pins = {
         point: {body: change(point, body, force) for body, force in bodies.items()}
         for point, bodies in own.pins.items()
@@ -53,24 +53,24 @@ def each_pin(own: Forces, change: Callable[[str, str, Array], Array]) -> Forces:
 
 
 def _last_pin(own: Forces, change: Callable[[Array], Array]) -> Forces:
-    """The reactions of the last pin changed."""
+    """Change the reactions of the last pin."""
     last = list(own.pins)[-1]
     return each_pin(own, lambda point, _, force: change(force) if point == last else force)
 
 
 def each_slider(own: Forces, change: Callable[[SliderForces], SliderForces]) -> Forces:
-    """What the guides of all sliders exert, changed."""
+    """Change the forces of the guides of all sliders."""
     return replace(own, sliders={name: change(slider) for name, slider in own.sliders.items()})
 
 
 def largest_n(own: Forces) -> float:
-    """The largest logged reaction [N]."""
+    """Return the largest logged reaction [N]."""
     every = (force for bodies in own.pins.values() for force in bodies.values())
     return max(float(np.nanmax(np.abs(force))) for force in every)
 
 
 def in_body_frame(_: Scene, done: Run, own: Forces, size: float) -> Forces:
-    """Vectors stand in the frames of the bodies that they act on."""
+    """Turn vectors into the frames of the bodies that they act on."""
     links = moved(done).links
 
     def turned(_: str, body: str, force: Array) -> Array:
@@ -88,13 +88,13 @@ def stamped(_: Scene, done: Run, own: Forces, steps: float) -> Forces:
 
 
 def rows_late(_: Scene, done: Run, own: Forces, samples: float) -> Forces:
-    """What stands in a row is what acted some samples before."""
+    """Put into each row the forces of some samples before."""
     by = round(samples)
     return own.each_series(lambda x: np.concatenate([x[:by], x[:-by]]) if by else x)
 
 
 def of_the_giver(_: Scene, done: Run, own: Forces, size: float) -> Forces:
-    """What a pin exerts on one body is said of the other, in the last pin."""
+    """Exchange the reactions of both bodies in the last pin."""
     last = list(own.pins)[-1]
     bodies = own.pins[last]
     reverse = dict(zip(bodies, reversed(list(bodies.values())), strict=True))
@@ -102,7 +102,7 @@ def of_the_giver(_: Scene, done: Run, own: Forces, size: float) -> Forces:
 
 
 def pins_swapped(_: Scene, done: Run, own: Forces, size: float) -> Forces:
-    """The last two pins of two bodies have each other's reactions."""
+    """Exchange the reactions of the last two pins of two bodies."""
     one, other = [point for point, bodies in own.pins.items() if len(bodies) == 2][-2:]
     there = {one: own.pins[other].values(), other: own.pins[one].values()}
     swapped = {
@@ -112,13 +112,13 @@ def pins_swapped(_: Scene, done: Run, own: Forces, size: float) -> Forces:
 
 
 def of_another(change: Callable[[Scene, float], Scene]) -> Change:
-    """The forces that another scene would have, at the same instants."""
+    """Return the forces that another scene would have, at the same instants."""
 
     return lambda scene, _, own, size: changed_by_scene(own, scene, change(scene, size))
 
 
 def changed_by_scene(own: Forces, right: Scene, wrong: Scene) -> Forces:
-    """The forces of a log, with what another scene makes other than the right one."""
+    """Return the forces of a log, with the difference of a wrong scene to the right one."""
     times = np.where(np.isfinite(own.time_s), own.time_s, 0.0)
     before, after = (
         forces(each, times, bound=False, skip_dead_points=True) for each in (right, wrong)
@@ -142,7 +142,7 @@ def changed_by_scene(own: Forces, right: Scene, wrong: Scene) -> Forces:
 
 
 def lighter(scene: Scene, share: float) -> Scene:
-    """The mass and inertia of the link that is pinned to the driver are left out."""
+    """Leave out the mass and inertia of the link that is pinned to the driver."""
     name = list(scene.links)[1]
     link, left = scene.links[name], 1.0 - share
     light = replace(link, mass_kg=left * link.mass_kg, inertia_kg_m2=left * link.inertia_kg_m2)
@@ -150,7 +150,7 @@ def lighter(scene: Scene, share: float) -> Scene:
 
 
 def turning_lighter(scene: Scene, share: float) -> Scene:
-    """The inertia of that link alone."""
+    """Leave out the inertia of that link alone."""
     name = list(scene.links)[1]
     link = scene.links[name]
     light = replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
@@ -158,19 +158,19 @@ def turning_lighter(scene: Scene, share: float) -> Scene:
 
 
 def weighed(scene: Scene, more_m_s2: float) -> Scene:
-    """Gravity is put on top of what there is."""
+    """Add to gravity."""
     x, y = scene.gravity_m_s2
     return replace(scene, gravity_m_s2=(x, y - more_m_s2))
 
 
 def of_reference(scene: Scene, done: Run, own: Forces, size: float) -> Forces:
-    """The reference's forces, in the engine's place."""
+    """Put the reference's forces in the engine's place."""
     times = np.where(np.isfinite(own.time_s), own.time_s, 0.0)
     return forces(scene, times, bound=False, skip_dead_points=True)
 
 
 def smoothed(series: Array, samples: float) -> Array:
-    """The mean over so many samples around each."""
+    """Return the mean over so many samples around each."""
     reach = round(samples) // 2
     if not reach:
         return series
@@ -181,13 +181,13 @@ def smoothed(series: Array, samples: float) -> Array:
 
 
 def about_another_point(scene: Scene, done: Run, own: Forces, share: float) -> Forces:
-    """The moment is taken about a point so far from the slider's along its line."""
+    """Take the moment about a point so far from the slider's along its line."""
     arm = share * scene.longest_m
     return each_slider(own, lambda one: replace(one, moment=one.moment + arm * one.normal))
 
 
 def spoilt_pin(at: int | slice) -> Change:
-    """The reactions of the last pin are off at some samples, opposite on its bodies."""
+    """Change the reactions of the last pin at some samples, opposite on its bodies."""
 
     def changed(_: Scene, done: Run, own: Forces, share: float) -> Forces:
         last = list(own.pins)[-1]
@@ -203,7 +203,7 @@ def spoilt_pin(at: int | slice) -> Change:
 
 
 def one_sided(_: Scene, done: Run, own: Forces, share: float) -> Forces:
-    """A pin pushes one of its bodies, and less of it the other."""
+    """Let a pin push one of its bodies more than the other."""
     last = list(own.pins)[-1]
     body = next(iter(own.pins[last]))
     return each_pin(
@@ -225,7 +225,7 @@ def in_torque(change: Callable[[Array, float], Array]) -> Plant:
 
 
 def turned_aside(_: Scene, done: Run, own: Forces, size: float) -> Forces:
-    """All reactions are turned by a quarter of a turn, as x for y would have it."""
+    """Turn all reactions by a quarter of a turn, as x for y would."""
     angle = size * QUARTER
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     return each_pin(own, lambda point, body, force: force @ turn)
@@ -240,8 +240,8 @@ def gives(name: str) -> bool:
 
 
 def of_load(wrong: Callable[[Load, Run, float], Load | None]) -> Change:
-    """A load, as large as the largest reaction, is felt otherwise than it acts, or not at all. What
-    loads do adds up, so that the scene need have none."""
+    """Let a load, as large as the largest reaction, be felt otherwise than it acts, or not at all.
+    Loads add up linearly, so that the scene need have none."""
 
     def changed(scene: Scene, done: Run, own: Forces, size: float) -> Forces:
         name = last(scene)
@@ -258,10 +258,10 @@ def _loaded(scene: Scene, load: Load) -> Scene:
 
 
 def load_late(load: Load, done: Run, steps: float) -> Load:
-    """A load over time, felt some steps later."""
+    """Return a load over time, felt some steps later."""
     return replace(load, characteristic=load.characteristic.carried(1.0, shift=steps * done.dt_s))
 
 
 def load_in_body(load: Load, _: Run, size: float) -> Load:
-    """A load along an axis of the body, not of the ground."""
+    """Return a load along an axis of the body, not of the ground."""
     return replace(load, frame="body")

@@ -1,4 +1,4 @@
-"""Faults of forces: the engine moves as it should, and what it says of its joints is wrong."""
+"""Faults of forces: the engine moves as it should, and its joint forces are wrong."""
 
 from dataclasses import replace
 from functools import partial

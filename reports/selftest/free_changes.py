@@ -1,4 +1,4 @@
-"""Make another machine of a scene that is let go: its matter, its weight, its loads and springs."""
+"""Make another machine of a scene in free motion: its matter, its weight, its loads and springs."""
 
 import math
 from collections.abc import Callable
@@ -21,8 +21,8 @@ from sim.run import run
 
 
 def in_free_scene(change: Callable[[Scene, float], Scene]) -> Plant:
-    """The engine is given another scene than the reference, with the accelerations that it starts
-    with: all of it is sound, and another machine."""
+    """Give the engine another scene than the reference, with the accelerations of its start: all of
+    it is sound, and another machine."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _state: object, *args: Any, **options: Any) -> Run:
@@ -36,7 +36,7 @@ def in_free_scene(change: Callable[[Scene, float], Scene]) -> Plant:
 
 
 def of_coupler(change: Callable[[Link, float], Link]) -> Callable[[Scene, float], Scene]:
-    """A change of the link that is pinned to the driver."""
+    """Change the link that is pinned to the driver."""
 
     def changed(scene: Scene, size: float) -> Scene:
         link = change(list(scene.links.values())[1], size)
@@ -50,19 +50,19 @@ def heavier(link: Link, share: float) -> Link:
 
 
 def about_pin(link: Link, share: float) -> Link:
-    """The inertia about the first pin, or a share of the way there (Steiner)."""
+    """Take the inertia about the first pin, or a share of the way there (Steiner)."""
     arm_m = math.dist(link.centre_m, next(iter(link.points.values())))
     return replace(link, inertia_kg_m2=link.inertia_kg_m2 + share * link.mass_kg * arm_m**2)
 
 
 def off_centre(link: Link, share: float) -> Link:
-    """The centre of mass, farther along the link by a share of its length."""
+    """Move the centre of mass along the link by a share of its length."""
     (x, y), (ax, ay), (bx, by) = link.centre_m, *list(link.points.values())[:2]
     return replace(link, centre_m=(x + share * (bx - ax), y + share * (by - ay)))
 
 
 def of_all_matter(scene: Scene, share: float) -> Scene:
-    """Every mass and inertia, by the same factor."""
+    """Scale every mass and inertia by the same factor."""
     more = 1.0 + share
     links = {
         name: replace(link, mass_kg=more * link.mass_kg, inertia_kg_m2=more * link.inertia_kg_m2)
@@ -72,7 +72,7 @@ def of_all_matter(scene: Scene, share: float) -> Scene:
 
 
 def without_flywheel(scene: Scene, share: float) -> Scene:
-    """What turns with the driver, less a share of it."""
+    """Reduce the inertia that turns with the driver by a share."""
     link = scene.links[scene.driver.link]
     light = replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
     return replace(scene, links={**scene.links, link.name: light})
@@ -98,7 +98,7 @@ def faster_start(scene: Scene, share: float) -> Scene:
 def of_load(
     name: str, change: Callable[[Scene, Load, float], Load]
 ) -> Callable[[Scene, float], Scene]:
-    """A change of a load of the scene."""
+    """Change a load of the scene."""
 
     def changed(scene: Scene, size: float) -> Scene:
         return replace(scene, loads={**scene.loads, name: change(scene, scene.loads[name], size)})
@@ -107,14 +107,14 @@ def of_load(
 
 
 def later(delay_s: float) -> Callable[[Scene, Load, float], Load]:
-    """A load over time, felt later by a multiple of a time."""
+    """Delay a load over time by a multiple of a time."""
     return lambda _, load, times: replace(
         load, characteristic=load.characteristic.carried(1.0, shift=times * delay_s)
     )
 
 
 def lasting(longer_s: float) -> Callable[[Scene, Load, float], Load]:
-    """A pulse that ends later by a multiple of a time."""
+    """Lengthen a pulse by a multiple of a time."""
 
     def changed(_: Scene, load: Load, times: float) -> Load:
         pulse = load.characteristic
@@ -125,7 +125,7 @@ def lasting(longer_s: float) -> Callable[[Scene, Load, float], Load]:
 
 
 def along_lines(_: Scene, load: Load, swap: float) -> Load:
-    """A table whose curve is left for straight lines from row to row."""
+    """Replace the curve of a table by straight lines from row to row."""
     table = load.characteristic
     assert isinstance(table, Tabulated)
     return replace(load, characteristic=replace(table, interpolation="linear")) if swap else load
@@ -140,7 +140,7 @@ def on_last_link(scene: Scene, load: Load, swap: float) -> Load:
 
 
 def held_at_start(scene: Scene, load: Load, swap: float) -> Load:
-    """A motor that keeps the torque of the start, whatever its speed."""
+    """Let a motor keep the torque of the start at any speed."""
     law = scene.driver.law
     assert isinstance(law, Released)
     first = float(load.magnitude(np.array([law.speed_rad_s]))[0])
@@ -148,7 +148,7 @@ def held_at_start(scene: Scene, load: Load, swap: float) -> Load:
 
 
 def spring_elsewhere(scene: Scene, off_m: float) -> Scene:
-    """The first end of a spring between points, moved on its link."""
+    """Move the first end of a spring between points on its link."""
     spring = next(iter(scene.springs.values()))
     assert isinstance(spring, LineSpring)
     (name, (x, y)), _ = line_ends(scene, spring)
@@ -165,7 +165,7 @@ def spring_elsewhere(scene: Scene, off_m: float) -> Scene:
 def of_spring(
     change: Callable[[SlideSpring, float, float], SlideSpring],
 ) -> Callable[[Scene, float], Scene]:
-    """A change of the spring of a slider, of a size, and of that size over the longest link."""
+    """Change the spring of a slider by a size, and by that size over the longest link."""
 
     def changed(scene: Scene, size: float) -> Scene:
         spring = next(iter(scene.springs.values()))

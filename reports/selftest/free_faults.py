@@ -1,4 +1,4 @@
-"""Faults of free motion: of the machine that an engine is given, in its steps, in what it logs."""
+"""Faults of free motion: of the machine that an engine is given, in its steps, in its log."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -76,7 +76,7 @@ def _fault(
     rule: str = "CC127",
     finer: bool = False,
 ) -> Fault:
-    """A fault of the machine that the engine is given in the place of a scene."""
+    """Return a fault of the machine that the engine is given in the place of a scene."""
     plant = in_free_scene(change)
     return Fault("dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer)
 
@@ -266,7 +266,7 @@ STEPPING = (
 
 
 def _copied(scene: Scene, done: Run) -> Run:
-    """The reference, in the engine's place."""
+    """Put the reference in the engine's place."""
     motion = moved(done)
     true = free_truth(scene, done.steps, done.dt_s).at(motion.time_s)
     return replace(
@@ -282,7 +282,7 @@ def _quick(scene: Scene, done: Run, share: float) -> Run:
 
 
 def _in_other_assembly(scene: Scene, done: Run) -> Run:
-    """The logged driver angle, and all places of the other assembly there."""
+    """Log the driver angle as it is, and all places of the other assembly there."""
     own = moved(done)
     crank = own.links[scene.driver.link]
     other = replace(scene, branch={key: -sign for key, sign in scene.branch.items()})
@@ -306,7 +306,7 @@ def _without_energy(_: Scene, done: Run) -> Run:
 
 
 def _leaking(_: Scene, done: Run, share: float) -> Run:
-    """Energy that is lost evenly, as a share of the largest kinetic energy."""
+    """Lose energy evenly, as a share of the largest kinetic energy."""
     assert done.energy is not None
     kinetic, potential = done.energy.kinetic_j, done.energy.potential_j
     lost = share * kinetic.max() * np.linspace(0.0, 1.0, len(kinetic))

@@ -28,13 +28,13 @@ from sim.run import run
 
 
 def _handed_back(scene: Scene, done: Run) -> Run:
-    """The closed form in the place of the log, at the instants of the places."""
+    """Put the closed form in the place of the log, at the instants of the places."""
     motion = solve(scene, moved(done).time_s)
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
 def _each(change: Callable[[Motion], Motion]) -> Plant:
-    """The closed form, changed a little."""
+    """Return the closed form, changed a little."""
 
     def changed(scene: Scene, done: Run) -> Run:
         back = _handed_back(scene, done)
@@ -59,7 +59,7 @@ def _next_floats(motion: Motion) -> Motion:
 
 
 def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
-    """The closed form, with its places changed by a size, in radians and longest links."""
+    """Return the closed form, with its places changed by a size, in radians and longest links."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
         if not size:
@@ -75,15 +75,14 @@ def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
 
 
 def _one_link(scene: Scene, done: Run) -> Run:
-    """The last link has the numbers of the closed form, all else those of the engine."""
+    """Give the last link the numbers of the closed form, and keep the rest of the engine."""
     own, name = moved(done), last(scene)
     true = solve(scene, own.time_s, bound=False).links[name]
     return replace(done, motion=replace(own, links={**own.links, name: true}))
 
 
 def _velocity(scene: Scene, done: Run) -> Run:
-    """The last link has the angular velocity of the closed form, at the instants that those of the
-    engine belong to."""
+    """Give the last link the closed form's angular velocity, at the instants of the engine's."""
     assert done.velocity_time_s is not None
     name = last(scene)
     omega = solve(scene, done.velocity_time_s, bound=False).links[name].omega
@@ -91,7 +90,7 @@ def _velocity(scene: Scene, done: Run) -> Run:
 
 
 def _speeds(scene: Scene, done: Run) -> Run:
-    """All points and sliders have the velocities of the closed form, likewise."""
+    """Give all points and sliders the velocities of the closed form, likewise."""
     assert done.velocity_time_s is not None
     own = moved(done)
     true = solve(scene, done.velocity_time_s, bound=False)
@@ -101,33 +100,33 @@ def _speeds(scene: Scene, done: Run) -> Run:
 
 
 def _shut(_: Scene, done: Run) -> Run:
-    """No joint is open."""
+    """Close every joint."""
     return replace(done, gaps={name: np.zeros_like(gap) for name, gap in done.gaps.items()})
 
 
 def _one_point(scene: Scene, done: Run) -> Run:
-    """The pin at the end of the last link, likewise."""
+    """Give the pin at the end of the last link its places, likewise."""
     own, name = moved(done), _moving_pin(scene)
     true = solve(scene, own.time_s, bound=False).points[name]
     return replace(done, motion=replace(own, points={**own.points, name: true}))
 
 
 def _one_slider(scene: Scene, done: Run) -> Run:
-    """The first slider, likewise."""
+    """Give the first slider its places, likewise."""
     own, name = moved(done), next(iter(scene.sliders))
     true = solve(scene, own.time_s, bound=False).sliders[name]
     return replace(done, motion=replace(own, sliders={**own.sliders, name: true}))
 
 
 def _moving_pin(scene: Scene) -> str:
-    """A point at the end of the driven links."""
+    """Return a point at the end of the driven links."""
     ends = scene.links[last(scene)].points
     carried = scene.links[scene.driver.link].points
     return next(name for name in ends if name not in scene.ground and name not in carried)
 
 
 def _at_the_crank(scene: Scene, done: Run) -> Run:
-    """The closed form at the logged angles of the crank, with the speeds of its law."""
+    """Return the closed form at the logged angles of the crank, with the speeds of its law."""
     own = moved(done)
     crank = own.links[scene.driver.link].theta
     _, omega, alpha = scene.driver.law.at(own.time_s)
@@ -136,7 +135,7 @@ def _at_the_crank(scene: Scene, done: Run) -> Run:
 
 
 def _finer_handed_back(size: float) -> CellRunner:
-    """The engine runs at the full step; the finer runs are the closed form."""
+    """Run the engine at the full step, and the closed form at the finer ones."""
 
     def runner(scene: Scene, *args: Any, **options: Any) -> Run:
         done = run(scene, *args, **options)

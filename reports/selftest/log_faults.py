@@ -1,4 +1,4 @@
-"""Faults of a log: of its clock, of its numbers, and of what it is silent about."""
+"""Faults of a log: of its clock, of its numbers, and of missing parts."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -31,7 +31,7 @@ from sim.run.spoil import rounded
 
 
 def late(size: float) -> CellRunner:
-    """Every sample is that of so many samples later."""
+    """Shift every sample to so many samples later."""
     samples = round(size)
 
     def runner(*args: Any, steps: int, every: int, **options: Any) -> Run:
@@ -43,7 +43,7 @@ def late(size: float) -> CellRunner:
 
 
 def _other_step(share: float) -> CellRunner:
-    """The engine's step is longer than it was told, and the stamps know nothing of it."""
+    """Lengthen the engine's step, and keep the stamps of the requested one."""
 
     def runner(*args: Any, dt_s: float, **options: Any) -> Run:
         done = run(*args, dt_s=dt_s * (1.0 + share), **options)
@@ -58,7 +58,7 @@ def _velocity_late(_: Scene, done: Run, steps: float) -> Run:
 
 
 def _one_sided(scene: Scene, done: Run, steps: float) -> Run:
-    """Accelerations as backward differences of the logged velocities: half a step late."""
+    """Take accelerations as backward differences of the logged velocities: half a step late."""
     omega = output(scene, done).omega
     central = np.gradient(omega, done.dt_s * done.every, edge_order=2)
     backward = np.diff(omega, prepend=2.0 * omega[0] - omega[1]) / (done.dt_s * done.every)
@@ -74,7 +74,7 @@ def _in_float32(_: Scene, done: Run, size: float) -> Run:
 
 
 def _summed(_: Scene, done: Run) -> Run:
-    """Time as the sum of the steps, each rounded."""
+    """Take time as the sum of the steps, each rounded."""
 
     def summed(time_s: Any) -> Any:
         return time_s[0] + np.cumsum(np.r_[0.0, np.full(len(time_s) - 1, done.dt_s * done.every)])
@@ -83,14 +83,14 @@ def _summed(_: Scene, done: Run) -> Run:
 
 
 def _row_twice(_: Scene, done: Run) -> Run:
-    """The row before stands in the place of one."""
+    """Replace one row by the row before."""
     order = np.arange(moved(done).time_s.size)
     order[WHEN] -= 1
     return rows(done, order, slice(None))
 
 
 def _half_the_rows(_: Scene, done: Run) -> Run:
-    """Every second row is logged, twice."""
+    """Log every second row, twice."""
     order = np.arange(moved(done).time_s.size) // 2 * 2
     return rows(done, order, slice(None))
 
@@ -149,14 +149,14 @@ CLOCK = (
 
 
 Distortion = Callable[[Array, float], Array]
-"""A series, changed by a size."""
+"""Change of a series by a size."""
 AFTER = slice(WHEN, None)
 START = slice(5, 39)
 """Samples of the start, in which an engine takes up its pins."""
 
 
 def _angle(change: Distortion, link: Callable[[Scene], str] = last) -> Plant:
-    """A change of the angle of the last link, or of another."""
+    """Change the angle of the last link, or of another."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
         name = link(scene)
@@ -170,7 +170,7 @@ def _crank(scene: Scene) -> str:
 
 
 def _omega(change: Distortion) -> Plant:
-    """A change of the last link's angular velocity, by a multiple of the driver's speed."""
+    """Change the last link's angular velocity, by a multiple of the driver's speed."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
         by_rad_s = size * scene.pace_rad_s
@@ -189,12 +189,12 @@ def _float32(_: Scene, done: Run, size: float) -> Run:
 
 
 def _all_of(change: Callable[[Array], Array]) -> Distortion:
-    """The whole series is changed, or is not."""
+    """Change the whole series, or leave it for a size of 0."""
     return lambda series, size: change(series) if size else series
 
 
 def _at(samples: int | slice) -> Distortion:
-    """The size is added to some samples."""
+    """Add the size to some samples."""
     return lambda series, size: spoilt(series, samples, size)
 
 
@@ -278,7 +278,7 @@ def _without_point(_: Scene, done: Run) -> Run:
 
 
 def _silent(scene: Scene, done: Run) -> Run:
-    """An engine that reports accelerations, of one link NaN throughout."""
+    """Report accelerations, of one link NaN throughout."""
     alpha = np.full_like(output(scene, done).alpha, np.nan)
     return replace(with_link(done, last(scene), alpha=alpha), reports_accelerations=True)
 

@@ -1,4 +1,4 @@
-"""Change one thing of a log, and leave the rest."""
+"""Change one part of a log, and leave the rest."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,65 +14,65 @@ from sim.engine import Energy, Run
 Rows = slice | Array | NDArray[np.intp]
 SEED = 20240229
 WHEN = 100
-"""The sample that is spoilt where one is: well within the run, behind the start."""
+"""Sample of single faults: well within the run, behind the start."""
 
 
 def moved(done: Run) -> Motion:
-    """The motion of a run that has one."""
+    """Return the motion of a run that has one."""
     assert done.motion is not None
     return done.motion
 
 
 def last(scene: Scene) -> str:
-    """The link whose log is spoilt: the last one, which is not the driver."""
+    """Return the link whose log is spoilt: the last one, which is not the driver."""
     return list(scene.links)[-1]
 
 
 def output(scene: Scene, done: Run) -> LinkMotion:
-    """The motion of the last link."""
+    """Return the motion of the last link."""
     return moved(done).links[last(scene)]
 
 
 def with_link(done: Run, name: str, **changed: Array) -> Run:
-    """The run with other series of one link."""
+    """Return the run with other series of one link."""
     motion = moved(done)
     links = {**motion.links, name: replace(motion.links[name], **changed)}
     return replace(done, motion=replace(motion, links=links))
 
 
 def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
-    """The run with the positions, velocities and accelerations of all points changed."""
+    """Return the run with the positions, velocities and accelerations of all points changed."""
     motion = moved(done)
     points = {n: PointMotion(*map(change, vars(p).values())) for n, p in motion.points.items()}
     return replace(done, motion=replace(motion, points=points))
 
 
 def spoilt(series: Array, at: int | slice, value: float) -> Array:
-    """The series with one stretch of it added to."""
+    """Return the series with a value added to one stretch."""
     wrong = series.copy()
     wrong[at] += value
     return wrong
 
 
 def to_digits(series: Array, size: float) -> Array:
-    """The series in multiples of a size."""
+    """Round the series to multiples of a size."""
     return np.asarray(np.rint(series / size) * size if size else series)
 
 
 def noisy(series: Array, size: float) -> Array:
-    """The series with noise (normal), the same at every call."""
+    """Return the series with noise (normal), the same at every call."""
     noise = np.random.default_rng(SEED).standard_normal(series.shape)
     return np.asarray(series + size * noise)
 
 
 def every_series(done: Run, change: Callable[[Array], Array]) -> Run:
-    """The run with every logged series changed, but for the instants that they belong to."""
+    """Return the run with every logged series changed, but not their instants."""
     gaps = {name: change(gap) for name, gap in done.gaps.items()}
     return replace(done, motion=moved(done).each_series(change), gaps=gaps)
 
 
 def with_times(done: Run, change: Callable[[Array], Array]) -> Run:
-    """The run with all its time stamps changed."""
+    """Return the run with all its time stamps changed."""
     assert done.velocity_time_s is not None
     assert done.acceleration_time_s is not None
     return replace(
@@ -84,7 +84,7 @@ def with_times(done: Run, change: Callable[[Array], Array]) -> Run:
 
 
 def rows(done: Run, keep: Rows, stamps: Rows) -> Run:
-    """The samples ``keep`` with the time stamps ``stamps``."""
+    """Return the samples ``keep`` with the time stamps ``stamps``."""
     energy = done.energy and Energy(done.energy.kinetic_j[keep], done.energy.potential_j[keep])
     kept = replace(every_series(done, lambda series: series[keep]), energy=energy)
     return with_times(kept, lambda t: t[stamps])

@@ -1,5 +1,5 @@
-"""Faults of what the engine is given, another mechanism than the scene, itself sound; and of right
-numbers in a wrong place of the log: of another body, axis or unit."""
+"""Faults of another mechanism than the scene, itself sound; and of right numbers in a wrong place
+of the log: of another body, axis or unit."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -20,7 +20,7 @@ from sim.engine import Run
 
 
 def long_coupler(scene: Scene, share: float) -> Scene:
-    """The link that is pinned to the driver."""
+    """Lengthen the link that is pinned to the driver."""
     name = list(scene.links)[1]
     return _with_link(scene, _scaled(scene.links[name], 1.0 + share))
 
@@ -35,7 +35,7 @@ def _with_link(scene: Scene, link: Link) -> Scene:
 
 
 def _moved_pin(scene: Scene, share: float) -> Scene:
-    """The last pin of the ground, or the line of the slider."""
+    """Move the last pin of the ground, or the line of the slider."""
     off = share * scene.longest_m
     if scene.sliders:
         (slider,) = scene.sliders.values()
@@ -52,12 +52,12 @@ def _turned_line(scene: Scene, angle_rad: float) -> Scene:
 
 
 def _larger(scene: Scene, share: float) -> Scene:
-    """Every length: the angles stay what they are."""
+    """Scale every length: the angles stay the same."""
     return scaled(scene, 1.0 + share)
 
 
 def _swapped(scene: Scene, swap: float) -> Scene:
-    """The last two links have each other's length."""
+    """Exchange the lengths of the last two links."""
     inner, outer = list(scene.links.values())[-2:]
     factor = _length(outer) / _length(inner) if swap else 1.0
     scene = _with_link(scene, _scaled(inner, factor))
@@ -137,7 +137,7 @@ MECHANISM = (
 
 
 def _links_swapped(_scene: Scene, done: Run) -> Run:
-    """The columns of the last two links."""
+    """Exchange the columns of the last two links."""
     motion = moved(done)
     one, two = list(motion.links)[-2:]
     links = {**motion.links, one: motion.links[two], two: motion.links[one]}
@@ -145,7 +145,7 @@ def _links_swapped(_scene: Scene, done: Run) -> Run:
 
 
 def _points(change: Callable[[Array], Array]) -> Plant:
-    """The positions, velocities and accelerations of all points are changed, or are not."""
+    """Change positions, velocities and accelerations of all points, or leave them for size 0."""
     return switched(lambda _, done: with_points(done, change))
 
 
@@ -162,7 +162,7 @@ def _in_mm(series: Array) -> Array:
 
 
 def _centre_logged(scene: Scene, done: Run) -> Run:
-    """The centre of gravity of the last link in the place of the pin at its end."""
+    """Log the centre of gravity of the last link in the place of the pin at its end."""
     motion = moved(done)
     link = scene.links[last(scene)]
     first, end = (motion.points[name] for name in list(link.points)[:2])
@@ -181,7 +181,7 @@ def _displaced(scene: Scene, done: Run, share: float) -> Run:
 
 
 def _other_midway(size: float) -> CellRunner:
-    """The second half of the log is that of the other assembly, from a run of it."""
+    """Take the second half of the log from a run of the other assembly."""
 
     def runner(scene: Scene, *args: Any, **options: Any) -> Run:
         one = in_scene(other_branch)(0.0)(scene, *args, **options)
@@ -194,7 +194,7 @@ def _other_midway(size: float) -> CellRunner:
 
 
 def _series(done: Run) -> list[Array]:
-    """Every logged series, in the order of the log."""
+    """Return every logged series, in the order of the log."""
     motion = moved(done)
     bodies = [*motion.links.values(), *motion.points.values(), *motion.sliders.values()]
     return [series for body in bodies for series in vars(body).values()] + list(done.gaps.values())

@@ -1,4 +1,4 @@
-"""Faults of what is run: another engine, profile, setting, drive or step than was asked for."""
+"""Faults of the run itself: another engine, profile, setting, drive or step than requested."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -28,23 +28,23 @@ from sim.run import run, setup
 from sim.run.spoil import WrongSetting, spoiler
 
 DEGREES = 10
-"""Of a turn, where that is all that is run."""
+"""Degrees of a turn that are run in place of it."""
 THIN, LATER = 8, 10
-"""Every so many samples are logged; so many steps later the run starts."""
+"""Stride of the thinned log; steps by which the run starts later."""
 
 
 def other_engine(name: str) -> str | None:
-    """Another engine that can be run here, if there is one."""
+    """Return another engine that can be run here, if there is one."""
     return next((one.name for one in available() if one.version and one.name != name), None)
 
 
 def _wrong(name: str) -> list[WrongSetting]:
-    """The settings that an engine can be given by mistake."""
+    """Return the settings that an engine can be given by mistake."""
     return list(spoiler(name).wrong_settings) if name in offering("spoiler") else []
 
 
 def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> Plant:
-    """Another engine or profile is run; ``renamed``, it says of itself what was asked for."""
+    """Run another engine or profile; ``renamed``, under the requested names."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
@@ -68,7 +68,7 @@ def _profile_for(name: str, profile: str) -> tuple[str, str]:
 
 
 def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> Plant:
-    """What a run takes is changed, and the run says so."""
+    """Change the options of a run, and let the run say so."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
@@ -87,8 +87,7 @@ def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str
 
 
 def _one_more(name: str) -> dict[str, Any]:
-    """A setting that is a whole number, one more than profile tuned has it; none where there is no
-    such setting."""
+    """Return a setting that is a whole number, one above profile tuned; none without one."""
     tuned = engine(name).profiles[PROFILE].settings
     whole = (n for n, setting in tuned.items() if type(setting.value) is int)
     return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}
@@ -116,7 +115,7 @@ def _of_another_version(_: Scene, done: Run) -> Run:
 
 
 def _silent(_: Scene, done: Run) -> Run:
-    """Accelerations are NaN, and said to be none that the engine has."""
+    """Set accelerations to NaN, and say that the engine reports none."""
     motion = moved(done)
     none = np.full_like(motion.time_s, np.nan)
     links = {name: replace(link, alpha=none) for name, link in motion.links.items()}
@@ -130,7 +129,7 @@ def _silent(_: Scene, done: Run) -> Run:
 
 
 def _the_first_again(size: float) -> CellRunner:
-    """The run at the full step stands in the place of the finer ones, with their words."""
+    """Put the run at the full step in the place of the finer ones, with their words."""
 
     def runner(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:
         if not size:

@@ -1,4 +1,4 @@
-"""Make another chain of the segments that an engine is given: springs, matter, lengths, start."""
+"""Make another chain of the segments of an engine: springs, matter, lengths, start."""
 
 import math
 from collections.abc import Callable
@@ -20,11 +20,11 @@ from sim.engine import Run
 from sim.run import run
 
 SpringChange = Callable[[PinSpring, int, float], PinSpring]
-"""A spring of a chain of so many segments, changed by a size."""
+"""Change of a spring of a chain of so many segments, by a size."""
 
 
 def in_chain(change: Callable[[Scene, float], Scene]) -> Plant:
-    """The engine is given another chain, which starts where the right one does."""
+    """Give the engine another chain, which starts where the right one does."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
@@ -36,8 +36,7 @@ def in_chain(change: Callable[[Scene, float], Scene]) -> Plant:
 
 
 def in_elastic_scene(change: Callable[[Scene, float], Scene]) -> Plant:
-    """The engine is given the segments of another scene, on the motion that is periodic there: all
-    of it is sound, and another machine."""
+    """Give the engine the segments of another scene, on its periodic motion: sound, but another."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _: State, *args: Any, **options: Any) -> Run:
@@ -51,7 +50,7 @@ def in_elastic_scene(change: Callable[[Scene, float], Scene]) -> Plant:
 
 
 def started(shape: Shape) -> Plant:
-    """The right chain starts with another shape, or as it should with a size of 0."""
+    """Start the right chain with another shape, or as it should with a size of 0."""
 
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
@@ -64,12 +63,12 @@ def started(shape: Shape) -> Plant:
 
 
 def springs(change: SpringChange) -> Callable[[Scene, float], Scene]:
-    """Every spring between segments, changed."""
+    """Change every spring between segments."""
     return lambda scene, size: _sprung(scene, size, change, slice(None))
 
 
 def middle_spring(change: SpringChange) -> Callable[[Scene, float], Scene]:
-    """The spring in the middle, alone."""
+    """Change the spring in the middle alone."""
 
     def changed(scene: Scene, size: float) -> Scene:
         middle = len(_between(scene)) // 2
@@ -79,7 +78,7 @@ def middle_spring(change: SpringChange) -> Callable[[Scene, float], Scene]:
 
 
 def _between(scene: Scene) -> list[str]:
-    """The springs between segments: those of the first elastic link, in order."""
+    """Return the springs between segments of the first elastic link, in order."""
     chain = truth_of_chain(scene).chain
     name = next(iter(chain.scene.elastic))
     return list(chain.nodes(name)[1:-1])
@@ -100,12 +99,12 @@ def stiffer(spring: PinSpring, _: int, share: float) -> PinSpring:
 
 
 def of_as_many_springs(spring: PinSpring, count: int, swap: float) -> PinSpring:
-    """As if the link were cut into as many parts as there are springs, n - 1."""
+    """Take the rate of a link cut into as many parts as there are springs, n - 1."""
     return replace(spring, rate=spring.rate * (1.0 - swap / count))
 
 
 def as_corrected(spring: PinSpring, count: int, swap: float) -> PinSpring:
-    """With the factor that gives the chain the sag of the beam."""
+    """Apply the factor that gives the chain the sag of the beam."""
     return replace(spring, rate=spring.rate * (1.0 + swap * math.pi**2 / (12.0 * count**2)))
 
 
@@ -122,7 +121,7 @@ def reversed_spring(spring: PinSpring, _: int, swap: float) -> PinSpring:
 
 
 def segments(change: Callable[[Link, float], Link]) -> Callable[[Scene, float], Scene]:
-    """Every segment, changed."""
+    """Change every segment."""
 
     def changed(scene: Scene, size: float) -> Scene:
         chain = truth_of_chain(scene).chain
@@ -139,23 +138,23 @@ def heavier(link: Link, share: float) -> Link:
 
 
 def at_its_ends(link: Link, share: float) -> Link:
-    """The mass of a rod in its two ends: three times the inertia, or a share of the way there."""
+    """Put the mass of a rod into its ends: three times the inertia, or a share of the way there."""
     return replace(link, inertia_kg_m2=(1.0 + 2.0 * share) * link.inertia_kg_m2)
 
 
 def turning_light(link: Link, share: float) -> Link:
-    """Points in the place of rods."""
+    """Put points in the place of rods."""
     return replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
 
 
 def heavy_rocker(scene: Scene, share: float) -> Scene:
-    """What the elastic link moves."""
+    """Make the link that the elastic link moves heavier."""
     name = list(scene.links)[-1]
     return replace(scene, links={**scene.links, name: heavier(scene.links[name], share)})
 
 
 def modulus_and_mass(scene: Scene, share: float) -> Scene:
-    """An elastic link with that much less stiffness and as much more mass."""
+    """Make an elastic link softer by a share, and as much heavier."""
     name, own = next(iter(scene.elastic.items()))
     soft = replace(own, flexural_n_m2=own.flexural_n_m2 / (1.0 + share))
     links = {**scene.links, name: heavier(scene.links[name], share)}
@@ -163,7 +162,7 @@ def modulus_and_mass(scene: Scene, share: float) -> Scene:
 
 
 def longer(scene: Scene, share: float) -> Scene:
-    """The elastic link is longer by a share, with the spring rates that belong to that."""
+    """Lengthen the elastic link by a share, with the spring rates of its new length."""
     name, link = next((n, scene.links[n]) for n in scene.elastic)
     more = 1.0 + share
     points = {point: (more * x, more * y) for point, (x, y) in link.points.items()}
@@ -173,8 +172,8 @@ def longer(scene: Scene, share: float) -> Scene:
 
 
 def node_moved(share: float) -> CellRunner:
-    """The first segment is longer by a share of it, and the second as much shorter; both start
-    where they still meet, with the speeds that keep them together."""
+    """Lengthen the first segment by a share of it, and shorten the second as much; both start where
+    they still meet, with the speeds that keep them together."""
 
     def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
         if not share:
@@ -208,8 +207,8 @@ def _stretched(link: Link, more: float) -> Link:
 
 
 def _met(state: State, parts: tuple[str, ...], nodes: tuple[str, ...], sizes: list[float]) -> State:
-    """The state with two segments of these lengths [m] between the outer two of three nodes, bent
-    to the same side: circles about both, and their first and second derivatives."""
+    """Return the state with two segments of these lengths [m] between the outer two of three nodes,
+    bent to the same side: circles about both, and their first and second derivatives."""
     (p, v, a), (q, w, b) = (
         [np.array(each[node]) for each in (state.position, state.velocity, state.acceleration)]
         for node in (nodes[0], nodes[2])

@@ -1,4 +1,4 @@
-"""The faults on the terminal: those that escape first, then the table, then the count."""
+"""The faults on the terminal: escaped ones first, then the table, then the count."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,11 +14,11 @@ from reports.selftest.fault import PROFILE, Fault
 from reports.selftest.trial import GROUPS, RUNS, FaultTrial, Passed, Verdict, passes
 
 WIDE = 96
-"""Columns of a terminal that have room for what a fault is."""
+"""Columns of a terminal with room for the description of a fault."""
 MODEL_CHECK = "*"
-"""Marks the rule where the run is refused before its first step."""
+"""Mark of the rule where the run is refused before its first step."""
 FEW = 3
-"""Up to so many faults are shown with what the rule says of each."""
+"""Number of faults up to which each is shown with the text of its rule."""
 
 
 def show(
@@ -29,7 +29,7 @@ def show(
     facts: Mapping[str, str],
     passed: Sequence[Passed] = (),
 ) -> None:
-    """Print the whole selftest; what ``passed`` and need not be seen, with the reason."""
+    """Print the whole selftest; ``passed`` need not be seen, and has the reason."""
     for one in verdicts:
         if not one.caught or len(verdicts) <= FEW:
             _told(console, one)
@@ -43,7 +43,7 @@ def show(
 
 
 def total(verdicts: Sequence[Verdict]) -> Text:
-    """The result in one line."""
+    """Return the result in one line."""
     caught = sum(one.caught for one in verdicts)
     noun = "fault" if len(verdicts) == 1 else "faults"
     text = f"{caught} of {len(verdicts)} {noun} caught by the named rule"
@@ -51,7 +51,7 @@ def total(verdicts: Sequence[Verdict]) -> Text:
 
 
 def _without(one: Checked) -> Text:
-    """A run without any fault."""
+    """Return the line of a run without any fault."""
     place = f"no fault: {one.cell.scene.name}, {one.cell.engine}: "
     if passes(one):
         return Text(f"{place}all {len(one.findings)} rules pass", "green")
@@ -60,7 +60,7 @@ def _without(one: Checked) -> Text:
 
 
 def _told(console: Console, verdict: Verdict) -> None:
-    """A fault with what the rules say of it, place by place."""
+    """Print a fault with the texts of the rules, place by place."""
     fault, rule = verdict.fault, RULES[verdict.fault.rule]
     head = "caught" if verdict.caught else "ESCAPES"
     style = "bold green" if verdict.caught else "bold red"
@@ -85,7 +85,7 @@ def _told(console: Console, verdict: Verdict) -> None:
 
 
 def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> Table:
-    """One row a fault, in groups."""
+    """Return one row a fault, in groups."""
     wide = width >= WIDE
     table = plain_table()
     table.add_column("")
@@ -105,7 +105,7 @@ def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> T
 
 
 def _unseen(passed: Sequence[Passed]) -> Table:
-    """What was planted, and why nothing of it is seen."""
+    """Return the deviations that are not seen, and the reason."""
     table = plain_table()
     for head in ("", "planted", "why it need not be seen"):
         table.add_column(head, overflow="fold")
@@ -121,7 +121,7 @@ def _unseen(passed: Sequence[Passed]) -> Table:
 
 
 def _cells(one: Verdict, engines: Sequence[str], wide: bool) -> list[Text]:
-    """The row of a fault."""
+    """Return the row of a fault."""
     fault = one.fault
     mark = Text("ok", "green") if one.caught else Text("OUT", "bold red")
     size = "" if fault.size is None else fault.words(fault.size)
@@ -136,7 +136,7 @@ def _cells(one: Verdict, engines: Sequence[str], wide: bool) -> list[Text]:
 
 
 def _from(one: Verdict, engine: str) -> Text:
-    """The smallest size that is caught in an engine."""
+    """Return the smallest size that is caught in an engine."""
     places = [place for place in one.places if place.engine == engine]
     if not one.fault.possible(engine):
         return Text("-")
@@ -147,7 +147,7 @@ def _from(one: Verdict, engine: str) -> Text:
 
 
 def least_words(fault: Fault, least: float) -> str:
-    """The smallest size that is caught, without its unit where that stands beside it."""
+    """Return the smallest size that is caught, without its unit where that stands beside it."""
     if least == 0.0:
         return "any"
     if fault.shown:
@@ -156,7 +156,7 @@ def least_words(fault: Fault, least: float) -> str:
 
 
 def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
-    """Rules, units, settings and versions."""
+    """Return rules, units, settings and versions."""
     named = {one.fault.rule for one in verdicts}
     rules = ", ".join(f"{name} {rule.title}" for name, rule in RULES.items() if name in named)
     refused = any(one.fault.refused for one in verdicts)
@@ -176,7 +176,7 @@ def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
 
 
 def _spans(verdicts: Sequence[Verdict]) -> str:
-    """How long the runs are, and at which step."""
+    """Return length and step of the runs."""
     kinds = {one.fault.kind for one in verdicts}
     scenes = dict.fromkeys(scene for one in verdicts for scene in one.fault.scenes)
     words = (text for kind, runs in RUNS.items() if kind in kinds for text in runs.words(scenes))
@@ -184,7 +184,7 @@ def _spans(verdicts: Sequence[Verdict]) -> str:
 
 
 def place_row(verdict: Verdict, place: FaultTrial) -> dict[str, object]:
-    """A fault in one place, as plain values."""
+    """Return a fault in one place, as plain values."""
     fault, finding = verdict.fault, place.finding
     return {
         "fault": fault.name,

@@ -25,20 +25,20 @@ from sim.registry import ENGINES, engine
 
 _SETS = [cast(FaultSet, each) for each in own_parts("faults").values()]
 RUNS: dict[RunKind, FaultRuns] = {kind: runs for each in _SETS for kind, runs in each.runs.items()}
-"""By kind."""
+"""Runs by kind."""
 GROUPS = {group: title for runs in RUNS.values() for group, title in runs.groups.items()}
 _KINDS = {group: kind for kind, runs in RUNS.items() for group in runs.groups}
 FAULTS: dict[str, Fault] = {
     fault.name: replace(fault, kind=_KINDS[fault.group]) for each in _SETS for fault in each.faults
 }
-"""To add a fault, add it to the module of its group."""
+"""Faults by name; a further fault goes into the module of its group."""
 
 
 def chosen_faults(
     names: Sequence[str], engines: Iterable[str], kind: RunKind = "motion"
 ) -> list[Fault]:
-    """The named faults, each once, or all that are planted in runs of a kind; of them those that
-    one of the engines can have.
+    """Return the named faults, each once, or all that are planted in runs of a kind, where one of
+    the engines can have them.
 
     Raises
     ------
@@ -63,22 +63,22 @@ def chosen_faults(
 
 
 DECADES = 12
-"""How many powers of ten below the planted size are looked at."""
+"""Powers of ten below the planted size that are tried."""
 CLOSE = 1.1
-"""Sizes over each other that are near enough."""
+"""Ratio of sizes at which the search ends."""
 LIMITS = Limits(600.0, 4.0)
-"""A fault takes some seconds, with the search for its smallest size."""
+"""Limits of a fault: it takes some seconds, with the search for its smallest size."""
 
 
 @dataclass(frozen=True)
 class FaultTrial:
-    """A fault in one scene and engine, and what became of it.
+    """A fault in one scene and engine, and its result.
 
-    ``finding`` is that of the rule that should fail, None where it passed; ``failed`` are all
-    rules that did. ``false`` are rules that fail with a size of 0. ``least`` is the smallest size
-    that is caught, 0 where every size was that was looked at, None where there is no size or the
-    fault escapes; ``nothing`` says that it escapes as every error is, to the last bit, that of
-    size 0.
+    ``finding`` is the failure of the rule that should fail, None where it passed; ``failed`` are
+    all rules that failed. ``false`` are rules that fail with a size of 0. ``least`` is the smallest
+    size that is caught, 0 where every tried size was, None where there is no size or the fault
+    escapes; ``nothing`` says that it escapes because every error equals that of size 0, to the last
+    bit.
     """
 
     scene: str
@@ -92,9 +92,8 @@ class FaultTrial:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A fault, by name, in all its places; ``sound`` says that the runs without it pass every
-    rule. There are no places where the fault ended the process, or took too much: ``lost`` says
-    which."""
+    """A fault, by name, in all its places; ``sound`` says that the runs without it pass every rule.
+    There are no places where the fault ended the process, or took too much: ``lost`` says which."""
 
     name: str
     places: tuple[FaultTrial, ...]
@@ -107,14 +106,14 @@ class Verdict:
 
     @property
     def caught(self) -> bool:
-        """Whether the named rule fails, everywhere, and no rule does without the fault."""
+        """True if the named rule fails, everywhere, and no rule does without the fault."""
         seen_everywhere = all(
             place.finding is not None and not place.false for place in self.places
         )
         return self.sound and seen_everywhere and bool(self.places)
 
     def least(self, engine: str) -> float | None:
-        """The size that is caught in every scene of an engine; None where there is none."""
+        """Return the size that is caught in every scene of an engine; None where there is none."""
         sizes = [place.least for place in self.places if place.engine == engine]
         caught = [size for size in sizes if size is not None]
         return max(caught) if caught and len(caught) == len(sizes) else None
@@ -122,12 +121,12 @@ class Verdict:
 
 @cache
 def healthy(scene: str, engine: str, steps: int = STEPS, kind: RunKind = "motion") -> Checked:
-    """A run of a kind without any fault."""
+    """Return a run of a kind without any fault."""
     return check(RUNS[kind].cell(load_scene(scene), engine, steps, True))
 
 
 def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
-    """The scenes and engines that the faults are planted in."""
+    """Return the scenes and engines that the faults are planted in."""
     there = [name for name in dict.fromkeys((*ENGINES, *engines)) if name in engines]
     pairs = {(s, e): f.kind for f in faults for s in f.scenes for e in there if f.possible(e)}
     return [(scene, name) for (scene, name), kind in pairs.items() if held(scene, name, kind)]
@@ -135,7 +134,7 @@ def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, st
 
 @cache
 def held(scene: str, name: str, kind: RunKind = "motion") -> bool:
-    """Whether an engine can hold a scene; not every engine of a user's own has every joint."""
+    """True if an engine can hold a scene; not every engine of a user's own has every joint."""
     adapter, cell = engine(name), RUNS[kind].cell(load_scene(scene), name, STEPS, False)
     settings = resolved(profile_of(adapter, PROFILE), None)
     try:
@@ -156,8 +155,8 @@ def tried(name: str, engines: Sequence[str], steps: int = STEPS, search: bool = 
 
 @dataclass(frozen=True)
 class Passed:
-    """Something that need not be seen, by engine the rules that fail all the same, and the engines
-    in which nothing was planted."""
+    """A deviation that need not be seen, by engine the rules that fail all the same, and the
+    engines in which nothing was planted."""
 
     unseen: Unseen
     failed: Mapping[str, tuple[str, ...]]
@@ -165,7 +164,7 @@ class Passed:
 
 
 def passed_by(engines: Sequence[str], kind: RunKind = "motion", steps: int = STEPS) -> list[Passed]:
-    """Plant what need not be seen, in one scene."""
+    """Plant the deviations that need not be seen, in one scene."""
     runs = RUNS[kind]
     able = [name for name in engines if held(runs.unseen_in, name, kind)]
     return [_passed(each, load_scene(runs.unseen_in), able, steps, kind) for each in runs.unseen]
@@ -196,12 +195,12 @@ def _lost(name: str, lost: Lost) -> Verdict:
 
 
 def passes(checked: Checked) -> bool:
-    """Whether every rule passes."""
+    """True if every rule passes."""
     return all(finding.level == "pass" for finding in checked.findings)
 
 
 def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) -> FaultTrial:
-    """A fault in one place."""
+    """Try a fault in one place."""
 
     def planted(size: float) -> Checked:
         cell = RUNS[fault.kind].cell(scene, engine, steps, fault.finer)
@@ -225,7 +224,7 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
 
 
 def _named(fault: Fault, checked: Checked) -> Finding | None:
-    """The failure of the rule that should see the fault, in the words that it should."""
+    """Return the failure of the rule that should see the fault, in the words that it should use."""
     return next(
         (
             finding
@@ -237,8 +236,7 @@ def _named(fault: Fault, checked: Checked) -> Finding | None:
 
 
 def _least(fault: Fault, caught: Callable[[float], bool]) -> float:
-    """The smallest size that is caught, as are all larger ones that were tried; 0 where none that
-    was tried escapes."""
+    """Return the smallest size caught, as all larger tried ones are; 0 if no tried one escapes."""
     high = fault.planted
     for low in _smaller(fault):
         if not low or not caught(low):
@@ -255,7 +253,7 @@ def _least(fault: Fault, caught: Callable[[float], bool]) -> float:
 
 
 def _smaller(fault: Fault) -> Iterator[float]:
-    """Sizes below the planted one, a power of ten apart; whole ones end with 0."""
+    """Yield sizes below the planted one, a power of ten apart; whole ones end with 0."""
     for decade in range(1, DECADES + 1):
         size = fault.planted / 10.0**decade
         if fault.whole and size < 1.0:

@@ -1,4 +1,4 @@
-"""What no rule sees, and need not: planted all the same, and told with the reason."""
+"""Deviations that no rule sees, and need not: planted all the same, and shown with the reason."""
 
 from dataclasses import replace
 from typing import Any
@@ -30,7 +30,7 @@ def _heavier(scene: Scene, share: float) -> Scene:
 
 
 def _all_renamed(size: float) -> CellRunner:
-    """Another engine's run, of which every word is that of the run that was asked for."""
+    """Run another engine, with every word as in the requested run."""
 
     def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
         asked = setup(scene, state, name, profile, **options)
@@ -45,13 +45,13 @@ def _all_renamed(size: float) -> CellRunner:
 
 
 def _as_silent(name: str) -> bool:
-    """Whether there is another engine that reports what this one does."""
+    """True if there is another engine that reports what this one does."""
     other, silent = other_engine(name), not engine(name).reports_accelerations
     return other is not None and (silent or engine(other).reports_accelerations)
 
 
 def _tenth(scene: Scene, done: Run, size: float) -> Run:
-    """Places that are nearer to the truth, by a factor of ten."""
+    """Bring places nearer to the reference, by a factor of ten."""
     own = moved(done)
     true = truth_of(Same(scene)).at(own.time_s)
     kept = 1.0 - 0.9 * size
@@ -84,7 +84,7 @@ def _turns_counted(scene: Scene, done: Run, size: float) -> Run:
 
 
 def _even_taken(scene: Scene, done: Run, size: float) -> Run:
-    """The moving pin of the crank has the places of the closed form."""
+    """Give the moving pin of the crank the places of the closed form."""
     own = moved(done)
     pins = scene.links[scene.driver.link].points
     name = next(point for point in pins if point not in scene.ground)
@@ -105,7 +105,7 @@ def _cheaper(_: Scene, done: Run, size: float) -> Run:
 
 
 def _even(_: Scene, done: Run, size: float) -> Run:
-    """The energy of the start, at every instant."""
+    """Put the energy of the start at every instant."""
     if not (size and done.energy):
         return done
     level = np.full_like(done.energy.kinetic_j, done.energy.total_j[0])
@@ -113,14 +113,14 @@ def _even(_: Scene, done: Run, size: float) -> Run:
 
 
 def _parts(_: Scene, done: Run, size: float) -> Run:
-    """Each part of the energy is called by the name of the other."""
+    """Exchange the names of both parts of the energy."""
     if not (size and done.energy):
         return done
     return replace(done, energy=Energy(done.energy.potential_j, done.energy.kinetic_j))
 
 
 def _half_a_step(_: Scene, done: Run, size: float) -> Run:
-    """The potential energy of half a step before, beside the kinetic energy of the sample."""
+    """Put the potential energy of half a step before beside the kinetic energy of the sample."""
     if not (size and done.energy):
         return done
     late = done.energy.potential_j.copy()

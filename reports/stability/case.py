@@ -1,4 +1,4 @@
-"""What a hard case is: a family of runs with one number that is made harder, and what is right."""
+"""A hard case: a family of runs with one number that becomes harder, and the right outcome."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -21,14 +21,14 @@ from reports.way.way import own_parts
 from sim.engine import Drive, Run, SettingValue
 
 WITHIN = 1e-2
-"""The class of every case that names no other: a hundredth of a radian, or of the longest link."""
+"""Limit of every case that names no other: a hundredth of a radian, or of the longest link."""
 STEPS_PER_TURN = 360.0
 TURNS = 2.0
 BEYOND = 10.0
-"""How far beyond its values a case may be looked at: by that factor."""
+"""Factor beyond its values up to which a case may be looked at."""
 Scale = Literal["log", "linear", "whole"]
 Judge = str
-"""What runs are compared with, by name, see `reports.stability.case`."""
+"""Name of the reference of runs, see `reports.stability.case`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,14 +43,13 @@ class Throw:
 class Trial:
     """A run, ready for an engine.
 
-    ``scene`` is the reference; ``start`` where the engine is put in its place (None: where the
-    reference is), with joints open by up to ``open_m`` [m]; errors count from ``settled_turns`` on.
-    ``every`` so many steps are logged.
-    ``limit_rad`` is the driver angle that cannot be passed, ``chain`` what is left free, and
-    ``throw`` what is thrown at its toggle, where that is what is to be seen. A scene that is let go
-    is held to its motion at the same time for ``followed_s`` [s], and after it to its geometry and
-    its energy alone; its turn is the time for which the scene says that it is let go. An elastic
-    link is given to the engine as so many ``segments``.
+    ``scene`` is the reference; ``start`` the state of the engine instead (None: the state of the
+    reference), with joints open by up to ``open_m`` [m]; errors count from ``settled_turns`` on.
+    Every ``every`` steps are logged. ``limit_rad`` is the driver angle that cannot be passed,
+    ``chain`` the chain in free motion, and ``throw`` the throw at a toggle, for the cases that test
+    these. A free motion is compared at the same time for ``followed_s`` [s], and after it by its
+    geometry and its energy alone; its turn is the duration of the free motion in the scene. An
+    elastic link is given to the engine as so many ``segments``.
     """
 
     scene: Scene
@@ -70,7 +69,7 @@ class Trial:
 
     @property
     def given(self) -> Scene:
-        """The scene that the engine is given."""
+        """Scene that the engine is given."""
         return SegmentedScene(self.scene, self.segments).rigid if self.segments else self.scene
 
     @property
@@ -79,16 +78,16 @@ class Trial:
 
     @property
     def steps(self) -> int:
-        """A whole number of logged samples."""
+        """Number of steps: a whole number of logged samples."""
         return max(round(self.turns * self.steps_per_turn / self.every), 1) * self.every
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case(CaseFacts):
-    """A family of trials, with what is told of it; the catalogue says its ``group`` and ``way``.
+    """A family of trials, with its facts; the catalogue sets its ``group`` and ``way``.
 
-    ``values`` go from easy to hard. Between the last that holds and the first that does not, a
-    bisection looks on its ``scale``: by factors, by differences, or over whole numbers.
+    ``values`` go from easy to hard. Between the last value that holds and the first that does not,
+    a bisection searches on its ``scale``: by factors, by differences, or over whole numbers.
     """
 
     group: str = ""
@@ -119,7 +118,7 @@ class Case(CaseFacts):
             raise CrankcheckError(f"--at {value:g}: not a whole number; it is the {means}")
 
     def facts(self) -> CaseFacts:
-        """What a reader needs."""
+        """Return the facts for a reader."""
         own = {each.name: getattr(self, each.name) for each in fields(CaseFacts)}
         unit = self.trial(self.values[0]).scene.driver.unit
         return CaseFacts(**own | {"driver_unit": unit})
@@ -131,9 +130,9 @@ def _solved_start(trial: Trial) -> State:
 
 @dataclass(frozen=True)
 class Yardstick:
-    """How a run is seen beside its truth, how that moves, to be drawn, and the state that they
-    start in. ``error_of`` says what the errors are of, as pure numbers; ``with_forces`` whether
-    those of forces may be asked for as well."""
+    """Comparison of a run with its reference, motion of the reference, to be drawn, and their
+    common start. ``error_of`` names the quantity of the errors, as pure numbers; ``with_forces``
+    says if errors of forces may be requested as well."""
 
     error_of: str
     look: Callable[[Trial, Run], ErrorSeries]
@@ -143,7 +142,7 @@ class Yardstick:
 
 
 def yardsticks() -> dict[Judge, tuple[str, Yardstick]]:
-    """All, by name, each with the name of its way."""
+    """Return all yardsticks, by name, each with the name of its way."""
     return {
         judge: (name, each)
         for name, own in own_parts("series").items()

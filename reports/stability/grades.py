@@ -1,4 +1,4 @@
-"""The rules that decide how a hard run is graded: the first that has something to say says it."""
+"""The rules that grade a hard run: the first one that applies gives the grade."""
 
 import math
 from collections.abc import Callable
@@ -12,14 +12,14 @@ from reports.stability.error_series import ErrorSeries
 from reports.stability.matrix import Outcome
 
 LEAST_TURNS = 4
-"""Fewer whole turns do not tell a growing error from one that swings."""
+"""Least number of whole turns that distinguishes a growing error from a swinging one."""
 GROWN = 2.0
-"""An error that grows is that much larger in the last turn than in the first, at least."""
+"""Least ratio of a growing error in the last turn to the one in the first."""
 STANDS = 0.02
-"""A crank that is slower than this share of its command, at the end, stands."""
+"""Share of its command below which the speed of a crank, at the end, counts as standing."""
 STEADY: tuple[Outcome, ...] = ("ok", "degraded", "silently-open")
 LAST = 10
-"""The part of a run that is its end: one of so many."""
+"""Divisor of a run that gives its end: one part of so many."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +32,12 @@ class Grade:
 
 
 Reason = tuple[str, int | None]
-"""Why a rule applies to a run, and at which sample."""
+"""Reason for which a rule applies to a run, and sample."""
 
 
 @dataclass(frozen=True)
 class GradeRule:
-    """One way to end: what it is called, what is meant, and how it is told.
+    """One way to end: its name, its meaning, and its test.
 
     ``tell`` gives the reason for a run and its class, or None where the rule does not apply.
     """
@@ -48,8 +48,8 @@ class GradeRule:
 
 
 def outcome(errors: ErrorSeries, within: float) -> Grade:
-    """The grade of a run by the first rule that applies; where errors keep to bounds, with what
-    they grow by in a turn.
+    """Return the grade of a run by the first rule that applies; for bounded errors with their
+    growth in a turn.
 
     Parameters
     ----------
@@ -69,8 +69,8 @@ def outcome(errors: ErrorSeries, within: float) -> Grade:
 
 
 def drift(errors: ErrorSeries) -> tuple[float, float]:
-    """Growth of the worst error of place per turn, by a straight line through the turns' maxima,
-    and its standard error; NaN where there are under four turns."""
+    """Return the growth of the worst error of place per turn, by a straight line through the turns'
+    maxima, and its standard error; NaN where there are under four turns."""
     peaks = _peaks(errors)
     if len(peaks) < LEAST_TURNS or not np.isfinite(peaks).all():
         return math.nan, math.nan
@@ -82,7 +82,7 @@ def drift(errors: ErrorSeries) -> tuple[float, float]:
 
 
 def _peaks(errors: ErrorSeries) -> Array:
-    """The worst error of place of each whole turn that counts."""
+    """Return the worst error of place of each whole turn that counts."""
     turn = np.floor(errors.turn + 1e-9).astype(np.intp)
     whole = (np.arange(len(turn)) >= errors.settled) & (turn < int(errors.turn[-1] + 1e-9))
     if not whole.any():
@@ -188,4 +188,4 @@ RULES: tuple[GradeRule, ...] = (
 MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {
     "unsupported": "the engine cannot hold the scene",
 }
-"""What each outcome means, for people."""
+"""Meaning of each outcome, for people."""

@@ -1,4 +1,4 @@
-"""One hard run: what the engine does with it, its grade, and a picture where it fails."""
+"""One hard run: the run in the engine, its grade, and a picture where it fails."""
 
 import math
 import time
@@ -56,14 +56,14 @@ def graded(
     draw : bool
         Give a picture where the outcome is not one of the case's good ones.
     forces : bool
-        Say how far the forces are off as well, of cases that follow their driver, in engines that
-        report them.
+        Add the error of the forces, for cases that follow their driver, in engines that report
+        them.
 
     Raises
     ------
     CrankcheckError
-        The case has no reference at this value, or cannot be run with it; the message is that of
-        the reference, or of the engine.
+        The case has no reference at this value, or cannot be run with it; the message comes from
+        the reference, or the engine.
     """
     began = time.perf_counter()
     trial = case.trial(value)
@@ -80,7 +80,7 @@ def graded(
 def _graded(
     case: Case, trial: Trial, blank: Graded, yardstick: Yardstick, *, forces: bool
 ) -> tuple[Graded, Run | None]:
-    """The grade, and the run where there is one."""
+    """Return the grade, and the run where there is one."""
     blank = replace(blank, steps=trial.steps, dt_s=trial.dt_s)
     state = yardstick.start(trial)
     try:
@@ -105,7 +105,7 @@ def _graded(
     errors = yardstick.look(trial, done)
     grade = outcome(errors, case.within)
     at = grade.sample
-    apart = grade.outcome == "diverged"  # what was logged ends before it came apart
+    apart = grade.outcome == "diverged"  # the log ends before it came apart
     result = replace(
         blank,
         outcome=grade.outcome,
@@ -122,9 +122,9 @@ def _graded(
 
 
 def force_error(scene: Scene, run: Run, settled_turns: float = 0.0) -> float:
-    """The worst error of a reaction, normal force, moment or torque, as a share of the largest of
-    its kind, from ``settled_turns`` on; infinite where a number is missing, NaN where there is no
-    reference of forces (nothing has a mass, or the motion is not the driver's)."""
+    """Return the worst error of a reaction, normal force, moment or torque, as a share of the
+    largest of its kind, from ``settled_turns`` on; infinite where a number is missing, NaN where
+    there is no reference of forces (nothing has a mass, or the motion is not the driver's)."""
     motion = run.motion
     if not run.with_forces or motion is None:
         return math.nan
@@ -148,13 +148,13 @@ def force_error(scene: Scene, run: Run, settled_turns: float = 0.0) -> float:
 
 
 BEFORE = 0.3
-"""How much of a turn is shown before the place of the failure, of one turn in all."""
+"""Part of a turn that is shown before the place of the failure, of one turn in all."""
 
 
 def picture(
     case: Case, trial: Trial, graded: Graded, run: Run, truth: Callable[[Trial, Array], Motion]
 ) -> Picture | None:
-    """The picture of a graded run; None where there is no truth to be drawn there."""
+    """Return the picture of a graded run; None where there is no reference to be drawn."""
     scene = trial.given  # with the segments of elastic links, which show how these bend
     assert run.motion is not None
     kept = _around(run.motion.time_s, graded.at_s, scene.driver.law.period_s)
@@ -189,7 +189,7 @@ def picture(
 
 
 def _around(time_s: Array, at_s: float, period_s: float) -> np.ndarray:
-    """Samples of one turn about the failure, evenly spread; of the last turn where it has none."""
+    """Return samples of one turn about the failure, evenly spread; of the last turn without one."""
     end = float(time_s[-1])
     middle = end if math.isnan(at_s) else at_s
     first = max(min(middle - BEFORE * period_s, end - period_s), float(time_s[0]))

@@ -1,4 +1,4 @@
-"""What `crankcheck stability` finds and stores: cases, graded runs, critical values, pictures."""
+"""The result of `crankcheck stability`: cases, graded runs, critical values, pictures."""
 
 import json
 import math
@@ -30,13 +30,13 @@ FORMAT = 1
 PLACE = "place, rad or over the longest link"
 FILE = "stability.json"
 MOST_BYTES = 200_000_000
-"""The whole catalogue takes a hundredth of it."""
+"""Most bytes of the file: the whole catalogue takes a hundredth of it."""
 BAD = (UnreadableError, ValueError, RecursionError, LookupError, TypeError, AttributeError)
-"""What comes of a file that is not as it was written."""
+"""Errors from a file that is not as it was written."""
 
 
 def label(value: float) -> str:
-    """A value of a parameter in few characters: three digits, whole numbers up to five."""
+    """Return a value of a parameter in few characters: three digits, whole numbers up to five."""
     if value == round(value) and abs(value) < 1e5:
         return str(round(value))
     text = f"{value:.3g}"
@@ -49,12 +49,12 @@ def label(value: float) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class CaseFacts:
-    """A case as a reader needs it: what is made hard, and what a good engine does.
+    """Facts of a case for a reader: the parameter that is made hard, and the right result.
 
-    ``values`` are those of the parameter, from easy to hard; ``labels`` says them in a few
-    characters, as `label` does if not given. ``good`` are the outcomes of an engine that holds;
-    ``within`` is the class: the error, as a pure number, that counts as held; ``error_of`` says
-    what that is an error of; ``driver_unit`` is rad, or m where a slider is driven.
+    ``values`` of the parameter go from easy to hard; ``labels`` are their texts of a few
+    characters, from `label` if not given. ``good`` are the outcomes of an engine that holds;
+    ``within`` is the class: the error, as a pure number, that counts as held; ``error_of`` names
+    the quantity of that error; ``driver_unit`` is rad, or m where a slider is driven.
     """
 
     name: str
@@ -85,11 +85,10 @@ class Graded:
 
     ``error`` is the worst error of place, ``gap`` the widest open pin, ``drive`` the error of the
     crank: pure numbers (rad, or lengths over the longest link), NaN where there is none. ``sine``
-    is how far the scene stays from its nearest singular position (1 best, 0 singular). Where the
-    outcome has a place, ``at_s`` [s] and ``at_driver_rad`` [rad, or m of a slider] say
-    it. ``grid`` is False for the values that a bisection looked at. ``force`` is the worst error of
-    forces, a share of the largest of their kind, NaN where none were asked for; it is shown, and
-    does not grade.
+    is how far the scene stays from its nearest singular position (1 best, 0 singular). ``at_s`` [s]
+    and ``at_driver_rad`` [rad, or m of a slider] give the place of the outcome, if any. ``grid`` is
+    False for the values of a bisection. ``force`` is the worst error of forces, a share of the
+    largest of their kind, NaN where none were requested; it is shown, and does not grade.
     """
 
     case: str
@@ -114,11 +113,11 @@ class Graded:
 
 @dataclass(frozen=True)
 class Critical:
-    """How far one engine with one profile holds a case.
+    """Hardest value up to which one engine with one profile holds a case.
 
     ``holds`` is the hardest value, from the easy end on, up to which every run was good, ``fails``
-    the easiest beyond it that was not; NaN where there is none. ``outcome`` is what happens there,
-    ``words`` says it all in a line, ``command`` reproduces the run at ``fails`` (or at ``holds``
+    the easiest beyond it that was not; NaN where there is none. ``outcome`` is the outcome there,
+    ``words`` is a line on all of it, ``command`` reproduces the run at ``fails`` (or at ``holds``
     where nothing fails).
     """
 
@@ -134,11 +133,11 @@ class Critical:
 
 @dataclass(frozen=True)
 class Picture:
-    """A run that failed, to be seen moving beside the truth.
+    """A run that failed, to be seen moving beside the reference.
 
-    ``drawing`` is what `reports.drawing.moving.drawing` gives, and ``rows`` the run's displacements
-    from it; ``title`` says what is seen. The run is that of ``case``, ``engine``, ``profile`` at
-    ``value``.
+    ``drawing`` is the result of `reports.drawing.moving.drawing`, and ``rows`` the run's
+    displacements from it; ``title`` describes the picture. ``case``, ``engine``, ``profile`` and
+    ``value`` identify the run.
     """
 
     case: str
@@ -162,17 +161,17 @@ class Matrix:
     pictures: tuple[Picture, ...] = field(default=())
 
     def case(self, name: str) -> CaseFacts:
-        """The case of that name."""
+        """Return the case of that name."""
         return next(case for case in self.cases if case.name == name)
 
 
 def with_forces(matrix: Matrix) -> bool:
-    """Whether forces of any run are known."""
+    """True if forces of any run are known."""
     return any(not math.isnan(run.force) for run in matrix.runs)
 
 
 def run_rows(matrix: Matrix) -> list[dict[str, Any]]:
-    """The runs as flat rows; what is known of forces where they were asked for."""
+    """Return the runs as flat rows; with forces where they were requested."""
     rows = [asdict(run) for run in matrix.runs]
     return rows if with_forces(matrix) else [_without(row, "force") for row in rows]
 
@@ -182,13 +181,13 @@ def _without(row: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 
 def to_json(matrix: Matrix) -> str:
-    """The matrix as text; what is not finite as null."""
+    """Return the matrix as text; numbers that are not finite as null."""
     content = {"format": FORMAT, **asdict(matrix), "runs": run_rows(matrix)}
     return json.dumps(finite(content), indent=1, ensure_ascii=False) + "\n"
 
 
 def read_matrix(folder: Path) -> Matrix:
-    """The matrix stored in a folder.
+    """Return the matrix stored in a folder.
 
     Raises
     ------
@@ -218,5 +217,5 @@ def read_matrix(folder: Path) -> Matrix:
 
 
 def _numbers(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row with NaN where the file has null."""
+    """Return a row with NaN where the file has null."""
     return {key: math.nan if value is None else value for key, value in row.items()}

@@ -1,4 +1,4 @@
-"""Hard runs beside another truth than a reference: a limit position, a falling chain, a toggle."""
+"""Hard runs beside another reference than a driven motion: a limit, a falling chain, a toggle."""
 
 import numpy as np
 
@@ -13,14 +13,14 @@ from reports.stability.error_series import ErrorSeries, lacking, widest, worst_o
 from sim.engine import Run
 
 WILD = 1e3
-"""A link this much faster than the driver is told to be: forces have exploded."""
+"""Ratio of a link's speed to the driver's command above which forces have exploded."""
 
 SHORT_RAD = 1e-9
-"""The reference stops that much before the limit, where it still has an angle."""
+"""Distance before the limit at which the reference stops, where it still has an angle."""
 
 
 def held(trial: Trial, time_s: Array) -> Motion:
-    """The truth to be drawn: the crank follows its command as far as the limit, and stands."""
+    """Return the reference to be drawn: the crank follows its command to the limit, and stands."""
     law = trial.scene.driver.law
     theta = law.at(np.append(0.0, time_s))[0]
     low, high = sorted((float(theta[0]), trial.limit_rad))
@@ -30,10 +30,10 @@ def held(trial: Trial, time_s: Array) -> Motion:
 
 
 def at_limit(trial: Trial, run: Run) -> ErrorSeries:
-    """A run beside the limit that its crank cannot pass.
+    """Return a run beside the limit that its crank cannot pass.
 
-    The error of place is how far the crank is from its command, which ends at the limit [rad]. What
-    the crank is told goes on, so that a crank that is held back stands short of it.
+    The error of place is the distance of the crank from its command, which ends at the limit [rad].
+    The command of the drive goes on, so that a crank that is held back stands short of it.
     """
     assert run.motion is not None
     scene, motion = trial.scene, run.motion
@@ -41,7 +41,7 @@ def at_limit(trial: Trial, run: Run) -> ErrorSeries:
     driver = law.at(motion.time_s)[0]
     crank = motion.links[scene.driver.link].theta
     low, high = sorted((float(driver[0]), trial.limit_rad))
-    with np.errstate(over="ignore", invalid="ignore"):  # what has come apart is judged, not warned
+    with np.errstate(over="ignore", invalid="ignore"):  # runs that came apart are judged
         spin = np.max([np.abs(link.omega) for link in motion.links.values()], axis=0)
         gap = np.max([np.abs(one) for one in run.gaps.values()], axis=0) / scene.longest_m
         off = np.abs(crank - np.clip(driver, low, high))
@@ -66,10 +66,10 @@ def at_limit(trial: Trial, run: Run) -> ErrorSeries:
 
 
 def freely(trial: Trial, run: Run) -> ErrorSeries:
-    """A free run beside the closed form of the chain.
+    """Return a free run beside the closed form of the chain.
 
     The error of place is the larger of the distance of B0 from its place, over a rod, and of the
-    change of the energy, over what is exchanged in a turn.
+    change of the energy, over the energy exchanged in a turn.
     """
     assert trial.chain is not None
     errors = compared(trial.chain, run)
@@ -97,17 +97,17 @@ def _error(errors: ChainErrors) -> Array:
 
 
 def falling(trial: Trial, time_s: Array) -> Motion:
-    """The truth to be drawn."""
+    """Return the reference to be drawn."""
     assert trial.chain is not None
     return ChainMotion(trial.chain).motion(time_s)
 
 
 def at_toggle(trial: Trial, run: Run) -> ErrorSeries:
-    """A run beside what its energy lets it do.
+    """Return a run beside the outcome that its energy allows.
 
-    One that gets over and should not has left its branch. For one that should and does not, the
-    error of place is the angle that coupler and rocker were short of where it would have been over,
-    at the nearest [rad].
+    A run that gets over and should not has left its branch. For a run that should and does not, the
+    error of place is the angle that coupler and rocker were short of having passed, at the nearest
+    [rad].
     """
     motion, throw = run.motion, _throw(trial)
     assert motion is not None
@@ -130,7 +130,7 @@ def at_toggle(trial: Trial, run: Run) -> ErrorSeries:
         time_s=motion.time_s,
         driver_rad=worst_of(crank),
         place=place,
-        gap=np.where(decided, widest(gaps, crank), 0.0),  # what comes after it is not asked
+        gap=np.where(decided, widest(gaps, crank), 0.0),  # the gap after it does not matter
         drive=np.full_like(crank, np.nan),
         crank=worst_of(crank),
         period_s=trial.scene.driver.law.period_s,
@@ -142,13 +142,13 @@ def at_toggle(trial: Trial, run: Run) -> ErrorSeries:
 
 
 def thrown_start(trial: Trial) -> State:
-    """The state that it is thrown in."""
+    """Return the state of the throw."""
     throw = _throw(trial)
     return throw.barrier.start(throw.margin)
 
 
 def thrown_motion(trial: Trial, time_s: Array) -> Motion:
-    """The truth to be drawn."""
+    """Return the reference to be drawn."""
     from analytic.free.release import release  # slow to import, for free motion alone
 
     return release(trial.scene, trial.steps * trial.dt_s).at(time_s, bound=False)

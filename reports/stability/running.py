@@ -12,14 +12,14 @@ from reports.stability.matrix import Critical, Graded, Picture, label
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 
 LOOKS = 7
-"""Runs of a bisection at most: a factor of 10 is then known to 2 %."""
+"""Most runs of a bisection: a factor of 10 is then known to 2 %."""
 NEAR = 0.05
-"""Good and bad this near to each other, relatively, are near enough."""
+"""Relative distance of good and bad values at which the search ends."""
 Grader = Callable[[float, bool], Graded]
 
 
 def line(case: Case, grade: Grader) -> Generator[Graded]:
-    """All runs of one engine with one profile: the case's values, then what a bisection looks at.
+    """Yield all runs of one engine with one profile: the case's values, then the bisection.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def line(case: Case, grade: Grader) -> Generator[Graded]:
 
 
 def _bracket(case: Case, runs: Sequence[Graded]) -> tuple[Graded | None, Graded | None]:
-    """The hardest run that holds, with all that are easier, and the easiest that does not."""
+    """Return the hardest run that holds, with all easier ones, and the easiest that does not."""
 
     def hardness(run: Graded) -> float:
         return harder(case) * run.value
@@ -51,7 +51,7 @@ def _bracket(case: Case, runs: Sequence[Graded]) -> tuple[Graded | None, Graded 
 
 
 def between(case: Case, holds: float, fails: float) -> float | None:
-    """The value to look at next; None where the two are near enough, or nothing lies between."""
+    """Return the next value to run; None where the two are near enough, or nothing lies between."""
     if case.scale == "linear":
         width = max(case.values) - min(case.values)
         return None if abs(fails - holds) <= NEAR * width else _short(0.5 * (holds + fails))
@@ -63,12 +63,12 @@ def between(case: Case, holds: float, fails: float) -> float | None:
 
 
 def _short(value: float) -> float:
-    """A value that is what its label says, so that the command that is told repeats it."""
+    """Round a value to its label, so that the shown command repeats it."""
     return float(label(value))
 
 
 def critical(case: Case, runs: list[Graded]) -> Critical:
-    """How far the runs of one line hold; they are in the order in which `line` gave them."""
+    """Return how far the runs of one line hold, in the order in which `line` gave them."""
     holds, fails = _bracket(case, runs)
     shown = fails or holds or runs[0]
     good = [run for run in runs if run.outcome in case.good]
@@ -85,7 +85,7 @@ def critical(case: Case, runs: list[Graded]) -> Critical:
 
 
 def command(run: Graded) -> str:
-    """The command that repeats a run alone."""
+    """Return the command that repeats a run alone."""
     return (
         f"crankcheck stability {run.case} --engine {run.engine} --profile {run.profile} "
         f"--at {run.label}"
@@ -93,7 +93,7 @@ def command(run: Graded) -> str:
 
 
 def _words(case: Case, holds: Graded | None, fails: Graded | None, good: list[Graded]) -> str:
-    """The critical value in a line; ``good`` are all runs that held."""
+    """Return the critical value in a line; ``good`` are all runs that held."""
     if fails is None:
         assert holds is not None
         if holds.outcome not in ("ok", "locked"):
@@ -113,7 +113,7 @@ def _words(case: Case, holds: Graded | None, fails: Graded | None, good: list[Gr
 
 
 def harder(case: Case) -> float:
-    """The sign by which the values of a case grow harder."""
+    """Return the sign by which the values of a case grow harder."""
     return -1.0 if case.values[-1] < case.values[0] else 1.0
 
 
@@ -133,7 +133,7 @@ class CaseLine:
 
 @dataclass(frozen=True)
 class Held:
-    """What came of a line: its runs, how far it holds, and pictures of what failed."""
+    """Result of a line: its runs, how far it holds, and pictures of failed runs."""
 
     line: CaseLine
     runs: tuple[Graded, ...]
@@ -144,9 +144,9 @@ class Held:
 def run_lines(
     lines: Sequence[CaseLine], jobs: int, limits: Limits, done: Callable[[Held], None]
 ) -> list[Held]:
-    """Run the lines, several at a time, the longest first; gives them in the order of ``lines``.
+    """Run the lines, several at a time, the longest first; return them in the order of ``lines``.
 
-    ``done`` hears of each as it ends, in this thread.
+    ``done`` is called with each as it ends, in this thread.
     """
     order = sorted(range(len(lines)), key=lambda index: -_work(CATALOGUE[lines[index].case]))
     results: dict[int, Held] = {}
@@ -158,18 +158,18 @@ def run_lines(
 
 
 def run_one(given: CaseLine, value: float, limits: Limits) -> Graded:
-    """One run in a process apart. Raises CrankcheckError where it cannot be asked for."""
+    """Return one run in a process apart. Raises CrankcheckError where it cannot be run."""
     with closing(Isolated[GradedPicture](limits)) as child:
         return _graded(given, value, child, grid=False)[0]
 
 
 def _work(case: Case) -> int:
-    """The steps of a line, roughly."""
+    """Return the steps of a line, roughly."""
     return sum(case.trial(value).steps for value in case.values)
 
 
 def _line(child: Isolated[GradedPicture], given: CaseLine) -> Held:
-    """One line, run by run in a child process."""
+    """Run one line in a child process."""
     case = CATALOGUE[given.case]
     pictures: list[Picture] = []
 
@@ -186,10 +186,10 @@ def _line(child: Isolated[GradedPicture], given: CaseLine) -> Held:
 def _graded(
     given: CaseLine, value: float, child: Isolated[GradedPicture], *, grid: bool
 ) -> GradedPicture:
-    """A run in the child process, with its picture where it is of the grid.
+    """Return a run of the child process, with its picture where it is of the grid.
 
-    What has no reference, or cannot be asked of the engine, is no fault of the engine: it raises
-    CrankcheckError.
+    Raises CrankcheckError for a run without a reference, or a request that the engine can not take:
+    these are no faults of the engine.
     """
     answer = child.call(graded_by_name, given, value, grid)
     if not isinstance(answer, Lost):
@@ -201,13 +201,13 @@ def _graded(
 
 
 def graded_by_name(given: CaseLine, value: float, draw: bool) -> GradedPicture:
-    """As `grading.graded`, for a case by its name: what travels to the child process is small."""
+    """Grade as `grading.graded`, by the name of the case: little travels to the child process."""
     case = CATALOGUE[given.case]
     return graded(case, given.engine, given.profile, value, draw=draw, forces=given.forces)
 
 
 def _lost(given: CaseLine, value: float, lost: Lost, grid: bool) -> Graded:
-    """A run that its process did not survive."""
+    """Return a run that its process did not survive."""
     trial = CATALOGUE[given.case].trial(value)
     return Graded(
         case=given.case,

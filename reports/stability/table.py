@@ -24,9 +24,9 @@ LETTERS: Mapping[Outcome, str] = {
     "unsupported": "-",
 }
 NARROW = 80
-"""Columns of a terminal below which a case is told in words alone."""
+"""Columns of a terminal below which a case is shown in words alone."""
 BARE = ("X", "!", "-")
-"""Letters that stand alone: their error says nothing."""
+"""Letters without an error: it says nothing."""
 STYLES: Mapping[Outcome, str] = {
     "degraded": "yellow",
     "drifts": "yellow",
@@ -35,7 +35,7 @@ STYLES: Mapping[Outcome, str] = {
 
 
 def show(console: Console, matrix: Matrix) -> None:
-    """Print the whole matrix, with its legend and where it comes from."""
+    """Print the whole matrix, with its legend and origin."""
     group = ""
     for case in matrix.cases:
         if case.group != group:
@@ -48,7 +48,7 @@ def show(console: Console, matrix: Matrix) -> None:
 
 
 def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
-    """One case: what is made harder, and how far each engine holds it."""
+    """Print one case: its parameter, and how far each engine holds it."""
     unit = f" [{case.unit}]" if case.unit else ""
     console.print(Text.assemble((case.name, "bold"), f"  {case.title}; {case.parameter}{unit}"))
     lines = [critical for critical in matrix.critical if critical.case == case.name]
@@ -82,7 +82,7 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
 
 
 def _cell(case: CaseFacts, run: Graded | None) -> Text:
-    """The error of a run, short, after the letter of its outcome."""
+    """Return the error of a run, short, after the letter of its outcome."""
     if run is None:
         return Text("")
     letter = LETTERS[run.outcome]
@@ -93,19 +93,19 @@ def _cell(case: CaseFacts, run: Graded | None) -> Text:
 
 
 def _force(run: Graded | None) -> Text:
-    """The error of the forces of a run, short."""
+    """Return the error of the forces of a run, short."""
     if run is None or math.isnan(run.force):
         return Text("")
     return Text(short(run.force, 1).removesuffix("e0"), "dim")
 
 
 def _style(case: CaseFacts, outcome: Outcome) -> str:
-    """The colour of an outcome, in the eyes of its case."""
+    """Return the colour of an outcome of a case."""
     return "green" if outcome in case.good else STYLES.get(outcome, "red")
 
 
 def _legend(matrix: Matrix) -> str:
-    """What letters and numbers mean, and how each is had alone."""
+    """Return the meaning of letters and numbers, and the command for a single run."""
     outcomes = {run.outcome for run in matrix.runs}
     letters = "; ".join(
         f"{LETTERS[outcome]} {outcome}: {meaning}"

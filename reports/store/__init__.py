@@ -1,1 +1,1 @@
-"""A sweep as it is kept: a folder of Parquet files with a manifest."""
+"""Storage of a sweep: a folder of Parquet files with a manifest."""

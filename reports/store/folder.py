@@ -1,8 +1,8 @@
-"""The files of a store: parts of its tables, which of their rows count, and its lock.
+"""The files of a store: parts of its tables, their rows that count, and its lock.
 
-One sweep at a time writes to a store, and a reader can see whether one does. To see it is to take
-the lock for a moment, so each side has patience: a sweep waits longer for it than any reader holds
-it, and a reader longer than another reader does.
+One sweep at a time writes to a store, and a reader can see whether one does. A reader sees it by
+taking the lock for a moment, so each side has patience: a sweep waits longer for it than any reader
+holds it, and a reader longer than another reader does.
 """
 
 import hashlib
@@ -27,36 +27,36 @@ NAME = re.compile(r"(cells|timings)-(\d{20})-(\d+)-([0-9a-f]{16})\.parquet")
 """Table, time [ns], number of rows, and seal."""
 MAGIC = b"PAR1"
 MOST_BYTES = 1_000_000_000
-"""A sweep writes what has come in a second or so, a hundredth of it."""
+"""Most bytes of a part: a sweep writes the cells of a second or so, a hundredth of it."""
 
 
 @dataclass(frozen=True)
 class TablePart:
-    """A file of a table that is as it was written. Its name tells the table, the time of writing,
-    how many rows it has, and the hash of its bytes, so that no byte of it changes unseen, and what
-    is lost with it is known."""
+    """A file of a table that is as it was written. Its name holds the table, the time of writing,
+    the number of rows, and the hash of its bytes, so that no byte of it changes unseen, and the
+    rows lost with it are known."""
 
     path: Path
     file: pq.ParquetFile
 
     @cached_property
     def rows(self) -> pa.Table:
-        """All of it but the columns that hold rows of their own."""
+        """All columns but those that hold rows of their own."""
         names = [name for name in self.file.schema_arrow.names if name not in NESTED]
         return self.file.read(names, use_threads=False)
 
     @cached_property
     def keys(self) -> tuple[str, ...]:
-        """The key of the cell that each row is of."""
+        """Key of the cell of each row."""
         return tuple(self.rows.column("key").to_pylist())
 
     def nested(self, column: str) -> pa.Table:
-        """The rows of their own that a column holds, beside the keys of the cells."""
+        """Return the rows of their own that a column holds, beside the keys of the cells."""
         return self.file.read(["key", column], use_threads=False)
 
     def write_again(self, staying: Sequence[bool]) -> None:
-        """Write the rows that stay as a part that is to take the place of this one; a nanosecond
-        later than it, so that its rows count as soon as they are there."""
+        """Write the rows that stay as a part that is to replace this one; a nanosecond later, so
+        that its rows count as soon as they are there."""
         if any(staying):
             rows = self.file.read(use_threads=False).filter(pa.array(staying))
             table, time_ns, *_ = self.path.name.split("-")
@@ -64,7 +64,7 @@ class TablePart:
 
 
 def rows_in(name: str) -> int:
-    """How many rows the part of that name was written with."""
+    """Return the number of rows that the part of that name was written with."""
     return int(name.split("-")[2])
 
 
@@ -77,7 +77,7 @@ def write_part(place: Path, table: str, rows: pa.Table, time_ns: int) -> None:
 
 
 def open_part(path: Path) -> TablePart:
-    """The part in a file. Raises UnreadableError for one that is not as it was written."""
+    """Return the part in a file. Raises UnreadableError for one that is not as it was written."""
     raw = regular_bytes(path, MOST_BYTES)
     if not path.stem.endswith(_seal(raw)):
         whole = raw.endswith(MAGIC)
@@ -86,15 +86,15 @@ def open_part(path: Path) -> TablePart:
 
 
 def _seal(raw: bytes) -> str:
-    """The hash of the bytes of a file: 64 bits are enough against chance."""
+    """Return the hash of the bytes of a file: 64 bits are enough against chance."""
     return hashlib.sha256(raw).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
 class Folder:
-    """A table as it lies there: what can be read, what can not, and what is not of the store.
+    """A table in its folder: readable parts, unreadable ones, and files that are not of the store.
 
-    ``fault`` is what is wrong with the folder itself, empty where it can be looked through.
+    ``fault`` is the fault of the folder itself, empty where it can be looked through.
     """
 
     parts: Mapping[str, TablePart]
@@ -104,7 +104,7 @@ class Folder:
 
     @cached_property
     def last(self) -> Mapping[str, list[bool]]:
-        """Which rows of each part count: of several of one cell the one written last."""
+        """Flags of the rows of each part that count: of several of a cell the last one written."""
         last = {
             key: (name, at) for name, part in self.parts.items() for at, key in enumerate(part.keys)
         }
@@ -115,12 +115,12 @@ class Folder:
 
 
 def has_parts(folder: Path) -> bool:
-    """Whether there is any part of a store, whole or not."""
+    """True if there is any part of a store, whole or not."""
     return any(paths_of(folder, name) for name in TABLES)
 
 
 def paths_of(folder: Path, table: str) -> list[Path]:
-    """The parts of a table, in the order of writing; none where there is no folder to look at."""
+    """Return the parts of a table, in the order of writing; none where there is no folder."""
     try:
         return sorted(path for path in (folder / table).iterdir() if is_part(path.name, table))
     except OSError:
@@ -128,7 +128,7 @@ def paths_of(folder: Path, table: str) -> list[Path]:
 
 
 def is_part(name: str, table: str) -> bool:
-    """Whether a file is called as a part of a table is, and not as what others put there."""
+    """True if the name of a file is one of a part of a table."""
     named = NAME.fullmatch(name)
     return named is not None and named[1] == table
 
@@ -158,17 +158,17 @@ def open_folder(place: Path, table: str) -> Folder:
 
 
 def being_written(name: str) -> bool:
-    """Whether a file is one that is being written, or was when its sweep was killed."""
+    """True if a file is being written, or was when its sweep was killed."""
     return name.startswith(".") and name.endswith(".tmp")
 
 
 SWEEP_S, READER_S = 0.5, 0.05
-"""How long each side tries; a reader holds the lock for less than a millisecond."""
+"""Time that each side tries; a reader holds the lock for less than a millisecond."""
 POLL_S = 0.01
 
 
 def locked(folder: Path) -> FileLock:
-    """The lock of a store, taken for a sweep into a folder that is there.
+    """Return the lock of a store, taken for a sweep into a folder that is there.
 
     Raises
     ------
@@ -191,7 +191,7 @@ def locked(folder: Path) -> FileLock:
 
 
 def is_written(folder: Path) -> bool:
-    """Whether a sweep writes to a store now; not where its lock can not be tried, as without the
+    """True if a sweep writes to a store now; False where its lock can not be tried, as without the
     right to write there. Makes no file."""
     if not os.path.lexists(folder / LOCK):
         return False

@@ -1,4 +1,4 @@
-"""What a store says of itself, and what is wrong with it, in words."""
+"""The manifest of a store, and its damage, in words."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from reports.output.write import crankcheck_version
 from reports.plan.grid import digest
 
 FORMAT = 2
-"""Raised when a store is laid out in a way that another reader would take for something else."""
+"""Version of the layout, raised where another reader would misread a store."""
 TABLES = ("cells", "timings")
 """A row of ``cells`` is a whole cell; ``timings`` are taken later, and belong to it by key."""
 TRAJECTORIES, DAMAGED, LOCK = "trajectories", "damaged", ".lock"
@@ -69,15 +69,15 @@ NESTED: Mapping[str, tuple[str, ...]] = {
     ),
     "trace": ("series", "values"),
 }
-"""The columns of a cell that hold rows of their own, and the names in these."""
+"""Columns of a cell that hold rows of their own, and the names in these."""
 
 
 def table(rows: Sequence[Mapping[str, object]]) -> pa.Table:
-    """Rows as a table whose types do not depend on what is missing; what a row has not, as one of
-    rigid links beside one of elastic ones, is null.
+    """Return rows as a table whose types do not depend on missing values; columns that a row lacks,
+    as one of rigid links beside one of elastic ones, are null.
 
-    Columns are text, flags, lists of numbers (``values``), lists of rows, or numbers; what is not
-    there is null.
+    Columns are text, flags, lists of numbers (``values``), lists of rows, or numbers; missing
+    values are null.
     """
     names = dict.fromkeys(name for row in rows for name in row)
     return pa.table(
@@ -89,7 +89,7 @@ def table(rows: Sequence[Mapping[str, object]]) -> pa.Table:
 
 
 def unnested(cells: pa.Table, name: str) -> pa.Table:
-    """The rows that a column of some cells holds, each with the key of its cell."""
+    """Return the rows that a column of some cells holds, each with the key of its cell."""
     nested = cells.column(name).combine_chunks()
     keys = cells.column("key").take(pc.list_parent_indices(nested))
     return pa.Table.from_struct_array(pc.list_flatten(nested)).add_column(0, "key", keys)
@@ -106,7 +106,7 @@ def _type(name: str) -> pa.DataType:
 
 
 def _plain(value: object) -> object:
-    """A value as Arrow takes it: settings become JSON."""
+    """Return a value as Arrow takes it: settings become JSON."""
     if isinstance(value, Mapping):
         return json.dumps(value)
     if isinstance(value, list):
@@ -125,12 +125,11 @@ COMMANDS = 3
 
 @dataclass(frozen=True)
 class Damage:
-    """One thing that is wrong with a store.
+    """One fault of a store.
 
-    ``path`` is that of the file or folder in the store. ``lost`` is how many cells are not to be
-    read for it. ``cure`` is what mends it: the same sweep again, waiting for the sweep that writes
-    it now, or nothing, since nothing is lost. ``aside`` is whether it stands in the way of the
-    cure.
+    ``path`` is the path of the file or folder in the store. ``lost`` is how many cells can not be
+    read for it. ``cure`` mends it: the same sweep again, waiting for the sweep that writes it now,
+    or nothing, since nothing is lost. ``aside`` says that it must be moved before the cure.
     """
 
     path: str
@@ -141,21 +140,21 @@ class Damage:
 
     @property
     def line(self) -> str:
-        """In a line: what is wrong with what, and how many cells that costs."""
+        """Fault in a line: path, fault, and the number of cells that it costs."""
         said = in_line(f"{self.path}: {self.what}")
         return f"{said}; {count(self.lost, 'cell')} missing" if self.lost else said
 
 
 def in_line(text: str) -> str:
-    """A text without characters that a terminal would obey, in one line."""
+    """Return a text without characters that a terminal would obey, in one line."""
     return harmless(text).replace("\n", "\\n").replace("\t", "\\t")
 
 
 def notice(
     folder: object, damage: Sequence[Damage], safe: int, runs: Sequence[object]
 ) -> list[str]:
-    """The lines that name every damage of a store once; none where there is none. ``safe`` is how
-    many cells can be read, of ``runs`` the commands mend it (see `command`)."""
+    """Return the lines that name every damage of a store once; none where there is none. ``safe``
+    is how many cells can be read, the commands of ``runs`` mend it (see `command`)."""
     if not damage:
         return []
     bad = [each.line for each in damage if each.cure == "sweep"]
@@ -174,7 +173,7 @@ def notice(
 
 
 def command(folder: object, runs: Sequence[object]) -> str:
-    """What was typed to fill a store, the last first, as far as its runs tell."""
+    """Return the commands that filled a store, the last first, as far as its runs know them."""
     typed = [run.get("command") for run in reversed(runs) if isinstance(run, Mapping)]
     sweeps = dict.fromkeys(
         shlex.join(map(str, words))
@@ -186,14 +185,14 @@ def command(folder: object, runs: Sequence[object]) -> str:
 
 
 def indented(lines: Sequence[str]) -> list[str]:
-    """Lines below a head, no more than anyone reads."""
+    """Return lines below a head, no more than anyone reads."""
     more = [f"  and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
     return [*(f"  {line}" for line in lines[:MOST_LINES]), *more]
 
 
 MANIFEST = "manifest.json"
 MOST_BYTES = 100_000_000
-"""A sweep of 100,000 cells adds a tenth of it."""
+"""Most bytes of a manifest: a sweep of 100,000 cells adds a tenth of it."""
 
 
 @dataclass(frozen=True)
@@ -205,14 +204,13 @@ class Manifest:
 
     @cached_property
     def lines(self) -> frozenset[str]:
-        """The lines of cells that its runs asked for."""
+        """Lines of cells that its runs requested."""
         return frozenset(line for run in self.runs for line in run.get("lines", {}))
 
     def joined(
         self, later: Manifest, folder: Path, digests: Collection[tuple[str, str]]
     ) -> Manifest:
-        """This one and a later run; ``digests`` are the names and hashes of the scenes that there
-        are cells of.
+        """Return this one and a later run; ``digests`` are names and hashes of scenes with cells.
 
         Raises CrankcheckError where a scene has changed since.
         """
@@ -225,21 +223,21 @@ class Manifest:
         return Manifest({**self.scenes, **later.scenes}, (*self.runs, *later.runs))
 
     def covers(self, later: Manifest) -> bool:
-        """Whether a later run, where it finds everything there, would tell nothing new: it calls
-        the cells what the last one called them, and asks for no others."""
+        """True if a later run that finds all its cells adds nothing: it has the same names for the
+        cells as the last one, and requests no others."""
         if not self.runs or not set(later.scenes.items()) <= set(self.scenes.items()):
             return False
         return all(run.get("lines") == self.runs[-1].get("lines") for run in later.runs)
 
     def text(self) -> str:
-        """As it stands in the file."""
+        """Return the text of the file."""
         said = {"scenes": dict(self.scenes), "runs": list(self.runs)}
         content = {"format": FORMAT, "seal": _seal(said), **said}
         return json.dumps(content, indent=1) + "\n"
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """The manifest of a store.
+    """Return the manifest of a store.
 
     Raises
     ------
@@ -265,12 +263,12 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def _seal(said: Mapping[str, object]) -> str:
-    """A hash of what a manifest says, however it is laid out."""
+    """Return a hash of the content of a manifest, independent of its layout."""
     return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
 
 
 def _of_another_format(folder: Path, found: object, runs: object) -> str:
-    """What is said of a store that is laid out in another way, as far as its manifest tells."""
+    """Return the message on a store of another layout, as far as its manifest is known."""
     listed = runs if isinstance(runs, list) else []
     facts = listed[-1].get("provenance") if listed and isinstance(listed[-1], dict) else None
     writer = facts.get("crankcheck", "?") if isinstance(facts, dict) else "?"

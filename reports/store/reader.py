@@ -43,7 +43,7 @@ from reports.store.manifest import (
 from reports.workers.isolated import Limits
 
 HARD = ("stability.json", "stability.csv", "stability.html")
-"""What `crankcheck stability` may have put beside a sweep."""
+"""Files that `crankcheck stability` may have put beside a sweep."""
 OWN = {MANIFEST, LOCK, DAMAGED, TRAJECTORIES, *TABLES, *HARD}
 STOPPED = "not all that its sweeps asked for; was one stopped?"
 REPEATED = "rows that another part has too; those written last count"
@@ -59,8 +59,8 @@ class ExaminedStore:
     damage: tuple[Damage, ...] = ()
 
     def table(self, name: str, nested: str = "") -> pa.Table | None:
-        """The rows of a table that count, in the order of writing; of a column that holds rows of
-        their own it and the keys. None where there is nothing."""
+        """Return the rows of a table that count, in the order of writing; with ``nested``, that
+        column of rows and the keys. None where there is nothing."""
         tables = []
         for part in self.folders[name].parts.values():
             rows = part.nested(nested) if nested else part.rows
@@ -69,7 +69,7 @@ class ExaminedStore:
         return pa.concat_tables(tables, promote_options="permissive") if tables else None
 
     def _counting(self, table: str, part: TablePart) -> Sequence[bool]:
-        """Which rows of a part count: those written last, of cells that were asked for."""
+        """Return flags of the rows of a part that count: written last, of requested cells."""
         last, asked = self.folders[table].last[part.path.name], self.manifest.lines
         if table == "timings" or not asked:
             return last
@@ -87,7 +87,7 @@ def examine(folder: Path) -> ExaminedStore:
     CrankcheckError
         A store of another format.
     """
-    # What a sweep asks for is in the manifest before the first cell of it is in a part.
+    # The request of a sweep is in the manifest before its first cell is in a part.
     folders = {name: open_folder(folder / name, name) for name in TABLES}
     damage = []
     try:
@@ -107,7 +107,7 @@ def examine(folder: Path) -> ExaminedStore:
 
 
 def _cells(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
-    """Parts of cells that are lost, and what the manifest knows to be missing besides."""
+    """Yield lost parts of cells, and further cells that the manifest knows to be missing."""
     cells, lost = store.folders["cells"], 0
     for name, error in cells.faults.items():
         lost += rows_in(name)
@@ -122,7 +122,7 @@ def _cells(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
 
 
 def _timings(folder: Path, timings: Folder) -> Iterator[Damage]:
-    """What of the timings is lost."""
+    """Yield the lost timings."""
     for name, error in timings.faults.items():
         yield Damage(f"timings/{name}", f"{error}; its times are lost", aside=True)
     if timings.fault and os.path.lexists(folder / "timings"):
@@ -130,8 +130,7 @@ def _timings(folder: Path, timings: Folder) -> Iterator[Damage]:
 
 
 def _asked(manifest: Manifest) -> dict[str, int]:
-    """How many cells of each line were asked for, from the numbers of steps of the studies,
-    or of their own."""
+    """Return the requested number of cells of each line, from the steps of studies, or its own."""
     asked: dict[str, set[float]] = {}
     for run in manifest.runs:
         usual = run.get("study", {}).get("steps_per_turn", ())
@@ -141,7 +140,7 @@ def _asked(manifest: Manifest) -> dict[str, int]:
 
 
 def _harmless(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
-    """What is not of the store, or of cells that nobody asked for."""
+    """Yield files that are not of the store, and cells that nobody requested."""
     asked, parts = store.manifest.lines, store.folders["cells"].parts
     unasked = {
         f"cells/{name}": number
@@ -159,10 +158,10 @@ def _harmless(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
 
 @dataclass(frozen=True)
 class Stored:
-    """A store in memory: what of it can be read, and what is wrong with the rest.
+    """A store in memory: its readable part, and the damage of the rest.
 
     ``cells`` has one row per cell, and the columns of its timing beside its own (NaN where it was
-    not timed); ``timings`` is the table as it stands.
+    not timed); ``timings`` is the table of the file.
     """
 
     folder: Path
@@ -173,12 +172,12 @@ class Stored:
 
     @property
     def damage(self) -> tuple[Damage, ...]:
-        """What is wrong with the store."""
+        """Damage of the store."""
         return self.examined.damage if self.examined else ()
 
     @property
     def notice(self) -> list[str]:
-        """The lines that name every damage; none where there is none."""
+        """Lines that name every damage; none where there is none."""
         return notice(self.folder, self.damage, len(self.cells), self.manifest.runs)
 
     @cached_property
@@ -196,12 +195,12 @@ class Stored:
         return traces
 
     def trace(self, key: str) -> Mapping[str, Array]:
-        """The last turn of a cell (see `reports.compare.last_turn`); empty where there is none."""
+        """Return the last turn of a cell (see `reports.compare.last_turn`); empty without one."""
         return self._traces.get(key, {})
 
 
 def read_store(folder: Path) -> Stored:
-    """The store in a folder, as far as it can be read.
+    """Return the store in a folder, as far as it can be read.
 
     Raises
     ------
@@ -229,10 +228,10 @@ def read_store(folder: Path) -> Stored:
 
 
 def _examined(folder: Path) -> ExaminedStore:
-    """A store, looked through, of which a sweep may write more meanwhile; one that came to its end
+    """Return a store, looked through, of which a sweep may write more meanwhile; a sweep that ended
     since then is seen by its lock before, and one that began by its lock after.
 
-    Cells that it is still to write are no damage, and stay in the way of whoever must know all
+    Cells that it is still to write are no damage, and still hinder a reader that must know all
     cells, as a comparison.
     """
     busy = is_written(folder)
@@ -261,7 +260,7 @@ def _refuse_unknown(folder: Path) -> None:
 
 
 def _named(cells: pd.DataFrame, manifest: Manifest) -> pd.DataFrame:
-    """The cells under the names of the last run that asked for them, those of later runs later."""
+    """Return the cells under the names of the last run that requested them, later runs last."""
     names = {
         line: (index, *name)
         for index, run in enumerate(manifest.runs)
@@ -278,31 +277,31 @@ def _named(cells: pd.DataFrame, manifest: Manifest) -> pd.DataFrame:
 
 
 def stored_keys(folder: Path, name: str) -> set[str]:
-    """The keys that a table holds already."""
+    """Return the keys that a table holds already."""
     return {str(key) for (key,) in _rows(folder, name, "key")}
 
 
 def stored_endings(folder: Path) -> dict[str, Limits]:
-    """The limits that the cells had that timed out or crashed, by key."""
+    """Return the limits of the cells that timed out or crashed, by key."""
     rows = _rows(folder, "cells", "key", "status", "limit_s", "memory_gb")
     return {k: Limits(t, m) for k, status, t, m in rows if status in ("timeout", "crashed")}
 
 
 def stored_costs(folder: Path) -> dict[str, float]:
-    """The rough cost of a step [microseconds] of each cell that ran well, by key."""
+    """Return the rough cost of a step [microseconds] of each cell that ran well, by key."""
     rows = _rows(folder, "cells", "key", "status", "logged_us_per_step")
     return {key: cost for key, status, cost in rows if status == "ok" and cost is not None}
 
 
 def _rows(folder: Path, name: str, *columns: str) -> Iterator[tuple[Any, ...]]:
-    """Some columns of a table that was mended, row by row."""
+    """Yield some columns of a table that was mended, row by row."""
     for path in paths_of(folder, name):
         part = pq.ParquetFile(path).read(columns, use_threads=False)
         yield from zip(*(part.column(column).to_pylist() for column in columns), strict=True)
 
 
 def _frame(store: ExaminedStore | None, name: str, nested: str = "") -> pd.DataFrame:
-    """What can be read of a table, or of the rows that one of its columns holds."""
+    """Return the readable part of a table, or of the rows that one of its columns holds."""
     rows = store.table(name, nested) if store else None
     if rows is not None and nested:
         rows = unnested(rows, nested)

@@ -30,14 +30,14 @@ from reports.store.reader import STOPPED, ExaminedStore, examine
 from sim.engine import Run
 
 EVERY_S = 1.0
-"""What is lost when the process is killed is the work of so many seconds, at most."""
+"""Seconds of work that are lost at most when the process is killed."""
 Row = Mapping[str, object]
 
 
 class Writer:
     """A store that is open for adding; to be used as a context, which writes the rest at its end.
 
-    What was damaged in it is mended at once, as ``mended`` says.
+    Damage in it is mended at once, as ``mended`` says.
 
     Raises
     ------
@@ -66,8 +66,8 @@ class Writer:
             raise
 
     def _open(self, later: Manifest) -> None:
-        """Mend what is there, and write in the manifest what is to come, unless that is nothing
-        new: then as soon as there is something to write."""
+        """Mend the store, and add the coming run to the manifest, at once if it adds anything new,
+        else with the first write."""
         store = None if _is_new(self.folder) else examine(self.folder)
         cells = store.table("cells") if store else None
         scenes = cells.select(["scene", "scene_digest"]).to_pydict().values() if cells else ()
@@ -100,13 +100,13 @@ class Writer:
 
     def cell(self, row: Row, errors: Sequence[Row], series: Mapping[str, object]) -> None:
         """Add a cell with its errors and its trace; on disk within a second or so."""
-        # What names the cell its errors say too.
+        # The names of the cell are in its errors too.
         rows = [{name: each[name] for name in each.keys() - row.keys()} for each in errors]
         trace = [{"series": name, "values": values} for name, values in series.items()]
         self._add("cells", {**row, "errors": rows, "trace": trace})
 
     def timing(self, row: Row) -> None:
-        """Add what the steps of a cell cost."""
+        """Add the cost of the steps of a cell."""
         self._add("timings", row)
 
     def trajectory(self, key: str, run: Run) -> None:
@@ -123,7 +123,7 @@ class Writer:
                 path.unlink()
 
     def flush(self) -> None:
-        """Write what waits."""
+        """Write the waiting rows."""
         self._written = time.monotonic()
         for name, rows in self._waiting.items():
             if rows:
@@ -140,7 +140,7 @@ class Writer:
 
 
 def _is_new(folder: Path) -> bool:
-    """Whether there is nothing of a store yet."""
+    """True if there is nothing of a store yet."""
     return not (os.path.lexists(folder / MANIFEST) or has_parts(folder))
 
 
@@ -162,7 +162,7 @@ def _refuse_other(folder: Path) -> None:
 
 
 def _begun(path: Path) -> bool:
-    """Whether it is what a sweep makes first: a lock, and folders with nothing in them."""
+    """True for the first files of a sweep: a lock, and empty folders."""
     return path.name == LOCK or (path.name in TABLES and path.is_dir() and not any(path.iterdir()))
 
 
@@ -177,8 +177,8 @@ def _create(folder: Path, names: Iterable[str]) -> None:
 
 
 def mend(folder: Path, store: ExaminedStore) -> list[str]:
-    """Move what is damaged into the folder ``damaged``, and keep of a cell that is there several
-    times the row that counts; gives the lines that say so.
+    """Move damaged files into the folder ``damaged``, and keep of repeated cells the row that
+    counts; return the lines that say so.
 
     Such a row is there twice in between, which readers know, and at no moment not at all. Raises
     CrankcheckError for a file that can not be moved.
@@ -188,7 +188,7 @@ def mend(folder: Path, store: ExaminedStore) -> list[str]:
             if not all(here.last[name]):
                 part.write_again(here.last[name])
     moved = [_set_aside(folder, each.path) for each in store.damage if each.aside]
-    # What was stopped goes on without a word.
+    # A stopped sweep goes on without a word.
     bad = [each for each in store.damage if each.cure == "sweep" and each.what != STOPPED]
     lines = [each.line for each in bad]
     if moved:
@@ -199,7 +199,7 @@ def mend(folder: Path, store: ExaminedStore) -> list[str]:
 
 
 def _set_aside(folder: Path, path: str) -> str:
-    """Move a file or a folder of the store; gives its new name."""
+    """Move a file or a folder of the store; return its new name."""
     place = folder / DAMAGED
     try:
         place.mkdir(exist_ok=True)
@@ -214,7 +214,7 @@ def _set_aside(folder: Path, path: str) -> str:
 
 
 def _names(path: str) -> Iterator[str]:
-    """Names for what is moved, one of which is free: without its folder, and with a number."""
+    """Yield names for a moved file, one of which is free: without its folder, and with a number."""
     stem, dot, ending = path.rpartition("/")[2].partition(".")
     yield f"{stem}{dot}{ending}"
     for number in count(2):

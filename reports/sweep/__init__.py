@@ -1,1 +1,1 @@
-"""Many cells: which there are, running each by itself, timing them, keeping what came of them."""
+"""Runs of many cells: each by itself, their timing, and the storage of their results."""

@@ -1,4 +1,4 @@
-"""What is measured of cells: rows, and how they moved, ready to travel between processes; times."""
+"""Measurements of cells: rows, and their motion, ready to travel between processes; times."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ if TYPE_CHECKING:
 REPEATS = 2
 """Timed repeats of a cell in one round."""
 REPEAT_S = 0.015
-"""About how long a repeat lasts: long over the clock's resolution, short enough for hundreds."""
+"""Length of a repeat [s], roughly: long over the clock's resolution, short enough for hundreds."""
 UNMEASURED: Mapping[str, object] = {"logged_us_per_step": None, "wall_s": None}
-"""The columns of a cell that was lost."""
+"""Columns of a cell that was lost."""
 LEAST_TIMED, MOST_TIMED = 200, 50_000
 Repeats = tuple[float, ...]
-"""What a step cost each time [microseconds]."""
+"""Cost of a step in each repeat [microseconds]."""
 
 
 @dataclass(frozen=True)
 class MeasuredCell:
-    """A cell that was run: its row, the rows of its errors, its last turn, and the run itself where
-    that was asked for. ``crankcheck`` is the version that ran it."""
+    """A cell that was run: its row, the rows of its errors, its last turn, and the run itself if
+    requested. ``crankcheck`` is the version that ran it."""
 
     row: Mapping[str, object]
     errors: tuple[Mapping[str, object], ...] = ()
@@ -76,10 +76,10 @@ def timed_in_turns(
     rounds: int,
     done: Callable[[], None] = lambda: None,
 ) -> list[tuple[Repeats, Repeats] | None]:
-    """What a step of each cell costs, in repeats of the rounds A and B, which take turns.
+    """Return the cost of a step of each cell, in repeats of the rounds A and B, which take turns.
 
     Every cell, which comes with a first guess [microseconds], is timed once a round: a slow minute
-    slows all of them. How far the minima of A and B lie apart is the noise. None for a cell that
+    slows all of them. The difference of the minima of A and B is the noise. None for a cell that
     was lost in any round. ``done`` is called after every cell of every round.
     """
     taken: list[list[Repeats]] = [[] for _ in cells]
@@ -97,7 +97,7 @@ def timed_in_turns(
 
 
 def timed(cell: Cell, us_per_step: float) -> Repeats:
-    """What a step of a cell costs without logging, in several repeats [microseconds].
+    """Return the cost of a step of a cell without logging, in several repeats [microseconds].
 
     ``us_per_step`` is a first guess, which sets how many steps a repeat has.
     """
@@ -117,15 +117,15 @@ def timed(cell: Cell, us_per_step: float) -> Repeats:
 
 
 def _start(cell: Cell) -> State:
-    """What a cell starts from, without the truth of all of it. Raises CrankcheckError."""
+    """Return the start of a cell, without its whole reference. Raises CrankcheckError."""
     truth = cell.way.launch(cell.planned)
     return truth.start if truth else released_state(cell.scene)
 
 
 def timing_row(cell: Cell, a: Sequence[float], b: Sequence[float]) -> dict[str, object]:
-    """The columns of a timing, from rounds A and B over the same cells, some time apart.
+    """Return the columns of a timing, from rounds A and B over the same cells, some time apart.
 
-    How far their minima lie apart is the noise of comparing cells with each other.
+    The difference of their minima is the noise of comparing cells with each other.
     """
     return {
         "us_per_step": min(*a, *b),
@@ -138,12 +138,12 @@ def timing_row(cell: Cell, a: Sequence[float], b: Sequence[float]) -> dict[str, 
 
 
 ANSWER_S = 5.0
-"""How long a scheduler may take to answer."""
+"""Longest time for the answer of a scheduler [s]."""
 _own = threading.local()
 
 
 def connected(address: str) -> Client:
-    """A cluster, at the address of its scheduler.
+    """Return a cluster, at the address of its scheduler.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def connected(address: str) -> Client:
 def on_cluster(
     client: Client, cells: Sequence[Cell], limits: Limits, keep_run: bool
 ) -> Generator[tuple[int, MeasuredCell | Lost]]:
-    """As `measured` of every cell, each in a child process of the Dask worker that has it; yields
+    """Run `measured` on every cell, each in a child process of the Dask worker that has it; yield
     index and outcome of each as it ends. The client is closed when this is."""
     from distributed import as_completed
 
@@ -192,7 +192,7 @@ def on_cluster(
 def _there(
     cell: Cell, limits: Limits, keep_run: bool, own_engines: Mapping[str, str]
 ) -> MeasuredCell | Lost:
-    """One cell in the child process of this thread of a Dask worker."""
+    """Run one cell in the child process of this thread of a Dask worker."""
     told(own_engines)
     child: Isolated[MeasuredCell] | None = getattr(_own, "child", None)
     if child is not None and child.limits != limits:

@@ -1,4 +1,4 @@
-"""Run what a store lacks of a grid: errors several at a time, then costs one by one."""
+"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ BLOCK = 150
 
 @dataclass(frozen=True)
 class Done:
-    """How many cells were run and timed now, and how those that failed did: status to reasons."""
+    """Number of cells that were run and timed now, and the failed ones: status to reasons."""
 
     ran: int = 0
     timed: int = 0
@@ -72,8 +72,8 @@ class Running:
     def errors(
         self, keep_run: bool, jobs: int, client: Client | None = None, again: bool = False
     ) -> Done:
-        """Run every cell that the store has not, and those that a limit ended which is wider now;
-        with ``again`` all that timed out or crashed.
+        """Run every cell that the store has not, and cells ended by a limit that is wider now; with
+        ``again`` all that timed out or crashed.
 
         So many ``jobs`` at a time here (0: one per processor), or all on the cluster of ``client``.
         """
@@ -144,11 +144,11 @@ class Running:
         self.writer.cell(row, outcome.errors, outcome.trace)
 
     def _wider_than(self, ended: Limits) -> bool:
-        """Whether a cell that was ended would have more time or memory now."""
+        """True if a cell that was ended would have more time or memory now."""
         return ended.time_s < self.limits.time_s or ended.memory_gb < self.limits.memory_gb
 
     def _refuse_other_versions(self, task: Task, outcome: MeasuredCell) -> None:
-        """A worker elsewhere may have other packages than the key of the cell says.
+        """Refuse a worker elsewhere with other packages than the key of the cell says.
 
         Raises
         ------
@@ -173,19 +173,19 @@ class Running:
 
 
 def _measured(keep_run: bool, child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
-    """A cell in a child process."""
+    """Run a cell in a child process."""
     return child.call(measured, cell, keep_run)
 
 
 def _lost(task: Task, lost: Lost) -> MeasuredCell:
-    """A cell that came to no end of its own, as a row with its reason."""
+    """Return a cell that came to no end of its own, as a row with its reason."""
     row = cell_row(unfinished(task.cell, lost.status, lost.reason))
     return MeasuredCell({**row, **UNMEASURED})
 
 
 @dataclass(frozen=True)
 class Manner:
-    """How a sweep is run: what a cell may take, how many at a time (0: one per processor), on which
+    """Options of a sweep: the limits of a cell, how many at a time (0: one per processor), the
     cluster, if any; whether it is timed, runs are kept whole, and failed cells run again."""
 
     limits: Limits
@@ -199,10 +199,10 @@ class Manner:
 def swept(
     study: Study, folder: Path, manner: Manner, command: Sequence[str], progress: Console
 ) -> tuple[Grid, Done]:
-    """Do what of the study is not done yet; what is damaged in the store is mended, and told.
+    """Run the rest of the study; damage in the store is mended, and reported.
 
-    ``command`` is kept with the run, to be repeated. Raises CrankcheckError for what can be told
-    of the study, or of the folder, before running.
+    ``command`` is kept with the run, to be repeated. Raises CrankcheckError for faults of the
+    study, or of the folder, that are known before running.
     """
     laid = grid(study)
     client = None if manner.dask is None else connected(manner.dask)
@@ -212,7 +212,7 @@ def swept(
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "study": study.model_dump(exclude_defaults=True),
         "provenance": facts,
-        # What the cells are called in this run, which may not be what they were called before.
+        # Names of the cells in this run, which may differ from earlier ones.
         "lines": {t.line: [t.variant, t.cell.profile, t.cell.gated] for t in laid.tasks},
     }
     run |= {"own_steps": own} if (own := _own_steps(study, laid.tasks)) else {}
@@ -230,7 +230,7 @@ def swept(
 
 
 def _own_steps(study: Study, tasks: Sequence[Task]) -> dict[str, list[float]]:
-    """The steps in a turn of lines that have others than the study, as elastic links may."""
+    """Return the steps in a turn of lines that differ from the study, as elastic links may."""
     steps: dict[str, list[float]] = {}
     for task in tasks:
         if task.cell.scene.elastic and study.times_held:
@@ -239,7 +239,7 @@ def _own_steps(study: Study, tasks: Sequence[Task]) -> dict[str, list[float]]:
 
 
 def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
-    """Print what of so many cells was run now, what failed, and what to do with it."""
+    """Print the number of cells that were run now, the failed ones, and the next command."""
     console.print(
         f"{count(number, 'cell')}: {done.ran} run now, {number - done.ran} were there; "
         f"{done.timed} timed now"
@@ -256,7 +256,7 @@ def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
 
 
 def _recommend(console: Console, stored: Stored) -> None:
-    """What to choose, of all that the store holds."""
+    """Print recommendations from all that the store holds."""
     console.print()
     older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
     if older:

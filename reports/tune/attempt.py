@@ -1,4 +1,4 @@
-"""One set of settings put to the test: the coarsest step at which it reaches the target."""
+"""A test of one set of settings: the coarsest step at which it reaches the target."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,15 +16,15 @@ from sim.engine import Settings
 from sim.registry.offers import Work
 
 DEARER = 2.0
-"""How many times the cost of the best so far settings may take before they are given up."""
+"""Factor of the cost of the best settings so far at which others are given up."""
 NONE_KNOWN = 30.0
-"""How far, in decades, settings are off whose runs give no error at all."""
+"""Distance from the target, in decades, of settings whose runs give no error at all."""
 Row = Mapping[str, object]
 
 
 @dataclass(frozen=True)
 class Goal:
-    """What is asked for: ``target`` is the error of place (angle [rad], position and displacement
+    """Goal of a search: ``target`` is the error of place (angle [rad], position and displacement
     over the longest link), the worst of all ``scenes`` in a run of ``turns``."""
 
     scenes: tuple[Scene, ...]
@@ -35,16 +35,16 @@ class Goal:
 
     @property
     def least(self) -> int:
-        """The fewest steps in a turn that a run of so many turns may have."""
+        """Fewest steps in a turn that a run of so many turns may have."""
         return max(LEAST_STEPS_PER_TURN, math.ceil(LEAST_STEPS / self.turns))
 
     @property
     def most(self) -> int:
-        """The most steps in a turn; a run at half the step is still to be done."""
+        """Most steps in a turn; a run at half the step is still possible."""
         return int(MOST_SEARCHED / (2.0 * self.turns))
 
     def cell(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Cell:
-        """A run with complete settings."""
+        """Return a run with complete settings."""
         dt_s, steps = counted(scene, None, steps_per_turn, self.turns)
         return Cell(
             scene=scene,
@@ -60,11 +60,11 @@ class Goal:
 
 @dataclass(frozen=True)
 class Attempt:
-    """What came of some settings.
+    """Result of some settings.
 
     ``steps_per_turn`` is None where no step reached the target for good: ``error`` is then the
-    least that is over it, at ``tried`` steps in a turn. ``cost_us`` is what a turn takes by the
-    model, all scenes together [microseconds]; ``runs`` the number of runs, one per scene and step.
+    least that is over it, at ``tried`` steps in a turn. ``cost_us`` is the model's cost of a turn,
+    all scenes together [microseconds]; ``runs`` the number of runs, one per scene and step.
     ``timed_out`` says that the clock ended a run: this says nothing for good about the settings.
     """
 
@@ -83,7 +83,7 @@ class Attempt:
         return self.steps_per_turn is not None
 
     def over(self, target: float) -> float:
-        """By how many decades the error is over the target; 0 or less where it is not."""
+        """Return by how many decades the error is over the target; 0 or less where it is not."""
         if self.error == 0.0:
             return -NONE_KNOWN
         return min(math.log10(self.error / target), NONE_KNOWN)
@@ -110,11 +110,11 @@ class Bench:
         self._isolated.close()
 
     def us_per_step(self, settings: Settings) -> float:
-        """What a step takes by the model, all scenes together [microseconds]."""
+        """Return the model's cost of a step, all scenes together [microseconds]."""
         return sum(work(settings) for work in self.works)
 
     def row(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Row:
-        """The row of one run.
+        """Return the row of one run.
 
         Raises
         ------
@@ -140,8 +140,8 @@ class Bench:
     def attempt(self, settings: Settings, best: Attempt | None) -> Attempt:
         """Find the coarsest step that reaches the target.
 
-        The look starts where ``best``, the best so far, has its step, and ends where these
-        settings would take several times as long: they can not win any more.
+        The search starts at the step of ``best``, the best so far, and ends where these settings
+        would take several times as long: they can not win any more.
         """
         goal, each = self.goal, self.us_per_step(settings)
         most, start = goal.most, 4 * goal.least
@@ -177,23 +177,23 @@ class Bench:
 
 
 def error_of(row: Row) -> float:
-    """The error of place of a run; infinite where it did not come to its end."""
+    """Return the error of place of a run; infinite where it did not come to its end."""
     error = row["place_pure"]
     sound = row["status"] == "ok" and isinstance(error, float) and math.isfinite(error)
     return float(error) if sound and isinstance(error, float) else math.inf
 
 
 ROUNDS = 12
-"""How often each is timed, one after the other: a slow minute then slows both."""
+"""Rounds of timing, one after the other: a slow minute then slows both."""
 GUESS_US = 50.0
-"""Of a step; high, so that a repeat is short: of many short ones the least is hardly disturbed."""
+"""Guess of a step; high, so that a repeat is short: the least of many is hardly disturbed."""
 
 
 @dataclass(frozen=True)
 class Taken:
     """Measured times of the scenes together: of a step [microseconds] and of a turn [s].
 
-    ``noise`` is how far two timings of the same thing lay apart, relative to it.
+    ``noise`` is the relative difference of two timings of the same cell.
     """
 
     us_per_step: float
@@ -204,7 +204,7 @@ class Taken:
 def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken] | None:
     """Time each attempt at its step; the least time of all rounds counts. None where one is lost.
 
-    The A/A noise is that of the least times of odd and even rounds over all scenes.
+    The A/A noise comes from the least times of odd and even rounds over all scenes.
     """
     cells = [goal.cell(scene, a.settings, a.tried) for a in attempts for scene in goal.scenes]
     with closing(Isolated[Repeats](limits)) as isolated:
@@ -220,7 +220,7 @@ def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken
 
 
 def _taken(halves: Sequence[Sequence[float]], steps_per_turn: int) -> Taken:
-    """Sums over the scenes."""
+    """Return sums over the scenes."""
     us = sum(min(half) for half in halves)
     a, b = (sum(half[k] for half in halves) for k in (0, 1))
     return Taken(us, 1e-6 * us * steps_per_turn, abs(a - b) / min(a, b))

@@ -1,9 +1,9 @@
 """The search: Optuna proposes values of the knobs, each is tried, the cheapest that reaches wins.
 
-Everything is a function of seed and of what the trials before found, down to the sampler, which is
-made anew from seed and place of every trial: the same seed finds the same settings, also where a
-search is ended and taken up again. Only a run that the clock ends is none: its trial fails, and its
-place is open when the search is taken up again, to the same settings.
+Everything is a function of the seed and of the results of earlier trials, down to the sampler,
+which is made anew from seed and place of every trial: the same seed finds the same settings, also
+where a search is ended and resumed. Only a run that the clock ends is an exception: its trial
+fails, and its place is open to the same settings when the search is resumed.
 """
 
 import contextlib
@@ -35,26 +35,26 @@ from sim.engine import Settings, SettingValue
 from sim.registry.offers import Knob, SearchSpace, Values
 
 FOUND = "found"
-"""Where a trial keeps its attempt."""
+"""Key of a trial's attempt."""
 PLACE = "place"
-"""Where a trial keeps its number among those that came to an end, also one that the clock ended."""
+"""Key of a trial's number among those that came to an end, also one that the clock ended."""
 Try = Callable[[Settings, Attempt | None], Attempt]
 
 
 def attempts(study: Study) -> dict[int, Attempt]:
-    """From place to what the trial there found; what the clock ended is not among it."""
+    """Return the attempts by place; trials that the clock ended are not among them."""
     complete = study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,))
     return {trial.user_attrs[PLACE]: Attempt(**trial.user_attrs[FOUND]) for trial in complete}
 
 
 def best_of(tried: Iterable[Attempt]) -> Attempt | None:
-    """The cheapest that reaches the target, the first of equals; None where none does."""
+    """Return the cheapest that reaches the target, the first of equals; None where none does."""
     return min((a for a in tried if a.reached), key=lambda a: a.cost_us, default=None)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How to search: around which complete settings, in how many trials."""
+    """Plan of a search: complete settings to start from, and the number of trials."""
 
     space: SearchSpace
     profile: Settings
@@ -69,8 +69,8 @@ def search(
     """Fill the study up to the budget; the trials that it has count.
 
     The starts of the space come first. Settings that were tried before are not run again, and the
-    trial counts. Returns the attempts of all trials that there are, also of those that the clock
-    ended just now, which the study does not keep.
+    trial counts. Returns the attempts of all trials that there are, also those that the clock ended
+    just now, which the study does not keep.
     """
     by_place = attempts(study)
     for place in (each for each in range(plan.budget) if each not in by_place):
@@ -86,7 +86,7 @@ def search(
 
 
 def _tell(study: Study, plan: Plan, trial: Trial, place: int, outcome: Attempt) -> None:
-    """Keep what a trial found; where the clock ended it, only that it is to be tried again."""
+    """Keep the attempt of a trial; where the clock ended it, only that it is to be tried again."""
     trial.set_user_attr(PLACE, place)
     if outcome.timed_out:
         study.tell(trial, state=TrialState.FAIL)
@@ -99,10 +99,10 @@ def _tell(study: Study, plan: Plan, trial: Trial, place: int, outcome: Attempt) 
 def plainer(
     space: SearchSpace, first: Attempt, best: Attempt, attempt: Try
 ) -> tuple[Attempt, list[Attempt]]:
-    """The best with every knob back at the profile's value that it gains nothing by.
+    """Return the best, each knob back at the profile's value if that costs nothing.
 
     ``first`` is the attempt of the profile itself, which is taken where it is as cheap. Also
-    returns what was tried. As cheap counts what the step is not resolved to.
+    returns the attempts. Costs within the resolution of the step count as equal.
     """
     tried: list[Attempt] = []
     most_us = RESOLUTION * best.cost_us
@@ -119,7 +119,7 @@ def plainer(
 
 
 def _asked(study: Study, plan: Plan, place: int) -> tuple[Trial, Values]:
-    """The next trial, and the values that it stands for.
+    """Return the next trial, and its values.
 
     ``place`` counts the trials that came to an end, not those that were cut short.
     """
@@ -140,25 +140,25 @@ def _asked(study: Study, plan: Plan, place: int) -> tuple[Trial, Values]:
 
 
 def _timed_out(study: Study) -> dict[int, dict[str, Any]]:
-    """From place to what was tried there when the clock ended it."""
+    """Return the parameters that were tried at a place when the clock ended it, by place."""
     failed = study.get_trials(deepcopy=False, states=(TrialState.FAIL,))
     return {t.user_attrs[PLACE]: dict(t.params) for t in failed if PLACE in t.user_attrs}
 
 
 def _distribution(knob: Knob) -> BaseDistribution:
-    """Numbers are searched by their place in the order, words as they are."""
+    """Return a distribution: numbers by their place in the order, words as they are."""
     if knob.ordered:
         return IntDistribution(0, len(knob.values) - 1)
     return CategoricalDistribution([str(value) for value in knob.values])
 
 
 def _place(knob: Knob, value: SettingValue) -> int | str:
-    """What Optuna knows a value as."""
+    """Return the value as Optuna knows it."""
     return knob.values.index(value) if knob.ordered else str(value)
 
 
 def _value(knob: Knob, place: int | str) -> SettingValue:
-    """The value that Optuna means."""
+    """Return the value that Optuna means."""
     return knob.values[place] if isinstance(place, int) else place
 
 
@@ -189,7 +189,7 @@ def check_storage(path: Path) -> None:
 
 
 def _names(path: Path) -> list[str] | None:
-    """The studies in a file of Optuna; None for any other."""
+    """Return the studies in a file of Optuna; None for any other."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC:
@@ -207,7 +207,7 @@ def _names(path: Path) -> list[str] | None:
 
 @contextmanager
 def study_in(path: Path | None, asked: Asked) -> Iterator[Study]:
-    """The study of a file, new or to be gone on with; in memory for None.
+    """Yield the study of a file, new or to be resumed; in memory for None.
 
     Trials that were cut short are marked as failed: they count for nothing.
 
@@ -229,8 +229,8 @@ def study_in(path: Path | None, asked: Asked) -> Iterator[Study]:
 
 @contextmanager
 def _locked(path: Path | None) -> Iterator[None]:
-    """The block is done by one search at a time. The file of the lock stays: removed, it would let
-    one search lock the old file, one a new. Raises CrankcheckError."""
+    """Run the block in one search at a time. The file of the lock stays: removed, it would let one
+    search lock the old file, one a new. Raises CrankcheckError."""
     if path is None:
         yield
         return
@@ -253,7 +253,7 @@ def _locked(path: Path | None) -> Iterator[None]:
 
 
 def _opened(path: Path | None, asked: Asked) -> Study:
-    """The study, with what it is for written down or compared."""
+    """Return the study, with its request stored or compared."""
     try:
         storage = _storage(path)
     except RuntimeError as error:  # of another version of Optuna
@@ -279,7 +279,7 @@ def _storage(path: Path | None) -> BaseStorage:
 
 
 def _refuse_other(path: Path, earlier: Asked, asked: Asked) -> None:
-    """Refuse to go on with a search for something else, and say what differs."""
+    """Refuse to resume a search for something else, and say how it differs."""
     for name in asked:
         if earlier.get(name) != asked[name]:
             was, now = _short(earlier.get(name)), _short(asked[name])
@@ -290,5 +290,5 @@ def _refuse_other(path: Path, earlier: Asked, asked: Asked) -> None:
 
 
 def _short(value: object) -> str:
-    """A value of a request in a line."""
+    """Return a value of a request in a line."""
     return cut(value if isinstance(value, str) else json.dumps(value))

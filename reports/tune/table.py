@@ -1,4 +1,4 @@
-"""What a search found, beside the profile, on the terminal."""
+"""The result of a search, beside the profile, on the terminal."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,12 +16,12 @@ from sim.registry.offers import SearchSpace
 OTHERS = {
     f"{name}_pure": f"{name} / {QUANTITIES[name].share}" for name in named("closure", "derived")
 }
-"""Errors that are not searched for, and shown: a column of a cell's row to what it is called."""
+"""Errors that are shown, and not searched for: a column of a cell's row to its label."""
 
 
 @dataclass(frozen=True)
 class Side:
-    """One column of the table: settings, the rows of their runs, and what they take."""
+    """One column of the table: settings, the rows of their runs, and their times."""
 
     title: str
     attempt: Attempt
@@ -57,7 +57,7 @@ def show(console: Console, goal: Goal, space: SearchSpace, sides: Sequence[Side]
 
 
 def _lines(goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> list[tuple[str, list[str]]]:
-    """Labels and cells."""
+    """Return labels and cells."""
     lines = [
         (knob.name, [value_text(side.attempt.settings[knob.targets[0]]) for side in sides])
         for knob in space.knobs
@@ -77,7 +77,7 @@ def _lines(goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> list[tuple[
 
 
 def _ratio(sides: Sequence[Side]) -> str:
-    """How the last side compares with the first, with the noise of the comparison."""
+    """Return the cost of the last side over the first, with the noise of the comparison."""
     first, last = sides[0], sides[-1]
     if first is last or not (first.attempt.reached and last.attempt.reached):
         return ""
@@ -94,7 +94,7 @@ def _ratio(sides: Sequence[Side]) -> str:
 
 
 def _worst(rows: Sequence[Row], column: str) -> str:
-    """The largest of a column over the scenes; a dash where there is none."""
+    """Return the largest of a column over the scenes; a dash where there is none."""
     numbers = [float(value) for row in rows if isinstance(value := row[column], float)]
     if not numbers:
         return "-"
@@ -102,14 +102,14 @@ def _worst(rows: Sequence[Row], column: str) -> str:
 
 
 def _error(attempt: Attempt, target: float) -> str:
-    """The error, and whether it is too large."""
+    """Return the error, and whether it is too large."""
     if math.isinf(attempt.error):
         return "none"
     return f"{attempt.error:.2e}" + ("" if attempt.reached else " OVER")
 
 
 def footer(goal: Goal, how: str, facts: Mapping[str, str]) -> str:
-    """What the numbers are, how they were found, and where."""
+    """Return the meaning of the numbers, the method, and the machine."""
     turned = f"{goal.turns:g} turn" + ("" if goal.turns == 1.0 else "s")
     return "\n".join(
         [

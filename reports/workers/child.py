@@ -1,8 +1,8 @@
 """The process that cells run in: it may crash, hang or run out of memory without harm to others.
 
-It reads pickled jobs from its standard input, before them the function of the first and where the
-engines are that are not ours, and writes pickled answers to its standard output; it ends as soon as
-its input does, whatever it is doing. What engines print goes nowhere.
+It reads pickled jobs from its standard input, before them the function of the first and the places
+of engines that are not ours, and writes pickled answers to its standard output; it ends as soon as
+its input does, whatever it is doing. The printed output of engines goes nowhere.
 """
 
 import contextlib
@@ -19,13 +19,13 @@ from typing import IO
 from sim.own_engine.known import told
 
 Ending = tuple[str, object, bytes]
-"""How a job ended (``done``, ``crashed``), its result or reason, and what it raised, pickled: who
-reads the ending need not know it."""
+"""Ending of a job (``done``, ``crashed``), its result or reason, and its exception, pickled: a
+reader of the ending need not know it."""
 Answer = tuple[*Ending, bool]
 """An ending, and whether another child should do the next job, as this one has much memory that it
 did not give back."""
 WORN = 0.5
-"""The share of its memory that a child may have kept from job to job."""
+"""Share of its memory that a child may have kept from job to job."""
 
 
 def main(memory_bytes: int) -> None:
@@ -36,7 +36,7 @@ def main(memory_bytes: int) -> None:
     os.dup2(nowhere, 2)
     jobs: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, jobs), daemon=True).start()
-    # What the first function imports is no part of any cell's time or memory.
+    # Imports of the first function are no part of any cell's time or memory.
     _, own_engines = pickle.loads(jobs.get())
     told(own_engines)
     at_first = _taken()
@@ -50,7 +50,7 @@ def main(memory_bytes: int) -> None:
 
 
 def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
-    """Hand on what comes in; end the process with the one that sends it."""
+    """Hand on the input; end the process when the input ends."""
     while raw := receive(source):
         jobs.put(raw)
     os._exit(0)
@@ -59,7 +59,7 @@ def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
 def _done(
     function: Callable[..., object], arguments: tuple[object, ...], memory_bytes: int
 ) -> Ending:
-    """How one job ended."""
+    """Run one job, and return its ending."""
     try:
         return "done", function(*arguments), b""
     except MemoryError:
@@ -69,7 +69,7 @@ def _done(
 
 
 def _portable(error: Exception) -> bytes:
-    """The error, which tells where it was raised; empty where it cannot be packed."""
+    """Return the pickled error, with its traceback; empty where it cannot be packed."""
     error.add_note("".join(traceback.format_exception(error)))
     with contextlib.suppress(Exception):
         return pickle.dumps(error)
@@ -77,7 +77,7 @@ def _portable(error: Exception) -> bytes:
 
 
 def _taken() -> int:
-    """The memory that this process has asked for [bytes]; 0 where the system does not say."""
+    """Return the memory that this process has requested [bytes]; 0 if the system does not say."""
     try:
         pages = Path("/proc/self/statm").read_text(encoding="ascii").split()[0]
     except OSError:
@@ -86,7 +86,7 @@ def _taken() -> int:
 
 
 def _limit(most_bytes: int) -> None:
-    """Let the process have no more memory than that, where the system can hold it to it."""
+    """Limit the memory of the process, where the system can enforce it."""
     with contextlib.suppress(ImportError, OSError, ValueError, AttributeError):
         import resource
 
@@ -102,7 +102,7 @@ def send(stream: IO[bytes], value: object) -> None:
 
 
 def receive(stream: IO[bytes]) -> bytes:
-    """The next pickled value as bytes; empty at the end of the stream."""
+    """Return the next pickled value as bytes; empty at the end of the stream."""
     head = stream.read(8)
     if len(head) < 8:
         return b""

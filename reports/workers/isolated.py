@@ -25,7 +25,7 @@ LIMIT_S = 60.0
 MEMORY_GB = 2.0
 MOST_S, MOST_GB = 1e6, 1e4
 START_S = 60.0
-"""How long a child may take to import what it needs."""
+"""Longest time for the imports of a child [s]."""
 START = (
     f"import sys; sys.path[:] = sys.argv[2:]; from {main.__module__} import main; "
     "main(int(sys.argv[1]))"
@@ -34,14 +34,14 @@ START = (
 
 @dataclass(frozen=True)
 class Limits:
-    """What a cell may take: wall time [s] and memory [GB] beyond that of a child at its start."""
+    """Limits of a cell: wall time [s] and memory [GB] beyond that of a child at its start."""
 
     time_s: float = LIMIT_S
     memory_gb: float = MEMORY_GB
 
 
 def checked_limits(time_s: float, memory_gb: float) -> Limits:
-    """What a user lets a cell take. Raises CrankcheckError for numbers that are no limits."""
+    """Return the limits that a user sets. Raises CrankcheckError for numbers that are no limits."""
     for option, value, most, unit in (
         ("--limit-s", time_s, MOST_S, "seconds"),
         ("--memory-gb", memory_gb, MOST_GB, "GB"),
@@ -53,8 +53,8 @@ def checked_limits(time_s: float, memory_gb: float) -> Limits:
 
 @dataclass(frozen=True)
 class Lost:
-    """A cell that came to no end of its own: status (``crashed``, ``timeout``) and reason; what it
-    raised, where that is why."""
+    """A cell that came to no end of its own: status (``crashed``, ``timeout``) and reason; its
+    exception, if that is the cause."""
 
     status: str
     reason: str
@@ -62,7 +62,7 @@ class Lost:
 
 
 class Isolated(Generic[Result]):
-    """A child process that runs one job at a time; a new one takes the place of one that died.
+    """A child process that runs one job at a time; a new one replaces one that died.
 
     Not to be shared by threads. `close` ends the child at once.
     """
@@ -74,7 +74,7 @@ class Isolated(Generic[Result]):
         self._at_work = threading.Lock()
 
     def call(self, function: Callable[..., Result], *arguments: object) -> Result | Lost:
-        """What ``function`` returns, or how it was lost.
+        """Return the result of ``function``, or how it was lost.
 
         The function has to be importable by name, and the arguments to be pickled.
         """
@@ -84,7 +84,7 @@ class Isolated(Generic[Result]):
     def _called(
         self, function: Callable[..., Result], arguments: tuple[object, ...]
     ) -> Result | Lost:
-        """As `call`, with the child for itself."""
+        """Call as `call`, with the child for itself."""
         if self.closed:
             return Lost("crashed", "the sweep was ended")
         child = self._child or self._started(function)
@@ -117,12 +117,12 @@ class Isolated(Generic[Result]):
                 self._end(self._child)
 
     def _started(self, function: Callable[..., Result]) -> subprocess.Popen[bytes] | Lost:
-        """A new child that has imported what ``function`` needs, in a session of its own: Ctrl-C at
-        the terminal is not for it. Lost where it did not come so far."""
+        """Start a child with the imports of ``function``, in a session of its own: Ctrl-C at the
+        terminal is not for it. Return Lost where it did not come so far."""
         variables = dict(os.environ)
         one_thread(variables)
         child = self._child = subprocess.Popen(
-            # The packages of this process, whatever stands in the folder that it works in.
+            # The packages of this process, for any contents of its working folder.
             [sys.executable, "-P", "-c", START, str(int(1e9 * self.limits.memory_gb)), *sys.path],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -142,7 +142,7 @@ class Isolated(Generic[Result]):
         return self._lost(child, f"no start within {START_S:g} s" if late.is_set() else "")
 
     def _lost(self, child: subprocess.Popen[bytes], late: str) -> Lost:
-        """Why a child gave no answer; ``late`` says what it took too long for."""
+        """Return why a child gave no answer; ``late`` is the exceeded time limit, in words."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             child.wait(1.0)  # it is about to end by itself, which tells more than being killed
         code = self._end(child)
@@ -151,7 +151,7 @@ class Isolated(Generic[Result]):
         return Lost("crashed", f"the engine ended its process ({_ending(code)})")
 
     def _end(self, child: subprocess.Popen[bytes]) -> int:
-        """End a child, whose exit code this is; the next job gets another."""
+        """End a child, and return its exit code; the next job gets another."""
         self._child = None
         child.kill()
         code = child.wait()
@@ -177,25 +177,25 @@ def _watched(child: subprocess.Popen[bytes], limit_s: float) -> Iterator[threadi
         yield late
     finally:
         clock.cancel()
-        clock.join()  # it may be at it: the next job must not be what it kills
+        clock.join()  # it may be at it, and must not kill the next job
 
 
 def _unpacked(raised: bytes) -> Exception | None:
-    """What a job raised; None where that could not travel, or is not known here."""
+    """Return the exception of a job; None where that could not travel, or is not known here."""
     with contextlib.suppress(Exception):
         return cast(Exception, pickle.loads(raised))
     return None
 
 
 def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
-    """Where jobs go in and answers come out."""
+    """Return the streams of jobs and of answers."""
     assert child.stdin is not None
     assert child.stdout is not None
     return child.stdin, child.stdout
 
 
 def _ending(code: int) -> str:
-    """An exit code in words."""
+    """Return an exit code in words."""
     if code >= 0:
         return f"exit code {code}"
     try:
@@ -205,7 +205,7 @@ def _ending(code: int) -> str:
 
 
 FEW = 4
-"""Up to so many items are done in this process: a second one takes longer to start."""
+"""Most items that are done in this process: a second process takes longer to start."""
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
 BOUNDLESS = Limits(MOST_S, MOST_GB)
@@ -220,13 +220,12 @@ def run_all(
     done: Callable[[Result], None] = lambda _: None,
     apart: bool = False,
 ) -> list[Result]:
-    """``work`` on all items, in their order; ``done`` hears of each result as it comes.
+    """Return ``work`` on all items, in their order; ``done`` is called with each of them.
 
-    One job has no limits. What is few, or asked for with one job, is done in this process, unless
-    it has to be ``apart``: what somebody else wrote may end the process without a word. ``lost``
-    gives the result of an item that ends the process which works on it, or takes too much; what
-    ``work``, which another process can import, raises itself is raised here. 0 ``jobs``: one per
-    processor.
+    One job has no limits. Few items, or one job, are done in this process, unless they have to be
+    ``apart``: other people's code may end the process without a word. ``lost`` gives the result of
+    an item that ends the process which works on it, or takes too much; exceptions of ``work``,
+    which another process can import, are raised here. 0 ``jobs``: one per processor.
     """
     if apart and jobs == 1:
         limits = BOUNDLESS
@@ -248,7 +247,7 @@ def as_they_end(
     jobs: int,
     limits: Limits,
 ) -> Generator[tuple[int, Result]]:
-    """Work on all items, begun in their order; yields index and result of each as it ends.
+    """Work on all items, begun in their order; yield index and result of each as it ends.
 
     ``work`` is called in a thread, with a child process that is that item's alone until it returns.
     When this is closed, or ``work`` raises, all children are ended at once.
@@ -278,7 +277,7 @@ def as_they_end(
 
 
 def processors() -> int:
-    """How many processors this process may use."""
+    """Return how many processors this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -290,7 +289,7 @@ def _one(
     child: Isolated[Result],
     item: Item,
 ) -> Result:
-    """One item in a child process."""
+    """Work on one item in a child process."""
     answer = child.call(work, item)
     if not isinstance(answer, Lost):
         return answer

@@ -1,4 +1,4 @@
-"""How far a long command is: a bar on a terminal, a line now and then elsewhere."""
+"""Progress of a long command: a bar on a terminal, a line now and then elsewhere."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -17,7 +17,7 @@ from rich.progress import Task as Bar
 from rich.text import Text
 
 LINE_S = 10.0
-"""Between two lines where there is no terminal."""
+"""Time between two lines where there is no terminal [s]."""
 
 
 class _StepRate(ProgressColumn):
@@ -30,7 +30,7 @@ class _StepRate(ProgressColumn):
 
 @contextmanager
 def progress_bar(console: Console, what: str, total: int) -> Iterator[Callable[[], None]]:
-    """Shows counts, rate and time left while the block runs; gives what to call after each."""
+    """Show counts, rate and time left while the block runs; yield a function to call after each."""
     if not total:
         yield lambda: None
     elif console.is_terminal:
@@ -50,7 +50,7 @@ def progress_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
 
 
 def _lines(console: Console, what: str, total: int) -> Callable[[], None]:
-    """Counts the calls; prints the count after some seconds and at the end."""
+    """Return a counter of its calls that prints the count after some seconds and at the end."""
     began = last = time.monotonic()
     count = 0
 

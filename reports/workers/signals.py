@@ -17,11 +17,11 @@ from types import FrameType
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 PATIENCE_S = 5.0
-"""How long unwinding may take before the process ends without it."""
+"""Time for unwinding [s], after which the process ends without it."""
 
 
 class Stopped(BaseException):
-    """The user, or the system, wants the command to end; no ``except Exception`` may keep it."""
+    """A request of the user, or the system, to end; no ``except Exception`` may keep it."""
 
     def __init__(self, number: int) -> None:
         self.code = 128 + number
@@ -31,11 +31,11 @@ class Stopped(BaseException):
 
 _seen: list[Stopped] = []
 _waiting: list[int] | None = None
-"""The signals that came while they were held back; None while they are not."""
+"""Signals that came while they were held back; None while they are not."""
 
 
 def seen() -> Stopped | None:
-    """The signal that came, also where the code that it interrupted made another error of it (an
+    """Return the signal that came, also where the interrupted code made another error of it (an
     import that is cut short is an ImportError)."""
     return _seen[0] if _seen else None
 
@@ -49,7 +49,7 @@ def install() -> None:
 
 
 def finish() -> None:
-    """Ignore signals from now on: all is done and told, and Python takes itself down."""
+    """Ignore signals from now on: all is done and printed, and Python takes itself down."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
@@ -68,23 +68,22 @@ def _stop(number: int, _frame: FrameType | None) -> None:
 
 
 def _unraisable(lost: sys.UnraisableHookArgs) -> None:
-    """What is raised where nobody can catch it, as in the end of an object, is told and forgotten;
-    a signal is not to be."""
+    """Report an error that nobody can catch, as in an object's end; end the process at a signal."""
     if isinstance(lost.exc_value, Stopped):
         _end_at_once(lost.exc_value)
     sys.__unraisablehook__(lost)
 
 
 def _end_at_once(stopped: Stopped) -> None:
-    """The one line, and the end of the process, without unwinding: what it has started ends with
-    its pipes, what it has locked is free, and files are written whole or not at all."""
+    """Print the one line, and end the process, without unwinding: its children end with its pipes,
+    its locks are free, and files are written whole or not at all."""
     with suppress(OSError):
         os.write(2, f"crankcheck: {stopped.word}\n".encode())
     os._exit(stopped.code)
 
 
 def broken_pipe_ends(at_once: bool) -> None:
-    """Whether a pipe that nobody reads ends the process by itself (141), as it should while only
+    """Choose if a pipe that nobody reads ends the process by itself (141), as it should while only
     help is printed; with workers to talk to it is an error to be handled."""
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL if at_once else signal.SIG_IGN)
@@ -92,7 +91,7 @@ def broken_pipe_ends(at_once: bool) -> None:
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """Signals wait until the end of the block; processes that are started in it are born deaf to
+    """Hold signals until the end of the block; processes that are started in it are born deaf to
     them, until `leave_to_parent`."""
     global _waiting  # noqa: PLW0603 - a signal handler has nothing else to look at
     # The mask is for the processes; here another thread may take the signal all the same.
@@ -110,19 +109,19 @@ def held_back() -> Iterator[None]:
 
 
 def leave_to_parent() -> None:
-    """In a worker: Ctrl-C is the parent's to handle, SIGTERM ends the worker at once."""
+    """Leave Ctrl-C to the parent, in a worker; SIGTERM ends the worker at once."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
 
 
 CAN_NOT_RUN = 126
-"""The exit code that shells give a program that is there and can not be run."""
+"""Exit code that shells give a program that is there and can not be run."""
 
 
 @dataclass(frozen=True)
 class Ended:
-    """How a program ended: exit code (negative: the signal that killed it), and what it wrote."""
+    """Ending of a program: exit code (negative: the signal that killed it), and its output."""
 
     code: int
     output: str
@@ -141,8 +140,8 @@ def run_child(
 ) -> Ended:
     """Run a command and wait for it.
 
-    The child is born deaf to Ctrl-C and SIGTERM, which are this process's to handle: it tells the
-    child to end and, ``patience_s`` later, kills it. A child that wants the time to unwind calls
+    The child is born deaf to Ctrl-C and SIGTERM, which this process handles: it asks the child to
+    end and kills it ``patience_s`` later. A child that wants the time to unwind calls
     `leave_to_parent`.
     """
     child: subprocess.Popen[str] | None = None
@@ -172,7 +171,7 @@ def run_child(
 
 
 def _end(child: subprocess.Popen[str], patience_s: float) -> None:
-    """Tell a child to end, and see that it does, with all that it has started."""
+    """End a child, and see that it ends, with all that it has started."""
     if patience_s:
         child.terminate()
         with contextlib.suppress(subprocess.TimeoutExpired):

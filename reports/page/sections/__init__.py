@@ -1,8 +1,8 @@
-"""The sections of the page, in the order in which they stand.
+"""Sections of the page, in their order on it.
 
-A section is built by a function from the `PageReport`; None where the store has nothing for it.
-Another one is another function, a template beside the others, and a line in `SECTIONS`; that of a
-way is its part ``section``.
+A function builds a section from the `PageReport`; None where the store has nothing for it. A
+further section is a function, a template beside the others, and a line in `SECTIONS`; a way gives
+its section as its part ``section``.
 """
 
 from collections.abc import Callable
@@ -23,12 +23,12 @@ Build = Callable[[PageReport], Section | None]
 
 
 def _of_driven(build: Callable[[Report], Section | None]) -> Build:
-    """A section that speaks of turns and places: of what was driven alone, with rigid links."""
+    """Return the builder of a section on turns and places: driven scenes with rigid links alone."""
     return lambda report: None if report.driven is None else build(report.driven)
 
 
 OF_WAYS = {name: cast(WaySection, own) for name, own in own_parts("section").items()}
-"""The sections of ways, by the name of the way."""
+"""Sections of ways, by the name of the way."""
 SECTIONS: dict[str, Build] = {
     "verdict": verdict,
     "recommendation": _of_driven(recommendation),

@@ -24,7 +24,7 @@ RecommendationRow = dict[str, object]
 
 
 def recommendation(report: Report) -> Section:
-    """The section."""
+    """Return the section."""
     period_s = _usual_period(report)
     # Engines side by side for each target, the least demanding first.
     ordered = sorted(report.recommendations, key=lambda one: -one.target)
@@ -44,19 +44,19 @@ def recommendation(report: Report) -> Section:
 
 
 def _usual_period(report: Report) -> float:
-    """The period of most lines [s]: what a copied text is written for."""
+    """Return the period of most lines [s], for which copied texts are written."""
     return Counter(line.period_s for line in report.lines).most_common(1)[0][0]
 
 
 def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[RecommendationRow]:
-    """A recommendation, and after it the one that is steadier."""
+    """Yield a recommendation, and after it the steadier one."""
     yield {**_row(report, one, period_s), "cheapest": _cheapest(report, one)}
     if one.steadier is not None:
         yield {**_row(report, one.steadier, period_s), "steadier": True}
 
 
 def _row(report: Report, one: Recommendation, period_s: float) -> RecommendationRow:
-    """A recommendation with its look and its text to be copied."""
+    """Return a recommendation with its look and its text to be copied."""
     best = one.best
     return {
         "one": one,
@@ -70,7 +70,7 @@ def _row(report: Report, one: Recommendation, period_s: float) -> Recommendation
 
 
 def _cheapest(report: Report, one: Recommendation) -> bool:
-    """Whether no other engine reaches the target in less or, within the noise, the same time."""
+    """True if no other engine reaches the target in less or, within the noise, the same time."""
     if one.reason or len(report.engines) < 2:
         return False
     others = [
@@ -82,18 +82,18 @@ def _cheapest(report: Report, one: Recommendation) -> bool:
 
 
 def _first(names: Sequence[str], most: int = 2) -> str:
-    """The first names of a list, and how many more there are."""
+    """Return the first names of a list, and the number of the rest."""
     rest = len(names) - most
     return "; ".join(names[:most]) + (f"; and {rest} more" if rest > 0 else "")
 
 
 SHOWN = ("reaction", "torque")
 STEPS_PER_TURN = 720.0
-"""Of the programs: a step at which all engines have come to their order."""
+"""Step of the programs, at which all engines have reached their order."""
 
 
 def reading_forces(report: Report) -> Section | None:
-    """The section; None where no forces were asked for."""
+    """Return the section; None where no forces were requested."""
     columns = [f"{name}_pure" for name in SHOWN]
     if not set(columns) <= set(report.cells) or bool(report.cells[columns].isna().all(axis=None)):
         return None
@@ -111,7 +111,7 @@ def reading_forces(report: Report) -> Section | None:
 
 
 def _force_row(report: Report, name: Named) -> dict[str, object]:
-    """The largest errors of an engine with its settings, each line at its finest step."""
+    """Return the largest errors of an engine with its settings, each line at its finest step."""
     own = [line for line in report.lines if named(line) == name]
     finest = pd.DataFrame([line.cells.iloc[-1] for line in own])
     row: dict[str, object] = {
@@ -130,7 +130,7 @@ def _force_row(report: Report, name: Named) -> dict[str, object]:
 
 
 def _recipes(report: Report) -> Iterator[dict[str, str]]:
-    """A program for each engine that has one, of the first scene that it covers."""
+    """Yield the program of each engine that has one, for the first scene that it covers."""
     for name in report.engines:
         for scene in report.scenes.values() if name in offering("force_recipe") else ():
             if scene is None:

@@ -1,4 +1,4 @@
-"""The error against the step, with the orders and floors that were fitted, and against its cost."""
+"""The error against the step, with the fitted orders and floors, and against its cost."""
 
 import math
 from collections.abc import Sequence
@@ -35,13 +35,13 @@ DIAGRAMS = {"place_pure": ("place", "rad, or of longest link")} | {
     for each in entry.criteria
     if each.diagram
 }
-"""What may be drawn, by column of the store: its name, and its unit."""
+"""Quantities that can be drawn, by column of the store: name and unit."""
 CURVE = 25
 """Points of a fitted curve."""
 
 
 def convergence(report: Report) -> Section:
-    """The section."""
+    """Return the section on the error against the step."""
     names = {
         name: words
         for name, (words, _) in DIAGRAMS.items()
@@ -68,7 +68,7 @@ def _lines(report: Report, quantity: str) -> tuple[Line, ...]:
 
 
 def drawn(report: Report, line: Line) -> dict[str, object]:
-    """The measured points of a line, and the curve that was fitted to it."""
+    """Return the measured points of a line, and the curve that was fitted to it."""
     fit = line.fit
     runs = [(dt, e) for dt, e in fit.runs if e > 0.0]
     low, high = fit.used_range_s
@@ -88,14 +88,14 @@ def drawn(report: Report, line: Line) -> dict[str, object]:
 
 
 def _label(fit: LineFit) -> str:
-    """What the legend says of a line."""
+    """Return the text of a line in the legend."""
     if fit.kind == "floor":
         return f"floor {error_text(fit.floor)}"
     return f"order {fit.order:.2f}" if fit.kind == "order" else fit.kind
 
 
 def _row(report: Report, line: Line) -> dict[str, object]:
-    """A line of the table of fits."""
+    """Return a line of the table of fits."""
     fit = line.fit
     return {
         "scene": line.scene,
@@ -110,7 +110,7 @@ def _row(report: Report, line: Line) -> dict[str, object]:
 
 
 def _order(order: float, error: float) -> str:
-    """The order with what it is uncertain by."""
+    """Return the order with its uncertainty."""
     if not math.isfinite(order):
         return "\N{EN DASH}"
     doubt = f" \N{PLUS-MINUS SIGN} {error:.2f}" if math.isfinite(error) else ""
@@ -118,7 +118,7 @@ def _order(order: float, error: float) -> str:
 
 
 def _floor(floor: float, below: float) -> str:
-    """The floor, or the largest that there may be."""
+    """Return the floor, or the largest possible floor."""
     if math.isfinite(floor):
         return error_text(floor)
     return f"below {error_text(below)}" if math.isfinite(below) else "\N{EN DASH}"
@@ -128,7 +128,7 @@ ALL = "all scenes"
 
 
 def precision(report: Report) -> Section:
-    """The section."""
+    """Return the section on the error against cost."""
     scenes = [_scene(report, name) for name in report.scenes]
     if len(scenes) > 1:
         scenes.insert(0, _over_all(report))
@@ -159,7 +159,7 @@ def precision(report: Report) -> Section:
 
 
 def _cost(report: Report, costs: Costs) -> dict[str, object]:
-    """What a variant costs, as a row: times [s], and on how many scenes where not on all."""
+    """Return the cost of a variant as a row: times [s], and the number of scenes where not all."""
     to = [(_known(costs.s_to[target]), costs.part(costs.reached[target])) for target in TARGETS]
     return {
         "look": report.looks[costs.engine, costs.variant, costs.drive],
@@ -171,12 +171,12 @@ def _cost(report: Report, costs: Costs) -> dict[str, object]:
 
 
 def _known(number: float) -> float | None:
-    """A number; None where there is none."""
+    """Return a finite number; None for any other."""
     return number if math.isfinite(number) else None
 
 
 def _scene(report: Report, scene: str) -> dict[str, object]:
-    """The lines of one scene, and which of their cells nothing beats."""
+    """Return the lines of one scene, and its unbeaten cells."""
     lines = report.lines_of(scene)
     cells = pd.concat([line.cells for line in lines])
     return {
@@ -187,7 +187,7 @@ def _scene(report: Report, scene: str) -> dict[str, object]:
 
 
 def _line(report: Report, line: Line) -> dict[str, object]:
-    """The cells of a line that ended well."""
+    """Return the cells of a line that ended well."""
     cells = line.cells[(line.cells["status"] == "ok") & (line.cells["place_pure"] > 0.0)]
     return {
         "look": report.look(line).number,
@@ -201,13 +201,13 @@ def _line(report: Report, line: Line) -> dict[str, object]:
 
 
 def _points(cells: pd.DataFrame) -> dict[str, object]:
-    """The corners of a front, from the cheapest on."""
+    """Return the corners of a front, from the cheapest on."""
     ordered = cells.sort_values("s_per_turn")
     return {"error": list(ordered["place_pure"]), "s_per_turn": list(ordered["s_per_turn"])}
 
 
 def _over_all(report: Report) -> dict[str, object]:
-    """Each set of settings over all scenes: its worst error against its mean cost."""
+    """Return each set of settings over all scenes: its worst error against its mean cost."""
     finite = [one for one in report.candidates if math.isfinite(one.worst_error)]
     groups: dict[int, list[Candidate]] = {}
     for one in finite:
@@ -225,7 +225,7 @@ def _over_all(report: Report) -> dict[str, object]:
 
 
 def _group(report: Report, look: int, group: Sequence[Candidate]) -> dict[str, object]:
-    """One set of settings at every step that ended well on all scenes."""
+    """Return one set of settings at every step that ended well on all scenes."""
     cells = report.cells
     groups = cells.groupby(["engine", "variant", "drive", cells["steps_per_turn"].round(6)])
     within = groups["verdict"].agg(lambda verdicts: bool((verdicts == "within").all()))

@@ -1,4 +1,4 @@
-"""Free runs in the page: the mechanism moving beside the truth, and their courses over time."""
+"""Free runs in the page: the mechanism moving beside the reference, and its course over time."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -26,15 +26,15 @@ from reports.results.lines import Line
 from reports.results.overview import Report
 
 INSTANTS = 721
-"""Of the drawing, over the whole motion."""
+"""Instants of the drawing, over the whole motion."""
 CURVES = 5
-"""Of a run: phase, sensitivity, angular velocity, energy and its means."""
+"""Curves of a run: phase, sensitivity, angular velocity, energy and its means."""
 SHORTEST_MS, LONGEST_MS = 4000.0, 20000.0
-"""What a round of the drawing may take."""
+"""Bounds on the time of one round of the drawing [ms]."""
 
 
 def sizes_of(report: Report, lines: Sequence[Line]) -> dict[str, int]:
-    """What each traced cell takes in the page [characters], by key."""
+    """Return the size of each traced cell in the page [characters], by key."""
     sizes = {}
     for line in lines:
         scene = report.scenes[line.scene]
@@ -48,7 +48,7 @@ def sizes_of(report: Report, lines: Sequence[Line]) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class FreeCourses:
-    """A scene that was let go on its way into the page; of each line ``held`` cells are drawn."""
+    """A scene in free motion on its way into the page; of each line ``held`` cells are drawn."""
 
     report: Report
     name: str
@@ -57,8 +57,8 @@ class FreeCourses:
     held: int
 
     def embedded(self) -> dict[str, object]:
-        """The scene with everything that is drawn of it; without a drawing where the store has no
-        readable text of it, or no run that moved."""
+        """Return the scene with its drawings; without a drawing where the store has no readable
+        text of it, or no run that moved."""
         lines, own = self.report.lines_of(self.name), self.report.of_kind("let go")
         time_s = self._instants(lines)
         ran = any(str(key) in self.sizes for line in lines for key in line.cells["key"])
@@ -77,7 +77,7 @@ class FreeCourses:
         return drawing(self.scene, time_s, truth) | {"until_s": float(time_s[-1])}
 
     def _instants(self, lines: Sequence[Line]) -> Array:
-        """Equal parts of the longest run of a scene."""
+        """Return equal parts of the longest run of a scene."""
         ends = [
             float(self.report.stored.trace(str(key))["time_s"][-1])
             for line in lines
@@ -87,14 +87,14 @@ class FreeCourses:
         return np.linspace(0.0, max(ends, default=1.0), INSTANTS)
 
     def _truth(self, time_s: Array) -> Motion | None:
-        """The motion as it was integrated; None where the store does not have its scene."""
+        """Return the integrated reference; None where the store does not have its scene."""
         try:
             return None if self.scene is None else true_motion(self.scene, time_s)
         except CrankcheckError:
             return None
 
     def _driver(self, time_s: Array, truth: Motion) -> dict[str, object]:
-        """Angle [turns] and angular velocity of the driver, over time."""
+        """Return angle [turns] and angular velocity of the driver, over time."""
         assert self.scene is not None
         driver = truth.links[self.scene.driver.link]
         return {
@@ -113,7 +113,7 @@ class FreeCourses:
         }
 
     def _cell(self, key: str, time_s: Array, truth: Motion | None) -> dict[str, object]:
-        """What a run is off by in the drawing, and its curves over its own instants, by name."""
+        """Return the error of a run in the drawing, and its curves at its own instants by name."""
         trace = self.report.stored.trace(key)
         curves = run_curves(self.scene, trace)
         off = None
@@ -129,12 +129,12 @@ class FreeCourses:
 
 
 def run_curves(scene: Scene | None, trace: Mapping[str, Array]) -> dict[str, Array]:
-    """The curves of a free run by name: its phase as it is [rad] and over the sensitivity, the
-    driver's angle [turns] and angular velocity, and what its energy changed by, over the largest
+    """Return the curves of a free run by name: its phase [rad] and phase over the sensitivity, the
+    driver's angle [turns] and angular velocity, and the change of its energy over the largest
     kinetic energy, as it is and as means over windows."""
     curves = {"phase": trace["phase"], "phase_judged": trace["phase"] / trace["growth"]}
     if scene is not None and f"theta.{scene.driver.link}" in trace:
-        # The log may count its turns from elsewhere: the truth and what it is off by do not.
+        # The log may count its turns from elsewhere: the reference and its error do not.
         curves["angle"] = (trace["driver_rad"] + trace["phase"]) / math.tau
     if "omega" in trace:
         curves["speed"] = trace["omega"]

@@ -1,6 +1,6 @@
-"""Hard cases: a map of where each engine breaks, what happened there in motion, and the truths.
+"""Hard cases: a map of where each engine breaks, its motion there, and the references.
 
-Shapes and words only: a cell says its outcome by a sign, and how large its error was by a shade.
+Shapes and words only: a sign gives the outcome of a cell, a shade the size of its error.
 """
 
 import math
@@ -22,12 +22,12 @@ SCRIPTS = ("mechanism.js", "stage.js", "copying.js", "map.js", "hard.js")
 
 
 def build(report: PageReport) -> Section | None:
-    """The section; None for a store without hard cases beside it."""
+    """Return the section; None for a store without hard cases beside it."""
     return None if report.matrix is None else hard(report.matrix)
 
 
 def hard(matrix: Matrix, room: int = ROOM) -> Section:
-    """The section of a matrix, its moving pictures in ``room`` characters."""
+    """Return the section of a matrix, its moving pictures in ``room`` characters."""
     drawn = _drawn(matrix, room)
     shown = [number for number, _ in drawn]
     chart = heat(matrix, frozenset(shown))
@@ -66,7 +66,7 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
 
 
 def lighter(matrix: Matrix, section: Section, over: int) -> Section:
-    """The section of a matrix again, by ``over`` characters of pictures lighter than it is."""
+    """Return the section of a matrix with ``over`` characters of pictures less."""
     assert section.embedded is not None
     held = len(embedded([section.embedded["drawings"], section.embedded["pictures"]]))
     return hard(matrix, held - over)
@@ -77,10 +77,9 @@ def _from(error: float) -> str:
 
 
 def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
-    """The pictures that are shown with the numbers of their runs, in the order of the map.
+    """Return the shown pictures with the numbers of their runs, in the order of the map.
 
-    Where the room is short, the easiest failures of each case in each engine come first: they
-    are where it breaks.
+    The easiest failures of each case in each engine, its limits, come first if the room is short.
     """
     places = {case.name: index for index, case in enumerate(matrix.cases)}
     lines = {(run.engine, run.profile): None for run in matrix.runs}
@@ -102,7 +101,7 @@ def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
 
 
 def _number(matrix: Matrix, picture: Picture) -> int | None:
-    """The number of the run that a picture is of."""
+    """Return the number of the run of a picture."""
     wanted = (picture.case, picture.engine, picture.profile)
     for number, run in enumerate(matrix.runs):
         if (run.case, run.engine, run.profile) == wanted and same(run.value, picture.value):
@@ -111,7 +110,7 @@ def _number(matrix: Matrix, picture: Picture) -> int | None:
 
 
 def _pictures(drawn: Sequence[tuple[int, Picture]]) -> dict[str, object]:
-    """The pictures as the page reads them; a truth that several share is there once."""
+    """Return the pictures as the page reads them; a shared reference is included once."""
     drawings: dict[str, tuple[int, Mapping[str, object]]] = {}
     pictures = []
     for number, picture in drawn:
@@ -124,7 +123,7 @@ def _pictures(drawn: Sequence[tuple[int, Picture]]) -> dict[str, object]:
 
 
 def _failures(matrix: Matrix, shown: Sequence[int]) -> dict[str, list[tuple[int, str]]]:
-    """The runs with a picture by the title of their case: number, and what the choice says."""
+    """Return the runs with a picture by the title of their case: number, and text of the choice."""
     runs: dict[str, list[tuple[int, str]]] = {}
     for number in shown:
         run = matrix.runs[number]
@@ -135,7 +134,7 @@ def _failures(matrix: Matrix, shown: Sequence[int]) -> dict[str, list[tuple[int,
 
 
 def _case(case: CaseFacts) -> dict[str, object]:
-    """What the scripts need of a case."""
+    """Return the facts of a case for the scripts."""
     return {
         "title": case.title,
         "parameter": case.parameter,
@@ -147,7 +146,7 @@ def _case(case: CaseFacts) -> dict[str, object]:
 
 
 def _driver(case: CaseFacts | None, place: float | None) -> str | None:
-    """Where the driver stands, in words; None where it has no place."""
+    """Return the place of the driver, in words; None where it has no place."""
     if place is None or math.isnan(place):
         return None
     if case is not None and case.driver_unit == "m":
@@ -156,7 +155,7 @@ def _driver(case: CaseFacts | None, place: float | None) -> str | None:
 
 
 def _run(case: CaseFacts | None, run: Graded) -> dict[str, object]:
-    """What the scripts need of a run."""
+    """Return the facts of a run for the scripts."""
     return {
         **vars(run),
         "value_told": amount(run.value, case.unit if case else ""),
@@ -173,23 +172,23 @@ SIGNS: Mapping[str, str] = {str(name): letter for name, letter in LETTERS.items(
     "ok": "\N{CHECK MARK}",
     "unsupported": "\N{EN DASH}",
 }
-"""One sign per outcome, so that the map is read without its colours: as on the terminal."""
+"""One sign per outcome, so that the map is readable without its colours: as on the terminal."""
 STRANGE = "?"
-"""The sign of an outcome that this page does not know."""
+"""Sign of an outcome unknown to this page."""
 SHADES = (1e-6, 1e-4, 1e-2, 1.0)
 """Errors from which on a cell is a shade stronger: pure numbers."""
 LONGEST = 200
-"""Characters of a reason in the words of a cell; the whole of it is told where the run is."""
+"""Characters of a reason in the words of a cell; the whole reason is shown with the run."""
 HeatKey = tuple[str, str]
 """An engine and its profile: a column of the map."""
 
 
 @dataclass(frozen=True)
 class HeatCell:
-    """One value of a case in one column; ``number`` is that of its run, None where it was not run.
+    """One value of a case in one column; ``number`` is the number of its run, None if not run.
 
     ``kind`` names the outcome for the style sheet, ``shade`` goes from 0 to 4, and is -1 where the
-    run has no error; ``held`` says that the outcome is one of an engine that holds.
+    run has no error; ``held`` says that the engine holds with this outcome.
     """
 
     number: int | None
@@ -204,7 +203,7 @@ class HeatCell:
 
 @dataclass(frozen=True)
 class Strip:
-    """A case in one column: its cells from easy to hard, and how far it holds in words."""
+    """A case in one column: its cells from easy to hard, and its limit in words."""
 
     cells: tuple[HeatCell, ...]
     words: str
@@ -221,7 +220,7 @@ class HeatRow:
 
 @dataclass(frozen=True)
 class HeatColumn:
-    """An engine with a profile, and in how many cases it holds throughout."""
+    """An engine with a profile, and the number of cases in which it holds throughout."""
 
     engine: str
     profile: str
@@ -241,36 +240,36 @@ class Heat:
 
 
 def kind(outcome: str) -> str:
-    """An outcome as a name of the style sheet, whatever it is."""
+    """Return the name of any outcome in the style sheet."""
     return outcome if outcome in OUTCOMES else "strange"
 
 
 def sign(outcome: str) -> str:
-    """The sign of an outcome."""
+    """Return the sign of an outcome."""
     return SIGNS.get(outcome, STRANGE)
 
 
 def shade(error: float | None) -> int:
-    """How strong an error is drawn, by its power of ten; -1 where it is no finite number."""
+    """Return the strength of the shade of an error, by its power of ten; -1 if it is not finite."""
     if error is None or not math.isfinite(error):
         return -1
     return sum(error >= limit for limit in SHADES)
 
 
 def amount(value: float | None, unit: str) -> str:
-    """A value of a case with its unit."""
+    """Return a value of a case with its unit."""
     return f"{'?' if value is None else f'{value:.6g}'} {unit}".strip()
 
 
 def same(one: float | None, other: float | None) -> bool:
-    """Whether two values of a case are one; what has no number is the same as itself."""
+    """True if two values of a case are equal; missing numbers are equal to each other."""
     if _lost(one) or _lost(other):
         return _lost(one) and _lost(other)
     return one == other
 
 
 def heat(matrix: Matrix, pictured: frozenset[int] = frozenset()) -> Heat:
-    """The map of a matrix; ``pictured`` are the runs that have a moving picture, by number."""
+    """Return the map of a matrix; ``pictured`` are the runs with a moving picture, by number."""
     lines = list(dict.fromkeys((run.engine, run.profile) for run in matrix.runs))
     numbered: dict[tuple[str, HeatKey], list[tuple[int, Graded]]] = {}
     for number, run in enumerate(matrix.runs):
@@ -293,7 +292,7 @@ def heat(matrix: Matrix, pictured: frozenset[int] = frozenset()) -> Heat:
 
 
 def _held(strips: Sequence[Strip]) -> str:
-    """In how many of its cases a column holds throughout."""
+    """Say in how many of its cases a column holds throughout."""
     run = [s for s in strips if any(cell.number is not None for cell in s.cells)]
     held = sum(all(cell.held for cell in s.cells if cell.number is not None) for s in run)
     return f"holds {held} of {len(run)} throughout"
@@ -302,7 +301,7 @@ def _held(strips: Sequence[Strip]) -> str:
 def _cells(
     case: CaseFacts, runs: Sequence[tuple[int, Graded]], pictured: frozenset[int]
 ) -> Iterator[HeatCell]:
-    """A cell for each value, whether it was run or not."""
+    """Yield a cell for each value, also for one that was not run."""
     for value, label in zip(case.values, case.labels, strict=True):
         own = [pair for pair in runs if pair[1].grid and same(pair[1].value, value)]
         if not own:
@@ -323,7 +322,7 @@ def _cells(
 
 
 def told(case: CaseFacts, run: Graded) -> str:
-    """A run in words: value, outcome, error and reason."""
+    """Return a run in words: value, outcome, error and reason."""
     holds = "holds" if run.outcome in case.good else "fails"
     reason = run.reason if len(run.reason) <= LONGEST else f"{run.reason[: LONGEST - 1]}\u2026"
     words = f"{amount(run.value, case.unit)}, {run.engine} {run.profile}: {run.outcome} ({holds})"
@@ -331,7 +330,7 @@ def told(case: CaseFacts, run: Graded) -> str:
 
 
 def outcomes_seen(matrix: Matrix) -> dict[str, int]:
-    """The outcomes of the grid with how often they came, known ones in their order, then others."""
+    """Return the outcomes of the grid with their counts, known ones in their order, then others."""
     counts = Counter(str(run.outcome) for run in matrix.runs if run.grid)
     names: tuple[Outcome, ...] = OUTCOMES
     return {

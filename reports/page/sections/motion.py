@@ -1,5 +1,5 @@
 """Scene by scene: the mechanism in motion with the engines over it, and its error over the crank
-angle, split into what a user can turn."""
+angle, split into the parts that a user can adjust."""
 
 import json
 import math
@@ -30,11 +30,11 @@ from reports.results.lines import Line
 from reports.results.overview import Report
 
 CURVES = 5
-"""Total, drive, floor, discretisation and gap."""
+"""Curves of a cell: total, drive, floor, discretisation and gap."""
 
 
 def build(report: Report, room: int = BUDGET) -> Section | None:
-    """The section; None where no scene of the store can be drawn."""
+    """Return the section; None where no scene of the store can be drawn."""
     scenes = [scene for scene in report.scenes.values() if scene is not None]
     if not scenes:
         return None
@@ -61,7 +61,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
 
 
 def _sizes(report: Report, scene: Scene) -> dict[str, int]:
-    """What each traced cell of a scene takes in the page [characters], by key."""
+    """Return the size of each traced cell of a scene in the page [characters], by key."""
     rows = 2 * len(moving_points(scene)) + len(drawn_links(scene)) + CURVES
     traces = {
         str(key): report.stored.trace(str(key))
@@ -72,7 +72,7 @@ def _sizes(report: Report, scene: Scene) -> dict[str, int]:
 
 
 def scene_words(scene: Scene) -> dict[str, object]:
-    """A scene in words: its source, its driver, and what theory says of it."""
+    """Return a scene in words: its source, its driver, and its facts from theory."""
     try:
         theory = facts(scene, analyse(scene))
     except CrankcheckError:
@@ -88,7 +88,7 @@ def scene_words(scene: Scene) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class _DrawnScene:
-    """A scene on its way into the page. Cells that share their instants share one axis."""
+    """A scene on its way into the page. Cells with the same instants share one axis."""
 
     report: Report
     scene: Scene
@@ -97,7 +97,7 @@ class _DrawnScene:
     axes: dict[str, int] = field(default_factory=dict)
 
     def embedded(self) -> dict[str, object]:
-        """The scene with everything that is drawn of it."""
+        """Return the scene with its drawing and its lines."""
         lines = self.report.lines_of(self.scene.name)
         time_s = self._instants(lines)
         body = worst_body(lines, self.report.stored.trace, self.scene.longest_m)
@@ -110,7 +110,7 @@ class _DrawnScene:
         }
 
     def _instants(self, lines: Sequence[Line]) -> Array:
-        """The instants of the drawing: those of a run that ended well, where there is one."""
+        """Return the instants of the drawing: of a run that ended well, if there is one."""
         trace = self.report.stored.trace
         times = [
             trace(str(key)).get("time_s", np.zeros(0))
@@ -121,7 +121,7 @@ class _DrawnScene:
         return longest if len(longest) > 1 else instants(self.scene)
 
     def _line(self, line: Line, time_s: Array, body: CurveBody | None) -> dict[str, object]:
-        """A line: what it is off by in the drawing and over the crank angle, at some steps."""
+        """Return a line: its error in the drawing and over the crank angle, at some steps."""
         trace = self.report.stored.trace
         parts = None if body is None else split(line, trace, body, self.scene.longest_m)
         rows = line.cells.set_index("key")
@@ -140,7 +140,7 @@ class _DrawnScene:
         }
 
     def _parts(self, parts: ErrorParts | None) -> dict[str, object] | None:
-        """The curves of one cell, and the number of their axis."""
+        """Return the curves of one cell, and the number of their axis."""
         if parts is None:
             return None
         axis = json.dumps(self._axis(parts), default=float)
@@ -151,7 +151,7 @@ class _DrawnScene:
         }
 
     def _axis(self, parts: ErrorParts) -> dict[str, object]:
-        """Where the driver is [deg or m], angles from the first turn on, and the part of the period
+        """Return the driver's place [deg or m], angles from the first turn on, and the period part
         [%]."""
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
         return {
@@ -161,7 +161,7 @@ class _DrawnScene:
 
 
 def _floor(found: Split) -> str:
-    """What the extrapolation to dt = 0 says, in words."""
+    """Return the result of the extrapolation to dt = 0, in words."""
     if not math.isfinite(found.floor):
         return f"Model floor not told apart: {found.why}." if found.why else ""
     if found.seen:

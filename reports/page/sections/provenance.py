@@ -1,5 +1,5 @@
-"""Where the numbers come from, versions, processor, studies, commands, settings and every cell, and
-the rules by which engines are compared."""
+"""Origin of the numbers: versions, processor, studies, commands, settings and every cell, and the
+rules by which engines are compared."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from reports.results.overview import Report
 
 
 def provenance(report: Report) -> Section:
-    """The section."""
+    """Return the section on the origin of the numbers."""
     runs = [_run(run) for run in report.stored.manifest.runs]
     older = len(report.stored.cells) - len(report.cells)
     return Section(
@@ -38,7 +38,7 @@ def provenance(report: Report) -> Section:
 
 
 def _run(run: Mapping[str, object]) -> dict[str, object]:
-    """A run of the sweep: when, what was typed, on what, and its study."""
+    """Return a run of the sweep: date, command, machine, and its study."""
     command, facts = run.get("command"), run.get("provenance")
     typed = shlex.join(str(part) for part in command) if isinstance(command, Sequence) else ""
     return {
@@ -50,7 +50,7 @@ def _run(run: Mapping[str, object]) -> dict[str, object]:
 
 
 def _settings(report: Report, engine: str) -> dict[str, object]:
-    """All settings of all variants of an engine: a row per setting."""
+    """Return all settings of all variants of an engine: a row per setting."""
     variants: dict[Look, Line] = {}
     for line in report.lines:
         if line.engine == engine:
@@ -140,7 +140,7 @@ LET_GO = {
         "from a linkage that has come open, and judged over the sensitivity of the motion.",
     ),
 }
-"""What takes the place of a rule where every run was let go."""
+"""Replacements of rules where every run is a free motion."""
 BENT = {
     "One truth for all": (
         "One truth for all",
@@ -154,11 +154,11 @@ BENT = {
         "closed.",
     ),
 }
-"""What takes the place of a rule where links bend in every run."""
+"""Replacements of rules where links bend in every run."""
 
 
 def fairness(report: Report) -> Section:
-    """The section."""
+    """Return the section on the rules."""
     return Section(
         anchor="fairness",
         title="How it is kept fair",
@@ -171,7 +171,7 @@ def fairness(report: Report) -> Section:
 
 
 def _other(report: Report) -> Mapping[str, tuple[str, str]]:
-    """What takes the place of rules, where nothing was driven with rigid links."""
+    """Return the replacements of rules, where nothing was driven with rigid links."""
     if report.driven is not None:
         return {}
     kinds = {"let go": LET_GO, "elastic": BENT}

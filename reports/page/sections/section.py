@@ -1,4 +1,4 @@
-"""A section of the page, and what stands in it: text of a user's file, and what has room."""
+"""A section of the page, and its contents: text of a user's file, and drawings within the room."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ class WaySection:
 
 @dataclass(frozen=True)
 class Section:
-    """A section: its place in the page, the words of its template, and what its scripts read.
+    """A section: its place in the page, the words of its template, and the input of its scripts.
 
     ``template`` is a file of ``templates/sections``, or another file, rendered with ``words``.
     ``embedded`` is put into the page as JSON, to be read with ``crankcheck.embedded(anchor)``;
     ``scripts`` are files of ``assets`` that the section needs, in order, and ``styles`` its style
-    sheets beside that of the page; ``plotly`` says that it draws diagrams.
+    sheets beside the page's own; ``plotly`` says that it draws diagrams.
     """
 
     anchor: str
@@ -52,22 +52,22 @@ class Section:
 
 
 LONGEST = 80
-"""Characters of a name, whatever a header holds."""
+"""Most characters of a name, for any header."""
 LONGEST_SENTENCE = 2_000
 
 
 def name_text(text: str, most: int = LONGEST) -> str:
-    """A name on one line: ``\\u202e`` and the like, which turn round what follows, as escapes."""
+    """Return a name on one line: ``\\u202e`` and the like, which reverse later text, as escapes."""
     return cut(" ".join(harmless(text).split()), most)
 
 
 def sentence_text(text: str) -> str:
-    """A sentence that such a name may stand in."""
+    """Return a sentence with such names on one line."""
     return name_text(text, LONGEST_SENTENCE)
 
 
 def toml_text(value: object) -> str:
-    """A value as TOML, to be copied: exact, and what is not seen as its number."""
+    """Return a value as exact TOML, to be copied: invisible characters as their numbers."""
     if not isinstance(value, str):
         return json.dumps(value)
     quoted = json.dumps(value, ensure_ascii=False)
@@ -80,16 +80,15 @@ def _escape(character: str) -> str:
 
 
 BUDGET = 1_900_000
-"""Characters for all drawings and curves: with Plotly (4.8 MB) a page of 560 cells stays below
-8 MB."""
+"""Characters for all drawings and curves: with Plotly (4.8 MB), 560 cells stay below 8 MB."""
 LEAST = 2
-"""The coarsest and the finest step are always there."""
+"""Least number of steps of a line: the coarsest and the finest are always shown."""
 
 
 def steps_held(sizes: dict[str, int], lines: tuple[Line, ...], budget: int = BUDGET) -> int:
-    """How many steps of each line a page holds.
+    """Return how many steps of each line a page holds.
 
-    ``sizes`` says what each traced cell takes [characters], by its key.
+    ``sizes`` is the size of each traced cell [characters], by its key.
     """
     most = max((len(line.cells) for line in lines), default=LEAST)
     for number in range(most, LEAST, -1):
@@ -100,7 +99,7 @@ def steps_held(sizes: dict[str, int], lines: tuple[Line, ...], budget: int = BUD
 
 
 def chosen(line: Line, sizes: dict[str, int], number: int) -> list[str]:
-    """The keys of at most ``number`` traced cells: the two ends of the line, and evenly between."""
+    """Return the keys of at most ``number`` traced cells: both ends of the line, evenly between."""
     keys = [str(key) for key in line.cells["key"] if str(key) in sizes]
     if len(keys) <= number:
         return keys
@@ -109,9 +108,9 @@ def chosen(line: Line, sizes: dict[str, int], number: int) -> list[str]:
 
 
 def fitting(order: Sequence[int], sizes: Sequence[int], room: int) -> list[int]:
-    """Which things a page holds, in their own order, when it takes them in the ``order`` given.
+    """Return the indices that fit a page, sorted, if they are taken in the given ``order``.
 
-    ``sizes`` says what each takes [characters]. One that does not fit makes way for smaller ones.
+    ``sizes`` are in characters. An index that does not fit makes way for smaller ones.
     """
     kept = []
     for index in order:

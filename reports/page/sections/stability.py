@@ -1,4 +1,4 @@
-"""Stability: which settings hold which scene, and from which step on."""
+"""Stability: the settings that hold each scene, and the step from which on they do."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ from reports.way.length import SECONDS, clock_of
 
 @dataclass(frozen=True)
 class Holds:
-    """How a line holds over its steps: ``level`` is ``all``, ``some`` or ``none``; ``rank`` orders
-    the cells of the table; ``runs`` and ``within`` are its two lines of words."""
+    """Steps at which a line holds: ``level`` is ``all``, ``some`` or ``none``; ``rank`` orders the
+    cells of the table; ``runs`` and ``within`` are its two lines of words."""
 
     level: str
     rank: float
@@ -22,7 +22,7 @@ class Holds:
 
 
 def build(report: Report) -> Section:
-    """The section."""
+    """Return the section."""
     every = list(report.looks.values())
     engines = Counter(look.engine for look in every)
     looks = [look for engine in engines for look in every if look.engine == engine]
@@ -48,7 +48,7 @@ def build(report: Report) -> Section:
 
 
 def holds(cells: pd.DataFrame) -> Holds:
-    """How a line holds; its cells go from the coarse to the fine step."""
+    """Return the steps at which a line holds; its cells go from the coarse to the fine step."""
     steps = [_step(row) for _, row in cells.iterrows()]
     ran = [status == "ok" for status in cells["status"]]
     within = [verdict == "within" for verdict in cells["verdict"]]
@@ -64,12 +64,12 @@ def holds(cells: pd.DataFrame) -> Holds:
 
 
 def _step(row: pd.Series) -> str:
-    """The step of a cell: steps in a turn, or what is let go has none, its time."""
+    """Return the step of a cell: steps in a turn, or its time in a free motion."""
     return clock_of(row["drive"]).step(row.to_dict())
 
 
 def _runs(steps: list[str], ran: list[bool], why: str) -> str:
-    """Where a line ends well, in words."""
+    """Return the steps at which a line ends well, in words."""
     if all(ran):
         return "every step"
     if not any(ran):
@@ -85,7 +85,7 @@ def _runs(steps: list[str], ran: list[bool], why: str) -> str:
 
 
 def _within(steps: list[str], within: list[bool]) -> str:
-    """Where a line is within tolerance, in words."""
+    """Return the steps at which a line is within tolerance, in words."""
     if all(within) or not any(within):
         return f"within: {'all' if all(within) else 'none'}"
     first, number = within.index(True), sum(within)
@@ -97,7 +97,7 @@ def _within(steps: list[str], within: list[bool]) -> str:
 
 
 def _lost(report: Report, row: pd.Series) -> dict[str, object]:
-    """A run that did not end well."""
+    """Return a run that did not end well."""
     look = report.looks[row["engine"], row["variant"], row["drive"]]
     return {
         "scene": row["scene"],

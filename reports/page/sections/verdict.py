@@ -13,7 +13,7 @@ from reports.results.overview import Report
 from reports.results.recommend import Recommendation
 
 ASKED = 1e-4
-"""The target that the sentence of an engine speaks of."""
+"""Target in the sentence of an engine."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,12 @@ class VerdictRow:
 
     @property
     def order(self) -> str:
-        """The fitted orders, from the least to the largest."""
+        """Fitted orders, from the least to the largest."""
         return spread([f"{order:.1f}" for order in sorted(self.orders)])
 
     @property
     def floor(self) -> str:
-        """The floors that were seen, and on how many scenes."""
+        """Floors that were seen, and the number of scenes."""
         if not self.floors:
             return "none seen" if self.told else "too few steps"
         told = spread([error_text(floor) for floor in sorted(self.floors)])
@@ -47,7 +47,7 @@ class VerdictRow:
 
 
 def build(report: Report) -> Section:
-    """The section."""
+    """Return the section."""
     rows = [_row(look, lines) for look, lines in _by_look(report)]
     chosen = () if report.driven is None else report.driven.recommendations
     gated = report.cells[report.cells["gated"]]
@@ -70,20 +70,20 @@ def build(report: Report) -> Section:
 
 
 def _held_to(report: Report) -> list[str]:
-    """What errors are, for each kind of cell that there is."""
+    """Return the meaning of errors, for each kind of cell in the report."""
     kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
     return list(dict.fromkeys(kind.error for kind in kinds))
 
 
 def level(gated: pd.DataFrame) -> str:
-    """How the verdict is coloured: within, out, or none."""
+    """Return the colour class of the verdict: within, out, or none."""
     if gated.empty:
         return "none"
     return "within" if bool((gated["verdict"] == "within").all()) else "out"
 
 
 def verdict(gated: pd.DataFrame) -> str:
-    """The sentence for all gated cells: those of profile tuned without overrides."""
+    """Return the sentence for all gated cells: profile tuned without overrides."""
     if gated.empty:
         return "No verdict: the store has no cells of profile tuned, which is what is judged."
     within, number = int((gated["verdict"] == "within").sum()), len(gated)
@@ -99,7 +99,7 @@ def verdict(gated: pd.DataFrame) -> str:
 
 
 def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommendation]) -> str:
-    """What a user takes away of an engine."""
+    """Return the summary of an engine for a user."""
     own = [row for row in rows if row.look.engine == engine]
     texts = [_held(row) for row in own if row.gated]
     texts.append(_cheapest([one for one in chosen if one.best.engine == engine]))
@@ -108,7 +108,7 @@ def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommend
 
 
 def _held(row: VerdictRow) -> str:
-    """Whether an engine holds with settings that are judged."""
+    """Say if an engine holds with settings that are judged."""
     name = row.look.variant
     manner = f"As {name}," if "," in name else f"With {name} settings"
     text = f"{manner} it is within tolerance in {_share(row)}"
@@ -122,7 +122,7 @@ def _held(row: VerdictRow) -> str:
 
 
 def _shipped(row: VerdictRow) -> str:
-    """What an engine does as it comes."""
+    """Return the sentence on an engine as shipped."""
     text = f"As shipped it is within tolerance in {_share(row)}"
     texts = []
     if row.floors:
@@ -137,7 +137,7 @@ def _shipped(row: VerdictRow) -> str:
 
 
 def _cheapest(chosen: Sequence[Recommendation]) -> str:
-    """What reaches the target at least cost."""
+    """Return the sentence on the settings that reach the target at least cost."""
     asked = next((one for one in chosen if one.target == ASKED), None)
     if asked is None:
         return ""
@@ -154,7 +154,7 @@ def _share(row: VerdictRow) -> str:
 
 
 def spread(told: Sequence[str]) -> str:
-    """The first and the last of sorted texts, once where they are the same."""
+    """Return the first and the last of sorted texts, once where they are the same."""
     if not told:
         return "\N{EN DASH}"
     return told[0] if told[0] == told[-1] else f"{told[0]} to {told[-1]}"
@@ -168,7 +168,7 @@ def _by_look(report: Report) -> list[tuple[Look, list[Line]]]:
 
 
 def _row(look: Look, lines: Sequence[Line]) -> VerdictRow:
-    """The numbers of one engine with its settings."""
+    """Return the numbers of one engine with its settings."""
     cells = pd.concat([line.cells for line in lines])
     finest = [_finest(line) for line in lines]
     return VerdictRow(
@@ -187,7 +187,7 @@ def _row(look: Look, lines: Sequence[Line]) -> VerdictRow:
 
 
 def _finest(line: Line) -> tuple[float, str]:
-    """The error at the finest step, infinite where that run did not end well, and the scene."""
+    """Return the error at the finest step, infinite if that run did not end well, and the scene."""
     last = line.cells.iloc[-1]
     good = last["status"] == "ok" and math.isfinite(last["place_pure"])
     return (float(last["place_pure"]) if good else math.inf), line.scene

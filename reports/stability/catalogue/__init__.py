@@ -1,5 +1,5 @@
 """The hard cases, in groups.
 
-Another case is another `Case` in the tuple of its group; another group is another tuple and its
-line in the part ``cases`` of a way.
+A further case is a `Case` in the tuple of its group; a further group is a tuple and its line in the
+part ``cases`` of a way.
 """

@@ -20,7 +20,7 @@ LIGHT = (1.0, 1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0)
 
 
 def _link(name: str, factor: float) -> Trial:
-    """The four-bar with one link that many times as heavy, of the same shape."""
+    """Return the four-bar with the mass of one link times ``factor``, of the same shape."""
     scene = load_scene(SOURCE)
     link = scene.links[name]
     mass, inertia = link.mass_kg * factor, link.inertia_kg_m2 * factor
@@ -29,7 +29,7 @@ def _link(name: str, factor: float) -> Trial:
 
 
 def _block(factor: float) -> Trial:
-    """The slider-crank with a block that many times as heavy as its rod."""
+    """Return the slider-crank with a block of ``factor`` times the mass of its rod."""
     scene = load_scene(SLIDER_CRANK)
     rod = scene.links["rod"].mass_kg
     sliders = {n: replace(s, mass_kg=rod * factor) for n, s in scene.sliders.items()}
@@ -124,7 +124,7 @@ SCALES = (
 
 
 SETTLED_TURNS = 1.0
-"""Errors count from there on: an engine that mends its start has done so by then."""
+"""Turns after which errors count: an engine that mends its start has done so by then."""
 
 
 def _started(scene: Scene, start: State, open_m: float = 0.0) -> Trial:
@@ -136,7 +136,7 @@ def _assembled(scene: Scene) -> State:
 
 
 def _open_joint(share: float) -> Trial:
-    """The rocker turned until its pin C is off the coupler's by a share of the crank."""
+    """Turn the rocker until its pin C is off the coupler's by a share of the crank."""
     scene = load_scene(SOURCE)
     (a, b), (d, c) = (list(scene.links[n].points.values()) for n in ("crank", "rocker"))
     gap = share * abs(b[0] - a[0])
@@ -146,7 +146,7 @@ def _open_joint(share: float) -> Trial:
 
 
 def _other_velocity(share: float) -> Trial:
-    """The rocker turns faster, or slower, than fits by a share of the crank's speed."""
+    """Turn the rocker faster, or slower, than fits by a share of the crank's speed."""
     scene = load_scene(SOURCE)
     state = _assembled(scene)
     more = share * scene.pace_rad_s

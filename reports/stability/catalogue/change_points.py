@@ -1,5 +1,5 @@
-"""Mechanisms that become flat, or nearly, where they could go on in two ways; and some that have
-more links than they need: by count they cannot move."""
+"""Mechanisms that become flat, or nearly, where they could go on in two ways; and mechanisms with
+redundant links, immobile by count."""
 
 from functools import partial
 
@@ -20,13 +20,13 @@ from reports.stability.case import Case, Trial
 
 GRASHOF = "Grashof's rule; the parallelogram and the kite are its limiting cases"
 TRIAD_CRANK_M = 0.06387509801
-"""The longest crank of triad-platform that turns fully: at 239 deg two assemblies meet then."""
+"""Longest crank of triad-platform that turns fully: at 239 deg two assemblies meet then."""
 through = partial(Case, parameter="steps in a turn", values=(5760.0, 1440.0, 360.0, 90.0))
-"""A case that goes on through its change points: its trials are of `four_turns`."""
+"""Case that goes on through its change points: its trials come from `four_turns`."""
 
 
 def four_turns(scene: Scene, steps: float) -> Trial:
-    """A trial of so many steps in a turn, long enough to be through every change point again."""
+    """Return a trial of so many steps in a turn, long enough to pass every change point again."""
     return Trial(scene, steps_per_turn=steps, turns=4.0)
 
 
@@ -173,7 +173,7 @@ LEVERS = (
 
 
 DURATION_S = 2.5
-"""The chain turns over once and falls on, four times through flat positions."""
+"""Time in which the chain turns over once and falls on, four times through flat positions."""
 DT_S = 1e-3
 
 

@@ -1,7 +1,7 @@
-"""How the crank is driven, for how long, and in which steps.
+"""Cases of the drive of the crank: its law, its duration, and its steps.
 
 The driver comes to rest before the end and goes back: so do the links, after a turn that is the
-sharper the nearer it is. What does not follow it goes straight on, into the other assembly.
+sharper the nearer it is. A link that does not follow goes straight on, into the other assembly.
 """
 
 import math
@@ -25,7 +25,7 @@ SAME_DT_S = 1e-4
 START_RAD = 1.6
 SPEED_RAD_S = 10.0
 CHANGE_TURNS = 0.77
-"""Where the speed changes; no sample falls on it."""
+"""Turns after which the speed changes; no sample falls on it."""
 
 
 def _driven(law: Law) -> Scene:
@@ -39,7 +39,7 @@ def _same_dt(speed_rad_s: float) -> Trial:
 
 
 def _changed(before: float, after: float, rise_turns: float) -> Trial:
-    """A change of speed after most of a turn, its ramp in turns of the first speed."""
+    """Return a change of speed after most of a turn, its ramp in turns of the first speed."""
     period = math.tau / SPEED_RAD_S
     at, rise = CHANGE_TURNS * period, rise_turns * period
     law = SpeedChange(START_RAD, before, after, at, rise)
@@ -178,13 +178,13 @@ STEPPING = (
 
 
 BEFORE_RAD = 0.5
-"""How far before the limit the crank starts, and how far beyond it its command ends."""
+"""Distance of the crank's start before the limit, and of its command's end beyond it."""
 DT_S = 1e-4
 SAMPLES = 1000
 
 
 def _towards(name: str, lengths: tuple[float, float, float, float], speed: float) -> Trial:
-    """A crank that is told to pass its far limit by as much as it starts before it."""
+    """Return a crank commanded to pass its far limit by as much as it starts before it."""
     limit = FourBar(*lengths).driver_range_rad[1]
     start = math.degrees(limit - BEFORE_RAD)
     source = f"{name}, driven by a servo towards the end of its range"
@@ -224,10 +224,10 @@ AT_LIMITS = tuple(
 
 
 SWING_DEG = 30.0
-"""How far the drivers swing to each side of their middle."""
+"""Swing of the drivers to each side of their middle."""
 TRIAD_CRANK_M = 0.1
 TRIAD_END_DEG = 181.22449433474
-"""The upper end of that crank, at which two assemblies meet, by `analytic.kinematics.reach`."""
+"""Upper end of that crank, at which two assemblies meet, by `analytic.kinematics.reach`."""
 CRANK_M, ROD_M = 0.1, 0.3
 FOURBAR_M = (0.2, 0.25, 0.3, 0.5)
 
@@ -257,8 +257,8 @@ def _piston(left_percent: float) -> Trial:
 
 
 def coupler_end_deg() -> float:
-    """The largest angle from the crank to the coupler [deg], with A, C and D in line: AC is AD less
-    DC then, and the angle is that of the triangle A B C at B, from 180 deg."""
+    """Return the largest angle from the crank to the coupler [deg], with A, C and D in line: AC is
+    AD less DC then, and the angle is 180 deg less the angle at B in the triangle A B C."""
     crank, coupler, rocker, ground = FOURBAR_M
     cosine = (crank**2 + coupler**2 - (ground - rocker) ** 2) / (2.0 * crank * coupler)
     return 180.0 - math.degrees(math.acos(cosine))

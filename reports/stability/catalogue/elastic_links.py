@@ -1,4 +1,4 @@
-"""Elastic links as chains of segments: where an engine no longer says how far they bend."""
+"""Elastic links as chains of segments: cases in which an engine loses their deflection."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,18 +11,18 @@ from reports.stability.case import Case, Trial
 
 BENT = "fourbar-elastic"
 RATIO = 10.5
-"""Of the first frequency of its coupler over the driver's speed, as the scene has it."""
+"""First frequency of the scene's coupler over the driver's speed."""
 SEGMENTS, STEPS = 4, 1440.0
 STEPS_OF_RATIO = 100.0
-"""Steps in a turn for each unit of the frequency ratio: twice what explicit steps hold of so few
+"""Steps in a turn per unit of frequency ratio: twice the need of explicit steps for these
 segments."""
 
 
 @cache
 def _bent(ratio: float = RATIO, stiffness: float = 1.0, height: float = 1.0) -> Scene:
-    """The four-bar at the speed of a frequency ratio, its coupler so much stiffer, or higher: the
-    stiffness goes with the height's third power, the mass with the height. One and the same for the
-    same numbers, as its truth is kept under it."""
+    """Return the four-bar at the speed of a frequency ratio, its coupler so much stiffer, or
+    higher: stiffness goes with the height's third power, mass with the height. The same object for
+    the same numbers, as its reference is kept under it."""
     scene = load_scene(BENT)
     name, own = next(iter(scene.elastic.items()))
     stiff = replace(own, flexural_n_m2=own.flexural_n_m2 * stiffness * height**3)
@@ -46,7 +46,7 @@ def _run(scene: Scene, steps: float = STEPS, segments: int = SEGMENTS) -> Trial:
 
 
 def _slender(height_over_length: float) -> Trial:
-    """At the same speed, with steps that hold what is stiffer."""
+    """Return the four-bar at the same speed, with steps for its greater stiffness."""
     height = height_over_length * 0.75 / 0.003
     return _run(_bent(height=height), STEPS_OF_RATIO * max(RATIO * height, RATIO))
 

@@ -1,4 +1,4 @@
-"""Mechanisms that are let go, and four-bars that are thrown at their toggle."""
+"""Mechanisms in free motion, and four-bars that are thrown at their toggle."""
 
 import math
 from collections.abc import Callable
@@ -23,18 +23,18 @@ DT_S = 1e-3
 SWING_S = 1.0
 """More than a swing of a four-bar with a crank of a tenth of a metre."""
 SLACK_RAD, PULLED_RAD = 1.0, 0.05
-"""The crank's angle at which the spring is slack, and by how much it is let go beside it: so little
-that two steps in a period of the spring are not refused as too few for the crank."""
+"""Angle of the crank at which the spring is slack, and distance of its release: so small that two
+steps in a period of the spring are not refused as too few for the crank."""
 PERIODS = 10
 LONG_DT_S, LONG_TURN_S, FOLLOWED_S = 5e-3, 10.0, 20.0
-"""Of long runs: the step, the while in which the growth of errors is told, and how long the phase
-is followed; a thousand seconds of truth would cost minutes."""
+"""Long runs: step, interval for the growth of errors, and time for which the phase is followed; a
+thousand seconds of the reference would cost minutes."""
 DOWN = (0.0, -9.81)
 FREE_RATIOS = (1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6)
 
 
 def from_rest(scene: Scene, start_rad: float, lasts_s: float, dt_s: float = DT_S) -> Trial:
-    """A trial of a scene that is let go from rest at a driver angle."""
+    """Return a trial of a scene that is released from rest at a driver angle."""
     law = Released(start_rad, 0.0, lasts_s)
     free = replace(scene, driver=replace(scene.driver, law=law))
     return Trial(free, steps_per_turn=lasts_s / dt_s, turns=1.0, drive="free")
@@ -45,7 +45,7 @@ def _swing(scene: Scene, dt_s: float = DT_S) -> Trial:
 
 
 def _heavier(name: str, ratio: float) -> Trial:
-    """The swinging four-bar with one link that many times as heavy, of the same shape."""
+    """Return the swinging four-bar with the mass of one link times ``ratio``, of the same shape."""
     scene = load_scene(SWING)
     link = scene.links[name]
     heavy = replace(link, mass_kg=link.mass_kg * ratio, inertia_kg_m2=link.inertia_kg_m2 * ratio)
@@ -53,7 +53,7 @@ def _heavier(name: str, ratio: float) -> Trial:
 
 
 def _stiff(steps: float) -> Trial:
-    """A slider-crank between whose block and the ground a spring has a period of so many steps."""
+    """Return a slider-crank with a spring from block to ground, of so many steps in a period."""
     scene = load_scene(SLIDER_CRANK)
     machine, slack = Machine(scene), np.array([SLACK_RAD])
     ((_, q, rate),) = spring_lengths(scene, machine.chart.unit(slack))
@@ -65,15 +65,14 @@ def _stiff(steps: float) -> Trial:
 
 
 def _beside_flat(off_rad: float) -> Trial:
-    """A parallelogram that is let go so far from its flat position, and swings as far from the
-    other one."""
+    """Return a parallelogram released so far from one flat position, and swinging to the other."""
     flat = fourbar("parallelogram-let-go", 0.1, 0.3, 0.1, 0.3, source="Grashof's limiting case")
     # Below its flat position C lies to the right of the line from B to D.
     return from_rest(replace(flat, gravity_m_s2=DOWN, branch={"C": -1}), -off_rad, SWING_S)
 
 
 def _long(lasts_s: float) -> Trial:
-    """The lecture's four-bar, ten times as large, swinging about its lowest position."""
+    """Return the lecture's four-bar, ten times as large, swinging about its lowest position."""
     large = fourbar("fourbar-long-swing", 1.0, 2.5, 2.0, 3.0, source=SWING)
     trial = from_rest(replace(large, gravity_m_s2=DOWN), -0.7, LONG_TURN_S, LONG_DT_S)
     return replace(trial, turns=lasts_s / LONG_TURN_S, every=20, followed_s=FOLLOWED_S)
