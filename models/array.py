@@ -52,8 +52,7 @@ def samples(values: ArrayLike, what: str = "samples") -> Array:
 
 
 def beside(values: ArrayLike, like: Array, what: str, beside_what: str) -> Array:
-    """Return `numbers` in the shape of ``like``; a single number is repeated. Raises
-    CrankcheckError."""
+    """Return `numbers` in the shape of ``like``, a single one repeated. Raises CrankcheckError."""
     found = numbers(values, what)
     if found.size == 1:
         found = found.reshape(())

@@ -1,7 +1,7 @@
 """Errors that a user can cause, and can mend.
 
-Each message says what was asked, what was found and what would work. The command line prints the
-message and exits with 2; anything else that escapes is a fault of crankcheck.
+Each message states the request, the fault and the remedy. The command line prints the message and
+exits with 2; anything else that escapes is a fault of crankcheck.
 """
 
 from __future__ import annotations
@@ -26,8 +26,7 @@ def harmless(text: str) -> str:
 
 
 def nearest(name: str, names: Iterable[str], most: int = 3, cutoff: float = 0.4) -> list[str]:
-    """Return the names most similar to ``name``, the nearest first; ``cutoff`` is the likeness, 0
-    to 1."""
+    """Return the most similar names, the nearest first; ``cutoff`` is the likeness, 0 to 1."""
     return difflib.get_close_matches(name[:200], names, most, cutoff)
 
 
@@ -59,8 +58,7 @@ def shown(found: object) -> str:
 
 
 def listed(place: str, faults: Sequence[str]) -> str:
-    """Return the message of several faults: the first of them, one a line, and the number of the
-    rest."""
+    """Return the message of several faults: the first, one a line, and the number of the rest."""
     lines = [*faults[:SHOWN]]
     if left := len(faults) - len(lines):
         lines.append(f"and {left} more")

@@ -38,8 +38,7 @@ from models.scene.loads import (
 
 ROD_KG_PER_M = 1.0
 FARTHEST = 1e12
-"""Largest distance of a ground point from the origin, over the longest link: positions keep four
-digits there."""
+"""Largest distance of a ground point, over the longest link: positions keep four digits there."""
 BLOCK_OF_LONGEST = 0.1
 """Side of a square slider block with mass, over the longest link, for the default inertia."""
 
@@ -100,7 +99,7 @@ def scene_from_table(
 
 
 def _points(link: LinkTable) -> dict[str, Point]:
-    """Return all points of a link in its frame, with those of its bar."""
+    """Return all points of a link in its frame, including the ends of its bar."""
     bar: dict[str, Point] = {}
     if link.bar is not None and link.length_m is not None:
         bar = {link.bar[0]: (0.0, 0.0), link.bar[1]: (link.length_m, 0.0)}

@@ -183,8 +183,7 @@ def driver_of(
     links: Mapping[str, Link],
     sliders: Mapping[str, Slider],
 ) -> Driver:
-    """Make the driver of a scene with such bodies. Raises ValueError for numbers that drive
-    nothing."""
+    """Make the driver of a scene with such bodies. Raises ValueError for a driver at rest."""
     if isinstance(table, SlidingDriver):
         slider = sliders[table.slider]
         return Driver(sliding_body(slider), _sliding(table), slider.on, slider=table.slider)

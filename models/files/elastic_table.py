@@ -56,8 +56,7 @@ def mass_of(own: ElasticTable | None, length_m: float) -> float | None:
 
 
 def faults_of_beams(scene: Scene) -> Iterator[str]:
-    """Yield one line per elastic link of a scene that is no uniform slender beam between its
-    pins."""
+    """Yield one line per elastic link that is no uniform slender beam between its pins."""
     for name, own in scene.elastic.items():
         link, line = scene.links[name], line_of(scene, name)
         middle = line.at(0.5 * line.length_m)

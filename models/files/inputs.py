@@ -60,8 +60,7 @@ def regular_text(path: Path) -> str:
 
 
 def _size(found: os.stat_result, most: int) -> int:
-    """Return the size of a plain file [byte]. Raises UnreadableError for other files and larger
-    ones."""
+    """Return the size of a plain file [byte]. Raises UnreadableError for another, or a larger."""
     kind = stat.S_IFMT(found.st_mode)
     if kind != stat.S_IFREG:
         raise UnreadableError(_KINDS.get(kind, "no plain file"))

@@ -107,8 +107,7 @@ def is_there(path: str) -> bool:
 
 
 def find_scene(name_or_path: str | PathLike[str]) -> Path:
-    """Return the file of a shipped scene's name, or of a path. Raises CrankcheckError as
-    `load_scene`."""
+    """Find the file of a shipped name, or of a path. Raises CrankcheckError as `load_scene`."""
     known = every_shipped()
     try:
         name_or_path = fspath(name_or_path)
@@ -144,8 +143,7 @@ def read_scene(path: Path) -> Scene:
 
 
 def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
-    """Return the text of each scene's file, by the scene's own name; no names mean all of
-    kinematics.
+    """Return the text of each scene's file, by the scene's own name; all of kinematics for none.
 
     Raises CrankcheckError as `load_scene`.
     """

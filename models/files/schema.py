@@ -61,8 +61,7 @@ class Table(BaseModel):
 
 SECTION = "width_m and height_m, or area_m2 and second_moment_m4"
 Section = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST**2, le=LARGEST)]
-"""Quantity that grows with squares of lengths, or their squares: for a thin strip it is under
-1e-15."""
+"""Quantity that grows with squares of lengths, or their squares: a thin strip's is under 1e-15."""
 
 
 class ElasticTable(Table):
@@ -231,8 +230,7 @@ class SpringTable(Table):
 
 
 class StartTable(Table):
-    """Start of free motion beyond the driver, by link and by slider; and the start of elastic
-    links."""
+    """Start of free motion beyond the driver, by link and by slider; and of elastic links."""
 
     angles_deg: dict[Name, Degrees] = Field(default_factory=dict, max_length=MOST_BODIES)
     rates_rad_s: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)

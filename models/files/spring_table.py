@@ -40,8 +40,7 @@ def _spring(name: str, spring: SpringTable, table: SceneTable) -> Spring:
 
 
 def _at_pin(point: str, ground: set[str], points: Mapping[str, set[str]]) -> tuple[str, ...]:
-    """Return the bodies that list a point, the ground first, then links in the order of the
-    file."""
+    """List the bodies of a point, the ground first, then links in the order of the file."""
     links = [name for name, own in points.items() if point in own]
     return (*([GROUND] if point in ground else []), *links)
 

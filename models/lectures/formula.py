@@ -66,8 +66,7 @@ class Formula:
     evaluation: Evaluation = field(repr=False, compare=False)
 
     def at(self, x: Array) -> Array:
-        """Return its values, the shape of ``x``; nan or inf where it is not defined. Angles are
-        rad."""
+        """Return its values, the shape of ``x``; nan or inf where undefined. Angles are rad."""
         with np.errstate(all="ignore"):
             values = self.evaluation(np.asarray(x, dtype=np.float64))
         return np.array(np.broadcast_to(values, np.shape(x)), dtype=np.float64)

@@ -1,5 +1,4 @@
-"""A kinematic scheme: links and joints of given class and position, without masses, drivers and
-loads.
+"""A kinematic scheme: links and joints of given class and place, before masses, drivers and loads.
 
 A scheme is drawn in one position, in which all its loops close: every point and axis is given in
 the frame of the ground there. It may be planar or spatial.

@@ -206,8 +206,7 @@ SCHEMES = Path(__file__).parents[1] / "schemes"
 PRESSURE_DEG = 20.0
 """Default pressure angle of gears (ISO 53)."""
 SMALLEST = 1e-6
-"""Least sine between two directions, and largest relative error of a gear's centre distance against
-its radii."""
+"""Least sine between two directions, and largest relative error of a gear's centre distance."""
 
 
 def shipped_schemes() -> list[str]:

@@ -49,8 +49,7 @@ def read_table(path: Path, model: type[M]) -> M:
 
 
 def table_of(raw: dict[str, object], model: type[M], place: str) -> M:
-    """Validate tables as a model; ``place`` names them in messages. Raises SceneError with all
-    faults."""
+    """Validate tables as a model; ``place`` names them in messages. Raises SceneError."""
     try:
         return model.model_validate(raw)
     except ValidationError as error:

@@ -36,10 +36,8 @@ PARALLEL = 1e-9
 
 @dataclass(frozen=True)
 class Contact:
-    """Contact of two links; ``normal`` points out of the first one, lengths in m.
-
-    ``both_ways`` is true if it also holds when the two are pulled apart.
-    """
+    """Contact of two links, lengths in m; ``normal`` points out of the first. With ``both_ways`` it
+    also holds when the two are pulled apart."""
 
     kind: str
     at: tuple[float, float, float]

@@ -307,8 +307,7 @@ def rubbing_freedom(scene: Scene, limb: Limb, joint: str) -> Freedom | None:
 
 
 def friction_of(scene: Scene, limb: Limb, freedom: Freedom, writing: Writing) -> AttributeRow:
-    """Return the attributes of a joint with friction, as stiff as the step allows; none for
-    another.
+    """Return the attributes of a joint with friction, as stiff as the step allows; else none.
 
     Raises
     ------

@@ -43,15 +43,13 @@ class Writing:
 STIFF_STEPS, STIFF_DAMPING = 5.0, 0.6
 """Time constant of the loop closures in steps, and their damping ratio. Their product sets the
 stiffness of the closing spring: at 2, the least that MuJoCo allows, RK4 resolves it badly, above 4
-it yields more. Searches over several scenes (`crankcheck tune`) lead to about 3; compared with 4
-and 1 the worst of all shipped scenes has 1.6 times less error, and 3 times less in
-accelerations."""
+it yields more. Searches over several scenes (`crankcheck tune`) lead to about 3; against 4 and 1
+the worst shipped scene has 1.6 times less error, and 3 times less in accelerations."""
 STIFF_IMPEDANCE = 0.9999
 """Largest impedance in MuJoCo: the loop closures yield by 0.01 %."""
 TOLERANCE = 1e-22
 """Tolerance of the solver, over the flywheel's ratio: MuJoCo scales its stopping rule by the
-inertia of the whole model, and would stop before the first iteration by default, leaving the loops
-open."""
+inertia of the whole model, and by default stops before the first iteration, with open loops."""
 STEPS_PER_PERIOD = 1000
 FREE_STEP_S = 1e-3
 """Largest step of free motion, which has no period [s]."""
@@ -93,7 +91,7 @@ AttributeRow = dict[str, AttributeValue]
 
 
 def attributes(row: Attributes) -> str:
-    """Write attributes of an element; numbers in the shortest form that reads back as the same
+    """Write attributes of an element; numbers in the shortest form that reads as the same
     double."""
     return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
 

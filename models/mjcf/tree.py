@@ -157,8 +157,7 @@ def plan(
 
 
 def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
-    """Yield the joints in order of priority; each entry lists equally good ways to hold one
-    joint."""
+    """Yield the joints by priority; each entry lists equally good ways to hold one joint."""
     driver, ties = scene.driver, joints(scene)
     if driver.slider is None:
         yield [_Edge(driver.base, driver.link, scene.driver_pivot)]
@@ -176,8 +175,7 @@ def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
 
 
 def _lightness(scene: Scene) -> Callable[[_Edge], float]:
-    """Return a function of the lightness of a pin's two bodies [1/kg]; equal for all pins if masses
-    are alike.
+    """Return the lightness of a pin's two bodies [1/kg], equal for all pins of masses alike.
 
     A soft constraint yields by its force times the inverse masses of its bodies, of which the
     lighter has more. Closed between a light body and a heavy one it yields by the ratio of their

@@ -117,9 +117,8 @@ class Driver:
 
     Body ``link`` moves against body ``base``. With neither ``pin`` nor ``slider`` it is a link
     about its pin to the ground, and the coordinate its angle [rad]. With ``pin`` the coordinate is
-    the angle of the link less that of the base, two bodies that share this pin [rad]; with
-    ``slider`` the displacement of that slider [m], of which ``link`` is the sliding body (a link or
-    a block).
+    the angle of the link less the base's, two bodies that share this pin [rad]; with ``slider`` the
+    displacement of that slider [m], whose sliding body is ``link`` (a link or a block).
     """
 
     link: str
@@ -130,8 +129,7 @@ class Driver:
 
     @property
     def is_crank(self) -> bool:
-        """True if the driver is a link at its pin to the ground, with its own angle as
-        coordinate."""
+        """True if the coordinate is the link's own angle, at its pin to the ground."""
         return self.pin is None and self.slider is None
 
     @property

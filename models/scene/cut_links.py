@@ -59,8 +59,7 @@ class CutScene(ABC):
 
     @abstractmethod
     def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
-        """Return the index of the body that carries a place of the link, and the place in its
-        frame."""
+        """Return the index of the body that carries a place of the link, and the place in it."""
 
     def _springs(self, link: str) -> Mapping[str, Spring]:
         """Springs between these bodies."""
@@ -142,8 +141,7 @@ class CutScene(ABC):
         return tuple(own)
 
     def _line_motion(self, motion: Motion, link: str) -> LinkMotion:
-        """Return the motion of the line between the two pins of an elastic link, as of a rigid
-        link."""
+        """Return the motion of the line between an elastic link's two pins, as of a rigid link."""
         line = line_of(self.scene, link)
         a, b = (motion.points[pin] for pin in line.pins)
         way, drift, push = (
@@ -192,8 +190,7 @@ class LinkLine:
         return self.start[0] + c, self.start[1] + s
 
     def along(self, place: Point) -> Point:
-        """Return a place in the link's frame as x along the line from the first pin, and y across
-        it."""
+        """Return a place in the link's frame as x along the line from its first pin, and y."""
         return turned(less(place, self.start), -self.lean_rad)
 
 

@@ -109,9 +109,8 @@ def segment_spring(own: ElasticLink, length_m: float, count: int, *, corrected: 
 
 HARDLY = 1e6
 """EA l^2/EI of a beam that does not stretch, as of a strip l/290 high: a force F lengthens it by
-1e-6 F l^3/EI, and bends it across by 2e4 times that. A larger ratio is no more accurate: elements
-that cannot stretch lock, by an error that grows with EA and falls with the fourth power of their
-number."""
+1e-6 F l^3/EI, and bends it across by 2e4 times that. More gains nothing: elements that cannot
+stretch lock, by an error that grows with EA and falls with the fourth power of their number."""
 AT_NODE = 1e-9
 """Largest distance from a node of a place that it carries, over the length of an element."""
 
@@ -191,8 +190,7 @@ class BeamedScene(CutScene):
         )
 
     def _middle(self, motion: Motion, link: str) -> Array:
-        """Return a node, or the middle between two by the cubic of an element, with their
-        tangents."""
+        """Return a node, or the middle of an element's cubic by its two nodes' tangents."""
         middle = super()._middle(motion, link)
         if self.count % 2 == 0:
             return middle

@@ -195,8 +195,7 @@ def driver_place_in(scene: Scene, state: State) -> float:
 
 
 def place_in_words(place: float, unit: str, degrees: str = ".6g") -> str:
-    """Format a driver's coordinate [rad or m] by its ``unit``; ``degrees`` is the format of
-    angles."""
+    """Format a driver's coordinate [rad or m] by its ``unit``; angles by ``degrees``."""
     return f"{place:.6g} m" if unit == "m" else f"{math.degrees(place):{degrees}} deg"
 
 
@@ -212,8 +211,7 @@ def driver_axis(scene: Scene) -> str:
 
 
 def driver_shown(scene: Scene, motion: Motion) -> Array:
-    """Return the driver's coordinate over a motion [deg or m], (T,). KeyError as
-    `driver_course`."""
+    """Return the driver's coordinate in a motion [deg or m], (T,). KeyError as `driver_course`."""
     place = driver_course(scene, motion)[0]
     return place if scene.driver.slider is not None else np.asarray(np.degrees(place))
 

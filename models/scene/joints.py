@@ -109,8 +109,7 @@ def has_loops(scene: Scene) -> bool:
 
 
 def joints(scene: Scene) -> Joints:
-    """Return the joints of the scene; a slot has no bodies where only its guide carries the
-    point."""
+    """Return the joints of the scene; a slot has no bodies if only its guide carries the point."""
     return _joints(Same(scene))
 
 
@@ -197,9 +196,8 @@ def _end(scene: Scene, spring: LineSpring, point: str) -> End:
 
 
 def whole_turns(spring: PinSpring, angle_rad: float) -> float:
-    """Return the whole turns [rad] to add to the angle of the second body less the angle of the
-    first at the start, so that the q of a spring in a pin begins within half a turn of its free
-    angle."""
+    """Return the whole turns [rad] to add to the second body's angle less the first's at the start,
+    so that the q of a spring in a pin begins within half a turn of its free angle."""
     return -math.tau * round((angle_rad - spring.free) / math.tau)
 
 
@@ -282,8 +280,7 @@ def along(slider: Slider, guide: Frame, place: Point, velocity: Point) -> tuple[
 
 
 def inertia_scale(scene: Scene) -> float:
-    """Sum of m L^2 + I over the bodies [kg m^2]: the inertia that a drive's has to exceed by
-    far."""
+    """Sum of m L^2 + I over the bodies [kg m^2]: the scale of a drive's inertia."""
     total = 0.0  # not `sum`, which adds otherwise from Python 3.12 on
     bodies: list[Link | Slider] = [*scene.links.values(), *scene.sliders.values()]
     for body in bodies:

@@ -108,8 +108,7 @@ class Load:
     def uncertain(
         self, x: Array, by: Array | float, speed: Array | None, speed_by: Array | float
     ) -> Array:
-        """Return a bound on the error of the magnitude, from the errors of ``x`` and of the
-        speed."""
+        """Return a bound on the error of the magnitude, by the errors of ``x`` and the speed."""
         own = self.characteristic
         error = np.asarray(own.steepest(x, by) * by + own.rounding(x))
         if self.stroke == "both" or speed is None:

@@ -218,8 +218,7 @@ def _mean(h0: Array, h1: Array, chord0: Array, chord1: Array) -> Array:
 
 
 def _end(h0: float, h1: float, chord0: float, chord1: float) -> float:
-    """Return the slope in an end row: by the parabola through three rows, if it does not
-    overshoot."""
+    """Return the slope in an end row, by the parabola through three rows without overshoot."""
     slope = ((2.0 * h0 + h1) * chord0 - h0 * chord1) / (h0 + h1)
     if slope * chord0 <= 0.0:
         return 0.0

@@ -150,8 +150,8 @@ class ForceSession(Session, Protocol):
     """A session of an engine that reports forces."""
 
     def record_forces(self, steps: int, every: int) -> Log:
-        """As `Session.record`, with the forces in all pins and sliders and the driving torque. The
-        motion is the same to the bit."""
+        """Advance and log, as `Session.record`, with the forces in all pins and sliders and the
+        driving torque. The motion is the same to the bit."""
         ...
 
 
@@ -167,10 +167,11 @@ class Engine:
     set of settings; errors of integrated positions shrink as the step to the power ``order`` at
     most. ``in_seconds`` names the settings that are times, or losses in a time: without any, errors
     of position depend on the steps in a turn, not on the speed; by default it names all. Where
-    ``forces_of`` is not nothing, sessions are `ForceSession`s. Unsupported are scenes with loads
-    without ``applies_loads``, with constant friction without ``applies_constant_friction``, with
-    springs without ``applies_springs``; with it `Facts.springs` has each spring. Without
-    ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the beams.
+    ``forces_of`` is not nothing, sessions are `ForceSession`s. Without ``applies_loads`` scenes
+    with loads are unsupported, without ``applies_constant_friction`` scenes with constant friction,
+    without ``applies_springs`` scenes with springs; with it `Facts.springs` has each spring.
+    Without ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the
+    beams.
     """
 
     name: str

@@ -77,8 +77,7 @@ def pace(scene: Scene, state: State, drive: Drive) -> float:
 
 
 def period(scene: Scene, state: State, drive: Drive) -> float:
-    """Return the time scale of a step [s]: the step has to be far shorter; infinite where nothing
-    moves."""
+    """Return the time scale [s], far longer than a good step; infinite where nothing moves."""
     if drive != "free":
         return scene.driver.law.period_s
     speed = pace(scene, state, drive)

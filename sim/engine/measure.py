@@ -268,8 +268,7 @@ def _still(samples: int) -> BodyPose:
 
 
 def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """Return the q (T,) [m or rad] of each spring at the positions of the poses; see
-    `models.scene.loads`.
+    """Return the q (T,) [m or rad] of each spring at the poses; see `models.scene.loads`.
 
     The first sample is the start, from which whole turns in pins are counted.
     """

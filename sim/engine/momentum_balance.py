@@ -53,8 +53,7 @@ class Hinge:
 @dataclass(frozen=True)
 class MomentumGain:
     """Action of joints and drive on a body: ``force`` [N] (T, 2), and ``moment`` [N m] (T,) about
-    the place ``centre`` of its frame [m], which is at ``place`` (T, 2) while its angle is
-    ``theta``."""
+    ``centre`` of its frame [m], which is at ``place`` (T, 2) while its angle is ``theta``."""
 
     centre: Point
     place: Array
@@ -145,8 +144,7 @@ class _System:
                     self._push(column, body, arm, np.tile(sense * axis, (self._samples, 1)))
 
     def carry(self, scene: Scene, slide: Prism | Slot) -> Array:
-        """Add a line: a force across it, in one line of action on both bodies. Return its
-        direction."""
+        """Add a line: a force across it, the same on both bodies. Return its direction."""
         direction = across(self._along(slide.slider))
         self._push_on(scene, slide.slider, riding_body(slide), direction)
         return direction

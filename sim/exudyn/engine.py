@@ -35,8 +35,7 @@ LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
 
 
 def widths(made: PlaneSystem) -> list[int]:
-    """Return the number of coordinates of each node, in turn: x, y, angle, or x, y and the
-    tangent's."""
+    """Return the number of coordinates of each node: x, y, angle, or x, y and the tangent's."""
     return [4 if name in made.looked else 3 for name in made.node]
 
 

@@ -22,8 +22,7 @@ def unknowns(scene: Scene) -> int:
 
 
 def counts(scene: Scene, settings: Settings) -> tuple[float, float, float]:
-    """Return 1; iterations in a step, each over all unknowns; and matrices, over all pairs of
-    these."""
+    """Return 1; iterations in a step, times all unknowns; and matrices, times all their pairs."""
     jacobian, size = str(settings["jacobian"]), unknowns(scene)
     digits = -math.log10(max(float(settings["relative_tolerance"]), 1e-16))
     iterations = 1.0 + digits / DIGITS_PER_ITERATION
@@ -33,8 +32,7 @@ def counts(scene: Scene, settings: Settings) -> tuple[float, float, float]:
 
 
 def work(scene: Scene, start: State) -> Work:
-    """Return the cost of a step: a part for the step, one for each iteration and one for each
-    matrix."""
+    """Return the cost of a step: a part for itself, for each iteration and each matrix."""
 
     def us(settings: Settings) -> float:
         step, iterated, filled = counts(scene, settings)

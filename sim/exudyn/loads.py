@@ -162,7 +162,7 @@ class StepMeans:
 
     A step weighs its two ends alike, so that a jump that only one of them feels acts half a step
     too early or too late, at any place in the step; with these means the impulse over both steps is
-    right, and belongs to the right instant. There is no step before ``start_s``: an earlier jump
+    right, and belongs to the right instant. There is no step before ``start_s``: a jump up to then
     counts from there.
     """
 

@@ -140,8 +140,7 @@ def _rub_pin(scene: Scene, friction: ConstantFriction, applied: Applied, present
 def _rub_line(
     scene: Scene, friction: ConstantFriction, made: PlaneSystem, applied: Applied, present: Present
 ) -> None:
-    """Add a force along the line on the sliding body, and the opposite on the guide, on the same
-    line."""
+    """Add a force along the line on the sliding body, and the opposite on the guide."""
     slider = scene.sliders[friction.joint]
     still = still_rad_s(scene) * scene.longest_m
 

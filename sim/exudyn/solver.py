@@ -64,8 +64,7 @@ def initialized(system: Any, asked: Any, settings: Settings) -> Any:
 
 
 def _needed(solver: Any, held_by: Array) -> Any:
-    """Return the linear solver for a system of that size, and of constraints that are redundant or
-    not."""
+    """Choose the linear solver by the system's size and by redundancy of its constraints."""
     if solver.GetODE2size() + solver.GetAEsize() > MOST_DENSE:
         return exu.LinearSolverType.EigenSparse
     real = held_by[np.any(held_by != 0.0, axis=1)]  # a point on a line has an empty one
@@ -160,8 +159,7 @@ class Multipliers:
 
     @contextmanager
     def kept(self, steps_done: int) -> Iterator[None]:
-        """Keep the present multipliers, ``steps_done`` steps after the start, and those of each
-        step meanwhile."""
+        """Keep the multipliers of now, ``steps_done`` steps after the start, and of each step."""
         state = self._system.systemData
         now = np.array(state.GetAECoordinates())
         self._times_s = [float(state.GetTime())]

@@ -68,9 +68,8 @@ for step in range({steps}):
 
 
 def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """Write the recipe for pins of two bodies; for pins of the tree only without loads and springs,
-    which ``cfrc_int`` may count as their forces. Refused are drives and loads that a file does not
-    hold."""
+    """Write the recipe for pins of two bodies; without loads and springs, which ``cfrc_int`` may
+    count as joint forces, for the tree's too. Refuse drives and loads that a file does not hold."""
     _check_held(scene)
     chosen = writing(scene, settings, dt_s, "prescribed")
     tree = planned(scene, state, chosen)

@@ -44,8 +44,7 @@ class StrokeShares:
         self._parts: dict[str, Parts] = {}
 
     def at(self, data: Any) -> Mapping[str, float]:
-        """Return the parts by slider, in the stage of MuJoCo's data; every stage has to call it, in
-        turn."""
+        """Return the parts by slider, in MuJoCo's present stage; every stage has to call it."""
         half = round(2.0 * float(data.time) / self._dt)
         stage = 1 if half % 2 else 2 if self._last_half == half - 1 else 0
         if stage == 0:

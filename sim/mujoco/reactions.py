@@ -144,8 +144,7 @@ class JointForces:
 
 
 def reactions(scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> Forces:
-    """Compute the forces at the states of ``poses``, which act at the instants of their
-    positions."""
+    """Return the forces at the states of ``poses``, which act at their positions' instants."""
     return _Reactions(scene, tree, poses, joint_forces).forces()
 
 
@@ -197,8 +196,7 @@ class _Reactions:
         return found
 
     def _of_driven_joint(self, friction: Mapping[str, Array]) -> Array | float:
-        """Return the friction in the driven joint, on the driver: MuJoCo has it and the drive
-        together."""
+        """Return the friction on the driver in its joint, which MuJoCo adds to the drive."""
         driver, pivot = self._scene.driver, self._scene.driver_pivot
         if driver.slider is not None:
             return friction.get(driver.slider, 0.0)

@@ -180,8 +180,7 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
 
 
 def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
-    """Refuse a pose whose hinges have so many turns that the rounding of their angles would be
-    judged."""
+    """Refuse hinges with so many turns that the rounding of their angles would be judged."""
     for body in planar.linkage.component.bodies:
         for joint in body.joints:
             turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau

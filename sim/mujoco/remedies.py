@@ -19,8 +19,7 @@ STIFFER: tuple[Settings, ...] = ({"solref_timeconst_steps": 2}, {"solref_damprat
 
 
 def mujoco_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
-    """List closings first, which cost nothing, then stiffer settings; settings as stiff already are
-    left out."""
+    """List closings, which cost nothing, then the settings that are stiffer than these."""
     elsewhere = islice(closings(scene, state), MOST_CLOSINGS)
     stiffer = [
         each

@@ -106,8 +106,7 @@ class MujocoSpoiler:
         _own(session)._data.qvel[:] *= 1.0 + share
 
     def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
-        """Take back half the change of velocity: RK4 takes about the mean before and after a
-        step."""
+        """Take back half the change: RK4 takes about the mean of velocities before and after."""
         data = _own(session)._data
         now = np.array(data.qvel)
         if before is not None:
@@ -115,8 +114,7 @@ class MujocoSpoiler:
         return now
 
     def lose(self, session: Session) -> None:
-        """Make the rate of the last joint NaN; MuJoCo then puts the whole state back to the
-        start."""
+        """Lose the last joint's rate; MuJoCo then puts the whole state back to the start."""
         _own(session)._data.qvel[-1] = np.nan
 
 

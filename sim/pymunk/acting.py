@@ -104,8 +104,7 @@ class LoadSteps:
         return load.size(*now)
 
     def _share_of_stroke(self, load: Load) -> float:
-        """Return the share of the step about its end in which the slider is on the stroke of the
-        load."""
+        """Return the share of the step about its end with the slider on the load's stroke."""
         assert load.slider is not None
         course = self._tracks[load.slider].course
         before, here = course.rate_before, course.rate
@@ -125,8 +124,7 @@ class LoadSteps:
         pushes.force(load.body, frame, place, _along(load, size, frame.theta))
 
     def _on_block(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Apply a load on a block without mass: its pin's body takes the force, its guide a
-        torque."""
+        """Apply a load on a massless block: a force to its pin's body, a torque to its guide."""
         slot = self._slots[load.body]
         slider = slot.slider
         if load.point is None:

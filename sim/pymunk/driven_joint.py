@@ -14,8 +14,7 @@ from sim.pymunk.space import SpaceModel
 
 SHARE = 0.1
 """Share of a motor's error that a step corrects: all at once is more than the iterations of profile
-as-shipped settle, and the joints beside it open at any step; from 0.2 on they do in some
-positions."""
+as-shipped settle, and adjacent joints open at any step; from 0.2 on in some positions."""
 
 
 class DrivenJoint(Protocol):

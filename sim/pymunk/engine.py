@@ -79,8 +79,7 @@ class PymunkSession:
         self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
 
     def facts(self) -> Facts:
-        """Read the space as pymunk holds it now; bodies that cannot move or turn freely have no
-        mass."""
+        """Read the space as pymunk holds it now; only freely moving bodies have a mass."""
         free = {name: body for name, body in self._model.bodies.items() if moves_freely(body)}
         space = self._space
         biases = {float(constraint.error_bias) for constraint in space.constraints}
@@ -146,8 +145,7 @@ class PymunkSession:
         return self._poses(rows.reshape(1, -1, WIDTH), np.array([float(self._done)]))
 
     def _make_room(self, samples: int) -> None:
-        """Empty the buffer, after lending it memory for the samples; memory that it grows is
-        leaked."""
+        """Empty the buffer, after lending it memory for the samples; it leaks its own memory."""
         need = samples * (len(self._rows) + 1) * WIDTH + ROOM
         if len(self._memory) < need:
             self._memory = np.empty(need)
@@ -169,8 +167,7 @@ class PymunkSession:
         self._done += steps
 
     def _coast(self, steps: int, every: int) -> None:
-        """Step with the crank free or at constant speed; tight loops, which logging slows
-        little."""
+        """Step with a free crank, or one of constant speed; logging slows tight loops little."""
         step, dt = self._space.step, self._dt
         log, space, buffer = pymunk.batch.get_space_bodies, self._space, self._buffer
         if every == 1:

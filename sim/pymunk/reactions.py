@@ -35,11 +35,10 @@ BEFORE = (
 )
 """Input of a step: vx, vy, omega, and the given force and torque."""
 SAME = 1e-6
-"""Largest difference between the impulse of a joint over a step and its momentum balance, over the
-largest force (for moments, times the longest link), that counts as none. On the shipped scenes it
-is 2e-12 at most, with either profile and every drive; rounding of velocities grows with the steps
-in a turn, and near dead points. Where anchors are bent for arcs, arms are off by half the square of
-a turn."""
+"""Largest difference of a joint's impulse over a step from the momentum balance, over the largest
+force (for moments, times the longest link), that counts as none. On the shipped scenes it is 2e-12
+at most, with either profile and every drive; rounding of velocities grows with the steps in a turn,
+and near dead points. Where anchors are bent for arcs, arms are off by half the square of a turn."""
 
 
 class Reactions:
@@ -165,8 +164,7 @@ class Reactions:
         return np.column_stack([force, moment])
 
     def _contradictions(self, pushes: JointPushes, time_s: Array, same: float) -> Iterator[str]:
-        """Yield joints whose impulse differs from the momentum balance, by more than that share of
-        the largest."""
+        """Yield joints whose impulse differs from the momentum balance by more than ``same``."""
         held = [hinge for hinge, joint in self._model.hinges.items() if joint is not None]
         found = {
             f"pin {each.point} of {each.first} and {each.other}": np.hypot(*pushes.hinges[each].T)
@@ -191,8 +189,7 @@ class Reactions:
 
 
 def _turning(omega: Array, first: int | None, second: int | None) -> Array:
-    """Return the angular velocity of a body against another, (T,), by their rows; None is the
-    ground."""
+    """Return the rate of a body against another, (T,), by their rows; None is the ground."""
     one, other = (0.0 if row is None else omega[:, row] for row in (first, second))
     return np.asarray(other - one)
 

@@ -16,8 +16,7 @@ TIMES = (2, 5)
 
 
 def pymunk_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
-    """List larger numbers of iterations; none for a chain without an iteration count
-    (`iterations`)."""
+    """List more iterations; none for a chain that needs too many (`iterations`)."""
     if not held_by_iterations(scene, settings):
         asked = int(settings["iterations"])
         return [{"iterations": count} for count in ITERATIONS if count > asked]

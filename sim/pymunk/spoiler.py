@@ -15,8 +15,7 @@ from sim.run.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
 
 class PymunkSpoiler:
-    """pymunk's faults: every joint is a constraint; one between two moving bodies closes the
-    loop."""
+    """pymunk's faults: all joints are constraints; one of two moving bodies closes the loop."""
 
     wrong_settings: Mapping[WrongSetting, Callable[[float], Settings]] = {
         "few-iterations": lambda size: {"iterations": round(1.0 / size)},
@@ -98,7 +97,7 @@ class PymunkSpoiler:
             body.angular_velocity *= 1.0 + share
 
     def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
-        """Take back the whole change of velocity in a step, as velocities are half a step newer."""
+        """Take back the whole change of velocity, as velocities are half a step newer."""
         bodies = list(_model(session).bodies.values())
         now = np.array([[*body.velocity, body.angular_velocity] for body in bodies])
         off = np.zeros_like(now) if before is None else by_s * (now - before)

@@ -71,8 +71,7 @@ class _OnLine:
         return first, second
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
-        """Apply the spring at the end of the step; a spring of length 0 has no direction and does
-        not pull."""
+        """Apply the spring at the end of the step; at length 0 it has no direction."""
         first, second = self._places(frames)
         length = math.dist(first, second)
         self._course.go_on(length)

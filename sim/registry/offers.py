@@ -110,8 +110,7 @@ class Stepping:
         return self.period_s / self.dt_s
 
     def counted_in(self, drive: Drive) -> Literal["turns", "frames", "nothing"]:
-        """Return the whole that its steps divide: free motion has none, as no speed sets their
-        length."""
+        """Return the whole that its steps divide: no speed sets their length in free motion."""
         if drive == "free":
             return "nothing"
         return "frames" if self.substeps else "turns"
@@ -177,14 +176,13 @@ class ForceRecipe(Protocol):
 
     def __call__(self, scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
         """Write the program: it holds ``scene`` from ``state`` on, with a complete set of settings
-        and a step [s], turns the driver once, and prints the forces as lines of numbers with
-        commas.
+        and a step [s], turns the driver once, and prints the forces as lines of numbers.
 
         The first line names the columns: ``time_s``, then ``POINT.BODY.x_n`` and ``POINT.BODY.y_n``
         (the force of the pin at POINT on BODY [N], in the ground's frame) for a pin that closes a
         loop, or for more pins, then ``torque_n_m`` (of the drive on the driver). The forces act at
-        these times. Comments give the reason of each line. Raises EngineError for a scene that the
-        engine cannot hold, or the recipe does not cover.
+        these times. Comments give reasons. Raises EngineError for a scene that the engine cannot
+        hold, or that the recipe does not cover.
         """
         ...
 
@@ -203,8 +201,7 @@ cheapest first."""
 
 
 def remedies(engine: str, scene: Scene, state: State, settings: Settings) -> Sequence[Settings]:
-    """Return the remedies of an engine; none where it offers none. Raises EngineError as
-    `capability`."""
+    """Return an engine's remedies; none if it has none. Raises EngineError as `capability`."""
     if "remedies" not in declaration(engine).offers:
         return ()
     return cast(Remedies, capability(engine, "remedies"))(scene, state, settings)

@@ -269,8 +269,7 @@ def check_steps(scene: Scene, period: float, dt_s: float, steps: int, every: int
 
 @dataclass(frozen=True)
 class Timing:
-    """Wall times [s] of several repeats of the same ``steps``; logging is part of them when
-    ``logged``."""
+    """Wall times [s] of several repeats of the same ``steps``, with logging when ``logged``."""
 
     walls_s: tuple[float, ...]
     steps: int

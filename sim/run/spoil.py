@@ -48,8 +48,7 @@ class Spoiler(Protocol):
 
     @property
     def wrong_settings(self) -> Mapping[WrongSetting, Callable[[float], Settings]]:
-        """Return the settings by their fault, as far as the engine has such, from a size above
-        0."""
+        """Return the settings by their fault, as far as the engine has them, by a size above 0."""
         ...
 
     def open_loop(self, session: Session) -> None:
@@ -102,7 +101,7 @@ class Spoiler(Protocol):
 
     def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
         """Take back of all positions the change by velocities that are newer by ``by_s``, since the
-        positions ``before``; return the present ones."""
+        velocities ``before``; return the present velocities."""
         ...
 
     def lose(self, session: Session) -> None:

@@ -59,8 +59,7 @@ class Plane:
         )
 
     def turned(self, rotation: Array) -> tuple[float, float]:
-        """Return the angle of a rotation (3, 3) within the plane [rad], and its tilt out of it
-        [deg]."""
+        """Return a rotation's (3, 3) angle within the plane [rad], and its tilt out of it [deg]."""
         turn = self.flat(rotation @ self.x)
         return math.atan2(turn.imag, turn.real), self.off_normal_deg(rotation @ self.normal)
 

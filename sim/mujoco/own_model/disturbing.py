@@ -76,8 +76,7 @@ HEAVY = 1e3
 SOFT_S = 0.02
 """MuJoCo's own time constant of a loop; a longer one is softer."""
 STIFFNESS, DAMPING = 1.0 / SOFT_S**2, 2.0 / SOFT_S
-"""Stiffness and damping of MuJoCo's own loop [1/s^2] and [1/s], for a solref with both numbers
-below 0."""
+"""Stiffness [1/s^2] and damping [1/s] of MuJoCo's own loop, as by a solref of numbers below 0."""
 
 
 def disturbances(linkage: Linkage) -> list[Disturbance]:

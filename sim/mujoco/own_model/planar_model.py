@@ -151,8 +151,7 @@ def _seen_from(base: _Moving, body: _Moving) -> _Moving:
 
 
 def _joints(limb: Limb, seen: _Moving) -> tuple[list[float], list[float], list[float]]:
-    """Return the coordinates of a limb's joints with their rates, by its motion relative to its
-    parent."""
+    """Return the joint coordinates of a limb and their rates, by its motion in its parent."""
     turn = math.remainder(seen.theta - limb.angle_rad, math.tau)
     angle, place = limb.angle_rad, complex(*limb.offset)
     pivot, after = place, False
@@ -198,8 +197,7 @@ def _in_order(
 
 
 def _split(axes: Sequence[complex], vector: complex) -> list[float]:
-    """Return the vector as a sum of axes. A part that no axis reaches stays; `sim.run.check` sees
-    it."""
+    """Split the vector along axes. A part that no axis reaches stays; `sim.run.check` sees it."""
     if not axes:
         return []
     matrix = np.array([[axis.real for axis in axes], [axis.imag for axis in axes]])
@@ -209,8 +207,7 @@ def _split(axes: Sequence[complex], vector: complex) -> list[float]:
 
 @dataclass(frozen=True, eq=False)
 class PlanarModel:
-    """A compiled model, its linkage and scene; ``keyframe`` is the start, None for the pose as
-    drawn."""
+    """A model with its linkage and scene, from ``keyframe`` on, None for the pose as drawn."""
 
     model: Any
     linkage: Linkage

@@ -69,8 +69,7 @@ class SceneParts:
     reads: float
 
     def points_of(self, link: int) -> list[NamedPoint]:
-        """Return the points of a link; for the driven link its pivot first, the point of its
-        joint."""
+        """Return the points of a link; of the driven link its pivot, the joint's, first."""
         own = [point for point in self.points if link in point.places]
         return sorted(own, key=lambda point: WORLD not in point.places)
 

@@ -43,8 +43,7 @@ CHOICES = {"integrator": (KEPT, *INTEGRATORS), "loops": (KEPT, STIFF)}
 
 
 def profiles(present: Iterable[str], advised: Advised) -> dict[str, Profile]:
-    """Return the profiles of a model: as written, without each part that is ``present``, and
-    recommended."""
+    """Return the profiles: as written, without each part that is ``present``, recommended."""
     lines = [
         _profile(AS_WRITTEN, "the file as it is"),
         *(
