@@ -214,7 +214,7 @@ class Scene:
                 bodies.setdefault(point, []).append(link.name)
         return FixedMapping({point: tuple(names) for point, names in bodies.items()})
 
-    @cached_property  # asked for at every step of a search
+    @cached_property  # read at every step of a search
     def longest_m(self) -> float:
         """Longest distance between two points of one link: the scale of relative errors."""
         return max(span(link.points) for link in self.links.values())

@@ -92,7 +92,7 @@ class Tabulated(Characteristic):
             repeated = (kink + turn * self.period for kink in own)
             yield from (kink for kink in repeated if first <= kink <= last)
 
-    @cached_property  # asked for at every step of an engine
+    @cached_property  # read at every step of an engine
     def _knots(self) -> tuple[Array, Array]:
         """Places and values; a period is closed by the first row of the next."""
         x, y = np.array(self.places), np.array(self.values)

@@ -26,7 +26,7 @@ def counts(scene: Scene, settings: Settings) -> tuple[float, float, float]:
     jacobian, size = str(settings["jacobian"]), unknowns(scene)
     digits = -math.log10(max(float(settings["relative_tolerance"]), 1e-16))
     iterations = 1.0 + digits / DIGITS_PER_ITERATION
-    # One matrix at least, as steps are asked for one by one (see `sim.exudyn.settings`).
+    # One matrix at least, as steps are requested one by one (see `sim.exudyn.settings`).
     matrices = iterations if jacobian == "each-iteration" else 1.0
     return 1.0, iterations * size, matrices * size**2
 

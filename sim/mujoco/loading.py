@@ -262,7 +262,7 @@ class Loading:
     def size(self, load: Load, data: Any) -> float:
         """Return the size of a load in the state of the data; all slides are joints, and their
         coordinates are the sliders' displacements."""
-        # Hinges and slides have one coordinate and one rate, so both stand at one place.
+        # Hinges and slides have one coordinate and one rate, so both have the same index.
         sliding = {
             name: (float(data.qpos[k]), float(data.qvel[k])) for name, k in self._slides.items()
         }

@@ -65,7 +65,7 @@ def _faults_of_placing(made: Engine) -> Iterator[str]:
         settings = {each: setting.value for each, setting in profile.settings.items()}
         try:
             found: object = made.placing(settings)
-        except Exception as error:  # whatever somebody else's function raises
+        except Exception as error:  # any error of a user's function
             found = error
         if found not in get_args(Placing):
             yield (

@@ -279,6 +279,6 @@ def _slider(
     if rider in parts.blocks:
         matter = parts.matter[rider]
         return Slider(*common, mass_kg=matter.mass_kg, inertia_kg_m2=matter.inertia_kg_m2)
-    # From the frame of the guide to that of the link.
+    # From the guide's frame to the link's.
     turn = frames[rider].turn / (guide.meets.turn * on.turn)
     return Slider(*common, link=parts.called[rider], angle_rad=-cmath.phase(turn) - direction)
