@@ -1,4 +1,4 @@
-"""Arrays that are passed about, and numbers that a caller hands in as one."""
+"""Arrays that are passed about, and the numbers that a caller hands in."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,18 +10,18 @@ Mask = NDArray[np.bool_]
 
 
 NO_NUMBERS = {"b": "truths", "c": "complex numbers", "m": "durations", "M": "dates", "V": "records"}
-"""Kinds of arrays that numpy would make numbers of, or would half; a duration becomes the count of
-whatever unit it has."""
+"""Kinds of arrays that numpy would convert to numbers, or would halve; a duration becomes the count
+of its own unit."""
 
 
 def numbers(values: ArrayLike, what: str) -> Array:
-    """The values as floats, in an array of their own, whatever becomes of the caller's.
+    """Return the values as floats, in a new array that later changes by the caller do not reach.
 
     Raises
     ------
     CrankcheckError
         A masked array, whose numbers do not all count; text that is no number; lists of different
-        lengths; durations, dates and whatever else is no number.
+        lengths; durations, dates and anything else that is no number.
     """
     if isinstance(values, np.ma.MaskedArray):
         raise _no_numbers(what, "a masked array", "give those that count: values.compressed()")
@@ -39,7 +39,7 @@ def numbers(values: ArrayLike, what: str) -> Array:
 
 
 def samples(values: ArrayLike, what: str = "samples") -> Array:
-    """As `numbers`, of shape (T,), all of them finite, T at least 1; a single one is one sample.
+    """Return `numbers` as shape (T,), all finite, T at least 1; a single number is one sample.
     Raises CrankcheckError."""
     found = np.atleast_1d(numbers(values, what))
     if found.ndim != 1 or len(found) == 0:
@@ -52,7 +52,7 @@ def samples(values: ArrayLike, what: str = "samples") -> Array:
 
 
 def beside(values: ArrayLike, like: Array, what: str, beside_what: str) -> Array:
-    """As `numbers`, a single one repeated, in the shape of others. Raises CrankcheckError."""
+    """Return `numbers` in the shape of ``like``, a single one repeated. Raises CrankcheckError."""
     found = numbers(values, what)
     if found.size == 1:
         found = found.reshape(())
@@ -69,8 +69,8 @@ def _no_numbers(what: str, found: str, cure: str) -> CrankcheckError:
 
 
 def from_end(time_s: Array, until_s: float) -> tuple[float, Array, float]:
-    """The end, 0 or ``until_s``, that times are all beyond [s]; how much later than it they are
-    (T,); and how far back into the time between one has to go to look as far as they do."""
+    """Return the end, 0 or ``until_s``, that all times are beyond [s]; the times after it (T,); and
+    the step back into the interval between that is as long as the farthest of them."""
     end_s = until_s if time_s.min() > until_s else 0.0
     later = time_s - end_s
     return end_s, later, -float(later[np.argmax(np.abs(later))])

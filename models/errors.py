@@ -1,7 +1,7 @@
 """Errors that a user can cause, and can mend.
 
-Each message says what was asked, what was found and what would work. The command line prints the
-message and exits with 2; anything else that escapes is a fault of crankcheck.
+Each message states the request, the fault and the remedy. The command line prints the message and
+exits with 2; anything else that escapes is a fault of crankcheck.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ import math
 from collections.abc import Iterable, Sequence
 
 SHOWN = 20
-"""Faults of one file that a message lists; the others are counted."""
+"""Faults of one file that a message lists; the rest is counted."""
 
 LONGEST = 8_000
-"""Characters of a message, whatever of a file or of an option stands in it."""
+"""Largest number of characters in a message, also where it quotes a file or an option."""
 
 
 def harmless(text: str) -> str:
-    """The text with what is not seen, but acts on a terminal or on other letters, as escapes.
+    """Return the text with invisible characters that act on a terminal or on other letters escaped.
 
     ``\\x1b`` moves a cursor, ``\\u202e`` turns text round; new lines and tabs stay.
     """
@@ -26,39 +26,39 @@ def harmless(text: str) -> str:
 
 
 def nearest(name: str, names: Iterable[str], most: int = 3, cutoff: float = 0.4) -> list[str]:
-    """The names that one may have meant, the nearest first; ``cutoff`` is how alike, 0 to 1."""
+    """Return the most similar names, the nearest first; ``cutoff`` is the likeness, 0 to 1."""
     return difflib.get_close_matches(name[:200], names, most, cutoff)
 
 
 def suggestion(
     name: str, names: Iterable[str], otherwise: str, most: int = 3, cutoff: float = 0.4
 ) -> str:
-    """What would work in place of a name: the nearest names, or all of them after ``otherwise``."""
+    """Suggest names in place of a wrong one: the nearest, or all of them after ``otherwise``."""
     if near := nearest(name, names, most, cutoff):
         return f"did you mean {' or '.join(near)}?"
     return f"{otherwise} {', '.join(names)}"
 
 
 def few(names: Iterable[str], most: int) -> str:
-    """The first names of a list, and how many more there are."""
+    """Return the first names of a list, and the number of further ones."""
     each = list(names)
     return ", ".join(each[:most]) + (f" and {len(each) - most} more" if len(each) > most else "")
 
 
 def cut(text: str, most: int = 60) -> str:
-    """A text short enough for a message."""
+    """Shorten a text for a message."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def shown(found: object) -> str:
-    """What was found in a file, short enough for a message."""
+    """Return a value found in a file as text short enough for a message."""
     if isinstance(found, float) and not math.isfinite(found):
         return str(found)
     return cut(repr(found) if isinstance(found, str) else " ".join(repr(found).split()))
 
 
 def listed(place: str, faults: Sequence[str]) -> str:
-    """The message of several faults: the first of them, one a line, and how many more there are."""
+    """Return the message of several faults: the first, one a line, and the number of the rest."""
     lines = [*faults[:SHOWN]]
     if left := len(faults) - len(lines):
         lines.append(f"and {left} more")
@@ -67,9 +67,9 @@ def listed(place: str, faults: Sequence[str]) -> str:
 
 
 class CrankcheckError(Exception):
-    """A fault in what the user asked for; its text is the whole message.
+    """An error of the user's request; its text is the whole message.
 
-    The text may hold what stood in a file: nothing in it acts on the terminal that it is shown on.
+    The text may quote a file: nothing in it acts on the terminal.
     """
 
     def __str__(self) -> str:
@@ -84,7 +84,7 @@ class SceneError(CrankcheckError):
     place : str
         The file or scene that holds the faults.
     faults : Sequence[str]
-        One line each: key, what was found, what would work.
+        One line each: key, value found, remedy.
     """
 
     def __init__(self, place: str, faults: Sequence[str]) -> None:
@@ -93,7 +93,7 @@ class SceneError(CrankcheckError):
         super().__init__(listed(place, faults))
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, tuple[str, ...]]]:
-        """Rebuilt from its parts, in another process too."""
+        """Rebuild the error from its parts, in another process too."""
         return type(self), (self.place, self.faults)
 
 
@@ -102,8 +102,8 @@ class StructureError(CrankcheckError):
 
 
 class ReachError(CrankcheckError):
-    """A driver position that the mechanism cannot be assembled in."""
+    """A driver position in which the mechanism cannot be assembled."""
 
 
 class EngineError(CrankcheckError):
-    """An engine that is missing, or cannot hold the scene, or was given a setting it lacks."""
+    """An engine that is missing, cannot represent the scene, or lacks a given setting."""

@@ -1,4 +1,4 @@
-"""The types that travel: the motion of a mechanism over time, and its state at one instant."""
+"""Types that travel: the motion of a mechanism over time, and its state at one instant."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from models.scene import Point
 
 @dataclass(frozen=True)
 class SliderForces:
-    """What the guide of a slider exerts on what slides: ``normal`` [N], the force along the line's
+    """Reaction of a slider's guide on the sliding body: ``normal`` [N], the force along the line's
     direction turned by +90 deg, at the slider's point; ``moment`` [N m] about that point; (T,)."""
 
     normal: Array
@@ -24,7 +24,7 @@ class SliderForces:
 
 @dataclass(frozen=True)
 class ForceBound:
-    """What forces may be wrong by: the same keys, arrays of shape (T,), never negative.
+    """Bounds on the errors of forces: the same keys, arrays of shape (T,), never negative.
 
     For pins the bound holds for the length of the error vector. Infinite where rounding leaves
     nothing certain.
@@ -38,12 +38,12 @@ class ForceBound:
 
 @dataclass(frozen=True)
 class FrictionSolution:
-    """How Coulomb's friction, which hangs on the reactions that it changes, was found; (T,) each.
+    """Solution of Coulomb's friction, which depends on the reactions that it changes; (T,) each.
 
-    ``solutions`` is 1 where there is one, 2 where there are two or more, of which the one with the
-    least friction is given, and 0 where there is none: no finite torque keeps the mechanism moving.
-    ``iterations`` were taken; ``change`` is what the last of them changed or, where there may be
-    several solutions, what the one that is given leaves open, over the largest friction.
+    ``solutions`` is 1 where there is one, 2 where there are two or more (the one with the least
+    friction is given), and 0 where there is none: no finite torque keeps the mechanism moving.
+    ``iterations`` were taken; ``change`` is the last change or, where there may be several
+    solutions, the uncertainty of the given one, over the largest friction.
     """
 
     solutions: Array
@@ -56,15 +56,15 @@ class Forces:
     """Reactions and driving torque, sampled at ``time_s`` (T,).
 
     ``pins`` holds, by point and body, the force of the pin on the body [N], (T, 2), in the ground's
-    frame. Bodies stand in the order of the pin, the ground first, then links, then slider blocks:
-    where two meet, the force on the second is what the first exerts on it. All forces of a pin add
-    up to 0. ``torque``, (T,), is what the drive exerts on the driver, in ``drive_unit``: N m, or N
-    along its line where that is a slider. ``undetermined`` says
-    why there are no reactions where the equations of statics leave them open. What a producer does
-    not give is NaN. ``friction`` holds what rubs, by joint: in a pin the couple [N m] that its
-    first body exerts on its second, in a slider the force [N] of the guide on what slides, along
-    the line; ``friction_solution`` is how that was found where it is Coulomb's.
-    ``contradictions`` is what an engine's own numbers say against its forces.
+    frame. Bodies are in the order of the pin, the ground first, then links, then slider blocks:
+    where two meet, the force on the second is exerted by the first. All forces of a pin add up to
+    0. ``torque``, (T,), is the drive's action on the driver, in ``drive_unit``: N m, or N along the
+    line of a slider. ``undetermined`` says why there are no reactions where the equations of
+    statics leave them open. Values that a producer does not give are NaN. ``friction`` holds the
+    friction by joint: in a pin the couple [N m] of its first body on its second, in a slider the
+    force [N] of the guide on the sliding body, along the line; ``friction_solution`` is the
+    solution of Coulomb's friction. ``contradictions`` are conflicts between an engine's forces and
+    its other numbers.
     """
 
     time_s: Array
@@ -79,14 +79,14 @@ class Forces:
     drive_unit: str = "N m"
 
     def has_equilibria(self, number: int) -> NDArray[np.bool_]:
-        """The samples (T,) at which Coulomb's friction has so many equilibria: 0 where it locks the
-        mechanism, 2 where that may jam."""
+        """Mask (T,) of the samples at which Coulomb's friction has so many equilibria: 0 where it
+        locks the mechanism, 2 where that may jam."""
         if self.friction_solution is None:
             return np.zeros(self.time_s.size, np.bool_)
         return np.asarray(self.friction_solution.solutions == number)
 
     def each_series(self, change: Callable[[Array], Array]) -> Forces:
-        """The forces alone, without bound, with every series changed; their instants stay."""
+        """Return the forces without bound, every series changed; the instants stay."""
         return replace(
             self,
             pins={
@@ -104,12 +104,12 @@ class Forces:
         )
 
     def stretch(self, kept: slice | NDArray[np.intp]) -> Forces:
-        """Some of the samples, one after the other or by their numbers, without bound."""
+        """Return some samples, a slice or by index, without bound."""
         return replace(self.each_series(lambda series: series[kept]), time_s=self.time_s[kept])
 
     @staticmethod
     def joined(parts: Sequence[Forces]) -> Forces:
-        """Stretches of samples one after the other."""
+        """Join stretches of samples one after the other."""
         first = parts[0]
         if len(parts) == 1:
             return first
@@ -142,15 +142,15 @@ class Forces:
 
 
 Order = Literal[0, 1, 2]
-"""A place, its rate, or the rate of that."""
+"""Order of a derivative: a position, its rate, or its second rate."""
 
 
 @dataclass(frozen=True)
 class LinkMotion:
     """Angle ``theta`` [rad], ``omega`` [rad/s], ``alpha`` [rad/s^2].
 
-    The angle goes on continuously with the driver's, its whole turns counted from time 0: which
-    instants are asked for, and in what order, does not matter.
+    The angle is continuous with the driver's, its whole turns counted from time 0, for any instants
+    in any order.
     """
 
     theta: Array
@@ -178,9 +178,9 @@ class SliderMotion:
 
 @dataclass(frozen=True)
 class ElasticMotion:
-    """How an elastic link is bent and stretched, each (T,) [m]: ``middle`` is how far its middle is
-    from the line between its pins, positive to the left of the way from the first to the second,
-    and ``extension`` by how much these are further apart than at rest."""
+    """Deformation of an elastic link, each (T,) [m]: ``middle`` is the distance of its middle from
+    the line between its pins, positive to the left of the way from the first to the second, and
+    ``extension`` the increase of their distance over that at rest."""
 
     middle: Array
     extension: Array
@@ -188,7 +188,7 @@ class ElasticMotion:
 
 @dataclass(frozen=True)
 class Bound:
-    """What a motion may be wrong by: the same keys, arrays of shape (T,), never negative.
+    """Bounds on the errors of a motion: the same keys, arrays of shape (T,), never negative.
 
     For points the bound holds for the length of the error vector. Infinite where rounding leaves
     nothing certain (velocities at a singular position).
@@ -200,7 +200,7 @@ class Bound:
 
     @staticmethod
     def joined(parts: Sequence[Bound]) -> Bound:
-        """Bounds of motions one after the other."""
+        """Join bounds of motions one after the other."""
         return Bound(
             _joined([part.links for part in parts]),
             _joined([part.points for part in parts]),
@@ -210,7 +210,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Crossing:
-    """A change point that a motion goes through on the smooth branch.
+    """A change point that a motion passes through on the smooth branch.
 
     ``dyad`` is named by its inner joint, as in the conditioning; ``driver_rad`` is the driver's
     angle [rad], 0 to 2 pi.
@@ -224,11 +224,11 @@ class Crossing:
 class Motion:
     """The motion of a mechanism, sampled at ``time_s`` (T,).
 
-    What a producer does not give is NaN (an engine without accelerations). ``conditioning`` holds,
-    per dyad of the reference (named by its inner joint), the sine of the transmission angle or its
-    like: 1 is best, 0 is singular. ``bound`` is the reference's own error, where it was asked for.
-    ``crossings`` are the change points on the way from time 0 through the samples. ``forces``,
-    where they were asked for, are as many samples, at instants of their own.
+    Values that a producer does not give are NaN (an engine without accelerations). ``conditioning``
+    holds, per dyad of the reference (named by its inner joint), the sine of the transmission angle
+    or its like: 1 is best, 0 is singular. ``bound`` is the reference's own error, ``forces`` are as
+    many samples at instants of their own: both only if requested. ``crossings`` are the change
+    points on the way from time 0 through the samples.
     """
 
     time_s: Array
@@ -242,7 +242,7 @@ class Motion:
     elastic: Mapping[str, ElasticMotion] = field(default_factory=dict)
 
     def each_series(self, change: Callable[[Array], Array]) -> Motion:
-        """The motion with every series of its bodies changed; its instants stay."""
+        """Return the motion with every series of its bodies changed; its instants stay."""
         forces = self.forces and self.forces.each_series(change)
         return replace(
             self,
@@ -255,7 +255,7 @@ class Motion:
 
     @staticmethod
     def joined(parts: Sequence[Motion]) -> Motion:
-        """Motions one after the other; what one of them lacks is left out."""
+        """Join motions one after the other; series that one of them lacks are left out."""
         first = parts[0]
         if len(parts) == 1:
             return first
@@ -306,7 +306,7 @@ def _each(
 
 
 def _joined(parts: Sequence[Mapping[str, BodyMotion]]) -> dict[str, BodyMotion]:
-    """The series of bodies one after the other, of those that are in every part."""
+    """Join the series of the bodies that are in every part."""
     return {
         name: type(body)(
             **{key: np.concatenate([vars(part[name])[key] for part in parts]) for key in vars(body)}
@@ -319,7 +319,7 @@ def _joined(parts: Sequence[Mapping[str, BodyMotion]]) -> dict[str, BodyMotion]:
 @dataclass(frozen=True)
 class State:
     """A mechanism at one instant: links by name [rad, rad/s, rad/s^2], points [m, m/s, m/s^2],
-    sliders [m, m/s]; of the nodes of beams that stretch, by which share, and its rate [1/s]."""
+    sliders [m, m/s]; strain of the nodes of stretching beams, and its rate [1/s]."""
 
     time_s: float
     theta: Mapping[str, float]

@@ -1,4 +1,4 @@
-"""From the tables of a scene file to a Scene: short forms written out, names checked."""
+"""Conversion of the tables of a scene file to a Scene: short forms expanded, names checked."""
 
 import json
 import math
@@ -38,21 +38,21 @@ from models.scene.loads import (
 
 ROD_KG_PER_M = 1.0
 FARTHEST = 1e12
-"""Of a ground point from the origin, over the longest link: places keep four digits there."""
+"""Largest distance of a ground point, over the longest link: positions keep four digits there."""
 BLOCK_OF_LONGEST = 0.1
-"""Side of a square slider block with mass, over the longest link, where no inertia is given."""
+"""Side of a square slider block with mass, over the longest link, for the default inertia."""
 
 
 def scene_from_table(
     table: SceneTable, driver: DriverTable, loads: Mapping[str, LawOfLoad], place: str
 ) -> Scene:
-    """The scene that the tables describe.
+    """Return the scene of the tables.
 
     Raises
     ------
     SceneError
         Links without length or too far away, masses that cannot be derived, loads that have no
-        magnitude or act on no mass, a free motion that can not be.
+        magnitude or act on no mass, an impossible free motion.
     """
     faults: list[str] = []
     points = {name: _points(link) for name, link in table.links.items()}
@@ -99,7 +99,7 @@ def scene_from_table(
 
 
 def _points(link: LinkTable) -> dict[str, Point]:
-    """All points of a link in its frame, the bar written out."""
+    """Return all points of a link in its frame, including the ends of its bar."""
     bar: dict[str, Point] = {}
     if link.bar is not None and link.length_m is not None:
         bar = {link.bar[0]: (0.0, 0.0), link.bar[1]: (link.length_m, 0.0)}
@@ -107,7 +107,7 @@ def _points(link: LinkTable) -> dict[str, Point]:
 
 
 def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Point]]) -> list[str]:
-    """Points that coincide, and links whose mass cannot be spread over a length."""
+    """List points that coincide, and links whose mass cannot be spread over a length."""
     faults = []
     for name, places in [(GROUND, table.ground.points), *points.items()]:
         names = list(places)
@@ -131,7 +131,7 @@ def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Poin
 
 
 def _faults_of_place(ground: Mapping[str, Point], longest: float) -> list[str]:
-    """Points so far away that a float does not tell the places of the links apart."""
+    """List points so far away that a float cannot distinguish the places of the links."""
     return [
         f"ground.points.{name}: {math.hypot(*place):.3g} m from the origin, {far:.3g} times the "
         f"longest link ({longest:.3g} m); at most {FARTHEST:g}: move the scene towards the origin"
@@ -141,7 +141,7 @@ def _faults_of_place(ground: Mapping[str, Point], longest: float) -> list[str]:
 
 
 def _longest(points: Mapping[str, Point]) -> tuple[float, Point, Point]:
-    """The largest distance between two points, and the two."""
+    """Return the largest distance between two points, and the two."""
     places = list(points.values())
     pairs = [(math.dist(a, b), a, b) for i, a in enumerate(places) for b in places[i:]]
     return max(pairs, key=lambda pair: pair[0])
@@ -154,7 +154,7 @@ def _link(
     elastic: ElasticTable | None,
     faults: list[str],
 ) -> Link:
-    """A link whose missing mass data are those of a uniform slender rod on its longest span."""
+    """Make a link; missing mass data default to a uniform slender rod on its longest span."""
     length, a, b = _longest(points)
     given, own = mass_of(elastic, length), table.mass_kg
     if given is not None and own is not None:
@@ -176,7 +176,7 @@ def _link(
 
 
 def _slider(name: str, table: SliderTable, longest: float) -> Slider:
-    """A slider with angles in rad and the inertia of a square block where it has a mass."""
+    """Make a slider with angles in rad and, if it has a mass, the inertia of a square block."""
     mass = table.mass_kg or 0.0
     side = BLOCK_OF_LONGEST * longest
     inertia = mass * side**2 / 6 if table.inertia_kg_m2 is None else table.inertia_kg_m2
@@ -194,7 +194,7 @@ def _slider(name: str, table: SliderTable, longest: float) -> Slider:
 
 
 def _friction(joint: str, table: FrictionTable) -> Friction:
-    """What rubs in a joint."""
+    """Make the friction of a joint."""
     if table.mu is not None:
         return CoulombFriction(joint, table.mu, table.radius_m or 0.0)
     size = table.torque_n_m if table.force_n is None else table.force_n
@@ -206,8 +206,8 @@ Table = Mapping[str, object]
 
 
 def scene_text(scene: Scene, flywheels: Mapping[str, float] | None = None) -> str:
-    """TOML that reads as the scene (`models.files.reading.parse_scene`), but for the last digit of
-    angles, which are in degrees there. ``flywheels`` [kg m^2] are put on links beside their own
+    """Return TOML that reads as the scene (`models.files.reading.parse_scene`), except for the last
+    digit of angles, written in degrees. ``flywheels`` [kg m^2] are written beside the links' own
     inertia. Raises CrankcheckError for a law of another kind."""
     lines = [
         f"{name} = {toml_value(value)}"
@@ -228,7 +228,7 @@ def scene_text(scene: Scene, flywheels: Mapping[str, float] | None = None) -> st
 
 
 def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str, Table]]:
-    """The tables of the file, in its order."""
+    """Yield the tables of the file, in its order."""
     yield "ground", {"points": scene.ground}
     for name, link in scene.links.items():
         yield (
@@ -315,7 +315,7 @@ def _slider_table(slider: Slider) -> Table:
 
 
 def toml_value(value: object) -> str:
-    """A value in TOML."""
+    """Format a value in TOML."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, bool):

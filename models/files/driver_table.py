@@ -1,4 +1,4 @@
-"""The driver's table in pydantic models, one for each law: of a link or a pin, and of a slider."""
+"""Pydantic models of the driver's table, one for each law: of a link or a pin, and of a slider."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ TinyChecked = AfterValidator(not_tiny)
 
 
 class TurningDriver(Table):
-    """What turns: a ``link`` about its ground pin; or a ``pin``, by the angle of the second of two
-    ``links`` less that of the first."""
+    """A turning driver: a ``link`` about its ground pin; or a ``pin``, by the angle of the second
+    of two ``links`` less the angle of the first."""
 
     link: Name | None = None
     pin: Name | None = None
@@ -50,7 +50,7 @@ class TurningDriver(Table):
 
 
 class SlidingDriver(Table):
-    """A ``slider``, by its displacement."""
+    """A driven ``slider``, by its displacement."""
 
     slider: Name
 
@@ -115,7 +115,7 @@ class AcceleratingSlide(SlidingDriver):
 
 
 class ControlledDriver(TurningDriver):
-    """A link that a torque holds to a constant speed, by a controller with two gains."""
+    """A link driven at a constant speed by a torque, from a controller with two gains."""
 
     law: Literal["controlled"]
     speed_rad_s: RateNumber
@@ -131,7 +131,7 @@ class ControlledDriver(TurningDriver):
 
 
 class FreeDriver(TurningDriver):
-    """What is let go, with a speed or from rest, for a duration."""
+    """A driver released at time 0, with a speed or from rest, in free motion for a duration."""
 
     law: Literal["free"]
     speed_rad_s: RateNumber = 0.0
@@ -174,7 +174,7 @@ SLIDES: dict[str, type[DriverTable]] = {
     "from-rest": FromRestSlide,
     "accelerating": AcceleratingSlide,
 }
-"""Of drivers that name a slider."""
+"""Models of drivers that name a slider."""
 
 
 def driver_of(
@@ -183,7 +183,7 @@ def driver_of(
     links: Mapping[str, Link],
     sliders: Mapping[str, Slider],
 ) -> Driver:
-    """The driver of a scene with such bodies. Raises ValueError for numbers that drive nothing."""
+    """Make the driver of a scene with such bodies. Raises ValueError for a driver at rest."""
     if isinstance(table, SlidingDriver):
         slider = sliders[table.slider]
         return Driver(sliding_body(slider), _sliding(table), slider.on, slider=table.slider)
@@ -201,7 +201,7 @@ def driver_of(
 
 
 def _turning(table: DriverTable) -> Law:
-    """The law of an angle."""
+    """Make the law of an angle."""
     if isinstance(table, OscillatingDriver):
         return Oscillating(
             math.radians(table.centre_deg),
@@ -223,7 +223,7 @@ def _turning(table: DriverTable) -> Law:
 
 
 def _sliding(table: DriverTable) -> Law:
-    """The law of a displacement."""
+    """Make the law of a displacement."""
     if isinstance(table, OscillatingSlide):
         phase = within_a_turn(table.phase_deg)
         return Oscillating(table.centre_m, table.amplitude_m, table.frequency_rad_s, phase)
@@ -237,7 +237,7 @@ def _sliding(table: DriverTable) -> Law:
 
 
 def driver_table(driver: Driver) -> Mapping[str, object]:
-    """The table that reads as a driver. Raises CrankcheckError for a law of another kind."""
+    """Write the table that reads as a driver. Raises CrankcheckError for a law of another kind."""
     law = _law_table(driver.law, slides=driver.slider is not None)
     if driver.slider is not None:
         return {"slider": driver.slider, **law}
@@ -247,7 +247,7 @@ def driver_table(driver: Driver) -> Mapping[str, object]:
 
 
 def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
-    """A law of an angle, or of a displacement."""
+    """Write the table of a law of an angle, or of a displacement."""
     place, rate = ("m", "m_s") if slides else ("deg", "rad_s")
     shown = (lambda size_m: size_m) if slides else in_degrees
     if isinstance(law, Oscillating):
@@ -279,7 +279,7 @@ def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
 
 
 def _written(law: Law) -> ConstantSpeed | FromRest | Accelerating | Released:
-    """The law, of those that a file has words for."""
+    """Refuse a law that a scene file cannot express."""
     if not isinstance(law, ConstantSpeed | FromRest | Accelerating | Released):
         name = type(law).__name__
         raise CrankcheckError(f"law {name}: a scene file has no words for it; take another")

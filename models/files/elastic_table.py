@@ -1,4 +1,4 @@
-"""From tables `[elastic.LINK]` and `[start]` of a scene file to links and a start; their faults."""
+"""Links and a start from tables `[elastic.LINK]` and `[start]` of a scene file; their faults."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -15,17 +15,17 @@ from models.scene.laws import ConstantSpeed, Oscillating
 from models.scene.tabulated import Tabulated
 
 SAME = 1e-9
-"""What masses and lengths that a file says twice agree to."""
+"""Relative tolerance of masses and lengths that a file states twice."""
 SLENDER = 10.0
-"""Lengths over the height of the section, below which a beam shears and turns as it bends."""
+"""Least length over the height of the section; shorter beams shear and turn as they bend."""
 
 MOST_DAMPED = 1e3
-"""Times the damping from which on the first mode of a link no longer swings: with more the link is
-a rigid one, and how it creeps takes turns without end to be seen."""
+"""Largest multiple of the damping at which the first mode of a link stops swinging: with more the
+link is rigid, and its creep takes turns without end."""
 
 
 def elastic_of(table: SceneTable) -> dict[str, ElasticLink]:
-    """The elastic links of a scene whose tables have no fault."""
+    """Make the elastic links of a scene whose tables have no fault."""
     return {
         name: ElasticLink(
             name,
@@ -49,14 +49,14 @@ def _axial(own: ElasticTable) -> float:
 
 
 def mass_of(own: ElasticTable | None, length_m: float) -> float | None:
-    """The mass that section and density give a link [kg]; None where they do not."""
+    """Return the mass of a link by its section and density [kg]; None without them."""
     if own is None or own.density_kg_m3 is None or own.area is None:
         return None
     return own.density_kg_m3 * own.area * length_m
 
 
 def faults_of_beams(scene: Scene) -> Iterator[str]:
-    """One line per elastic link of a scene that is no uniform slender beam between its pins."""
+    """Yield one line per elastic link that is no uniform slender beam between its pins."""
     for name, own in scene.elastic.items():
         link, line = scene.links[name], line_of(scene, name)
         middle = line.at(0.5 * line.length_m)
@@ -100,7 +100,7 @@ def faults_of_beams(scene: Scene) -> Iterator[str]:
 
 
 def _faults_of_loads(scene: Scene) -> Iterator[str]:
-    """One line per load that needs to know how an elastic link turns as a whole."""
+    """Yield one line per load that depends on the turning of an elastic link as a whole."""
     for name, load in scene.loads.items():
         if load.body not in scene.elastic:
             continue
@@ -117,7 +117,7 @@ def _faults_of_loads(scene: Scene) -> Iterator[str]:
 
 
 def comes_back(law: object) -> bool:
-    """Whether the speed of a driver is the same after a period."""
+    """True if the speed of a driver repeats after a period."""
     return isinstance(law, ConstantSpeed | Oscillating)
 
 
@@ -128,7 +128,7 @@ def faults_of_elastic(
     sliders: Mapping[str, Any],
     driver: object,
 ) -> Iterator[str]:
-    """One line per raw table of a link that is not there, or that can not be elastic."""
+    """Yield one line per raw table of a missing link, or of a link that cannot be elastic."""
     for name in elastic:
         key = f"elastic.{cut(name)}"
         if name not in points:
@@ -158,7 +158,7 @@ def faults_of_elastic(
 def _pins(
     name: str, ground: set[str], points: Mapping[str, set[str]], sliders: Mapping[str, Any]
 ) -> set[str]:
-    """The points of a link that other bodies are pinned to."""
+    """Return the points of a link that other bodies are pinned to."""
     others = ground.union(*(own for link, own in points.items() if link != name))
     blocks = {
         str(slider.get("point", block))
@@ -172,7 +172,7 @@ OF_LINKS, OF_SLIDERS = ("angles_deg", "rates_rad_s"), ("displacements_m", "speed
 
 
 def start_of(table: StartTable) -> Start:
-    """The start, angles in radians."""
+    """Make the start, angles in radians."""
     return Start(
         {link: math.radians(angle) for link, angle in table.angles_deg.items()},
         dict(table.rates_rad_s),
@@ -185,7 +185,7 @@ def start_of(table: StartTable) -> Start:
 def faults_of_start(
     start: Mapping[str, Any], links: Mapping[str, Any], sliders: Mapping[str, Any]
 ) -> Iterator[str]:
-    """One line per link or slider of the raw table that the scene has not."""
+    """Yield one line per link or slider of the raw table that the scene lacks."""
     for keys, known in ((OF_LINKS, links), (OF_SLIDERS, sliders)):
         for key in keys:
             table = start.get(key)
@@ -196,7 +196,7 @@ def faults_of_start(
 
 
 def faults_of_free_motion(scene: Scene) -> Iterator[str]:
-    """One line per fault of a scene that is let go, and of one that is driven and has a start."""
+    """Yield one line per fault of a scene in free motion, and of a driven one that has a start."""
     law = scene.driver.law
     if scene.start.shape == "periodic" and isinstance(law, Controlled | Released):
         yield (
@@ -222,7 +222,7 @@ def faults_of_free_motion(scene: Scene) -> Iterator[str]:
 
 
 def _of_driver(scene: Scene, law: Released) -> Iterator[str]:
-    """What is said of the driver's start twice, in two ways, or beyond what moves it."""
+    """Yield contradictions about the driver's start, and a start beyond the table of its load."""
     name = scene.driver.link
     theta, omega = law.start_rad, law.speed_rad_s
     angle = scene.start.angles_rad.get(name, theta)

@@ -1,4 +1,4 @@
-"""What a user names or writes, held to bounds: plain files, TOML, names."""
+"""Bounds on names and files from a user: plain files, TOML."""
 
 import os
 import re
@@ -10,7 +10,7 @@ from pathlib import Path
 from models.errors import CrankcheckError, cut, shown
 
 MOST_TEXT = 200_000
-"""Bytes of a file that a user writes: a thousand links take about half of it."""
+"""Largest size of a file that a user writes [byte]: a thousand links take about half of it."""
 _KINDS = {
     stat.S_IFDIR: "a folder",
     stat.S_IFIFO: "a pipe, no plain file",
@@ -18,17 +18,17 @@ _KINDS = {
     stat.S_IFBLK: "a device, no plain file",
     stat.S_IFSOCK: "a socket, no plain file",
 }
-# What has become a pipe since it was looked at is opened without waiting for its other end.
+# A file that has become a pipe since the check is opened without waiting for its other end.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
 class UnreadableError(Exception):
-    """What can not be read, or makes no sense; its text says why, and not of which file."""
+    """Unreadable or meaningless input; its text gives the reason, and not the file."""
 
 
 def regular_bytes(path: Path, most: int) -> bytes:
-    """What stands in a plain file. Raises UnreadableError for anything else, for more than ``most``
-    bytes, for a file that grows meanwhile, and for one that may not be read.
+    """Read a plain file. Raises UnreadableError for anything else, for more than ``most`` bytes,
+    for a file that grows meanwhile, and for one that may not be read.
 
     Nothing else is read: a pipe keeps its reader waiting, and a device may never end.
     """
@@ -47,8 +47,8 @@ def regular_bytes(path: Path, most: int) -> bytes:
 
 
 def regular_text(path: Path) -> str:
-    """What stands in a text file that a user wrote. Raises UnreadableError as `regular_bytes`, and
-    for what is not UTF-8."""
+    """Read a text file of a user. Raises UnreadableError as `regular_bytes`, and for text that is
+    not UTF-8."""
     try:
         return regular_bytes(path, MOST_TEXT).decode("utf-8-sig")  # some editors put a mark first
     except UnicodeDecodeError:
@@ -60,7 +60,7 @@ def regular_text(path: Path) -> str:
 
 
 def _size(found: os.stat_result, most: int) -> int:
-    """The size of a plain file [byte]. Raises UnreadableError for no such file, or a larger one."""
+    """Return the size of a plain file [byte]. Raises UnreadableError for another, or a larger."""
     kind = stat.S_IFMT(found.st_mode)
     if kind != stat.S_IFREG:
         raise UnreadableError(_KINDS.get(kind, "no plain file"))
@@ -70,19 +70,19 @@ def _size(found: os.stat_result, most: int) -> int:
 
 
 DEEPEST = 10
-"""Tables and lists in each other, and parts of a key. Readers of TOML take time and memory that
-grow with the square of the parts, and all that looks at nested values with their depth."""
+"""Largest depth of nested tables and lists, and parts of a key. TOML readers take time and memory
+that grow with the square of the parts, and all checks of nested values grow with their depth."""
 MOST_KEYS = 20_000
-"""Each part of a key, and of the header of a table, takes as much memory as a key."""
+"""Largest number of keys; each part of a key and of a table's header takes a key's memory."""
 MOST_VALUES = 40_000
-"""A fault of each takes a kilobyte, and all are looked for."""
+"""Largest number of values: each fault takes a kilobyte, and all are looked for."""
 BITS = 64
-"""Of a whole number, as TOML has it; one of very many digits can be neither read nor shown."""
+"""Bits of a whole number in TOML; one of very many digits can be neither read nor shown."""
 
 
 def refuse_extreme(value: object) -> None:
-    """Raise UnreadableError, with its place, for a value that is nested too deep, or a whole number
-    too large, and for too many values."""
+    """Refuse values nested too deep, too many values, and whole numbers too large. Raises
+    UnreadableError with their place."""
     waiting: list[tuple[str, int, object]] = [("", 0, value)]
     looked = 0
     while waiting:
@@ -110,7 +110,7 @@ def refuse_extreme(value: object) -> None:
 
 
 def _below(place: str, key: object) -> str:
-    """The place of what stands there under a key, in a list under its number."""
+    """Return the place of a value under a key, or in a list under its number."""
     name = cut(key) if isinstance(key, str) else "a number"
     return f"{place}.{key if isinstance(key, int) and abs(key) < 1e9 else name}".removeprefix(".")
 
@@ -125,8 +125,8 @@ _LONG_NUMBER = re.compile(r"\d[\d_]{3000,}")
 
 
 def tables(text: str) -> dict[str, object]:
-    """The tables of TOML text. Raises UnreadableError, with the line where it is known, for what is
-    no TOML, or has too many keys, too deep ones, or numbers of too many digits."""
+    """Parse TOML text to tables. Raises UnreadableError, with the line if it is known, for text
+    that is no TOML, or has too many keys, too deep ones, or numbers of too many digits."""
     if deep := _DEEP_KEY.search(text):
         raise UnreadableError(
             f"line {_line(text, deep)}: a key of more than {DEEPEST} parts; the deepest of scenes "
@@ -156,12 +156,12 @@ def tables(text: str) -> dict[str, object]:
 
 
 def _line(text: str, at: re.Match[str]) -> int:
-    """The line in which something begins."""
+    """Return the line in which a match begins."""
     return text.count("\n", 0, at.start()) + 1
 
 
 def names_in(chosen: str | Iterable[str], what: str) -> tuple[str, ...]:
-    """The chosen names, in order. Raises CrankcheckError for what is neither a name nor several."""
+    """Return the chosen names, in order. Raises CrankcheckError for other values."""
     if isinstance(chosen, str):
         return (chosen,)
     names: tuple[str, ...] | None

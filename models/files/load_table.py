@@ -1,4 +1,4 @@
-"""The shape of the tables `[loads.NAME]` of a scene file, one for each law of a load."""
+"""Pydantic models of the tables `[loads.NAME]` of a scene file, one for each law of a load."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ UNIT: dict[str, str] = {
 MOST_ROWS = 10_000
 Rows = Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_ROWS)]
 Waves = Annotated[tuple[Number, ...], Field(max_length=200)]
-"""Cosines or sines; the shorter of the two goes on with zeros."""
+"""Cosines or sines; the shorter of the two is padded with zeros."""
 Powers = Annotated[tuple[Number, ...], Field(min_length=1, max_length=20)]
 
 
 class LoadTable(Table):
-    """What every load says: where it acts, and along what."""
+    """Base of all load tables: the point or body of the load, and its direction."""
 
     link: Name | None = None
     block: Name | None = None
@@ -84,7 +84,7 @@ class LoadTable(Table):
         return self
 
     def _in_unit(self, stem: str, over: Over) -> object:
-        """What stands under ``stem`` in the unit of the argument; in other units it is a fault."""
+        """Return the value of ``stem`` in the unit of the argument; other units are a fault."""
         for other, unit in UNIT.items():
             if other != over and getattr(self, f"{stem}_{unit}", None) is not None:
                 raise ValueError(f'over = "{over}" takes {stem}_{UNIT[over]}; found {stem}_{unit}')
@@ -101,7 +101,7 @@ class ConstantLoad(LoadTable):
 
 
 class SineLoad(LoadTable):
-    """``force_n`` or ``torque_n_m`` is the amplitude, the period that of one wave."""
+    """A sine; ``force_n`` or ``torque_n_m`` is the amplitude, the period the length of one wave."""
 
     law: Literal["sine"]
     over: Over
@@ -123,7 +123,7 @@ class SineLoad(LoadTable):
 
 
 class PulseLoad(LoadTable):
-    """One wave of a sine over time, from ``start_s`` on, and nothing beside it."""
+    """One wave of a sine over time, from ``start_s`` on, and 0 outside it."""
 
     law: Literal["pulse"]
     force_n: Number | None = None
@@ -142,7 +142,7 @@ class StepsLoad(LoadTable):
 
 
 class FourierLoad(LoadTable):
-    """The mean, and cosines and sines of one wave in a period, of two, of three and so on."""
+    """A mean, and cosines and sines of one wave in a period, of two, of three and so on."""
 
     law: Literal["fourier"]
     over: Over
@@ -165,7 +165,7 @@ class FourierLoad(LoadTable):
 
 
 class PolynomialLoad(LoadTable):
-    """The coefficients, of x^0 first, x in s, rad or m."""
+    """Coefficients, of x^0 first, x in s, rad or m."""
 
     law: Literal["polynomial"]
     over: Over
@@ -217,7 +217,7 @@ LOADS: dict[str, type[LawOfLoad]] = {
 def load_of(
     name: str, table: LawOfLoad, sliders: Mapping[str, Slider], faults: list[str]
 ) -> Load | None:
-    """The load of a table, or None and why it has no magnitude."""
+    """Make the load of a table; None, with the reason in ``faults``, without a magnitude."""
     body, point = table.link, table.point
     if table.block is not None:
         block = sliders[table.block]
@@ -242,7 +242,7 @@ def load_of(
 
 
 def _characteristic(table: LawOfLoad) -> Characteristic:
-    """How the magnitude goes, angles in radians. Raises ValueError."""
+    """Make the characteristic of the magnitude, angles in radians. Raises ValueError."""
     magnitude = table.force_n if table.force_n is not None else table.torque_n_m
     if isinstance(table, PolynomialLoad):
         return Polynomial(tuple(magnitude))  # type: ignore[arg-type]
@@ -272,7 +272,7 @@ def _characteristic(table: LawOfLoad) -> Characteristic:
 
 
 def load_table(load: Load) -> Mapping[str, object]:
-    """The table. Raises CrankcheckError for a characteristic of another kind."""
+    """Write the table of a load. Raises CrankcheckError for a characteristic of another kind."""
     table: dict[str, object] = {}
     block = load.body.removeprefix("block ")  # no link has a space in its name
     if block != load.body:
@@ -290,14 +290,14 @@ def load_table(load: Load) -> Mapping[str, object]:
 
 
 def in_degrees(angle_rad: float) -> float:
-    """An angle in degrees that reads as itself, where one of twelve decimals does: 10, and not
-    10.000000000000002."""
+    """Convert an angle to degrees, rounded to twelve decimals where these read as the same angle:
+    10, and not 10.000000000000002."""
     plain = round(math.degrees(angle_rad), 12)
     return plain if math.radians(plain) == angle_rad else math.degrees(angle_rad)
 
 
 def _law_table(load: Load, key: str) -> dict[str, object]:
-    """The law with its numbers; ``key`` is that of the magnitude."""
+    """Write the law with its numbers; ``key`` is the key of the magnitude."""
     unit, turns = UNIT[load.over], load.over == "angle"
     match load.characteristic:
         case Constant(value):

@@ -1,7 +1,7 @@
-"""References within a scene file to things that it does not have.
+"""References within a scene file to missing things.
 
-Read from the raw tables, so that these faults are reported beside faults of number or type: what
-does not have the right shape is left out here, and is a fault of `models.files.schema`.
+Read from the raw tables, so that these faults are reported beside faults of number or type: values
+of the wrong shape are left out here, and are faults of `models.files.schema`.
 """
 
 from collections import Counter
@@ -15,13 +15,13 @@ from models.files.spring_table import faults_of_friction, faults_of_springs
 from models.scene import GROUND
 
 MOST_ASSEMBLIES = 6
-"""Of a group of four links: the real ones that it has at most."""
+"""Largest number of real assemblies of a group of four links."""
 LISTED = 12
 """Names that a message lists."""
 
 
 def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
-    """One line per name that stands for nothing, or for two things."""
+    """List one line per name that stands for nothing, or for two things."""
     ground = set(_table(_table(raw, "ground"), "points"))
     points = {name: _points(link) for name, link in _table(raw, "links").items()}
     sliders = _table(raw, "sliders")
@@ -41,19 +41,19 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
 
 
 def _list(names: Iterable[str]) -> str:
-    """The first of the names, for a message."""
+    """Return the first names, for a message."""
     shown = [cut(name) for name in islice(names, LISTED + 1)]
     return ", ".join(shown[:LISTED]) + (", ..." if len(shown) > LISTED else "")
 
 
 def _table(raw: object, key: str) -> Mapping[str, Any]:
-    """The table under a key, empty where there is none."""
+    """Return the table under a key, empty if missing."""
     found = raw.get(key) if isinstance(raw, Mapping) else None
     return found if isinstance(found, Mapping) else {}
 
 
 def _points(link: object) -> set[str]:
-    """The points that a link lists, by bar or by name."""
+    """Return the points that a link lists, by bar or by name."""
     bar = link.get("bar") if isinstance(link, Mapping) else None
     ends = bar if isinstance(bar, list) else []
     return {end for end in ends if isinstance(end, str)} | set(_table(link, "points"))
@@ -71,7 +71,7 @@ def _links(points: Mapping[str, set[str]], sliders: Mapping[str, Any]) -> Iterat
 def _sliders(
     sliders: Mapping[str, Any], points: Mapping[str, set[str]], ground: set[str]
 ) -> Iterator[str]:
-    """Sliders on, of, or at what is not there."""
+    """Yield faults of sliders on, of, or at missing things."""
     everywhere = ground.union(*points.values())
     all_points = _list(sorted(everywhere))
     points_of = {name: _list(sorted(each)) for name, each in points.items()}
@@ -102,7 +102,7 @@ def _sliders(
 def _loads(
     loads: Mapping[str, Any], points: Mapping[str, set[str]], sliders: Mapping[str, Any]
 ) -> Iterator[str]:
-    """Loads on, at or over what is not there."""
+    """Yield faults of loads on, at or over missing things."""
     blocks = [n for n, s in sliders.items() if isinstance(s, Mapping) and "link" not in s]
     for name, load in loads.items():
         if not isinstance(load, Mapping):
@@ -123,7 +123,7 @@ def _loads(
 def _branch(
     branch: Mapping[str, Any], choices: set[str], links: Mapping[str, Any]
 ) -> Iterator[str]:
-    """Assemblies of nothing, and sides and numbers that there are not."""
+    """Yield faults of branches: unknown names, sides and numbers."""
     for name, chosen in branch.items():
         if name not in choices and name not in links:
             yield f"branch.{cut(name)}: no pin, slider or link of that name"
@@ -144,7 +144,7 @@ def faults_of_driver(
     sliders: Mapping[str, Any],
     ground: set[str],
 ) -> Iterator[str]:
-    """One line per fault of the raw table; what has the wrong shape is a fault of the schema."""
+    """Yield one line per fault of the raw table; wrong shapes are faults of the schema."""
     link, pin, slider = driver.get("link"), driver.get("pin"), driver.get("slider")
     if isinstance(link, str):
         if link not in points:
@@ -162,7 +162,7 @@ def faults_of_driver(
 
 
 def _blocks(sliders: Mapping[str, Any]) -> dict[str, str]:
-    """The points of blocks, and the sliders whose they are, as far as the raw tables tell."""
+    """Return the points of blocks with their sliders, from the raw tables."""
     return {
         str(table.get("point", name)): name
         for name, table in sliders.items()
@@ -177,7 +177,7 @@ def _of_pin(
     blocks: Mapping[str, str],
     ground: set[str],
 ) -> Iterator[str]:
-    """A pin that is none, or does not join the links that are named."""
+    """Yield faults of a pin that is none, or does not join the named links."""
     joined = [GROUND] * (pin in ground) + [name for name, own in points.items() if pin in own]
     if len(joined) == 1 and pin in blocks:
         yield (

@@ -1,4 +1,4 @@
-"""Scene files: find them, read them, and say everything that is wrong with one at once."""
+"""Scene files: find and read them, and report all faults of a file at once."""
 
 from collections.abc import Iterable, Mapping
 from os import PathLike, fspath
@@ -18,9 +18,9 @@ from models.scene import Scene
 from models.scene.driver import Controlled, Released
 
 SCENE_FOLDER = Path(__file__).parents[1] / "scenes"
-"""Of folders of scene files, one for each kind."""
+"""Folder of the folders of scene files, one for each kind."""
 KINEMATICS = "kinematics"
-"""The kind that is meant where none is named, and all its scenes where no scene is."""
+"""Default kind of scenes; all its scenes are the default scenes."""
 M = TypeVar("M", bound=BaseModel)
 
 
@@ -30,7 +30,7 @@ def shipped(kind: str = KINEMATICS) -> dict[str, Path]:
 
 
 def kinds() -> list[str]:
-    """The kinds of shipped scenes, that of kinematics first."""
+    """List the kinds of shipped scenes, kinematics first."""
     names = sorted(path.name for path in SCENE_FOLDER.iterdir() if any(path.glob("*.toml")))
     return sorted(names, key=lambda name: name != KINEMATICS)
 
@@ -41,10 +41,10 @@ def every_shipped() -> dict[str, Path]:
 
 
 def names_of_scenes(names: str | Iterable[str]) -> list[str]:
-    """Names and paths of scenes, each once; the name of a kind stands for all its scenes but those
-    that are run where they are named (`run_where_named`).
+    """Return names and paths of scenes, each once; the name of a kind stands for all its scenes
+    except `run_where_named`.
 
-    Raises CrankcheckError for what is neither a name nor several.
+    Raises CrankcheckError for other values than a name or several.
     """
     known = kinds()
     written_out = (
@@ -57,14 +57,14 @@ def names_of_scenes(names: str | Iterable[str]) -> list[str]:
 
 
 def reference_alone(kind: str) -> list[str]:
-    """The shipped scenes of a kind that no engine is given: friction in them follows from the
-    reactions."""
+    """List the shipped scenes of a kind for the reference alone: their friction follows from the
+    reactions, and no engine runs them."""
     return [name for name, scene in _scenes_of(kind).items() if scene.coulomb_joints]
 
 
 def run_where_named(kind: str) -> list[str]:
-    """The shipped scenes of a kind that the kind's name does not stand for: those of the reference
-    alone, and those whose elastic links are let go or have a controlled driver, whose truth takes
+    """List the shipped scenes of a kind that run only by their own name: scenes for the reference
+    alone, and elastic links in free motion or with a controlled driver, whose reference takes
     longer than all others."""
     scenes = _scenes_of(kind)
     return [name for name in scenes if scenes[name].coulomb_joints or _is_loose(scenes[name])]
@@ -84,12 +84,12 @@ def load_scene(name_or_path: str | PathLike[str]) -> Scene:
     Parameters
     ----------
     name_or_path : str or path
-        ``fourbar-lecture-1``, or anything that ends in ``.toml`` or names a file.
+        ``fourbar-lecture-1``, or a path, of any ending.
 
     Raises
     ------
     CrankcheckError
-        Nothing there (the message suggests the near names), or neither a name nor a path.
+        No such scene (the message suggests the near names), or neither a name nor a path.
     SceneError
         A file with faults, all of them in one message.
     """
@@ -97,7 +97,7 @@ def load_scene(name_or_path: str | PathLike[str]) -> Scene:
 
 
 def is_there(path: str) -> bool:
-    """Whether a path leads to something."""
+    """True if a path exists."""
     try:
         return bool(path) and Path(path).exists()
     except PermissionError:
@@ -107,7 +107,7 @@ def is_there(path: str) -> bool:
 
 
 def find_scene(name_or_path: str | PathLike[str]) -> Path:
-    """The file of a shipped scene's name, or of a path. Raises CrankcheckError as `load_scene`."""
+    """Find the file of a shipped name, or of a path. Raises CrankcheckError as `load_scene`."""
     known = every_shipped()
     try:
         name_or_path = fspath(name_or_path)
@@ -133,7 +133,7 @@ def find_scene(name_or_path: str | PathLike[str]) -> Path:
 
 
 def find_scenes(names: str | Iterable[str]) -> list[Path]:
-    """The files of the named scenes and kinds. Raises CrankcheckError as `load_scene`."""
+    """Return the files of the named scenes and kinds. Raises CrankcheckError as `load_scene`."""
     return [find_scene(name) for name in names_of_scenes(names)]
 
 
@@ -143,7 +143,7 @@ def read_scene(path: Path) -> Scene:
 
 
 def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
-    """The text of each scene's file, by the scene's own name; of all of kinematics for none.
+    """Return the text of each scene's file, by the scene's own name; all of kinematics for none.
 
     Raises CrankcheckError as `load_scene`.
     """
@@ -156,7 +156,7 @@ def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
 
 
 def parse_scene(text: str, place: str) -> Scene:
-    """A scene from TOML text; ``place`` names it in messages. Raises SceneError."""
+    """Parse a scene from TOML text; ``place`` names it in messages. Raises SceneError."""
     try:
         raw = tables(text)
     except UnreadableError as error:
@@ -172,7 +172,7 @@ def parse_scene(text: str, place: str) -> Scene:
 
 
 def read_text(path: Path) -> str:
-    """The text of a scene file. Raises SceneError that says why it could not be read."""
+    """Read the text of a scene file. Raises SceneError with the reason if it cannot."""
     try:
         return regular_text(path)
     except UnreadableError as error:
@@ -180,7 +180,7 @@ def read_text(path: Path) -> str:
 
 
 def _driver(raw: object, faults: list[str]) -> DriverTable | None:
-    """The driver table under the model of its law."""
+    """Validate the driver table by the model of its law."""
     if isinstance(raw, list):
         faults.append(
             f"driver: found a list of {len(raw)}; a scene has one driver, one [driver] table"
@@ -201,7 +201,7 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
 
 
 def _loads(raw: object, faults: list[str]) -> dict[str, LawOfLoad]:
-    """The tables of the loads under the models of their laws."""
+    """Validate the tables of the loads by the models of their laws."""
     loads: dict[str, LawOfLoad] = {}
     for name, table in (raw if isinstance(raw, Mapping) else {}).items():
         if not isinstance(table, Mapping):
@@ -218,7 +218,7 @@ def _loads(raw: object, faults: list[str]) -> dict[str, LawOfLoad]:
 def _validated(
     model: type[M], raw: Mapping[str, object], prefix: str, faults: list[str]
 ) -> M | None:
-    """``raw`` as ``model``, or None with its faults appended."""
+    """Validate ``raw`` as ``model``; None with its faults appended."""
     try:
         return model.model_validate(raw)
     except ValidationError as error:
@@ -242,7 +242,7 @@ def _line(
     message: str,
     found: object,
 ) -> str:
-    """One fault in one line: key, what was found, what would work."""
+    """Describe one fault in one line: key, value found, remedy."""
     parts = [str(part) for part in loc if part != "[key]"]
     key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
     if kind == "missing":
@@ -264,7 +264,7 @@ def _line(
 
 
 def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    """The keys that the table holding the unknown key ``loc`` may have."""
+    """List the valid keys of the table that holds the unknown key ``loc``."""
     from models.files import schema
 
     tables: dict[str, type[BaseModel]] = {

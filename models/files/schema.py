@@ -1,4 +1,4 @@
-"""The shape of a scene file in pydantic models: keys, types, and the rules of one table each."""
+"""Pydantic models of a scene file: keys, types, and the rules of one table each."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ from pydantic import (
 from models.scene.driver import LONGEST_S
 
 NAME = r"[A-Za-z][A-Za-z0-9_-]{0,39}"
-"""What a name is: nothing in it leaves a path, a tag or a cell."""
+"""Pattern of a name: no character in it leaves a path, a tag or a cell."""
 Name = Annotated[str, StringConstraints(pattern=rf"^{NAME}$")]
 ACTING = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u206f\ufffe\uffff"
-"""Characters that act instead of being seen: a terminal obeys them, or they break lines or turn the
-order of letters round; the last two XML can not hold."""
+"""Invisible characters with an effect: a terminal obeys them, or they break lines or reverse the
+order of letters; XML cannot hold the last two."""
 Text = Annotated[str, StringConstraints(max_length=2000, pattern=rf"^[^{ACTING}]*$")]
 """Text that is shown and written into other files."""
 LARGEST = 1e15
-"""No number of a scene is larger, and no length or mass smaller than its inverse: squares of
-them, and products with rates, stay numbers."""
+"""Largest number of a scene, and inverse of the smallest length or mass: their squares, and
+products with rates, stay finite."""
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, le=LARGEST)]
 Duration = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LONGEST_S)]
-"""Of free motion [s]."""
+"""Duration of free motion [s]."""
 Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LARGEST)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Coordinates = tuple[Number, Number]
 MOST_BODIES, MOST_POINTS = 1000, 100
-"""Links of a scene (sliders, and points of the ground, too), and points of a link: the distances
-between all points of a link are looked at many times."""
+"""Largest numbers of links of a scene (also of sliders and ground points), and of points of a link:
+all distances between its points are computed many times."""
 
 
 def not_tiny(value: float) -> float:
-    """Refuse a number so near to 0 that its inverse, a period, is no number to work with."""
+    """Refuse a number so near to 0 that its inverse, a period, is useless."""
     if 0.0 < abs(value) < 1 / LARGEST:
         raise ValueError(
             f"found {value:g}; use {1 / LARGEST:g} or more, or {-1 / LARGEST:g} or less"
@@ -53,7 +53,7 @@ RateNumber = Annotated[Number, AfterValidator(not_tiny)]
 
 
 class Table(BaseModel):
-    """A table of the file: unknown keys are faults, nothing is changed after reading."""
+    """A table of the file: unknown keys are faults, and it stays as read."""
 
     # Built where a scene has such a table: most have few of them, and each takes a millisecond.
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
@@ -61,17 +61,17 @@ class Table(BaseModel):
 
 SECTION = "width_m and height_m, or area_m2 and second_moment_m4"
 Section = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST**2, le=LARGEST)]
-"""What goes with squares of lengths, and their squares: that of a thin strip is under 1e-15."""
+"""Quantity that grows with squares of lengths, or their squares: a thin strip's is under 1e-15."""
 
 
 class ElasticTable(Table):
-    """How a link bends, stretches, or both: by its modulus and section, or by EI and EA. With a
-    density its section says its mass, which otherwise is that of the link."""
+    """Stiffness of a link in bending, in stretching, or both: by its modulus and section, or by EI
+    and EA. A density with the section gives its mass, which otherwise is the mass of the link."""
 
     modulus_pa: Positive | None = None
     width_m: Positive | None = None
     height_m: Positive | None = None
-    """Of a rectangle, in the plane of the motion."""
+    """Height of a rectangle, in the plane of the motion."""
     area_m2: Section | None = None
     second_moment_m4: Section | None = None
     flexural_n_m2: Section | None = None
@@ -83,14 +83,14 @@ class ElasticTable(Table):
 
     @property
     def area(self) -> float | None:
-        """Of the section [m^2]."""
+        """Area of the section [m^2]."""
         if self.width_m is not None and self.height_m is not None:
             return self.width_m * self.height_m
         return self.area_m2
 
     @property
     def second_moment(self) -> float | None:
-        """Of the area, about the axis across the plane [m^4]."""
+        """Second moment of area, about the axis across the plane [m^4]."""
         if self.width_m is not None and self.height_m is not None:
             return self.width_m * self.height_m**3 / 12.0
         return self.second_moment_m4
@@ -146,7 +146,7 @@ class GroundTable(Table):
 
 
 class LinkTable(Table):
-    """``bar`` with ``length_m`` is short for two points on the link's x-axis."""
+    """A link; ``bar`` with ``length_m`` is short for two points on its x-axis."""
 
     bar: tuple[Name, Name] | None = None
     length_m: Positive | None = None
@@ -155,7 +155,7 @@ class LinkTable(Table):
     centre_m: Coordinates | None = None
     inertia_kg_m2: NonNegative | None = None
     flywheel_kg_m2: NonNegative = 0.0
-    """The moment of inertia of a flywheel on the link, which is added to the link's own."""
+    """Moment of inertia of a flywheel on the link, added to the link's own."""
 
     @model_validator(mode="after")
     def _bar_goes_with_length(self) -> LinkTable:
@@ -230,7 +230,7 @@ class SpringTable(Table):
 
 
 class StartTable(Table):
-    """More of the start of free motion, by link and by slider; and how elastic links start."""
+    """Start of free motion beyond the driver, by link and by slider; and of elastic links."""
 
     angles_deg: dict[Name, Degrees] = Field(default_factory=dict, max_length=MOST_BODIES)
     rates_rad_s: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)
@@ -240,8 +240,8 @@ class StartTable(Table):
 
 
 class FrictionTable(Table):
-    """What rubs in the joint that the table is named after; whether its keys fit a pin or a slider
-    is for `models.files.spring_table` to say, which knows the joints."""
+    """Friction in the joint that the table is named after; `models.files.spring_table`, which knows
+    the joints, checks that its keys fit a pin or a slider."""
 
     mu: NonNegative | None = None
     radius_m: Positive | None = None
@@ -262,8 +262,8 @@ class FrictionTable(Table):
 
 
 class SceneTable(Table):
-    """A whole scene file; its driver is checked by `models.files.driver_table.DRIVERS` after its
-    law is known, its loads by `models.files.load_table.LOADS`."""
+    """A whole scene file; `models.files.driver_table.DRIVERS` checks its driver once the law is
+    known, and `models.files.load_table.LOADS` its loads."""
 
     name: Name
     source: Annotated[Text, StringConstraints(min_length=1)]
@@ -283,5 +283,5 @@ class SceneTable(Table):
 
 
 def within_a_turn(degrees: float) -> float:
-    """An angle that counts but for whole turns, in radians: without them it loses no digits."""
+    """Convert an angle to radians without its whole turns, which would cost digits."""
     return math.radians(math.fmod(degrees, 360.0))

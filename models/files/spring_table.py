@@ -1,4 +1,4 @@
-"""From the tables `[springs.NAME]` of a scene file to springs; faults of them, and of friction.
+"""Springs from the tables `[springs.NAME]` of a scene file; faults of springs and of friction.
 
 Read from the raw tables, as `models.files.names` does.
 """
@@ -17,7 +17,7 @@ LISTED = 12
 
 
 def springs_of(table: SceneTable) -> dict[str, Spring]:
-    """The springs of a scene whose names are those of things that it has (`faults_of_springs`)."""
+    """Make the springs of a scene without faults (`faults_of_springs`)."""
     return {name: _spring(name, spring, table) for name, spring in table.springs.items()}
 
 
@@ -40,7 +40,7 @@ def _spring(name: str, spring: SpringTable, table: SceneTable) -> Spring:
 
 
 def _at_pin(point: str, ground: set[str], points: Mapping[str, set[str]]) -> tuple[str, ...]:
-    """The bodies that list a point, the ground first, then links in the order of the file."""
+    """List the bodies of a point, the ground first, then links in the order of the file."""
     links = [name for name, own in points.items() if point in own]
     return (*([GROUND] if point in ground else []), *links)
 
@@ -51,7 +51,7 @@ def faults_of_springs(
     points: Mapping[str, set[str]],
     sliders: Mapping[str, Any],
 ) -> Iterator[str]:
-    """One line per spring of the raw tables that ends in nothing, or in more than it says."""
+    """Yield one line per spring of the raw tables whose ends are missing or ambiguous."""
     everywhere = sorted(ground.union(*points.values(), _blocks(sliders)))
     for name, table in springs.items():
         if not isinstance(table, Mapping):
@@ -77,7 +77,7 @@ def faults_of_springs(
 
 
 def _blocks(sliders: Mapping[str, Any]) -> set[str]:
-    """The points of slider blocks."""
+    """Return the points of slider blocks."""
     return {
         point
         for name, slider in sliders.items()
@@ -86,7 +86,7 @@ def _blocks(sliders: Mapping[str, Any]) -> set[str]:
 
 
 def _of_pin(key: str, pin: str, bodies: object, met: tuple[str, ...]) -> Iterator[str]:
-    """A pin that is none, or in which it is open which bodies the spring is between."""
+    """Yield faults of a pin that is none, or leaves open the two bodies of the spring."""
     if len(met) < 2:
         yield f"{key}.pin: fewer than two links, or links and the ground, meet at {cut(pin)}"
     elif bodies is None and len(met) > 2:
@@ -104,7 +104,7 @@ def faults_of_friction(
     points: Mapping[str, set[str]],
     sliders: Mapping[str, Any],
 ) -> Iterator[str]:
-    """One line per friction that has no joint, or a joint of another kind.
+    """Yield one line per friction that has no joint, or a joint of another kind.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def faults_of_friction(
 
 
 def _points_of_blocks(sliders: Mapping[str, Any]) -> Iterator[str]:
-    """The points of slider blocks, which are pinned there."""
+    """Yield the points of slider blocks, which are pinned there."""
     for name, slider in sliders.items():
         if isinstance(slider, Mapping) and "link" not in slider:
             yield str(slider.get("point", name))

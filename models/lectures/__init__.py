@@ -1,1 +1,1 @@
-"""What lecturers have beside scenes: schemes, joints by their contacts, tasks of synthesis."""
+"""Input of lectures beside scenes: schemes, joints by their contacts, tasks of synthesis."""

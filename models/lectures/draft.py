@@ -1,4 +1,4 @@
-"""A scene that is being designed, as the text of its file."""
+"""A scene under design, as the text of its file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from models.files.reading import parse_scene
 from models.scene import Scene
 
 SPEED_RAD_S = 10.0
-"""Of a driver of which nothing is asked but angles."""
+"""Default speed of a driver in tasks of angles only."""
 
 
 @dataclass(frozen=True)
@@ -28,16 +28,16 @@ class Draft:
     loads: Mapping[str, Table] = field(default_factory=dict)
 
     def driven(self, driver: Table) -> Draft:
-        """The same with another table of the driver."""
+        """Return the draft with another table of the driver."""
         return replace(self, driver=driver)
 
     def with_branch(self, branch: Mapping[str, int]) -> Draft:
-        """The same in another assembly."""
+        """Return the draft in another assembly."""
         return replace(self, branch=branch)
 
     @property
     def text(self) -> str:
-        """The file."""
+        """Text of the file."""
         points = {name: (place.real, place.imag) for name, place in self.ground.items()}
         heads: dict[str, Table] = {"ground": {"points": points}, "links": self.links}
         if self.sliders:
@@ -55,15 +55,15 @@ class Draft:
 
     @property
     def scene(self) -> Scene:
-        """The scene that the file reads as. Raises SceneError for what is none."""
+        """Scene read from the file. Raises SceneError for faults."""
         return parse_scene(self.text, self.name)
 
 
 def bar(first: str, second: str, length_m: float) -> Table:
-    """A link of two points."""
+    """Table of a link of two points."""
     return {"bar": [first, second], "length_m": length_m}
 
 
 def plate(points: Mapping[str, complex]) -> Table:
-    """A link of points in its own frame [m]."""
+    """Table of a link of points in its own frame [m]."""
     return {"points": {name: (place.real, place.imag) for name, place in points.items()}}

@@ -8,7 +8,7 @@
     power    atom (("^" | "**") signed)?          from the right: 2^3^2 = 2^9, and -x^2 = -(x^2)
     atom     number | "x" | "pi" | "e" | name "(" sum ")" | "(" sum ")"
 
-Nothing of a text is run: what is not in these rules is refused.
+No text is executed: anything outside these rules is refused.
 """
 
 import math
@@ -23,9 +23,9 @@ from models.array import Array
 from models.errors import CrankcheckError, cut, suggestion
 
 LONGEST_TEXT = 200
-"""Characters of a formula: no function of a textbook comes near it."""
+"""Largest number of characters of a formula: no function of a textbook comes near it."""
 DEEPEST = 30
-"""Parentheses, signs and powers within each other."""
+"""Largest depth of parentheses, signs and powers."""
 VARIABLE = "x"
 CONSTANTS: Mapping[str, float] = {"pi": math.pi, "e": math.e}
 FUNCTIONS: Mapping[str, Callable[[Array], Array]] = {
@@ -60,26 +60,25 @@ Evaluation = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Formula:
-    """A text and what it is at values of ``x``; made by `parse_formula`."""
+    """A text and its values over ``x``; made by `parse_formula`."""
 
     text: str
     evaluation: Evaluation = field(repr=False, compare=False)
 
     def at(self, x: Array) -> Array:
-        """Its values, the shape of ``x``; nan or inf where it is not defined. Angles are rad."""
+        """Return its values, the shape of ``x``; nan or inf where undefined. Angles are rad."""
         with np.errstate(all="ignore"):
             values = self.evaluation(np.asarray(x, dtype=np.float64))
         return np.array(np.broadcast_to(values, np.shape(x)), dtype=np.float64)
 
 
 def parse_formula(text: str) -> Formula:
-    """The formula that a text says, by the rules above.
+    """Parse a formula by the rules above.
 
     Raises
     ------
     CrankcheckError
-        What is no formula: the message says at which character, what stands there and what would
-        be understood.
+        Text that is no formula: the message gives the character, its place and the expected tokens.
     """
     if len(text) > LONGEST_TEXT:
         raise CrankcheckError(
@@ -97,7 +96,7 @@ class _Token:
 
 
 class _Reader:
-    """Reads a text from left to right by the rules."""
+    """A reader of a text from left to right by the rules."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -108,7 +107,7 @@ class _Reader:
         self.depth = 0
 
     def read(self) -> Evaluation:
-        """The whole text."""
+        """Read the whole text."""
         whole = self._sum()
         if self._look().kind != "end":
             raise self._fault("an operator (+ - * / ^) or the end")
@@ -118,7 +117,7 @@ class _Reader:
         return self.tokens[self.next]
 
     def _take(self, *texts: str) -> str | None:
-        """The next sign, if it is one of these."""
+        """Take the next sign, if it is one of these."""
         token = self._look()
         if token.kind != "sign" or token.text not in texts:
             return None
@@ -183,7 +182,7 @@ class _Reader:
         return _applied(FUNCTIONS[token.text], self._closed())
 
     def _closed(self) -> Evaluation:
-        """What stands in parentheses, of which the first is read."""
+        """Read the inside of parentheses, of which the first is read."""
         inner = self._sum()
         if self._take(")") is None:
             raise self._fault('an operator or ")"')

@@ -30,20 +30,20 @@ FREEDOMS: Mapping[str, Mapping[str, int]] = {
         "ball-on-plane": 5,
     },
 }
-"""What each kind of joint leaves of the three freedoms of the plane, or of the six of space."""
+"""Freedoms of each kind of joint, out of the three of the plane, or the six of space."""
 HIGHER = {"contact", "gear", "ball-in-tube", "cylinder-on-plane", "ball-on-plane"}
-"""The kinds that touch along a line or in a point."""
+"""Kinds of joints with contact along a line or in a point."""
 
 
 @dataclass(frozen=True)
 class SchemeJoint:
     """A joint of two links.
 
-    ``at`` is a point of its axis, its centre or where the two touch; ``axes`` are its directions:
-    the axis, the normal of a plane or of a contact (out of the first link), or two of them.
-    ``radii`` [m] are those of curvature of a planar contact's two profiles, positive where convex,
-    or of two pitch circles, negative where the teeth are inside; ``lead`` [m] is a screw's
-    displacement in a turn; ``pressure`` [rad] is the angle of a gear's line of action.
+    ``at`` is a point of its axis, its centre or the contact point; ``axes`` are its directions: the
+    axis, the normal of a plane or of a contact (out of the first link), or two of them. ``radii``
+    [m] are the radii of curvature of a planar contact's two profiles, positive if convex, or of two
+    pitch circles, negative for inner teeth; ``lead`` [m] is a screw's displacement in a turn;
+    ``pressure`` [rad] is the angle of a gear's line of action.
     """
 
     name: str
@@ -58,7 +58,7 @@ class SchemeJoint:
 
 @dataclass(frozen=True)
 class Scheme:
-    """Links and joints, with the mobility that the source gives where it does."""
+    """Links and joints, with the mobility by the source, if stated."""
 
     name: str
     space: str
@@ -74,11 +74,11 @@ class Scheme:
         return 3 if self.space == PLANAR else 6
 
     def freedoms(self, joint: SchemeJoint) -> int:
-        """How many freedoms a joint leaves."""
+        """Return the number of freedoms of a joint."""
         return FREEDOMS[self.space][joint.kind]
 
     def joint_class(self, joint: SchemeJoint) -> int:
-        """The class of a joint: of the six constraints of space, those it puts on two links."""
+        """Return the class of a joint: its constraints on two links, out of the six of space."""
         return 6 - self.freedoms(joint)
 
     @property
@@ -89,7 +89,7 @@ class Scheme:
 
     @property
     def constraints(self) -> int:
-        """How many constraints all joints put on the links, each counted."""
+        """Number of constraints of all joints, each counted."""
         return sum(self.dimension - self.freedoms(joint) for joint in self.joints)
 
     @property
@@ -99,7 +99,7 @@ class Scheme:
 
     @property
     def count_in_words(self) -> str:
-        """The count as it is written: letters, numbers, and what comes of it."""
+        """The count as text: letters, numbers and result."""
         letters, numbers = [f"{self.dimension} n"], [f"{self.dimension}*{len(self.links)}"]
         classes = (5, 4) if self.space == PLANAR else tuple(self.classes)
         for each in classes:
@@ -109,15 +109,15 @@ class Scheme:
         return f"W = {' - '.join(letters)} = {' - '.join(numbers)} = {self.count}"
 
     def joints_of(self, link: str) -> Iterator[SchemeJoint]:
-        """The joints that a link has."""
+        """Return the joints of a link."""
         return (joint for joint in self.joints if link in joint.between)
 
     def neighbours(self, link: str) -> set[str]:
-        """The links, and the ground, that a link has joints with."""
+        """Return the links, and the ground, that share a joint with a link."""
         return {each for joint in self.joints_of(link) for each in joint.between} - {link}
 
     def loose(self) -> list[str]:
-        """The links that no row of joints leads to from the ground."""
+        """List the links that no row of joints connects to the ground."""
         reached, waiting = {GROUND}, [GROUND]
         while waiting:
             fresh = self.neighbours(waiting.pop()) - reached
@@ -126,11 +126,11 @@ class Scheme:
         return [link for link in self.links if link not in reached]
 
     def without_links(self, *links: str) -> Scheme:
-        """The scheme without some links and their joints."""
+        """Return the scheme without some links and their joints."""
         kept = tuple(link for link in self.links if link not in links)
         joints = tuple(joint for joint in self.joints if not set(links) & set(joint.between))
         return replace(self, links=kept, joints=joints)
 
     def without_joints(self, *names: str) -> Scheme:
-        """The scheme without some joints."""
+        """Return the scheme without some joints."""
         return replace(self, joints=tuple(each for each in self.joints if each.name not in names))

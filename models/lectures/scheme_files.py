@@ -1,4 +1,4 @@
-"""Scheme files: the shipped ones and a user's own, read into a `Scheme`."""
+"""Scheme files, shipped or a user's own, read into a `Scheme`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ NEEDS = {
     "cylinder-on-plane": ("at_m", "axis", "normal"),
     "ball-on-plane": ("at_m", "normal"),
 }
-"""The keys that each kind of joint needs, besides ``between`` and ``kind``."""
+"""Keys that each kind of joint needs, besides ``between`` and ``kind``."""
 MAY_HAVE = {"slider": ("at_m",), "prismatic": ("at_m",), "planar": ("at_m",)}
 MAY_HAVE["gear"] = ("pressure_deg",)
 
@@ -140,14 +140,14 @@ class SchemeTable(Table):
 
 
 def _vectors(joint: JointTable) -> list[tuple[str, list[float]]]:
-    """The points and directions of a joint with their keys."""
+    """Return the points and directions of a joint with their keys."""
     one = ((key, getattr(joint, key)) for key in ("at_m", "axis", "normal"))
     pairs = ((key, each) for key in ("axes", "centres_m") for each in getattr(joint, key) or ())
     return [(key, vector) for key, vector in (*one, *pairs) if vector is not None]
 
 
 def scheme_text(scheme: Scheme) -> str:
-    """The TOML of a scheme, a joint a line."""
+    """Write the TOML of a scheme, a joint a line."""
     head = [("name", scheme.name), ("space", scheme.space), ("source", scheme.source)]
     head += [("note", scheme.note)] if scheme.note else []
     lines = [f"{key} = {_quoted(value)}" for key, value in head]
@@ -164,7 +164,7 @@ def scheme_text(scheme: Scheme) -> str:
 
 
 def _given(joint: SchemeJoint, size: int) -> Iterator[tuple[str, str]]:
-    """The keys of a joint's kind with their values."""
+    """Yield the keys of a joint's kind with their values."""
     axes = iter(joint.axes)
     for key in NEEDS[joint.kind]:
         if key == "at_m":
@@ -186,7 +186,7 @@ def _given(joint: SchemeJoint, size: int) -> Iterator[tuple[str, str]]:
 
 
 def _second_centre(joint: SchemeJoint) -> Place:
-    """Where the second wheel of a pair of gears turns."""
+    """Return the centre of the second wheel of a pair of gears."""
     distance = abs(sum(joint.radii))
     x, y, z = (at + distance * along for at, along in zip(joint.at, joint.axes[0], strict=True))
     return (x, y, z)
@@ -197,37 +197,37 @@ def _numbers(values: tuple[float, ...]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A text as TOML has it; names and sources hold no character that acts."""
+    """Quote a text for TOML; names and sources hold no control characters."""
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
     return '"' + escaped.replace("\t", "\\t") + '"'
 
 
 SCHEMES = Path(__file__).parents[1] / "schemes"
 PRESSURE_DEG = 20.0
-"""Of gears where the file says none (ISO 53)."""
+"""Default pressure angle of gears (ISO 53)."""
 SMALLEST = 1e-6
-"""Of the sine between two directions, and of a gear's centre distance over what its radii make."""
+"""Least sine between two directions, and largest relative error of a gear's centre distance."""
 
 
 def shipped_schemes() -> list[str]:
-    """The names of the schemes that come with crankcheck."""
+    """List the names of the schemes that come with crankcheck."""
     return list(shipped_in(SCHEMES))
 
 
 def find_scheme(name_or_path: str) -> Path:
-    """The file of a scheme. Raises CrankcheckError where there is none."""
+    """Find the file of a scheme. Raises CrankcheckError where there is none."""
     return find_table(name_or_path, SCHEMES, "scheme", "crankcheck mobility")
 
 
 def load_scheme(name_or_path: str) -> Scheme:
-    """A shipped scheme by name, or one of a file.
+    """Load a shipped scheme by name, or a scheme of a file.
 
     Raises
     ------
     CrankcheckError
-        Nothing there.
+        No such scheme.
     SceneError
-        A file with faults, all that were found in one message.
+        A file with faults, all in one message.
     """
     path = find_scheme(name_or_path)
     table = read_table(path, SchemeTable)
@@ -255,7 +255,7 @@ def load_scheme(name_or_path: str) -> Scheme:
 
 
 def _faults(joint: JointTable, links: list[str]) -> list[str]:
-    """What is wrong with a joint beside the others."""
+    """List the faults of a joint beyond its own table."""
     faults = [
         f"between: no link {each}; {suggestion(each, (GROUND, *links), 'there are')}"
         for each in joint.between
@@ -280,8 +280,8 @@ def _faults(joint: JointTable, links: list[str]) -> list[str]:
 
 
 def _joint(name: str, table: JointTable) -> SchemeJoint:
-    """A joint as the theory has it. Of gears ``at`` is the first centre, and the axis leads to the
-    second one."""
+    """Make a joint of the theory. For gears ``at`` is the first centre, and the axis leads to the
+    second."""
     at = _place(table.at_m or (0.0, 0.0))
     axes = tuple(_place(each) for each in (table.axis, *(table.axes or ()), table.normal) if each)
     if table.centres_m is not None:
@@ -301,7 +301,7 @@ def _joint(name: str, table: JointTable) -> SchemeJoint:
 
 
 def _place(given: list[float] | tuple[float, ...]) -> Place:
-    """Two or three coordinates as three."""
+    """Extend two or three coordinates to three."""
     x, y, z = (*given, 0.0)[:3]
     return (x, y, z)
 
@@ -317,6 +317,6 @@ def _unit(vector: Place) -> Place:
 
 
 def _sine(a: Place, b: Place) -> float:
-    """The sine of the angle between two directions."""
+    """Return the sine of the angle between two directions."""
     cross = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
     return _size(cross) / (_size(a) * _size(b))

@@ -1,4 +1,4 @@
-"""Small files of tables besides scenes (schemes, contacts): find one, read it, say its faults."""
+"""Small files of tables besides scenes (schemes, contacts): find and read them, report faults."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ M = TypeVar("M", bound=BaseModel)
 
 
 def shipped_in(folder: Path) -> dict[str, Path]:
-    """The files of a folder by name, in alphabetical order."""
+    """Return the files of a folder by name, in alphabetical order."""
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
 def find_table(name_or_path: str, folder: Path, what: str, lists: str) -> Path:
-    """The file of a shipped name, or of a path. Raises CrankcheckError where neither is there.
+    """Find the file of a shipped name, or of a path. Raises CrankcheckError for neither.
 
-    ``what`` says what is looked for, ``lists`` which command lists the names.
+    ``what`` names the kind of table, ``lists`` the command that lists the names.
     """
     known = shipped_in(folder)
     if name_or_path in known:
@@ -40,7 +40,7 @@ def find_table(name_or_path: str, folder: Path, what: str, lists: str) -> Path:
 
 
 def read_table(path: Path, model: type[M]) -> M:
-    """The tables of a file. Raises SceneError with every fault of it."""
+    """Read the tables of a file. Raises SceneError with all its faults."""
     try:
         raw = tables(regular_text(path))
     except UnreadableError as error:
@@ -49,7 +49,7 @@ def read_table(path: Path, model: type[M]) -> M:
 
 
 def table_of(raw: dict[str, object], model: type[M], place: str) -> M:
-    """Tables as a model; ``place`` names them in messages. Raises SceneError with every fault."""
+    """Validate tables as a model; ``place`` names them in messages. Raises SceneError."""
     try:
         return model.model_validate(raw)
     except ValidationError as error:
@@ -60,7 +60,7 @@ def table_of(raw: dict[str, object], model: type[M], place: str) -> M:
 
 
 def _line(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
-    """One fault in one line: key, what was found, what would work."""
+    """Describe one fault in one line: key, value found, remedy."""
     key = ".".join(cut(str(part)) for part in loc if part != "[key]")
     if kind == "missing":
         return f"{key}: missing; add it"
@@ -78,7 +78,7 @@ Source = Annotated[Text, StringConstraints(min_length=1)]
 
 
 class Region(Table):
-    """A rectangle of the ground that fixed pivots are wanted in [m]."""
+    """A rectangle of the ground for the fixed pivots [m]."""
 
     from_m: Coordinates
     to_m: Coordinates
@@ -93,7 +93,7 @@ class Region(Table):
         return self
 
     def holds(self, place: complex) -> bool:
-        """Whether a place is in it."""
+        """True if it contains a place."""
         return (
             self.from_m[0] <= place.real <= self.to_m[0]
             and self.from_m[1] <= place.imag <= self.to_m[1]
@@ -101,10 +101,10 @@ class Region(Table):
 
 
 class TaskTable(Table):
-    """What every task has: its name, where it is from, and what its solutions are wanted to be.
+    """Base of all tasks: the name, the source, and requirements on the solutions.
 
-    ``speed_rad_s`` is that of the driver, or the circular frequency of one that swings; ``loads``
-    are those of the scenes, on links by the names that solutions have.
+    ``speed_rad_s`` is the speed of the driver, or its circular frequency if it oscillates;
+    ``loads`` are loads of the scenes, on links by the names in the solutions.
     """
 
     name: Name

@@ -1,4 +1,4 @@
-"""A joint as its two links touch: contacts, and what the joints next to it leave of its motions."""
+"""A joint by the contacts of its two links, and the motions that the adjacent joints leave it."""
 
 from __future__ import annotations
 
@@ -26,19 +26,18 @@ NEEDS = {
     "prism": ("axis",),
     "thread": ("at_m", "axis", "lead_m"),
 }
-"""The keys of each kind of contact; from plane on they are surfaces. A circle is the line along
-which a ball touches a tube."""
+"""Keys of each kind of contact; from plane on they are surfaces. A circle is the line of contact of
+a ball in a tube."""
 SURFACES = ("plane", "cylinder", "sphere", "revolution", "prism", "thread")
 LIFTING = ("point", "line", "plane")
-"""Contacts that open where the links are pulled apart, unless they are kept ``both_ways``."""
+"""Contacts that open when the links are pulled apart, unless they hold ``both_ways``."""
 PARALLEL = 1e-9
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Where two links touch; ``normal`` points out of the first one, lengths in m.
-
-    ``both_ways`` is whether it also holds where the two are pulled apart."""
+    """Contact of two links, lengths in m; ``normal`` points out of the first. With ``both_ways`` it
+    also holds when the two are pulled apart."""
 
     kind: str
     at: tuple[float, float, float]
@@ -51,7 +50,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class ContactGuide:
-    """What the joints next to a joint leave of its freedoms, and which they are."""
+    """Freedoms of a joint that the adjacent joints leave it, and these joints."""
 
     leaves: tuple[str, ...]
     why: str
@@ -59,7 +58,7 @@ class ContactGuide:
 
 @dataclass(frozen=True)
 class Touching:
-    """Two links that touch; freedoms are named by axes through ``at`` [m]."""
+    """Two links in contact; freedoms are named by axes through ``at`` [m]."""
 
     name: str
     source: str
@@ -70,7 +69,7 @@ class Touching:
 
     @property
     def is_lower_pair(self) -> bool:
-        """Whether the two touch over surfaces alone."""
+        """True if the two touch over surfaces alone."""
         return all(contact.kind in SURFACES for contact in self.contacts)
 
 
@@ -123,13 +122,13 @@ class TouchingTable(Table):
 
 
 def shipped_contacts() -> list[str]:
-    """The names of the joints that come with crankcheck."""
+    """List the names of the joints that come with crankcheck."""
     return list(shipped_in(CONTACTS))
 
 
 def load_touching(name_or_path: str) -> Touching:
-    """A shipped joint by name, or one of a file. Raises CrankcheckError as `find_table` and
-    `read_table`."""
+    """Load a shipped joint by name, or a joint of a file. Raises CrankcheckError as `find_table`
+    and `read_table`."""
     path = find_table(name_or_path, CONTACTS, "joint", "crankcheck joint")
     table = read_table(path, TouchingTable)
     contacts = tuple(_contact(each) for each in table.contacts)

@@ -1,16 +1,16 @@
 """The MJCF text of a scene for MuJoCo: one body per link, assembled, loops closed at pins.
 
-The mechanism lies in the x-y plane and every hinge turns about z. Bodies stand where the given
-state has them; ``ref`` of each joint makes its coordinate read as the angle against the parent
-body, or as the displacement of the slider. Each loop is closed by an ``equality/connect`` between
-two sites, one on each body at that body's own coordinates of the point, so link lengths are exact.
-The assembled state is the keyframe ``assembled``.
+The mechanism lies in the x-y plane and every hinge turns about z. Bodies are placed by the given
+state; ``ref`` of each joint makes its coordinate read as the angle against the parent body, or as
+the displacement of the slider. Each loop is closed by an ``equality/connect`` between two sites,
+one on each body at that body's own coordinates of the point, so link lengths are exact. The
+assembled state is the keyframe ``assembled``.
 
-A massless slider block needs no body: the body that it would be pinned to carries a slide and a
-hinge. The crank is driven by a flywheel: an ``armature`` on its hinge so heavy that the mechanism
-cannot change its speed. A law other than constant speed comes as a control stream: the motor's
-control is the angular acceleration of the crank. Loads are actuators too, constant friction is in
-the joints, springs are tendons (`models.mjcf.forces`).
+A massless slider block needs no body: the body pinned to it carries a slide and a hinge. The crank
+is driven by a flywheel: an ``armature`` on its hinge so heavy that the mechanism cannot change its
+speed. A law other than constant speed comes as a control stream: the motor's control is the angular
+acceleration of the crank. Loads are actuators too, joints have constant friction, springs are
+tendons (`models.mjcf.forces`).
 """
 
 from xml.sax.saxutils import quoteattr
@@ -49,17 +49,16 @@ LEAST_MASS = 1e-15
 def build(
     scene: Scene, state: State, writing: Writing | None = None, tree: Tree | None = None
 ) -> str:
-    """The MJCF text of ``scene`` assembled at ``state``; the same input gives the same text.
+    """Write the MJCF text of ``scene`` assembled at ``state``; the same input gives the same text.
 
-    Without ``writing`` it is the `exact` one, which runs as it is in any MuJoCo at constant speed;
-    another law needs its control at each step. ``tree`` is the plan of it all, where it was made
-    before.
+    The default ``writing`` is `exact`, which runs as it is in any MuJoCo at constant speed; another
+    law needs its control at each step. ``tree`` is a tree planned before.
 
     Raises
     ------
     EngineError
-        A body without mass, a driver that is controlled, a slider that needs one, or a pin in
-        ``close`` that closes no loop; a load or friction that MuJoCo can not have there.
+        A body without mass, a controlled driver, a slider that needs a mass, or a pin in ``close``
+        that closes no loop; a load or friction that MuJoCo cannot have there.
     """
     _check_masses(scene)
     _check_driver(scene)
@@ -94,7 +93,7 @@ def _check_masses(scene: Scene) -> None:
 
 
 def _check_driver(scene: Scene) -> None:
-    """Refuse a driver that gives way: the model drives it whatever that takes."""
+    """Refuse a controlled driver, which yields: the model prescribes the motion at any torque."""
     if isinstance(scene.driver.law, Controlled):
         raise EngineError(
             f"{scene.name}: its driver is controlled, and this model would hold it to its speed "
@@ -103,7 +102,7 @@ def _check_driver(scene: Scene) -> None:
 
 
 def _options(scene: Scene, writing: Writing) -> list[str]:
-    """Solver options; gravity is always written, as MuJoCo's default is that of the earth."""
+    """Write the solver options, always with gravity, as MuJoCo's default is the earth's."""
     gravity = (*scene.gravity_m_s2, 0.0)
     own = attributes({"gravity": gravity} | dict(writing.option))
     if not writing.flag:
@@ -112,7 +111,7 @@ def _options(scene: Scene, writing: Writing) -> list[str]:
 
 
 def _defaults(scene: Scene, writing: Writing) -> list[str]:
-    """What all elements share: hinges about z; capsules that touch nothing and weigh nothing."""
+    """Write the defaults: hinges about z; capsules without contact and mass."""
     thin = 0.012 * scene.longest_m
     seen: Attributes = {"type": "capsule", "size": thin, "contype": 0, "conaffinity": 0, "mass": 0}
     lines = [
@@ -127,7 +126,7 @@ def _defaults(scene: Scene, writing: Writing) -> list[str]:
 
 
 def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
-    """The bodies, children inside their parents, and the sites of the closing pins."""
+    """Write the bodies, children inside their parents, and the sites of the closing pins."""
     lines = [
         "  <worldbody>",
         "    <!-- Bodies stand assembled; ref lets hinges read as angles against the parent. -->",
@@ -140,7 +139,7 @@ def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
 
 
 def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str) -> list[str]:
-    """The bodies that hang on ``parent``."""
+    """Write the child bodies of ``parent``."""
     lines: list[str] = []
     for limb in (limb for limb in tree.limbs if limb.parent == parent):
         place: AttributeRow = {"name": limb.body, "pos": (*limb.offset, 0.0)}
@@ -156,7 +155,7 @@ def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str)
 
 
 def _freedoms(scene: Scene, tree: Tree, limb: Limb, writing: Writing, pad: str) -> list[str]:
-    """The joints of a body; the driven one carries the flywheel."""
+    """Write the joints of a body; the driven joint carries the flywheel."""
     lines, (driven, _) = [], driven_freedom(scene, tree.limbs)
     for freedom in limb.freedoms:
         row: AttributeRow = {"name": freedom.name}
@@ -173,9 +172,9 @@ def _freedoms(scene: Scene, tree: Tree, limb: Limb, writing: Writing, pad: str) 
 
 
 def _matter(scene: Scene, body: str, pad: str) -> list[str]:
-    """Mass, and capsules to look at.
+    """Write the mass, and capsules to look at.
 
-    All three moments of inertia are that about z: only it matters in the plane, and MuJoCo
+    All three moments of inertia equal the one about z: only it matters in the plane, and MuJoCo
     refuses the flat bodies that would be exact.
     """
     mass, inertia = mass_of(scene, body)
@@ -191,8 +190,8 @@ def _matter(scene: Scene, body: str, pad: str) -> list[str]:
 
 
 def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
-    """The sites of a body where loops close and springs end, each at the body's own coordinates of
-    the point, and where loads act."""
+    """Write the sites of a body for loop closures and spring ends, each at the body's own
+    coordinates of the point, and for loads."""
     closing = [c.point for c in tree.closures if body in c.bodies]
     points = dict.fromkeys([*closing, *spring_points(scene, body)])
     rows: list[AttributeRow] = [
@@ -203,7 +202,7 @@ def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
 
 
 def _equality(tree: Tree) -> list[str]:
-    """One connect per pin that closes a loop."""
+    """Write one connect per pin that closes a loop."""
     rows = [
         {"name": f"{c.point}: {c.bodies[0]} to {c.bodies[1]}"}
         | {f"site{i}": f"{body}.{c.point}" for i, body in enumerate(c.bodies, start=1)}
@@ -217,13 +216,13 @@ def _equality(tree: Tree) -> list[str]:
 
 
 def _actuator(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
-    """The servo, or the motor that follows a law other than constant speed; then the loads."""
+    """Write the servo, or the motor for a law other than constant speed; then the loads."""
     lines = [*_drive(scene, tree, writing), *load_actuators(scene)]
     return ["  <actuator>", *lines, "  </actuator>"] if lines else []
 
 
 def _drive(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
-    """The actuator of the crank, where it has one."""
+    """Write the actuator of the crank, if any."""
     if not has_control(scene, writing):
         return []
     driven, sense = driven_freedom(scene, tree.limbs)
@@ -248,7 +247,7 @@ def _drive(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
 
 
 def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[str]:
-    """The assembled state; the limbs are in the order in which MuJoCo numbers joints."""
+    """Write the assembled state; the limbs are in the order in which MuJoCo numbers joints."""
     freedoms = [f for limb in tree.limbs for f in limb.freedoms]
     row: AttributeRow = {
         "name": "assembled",

@@ -23,13 +23,13 @@ from models.scene.joints import (
 from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, Spring
 
 AXES = "ground axes"
-"""The site that stands still, along whose axes forces in the ground's frame act."""
+"""The fixed site along whose axes forces in the ground's frame act."""
 
 
 @dataclass(frozen=True)
 class PointOfApplication:
-    """Where a load acts on the bodies of the tree: ``place`` [m] of ``body``, and for a force its
-    direction there, in the frame of the body where it ``turns`` with it, else in the ground's."""
+    """Point of a load on the bodies of the tree: ``place`` [m] of ``body``, and for a force its
+    direction, in the frame of the body if it ``turns`` with it, else in the ground's."""
 
     body: str
     place: Point
@@ -38,13 +38,13 @@ class PointOfApplication:
 
 
 def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
-    """That of a load. A block without mass is no body: it hands a force to the body that is pinned
-    to it, and a torque to its guide.
+    """Return the point of a load. A block without mass is no body: it transfers a force to the body
+    pinned to it, and a torque to its guide.
 
     Raises
     ------
     EngineError
-        A force on a block without mass, along a guide that moves.
+        A force on a block without mass, along a moving guide.
     """
     slot = _block_without_mass(scene, load.body)
     if slot is None:
@@ -69,13 +69,13 @@ def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
 
 
 def _block_without_mass(scene: Scene, body: str) -> Slot | None:
-    """The slot whose block it is; None for other bodies."""
+    """Return the slot of a block without mass; None for other bodies."""
     slots = joints(scene).slots
     return next((slot for slot in slots if block_name(slot.slider) == body), None)
 
 
 def load_sites(scene: Scene, body: str) -> list[AttributeRow]:
-    """The sites that the loads of a body need, and on the ground that of its axes."""
+    """Return the sites for the loads of a body, and on the ground the site of its axes."""
     rows: list[AttributeRow] = []
     acting = [(load, point_of_application(scene, load)) for load in scene.loads.values()]
     if body == GROUND and any(_needs_axes(load, at) for load, at in acting):
@@ -90,16 +90,16 @@ def _needs_axes(load: Load, at: PointOfApplication) -> bool:
 
 
 def _name(load: Load) -> str:
-    """Of its actuator and its site; nothing else of a scene has a space in its name there."""
+    """Name of its actuator and its site; no other name of a scene has a space there."""
     return f"load {load.name}"
 
 
 def load_actuators(scene: Scene) -> list[str]:
-    """The actuators, in the order of the loads.
+    """Write the actuators, in the order of the loads.
 
     A force acts at a site of its body, along the axes of that site or, by ``refsite``, of the
-    ground; a torque likewise. MuJoCo leaves such actuators out of what `mj_rnePostConstraint` takes
-    for forces from outside: who reads reactions has to take them off.
+    ground; a torque likewise. `mj_rnePostConstraint` does not count such actuators as external
+    forces: a reader of reactions has to subtract them.
     """
     if not scene.loads:
         return []
@@ -123,7 +123,7 @@ def load_actuators(scene: Scene) -> list[str]:
 
 
 def _not_in_the_file(load: Load) -> list[str]:
-    """The remark that the size of a load comes from outside."""
+    """Write the remark that the size of a load comes from outside."""
     course = "" if isinstance(load.characteristic, Constant) else f" over the {load.over}"
     stroke = "" if load.stroke == "both" else f" on the {load.stroke} stroke"
     slider = "" if load.slider is None else f" of {load.slider}"
@@ -134,7 +134,7 @@ def _not_in_the_file(load: Load) -> list[str]:
 
 
 def load_sizes(scene: Scene, state: State) -> tuple[float, ...]:
-    """The sizes of the loads in a state [N or N m]."""
+    """Return the sizes of the loads in a state [N or N m]."""
     theta = driver_place_in(scene, state)
     sliding = {name: (s, state.speed[name]) for name, s in state.displacement.items()}
     return tuple(
@@ -147,9 +147,9 @@ def load_sizes(scene: Scene, state: State) -> tuple[float, ...]:
 class SpringTendon:
     """The tendon of a spring, whose q is ``sense`` times the length of the tendon plus ``shift``.
 
-    ``joints`` are those whose coordinates it adds up, with their signs, or one that it adds 0
-    times; none where it runs between points. ``sense`` is -1 where the length at which it is slack
-    would be negative otherwise: MuJoCo takes -1 for "as the model stands".
+    ``joints`` are the joints whose coordinates it adds up, with their signs, or a single joint with
+    factor 0; none for a spring between points. ``sense`` is -1 where the slack length would be
+    negative otherwise: MuJoCo takes -1 for "as the model stands".
     """
 
     spring: Spring
@@ -159,22 +159,22 @@ class SpringTendon:
 
     @property
     def name(self) -> str:
-        """A scene's own names hold no space."""
+        """Name of the tendon; a scene's own names hold no space."""
         return f"spring {self.spring.name}"
 
     @property
     def slack_length(self) -> float:
-        """The length [m or rad] of the tendon at which the spring is slack."""
+        """Length [m or rad] of the tendon at which the spring is slack."""
         return self.sense * (self.spring.free - self.shift)
 
 
 def spring_tendons(scene: Scene, state: State, tree: Tree) -> tuple[SpringTendon, ...]:
-    """The tendons, in the order of the springs; angles in pins are those at ``state``.
+    """Plan the tendons, in the order of the springs; angles in pins belong to ``state``.
 
-    Between two points it runs from site to site, and its length is their distance. In a pin or
-    along a slider it is a sum of joint coordinates: the angle of one body against another is the
-    sum of the angles on the way between them through the tree, so that a pin has its spring also
-    where it closes a loop. Springs are all in the file: it needs nothing beside.
+    Between two points a tendon runs from site to site, and its length is their distance. In a pin
+    or along a slider it is a sum of joint coordinates: the angle of one body against another is the
+    sum of the angles on the way between them through the tree, so that a pin that closes a loop
+    also has its spring. The file is complete for springs.
     """
     return tuple(_tendon(spring, state, tree) for spring in scene.springs.values())
 
@@ -199,8 +199,8 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
 
 
 def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
-    """The hinges whose coordinates add up to the angle of a body, and the angle [rad] that bodies
-    without a hinge add to them."""
+    """Return the hinges whose coordinates add up to the angle of a body, and the angle [rad] that
+    bodies without a hinge add to them."""
     limbs = {limb.body: limb for limb in tree.limbs}
     hinges, angle = list[str](), 0.0
     while body != GROUND:
@@ -213,7 +213,7 @@ def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
 
 
 def _sliding(tree: Tree, slider: str) -> str:
-    """The joint that is the displacement of a slider; all slides are in the tree."""
+    """Return the joint for the displacement of a slider; all slides are in the tree."""
 
     def slides(limb: Limb) -> bool:
         return limb.slider is not None and limb.slider.name == slider
@@ -223,7 +223,7 @@ def _sliding(tree: Tree, slider: str) -> str:
 
 
 def spring_points(scene: Scene, body: str) -> list[str]:
-    """The points of a body from which springs run to others."""
+    """Return the points of a body from which springs run to others."""
     return [
         point
         for spring in scene.springs.values()
@@ -234,7 +234,7 @@ def spring_points(scene: Scene, body: str) -> list[str]:
 
 
 def tendon_lines(scene: Scene, tendons: tuple[SpringTendon, ...]) -> list[str]:
-    """The section of the tendons; none for a scene without springs."""
+    """Write the section of the tendons; none for a scene without springs."""
     if not tendons:
         return []
     lines = [
@@ -247,7 +247,7 @@ def tendon_lines(scene: Scene, tendons: tuple[SpringTendon, ...]) -> list[str]:
 
 
 def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
-    """The element of a tendon with its sites or joints."""
+    """Write the element of a tendon with its sites or joints."""
     spring = tendon.spring
     row: AttributeRow = {"name": tendon.name, "stiffness": spring.rate, "damping": spring.damping}
     row["springlength"] = tendon.slack_length
@@ -266,15 +266,15 @@ def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
 
 
 def planned(scene: Scene, state: State, writing: Writing) -> Tree:
-    """The tree of a scene, with all joints that rub in it.
+    """Plan the tree of a scene, with all joints with friction in it.
 
     Raises
     ------
     EngineError
-        As `models.mjcf.tree.plan`; where each way to close the loops closes one at a pin that rubs.
+        As `models.mjcf.tree.plan`; where every way to close the loops takes a pin with friction.
 
-    MuJoCo has friction that is constant (``frictionloss``), in hinges and slides of the tree; a
-    connect, which closes a loop, has none. So loops close at pins that do not rub.
+    MuJoCo has constant friction (``frictionloss``) in hinges and slides of the tree; a connect,
+    which closes a loop, has none. So loops close at pins without friction.
     """
     tree = plan(scene, state, writing.close, delay_s=writing.delay_s)
     rubbing = [one.joint for one in scene.friction.values() if one.joint not in scene.sliders]
@@ -298,7 +298,7 @@ def _closes(tree: Tree, point: str) -> bool:
 
 
 def rubbing_freedom(scene: Scene, limb: Limb, joint: str) -> Freedom | None:
-    """The freedom of a limb that is the pin or slider named; None where it has no such."""
+    """Return the freedom of a limb for the named pin or slider; None if it has none."""
     if joint in scene.sliders:
         kind, fits = "slide", limb.slider is not None and limb.slider.name == joint
     else:
@@ -307,12 +307,12 @@ def rubbing_freedom(scene: Scene, limb: Limb, joint: str) -> Freedom | None:
 
 
 def friction_of(scene: Scene, limb: Limb, freedom: Freedom, writing: Writing) -> AttributeRow:
-    """The attributes of a joint that rubs, as stiff as the step allows; none for another.
+    """Return the attributes of a joint with friction, as stiff as the step allows; else none.
 
     Raises
     ------
     EngineError
-        Coulomb's friction, which MuJoCo has in contacts alone.
+        Coulomb's friction, which MuJoCo has in contacts only.
     """
     for name, one in scene.friction.items():
         if rubbing_freedom(scene, limb, one.joint) is not freedom:

@@ -1,4 +1,4 @@
-"""What may be chosen about the MJCF text of a scene, and how its crank is driven."""
+"""Options of the MJCF text of a scene, and the drive of its crank."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,13 +16,12 @@ Attributes = Mapping[str, AttributeValue]
 
 @dataclass(frozen=True)
 class Writing:
-    """What may be chosen about the text; what is left out is MuJoCo's own default.
+    """Options of the text; missing ones are MuJoCo's own defaults.
 
     ``option`` and ``flag`` are attributes of the elements of that name, ``connect`` of every
-    ``equality/connect``, ``rubbing`` those of friction in joints, where they are others.
-    ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo; a
-    ``free`` crank has neither. The keyframe's velocities are those of ``delay_s`` after its
-    positions.
+    ``equality/connect``, ``rubbing`` of friction in joints, if different. ``servo_gain`` [N m
+    s/rad] replaces the flywheel by a velocity servo; a ``free`` crank has neither. The keyframe's
+    velocities belong to ``delay_s`` after its positions.
     """
 
     close: str | tuple[str, ...] = ()
@@ -37,28 +36,28 @@ class Writing:
 
     @property
     def flywheel(self) -> bool:
-        """Whether a flywheel prescribes the speed of the crank."""
+        """True if a flywheel prescribes the speed of the crank."""
         return self.servo_gain is None and not self.free
 
 
 STIFF_STEPS, STIFF_DAMPING = 5.0, 0.6
 """Time constant of the loop closures in steps, and their damping ratio. Their product sets the
 stiffness of the closing spring: at 2, the least that MuJoCo allows, RK4 resolves it badly, above 4
-it gives way more. Searches over several scenes (`crankcheck tune`) lead to about 3; against 4 and 1
-the worst of all shipped scenes has 1.6 times less error, and 3 times less in accelerations."""
+it yields more. Searches over several scenes (`crankcheck tune`) lead to about 3; against 4 and 1
+the worst shipped scene has 1.6 times less error, and 3 times less in accelerations."""
 STIFF_IMPEDANCE = 0.9999
-"""The most that MuJoCo allows: the loop closures give way by 0.01 %."""
+"""Largest impedance in MuJoCo: the loop closures yield by 0.01 %."""
 TOLERANCE = 1e-22
-"""Of the solver, over the flywheel's ratio: MuJoCo scales its stopping rule by the inertia of the
-whole model, and with its default would stop before the first iteration, leaving the loops open."""
+"""Tolerance of the solver, over the flywheel's ratio: MuJoCo scales its stopping rule by the
+inertia of the whole model, and by default stops before the first iteration, with open loops."""
 STEPS_PER_PERIOD = 1000
 FREE_STEP_S = 1e-3
-"""Of a mechanism that is let go, which says no period."""
+"""Largest step of free motion, which has no period [s]."""
 
 
 def exact(scene: Scene, steps: float = STEPS_PER_PERIOD) -> Writing:
-    """RK4 at so many ``steps`` of the driver's period, or of the time for which it is let go but a
-    millisecond at most; the loops as stiff as that step allows."""
+    """Return RK4 with ``steps`` per period of the driver, or per duration of free motion with a
+    millisecond at most; the loops are as stiff as that step allows."""
     dt_s = scene.driver.law.period_s / steps
     tolerance = TOLERANCE / FLYWHEEL_RATIO
     if scene.is_free:
@@ -74,15 +73,15 @@ def exact(scene: Scene, steps: float = STEPS_PER_PERIOD) -> Writing:
 
 
 def has_control(scene: Scene, writing: Writing) -> bool:
-    """Whether the model has an actuator that wants a control at each step."""
+    """True if the model has an actuator with a control at each step."""
     if not writing.flywheel:
         return not writing.free
     return not isinstance(scene.driver.law, ConstantSpeed)
 
 
 def armature(scene: Scene, writing: Writing) -> float:
-    """Inertia of the flywheel on the crank [kg m^2], of a slider its mass [kg]; 0 where there is
-    none."""
+    """Return the inertia of the flywheel on the crank [kg m^2], for a slider its mass [kg]; 0
+    without one."""
     if not writing.flywheel:
         return 0.0
     return writing.flywheel_ratio * inertia_scale(scene) / scene.driver_arm_m**2
@@ -92,12 +91,13 @@ AttributeRow = dict[str, AttributeValue]
 
 
 def attributes(row: Attributes) -> str:
-    """Attributes of an element; numbers in the shortest form that reads back as the same double."""
+    """Write attributes of an element; numbers in the shortest form that reads as the same
+    double."""
     return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
 
 
 def _text(value: AttributeValue) -> str:
-    """A value as MJCF text."""
+    """Format a value as MJCF text."""
     if isinstance(value, str):
         return value
     if isinstance(value, int | float):
@@ -106,5 +106,5 @@ def _text(value: AttributeValue) -> str:
 
 
 def commentable(text: str) -> str:
-    """Text that may stand in an XML comment, where two hyphens would end it."""
+    """Return text for an XML comment, where two hyphens would end it."""
     return text.replace("--", "- -").replace("--", "- -")

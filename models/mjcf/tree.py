@@ -1,10 +1,10 @@
-"""A mechanism as a tree of bodies plus the pins that close its loops, for engines that need one.
+"""A mechanism as a tree of bodies and the pins that close its loops, for engines that need one.
 
-Which joints stay in the tree is chosen by Kruskal's rule with this priority: the driver's pin,
-then prismatic pairs and slots (an engine can close a loop at a pin, not at a slide), then ground
-pins, then the other pins in the order of the file; pins named in ``close`` come last. In a
-four-bar A B C D this closes the loop at C. Where the masses differ by more than `UNEQUAL` the pins
-of the lightest bodies come first, so that loops close at heavy ones.
+Kruskal's rule chooses the joints of the tree with this priority: the driver's pin, then prismatic
+pairs and slots (an engine can close a loop at a pin, not at a slide), then ground pins, then the
+other pins in the order of the file; pins named in ``close`` come last. In a four-bar A B C D this
+closes the loop at C. Where the masses differ by more than `UNEQUAL` the pins of the lightest bodies
+come first, so that loops close at heavy ones.
 """
 
 import itertools
@@ -32,9 +32,9 @@ from models.scene.joints import (
 )
 
 UNEQUAL = 25.0
-"""The heaviest body over the lightest from which on loops close where bodies are heavy. Up to it a
-stiff closure of MuJoCo gives way elsewhere by (1 - 0.9999) (3 dt)^2 25 = 0.02 dt^2 times an
-acceleration: a fiftieth of what a step leaves open by itself."""
+"""Least ratio of the heaviest body to the lightest at which loops close between heavy bodies. Below
+it a stiff closure of MuJoCo yields elsewhere by (1 - 0.9999) (3 dt)^2 25 = 0.02 dt^2 times an
+acceleration: a fiftieth of a step's own error."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,8 @@ class Freedom:
     """One joint coordinate of a body in the tree.
 
     ``anchor`` [m] (of a hinge) and ``axis_rad`` (of a slide, its direction) are in the body's own
-    frame; ``ref`` is the coordinate at the assembled state, so that the coordinate reads as the
-    angle of the body against its parent [rad] or as the displacement of the slider [m]; ``rate``
-    is its rate there.
+    frame; ``ref`` is the coordinate at the assembled state, read as the angle of the body against
+    its parent [rad] or as the displacement of the slider [m]; ``rate`` is its rate there.
     """
 
     name: str
@@ -62,10 +61,10 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Limb:
-    """A body of the tree: where it sits in its parent when assembled, and its joints in order.
+    """A body of the tree: its place in its parent when assembled, and its joints in order.
 
-    ``point`` is the pin that ties it to its parent or the point that slides, ``slider`` what it
-    slides by; a limb of a model that is not ours is without.
+    ``point`` is the pin to its parent or the sliding point, ``slider`` its slider; a limb of a
+    user's own model has neither.
     """
 
     body: str
@@ -105,13 +104,13 @@ class _Edge:
 
 
 class _Groups:
-    """Which bodies are tied together already (union-find)."""
+    """Groups of connected bodies (union-find)."""
 
     def __init__(self) -> None:
         self._parent: dict[object, object] = {}
 
     def root(self, item: object) -> object:
-        """The representative of the group of an item."""
+        """Return the representative of the group of an item."""
         while (parent := self._parent.get(item, item)) != item:
             item = parent
         return item
@@ -128,15 +127,15 @@ class _Groups:
 def plan(
     scene: Scene, state: State, close: str | Sequence[str] = (), *, delay_s: float = 0.0
 ) -> Tree:
-    """The tree of a scene at an assembled state, with the loops closed at pins.
+    """Plan the tree of a scene at an assembled state, with the loops closed at pins.
 
-    The rates of the coordinates are those of ``delay_s`` later (see `models.scene.joints.frames`).
+    The rates of the coordinates belong to ``delay_s`` later (see `models.scene.joints.frames`).
 
     Raises
     ------
     EngineError
         A pin in ``close`` that does not exist or cannot close a loop; a slider that would have to
-        close a loop and so needs a mass; a body that hangs on nothing.
+        close a loop and so needs a mass; an unconnected body.
     """
     close = names_in(close, "close")
     _check_close(scene, close)
@@ -158,7 +157,7 @@ def plan(
 
 
 def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
-    """The joints in order of priority; each entry lists equally good ways to hold one joint."""
+    """Yield the joints by priority; each entry lists equally good ways to hold one joint."""
     driver, ties = scene.driver, joints(scene)
     if driver.slider is None:
         yield [_Edge(driver.base, driver.link, scene.driver_pivot)]
@@ -176,12 +175,12 @@ def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
 
 
 def _lightness(scene: Scene) -> Callable[[_Edge], float]:
-    """How light the two bodies of a pin are [1/kg]; the same for all pins of masses alike.
+    """Return the lightness of a pin's two bodies [1/kg], equal for all pins of masses alike.
 
-    A soft constraint gives way by the force that it carries times the inverse masses of its
-    bodies, of which the lighter one has more. Closed between a light body and a heavy one it gives
-    way by the ratio of their masses; at a pin of heavy bodies by what it does where all are alike.
-    Ground and driver are moved by nothing.
+    A soft constraint yields by its force times the inverse masses of its bodies, of which the
+    lighter has more. Closed between a light body and a heavy one it yields by the ratio of their
+    masses; at a pin of heavy bodies as much as if all were alike. Nothing moves the ground and the
+    driver.
     """
     if mass_ratio(scene) <= UNEQUAL:
         return lambda edge: 0.0
@@ -195,7 +194,7 @@ def _lightness(scene: Scene) -> Callable[[_Edge], float]:
 
 
 def _slides(slide: Prism | Slot) -> list[_Edge]:
-    """The ways to hold a slide."""
+    """Return the ways to hold a slide."""
     slider = slide.slider
     if isinstance(slide, Prism):
         return [_Edge(slider.on, slide.body, slider.point, slider, turns=False)]
@@ -205,7 +204,7 @@ def _slides(slide: Prism | Slot) -> list[_Edge]:
 
 
 def _needs_mass(slider: Slider) -> str:
-    """The cure for a slide that would have to close a loop."""
+    """Return the remedy for a slide that would have to close a loop."""
     return (
         f"slider {slider.name}: a massless block cannot be held here, as MuJoCo closes loops only "
         f"at pins; give sliders.{slider.name} a mass_kg above 0"
@@ -213,7 +212,7 @@ def _needs_mass(slider: Slider) -> str:
 
 
 def _check_close(scene: Scene, close: Sequence[str]) -> None:
-    """Refuse points to close at that are not pins, and the driver's own."""
+    """Refuse closing points that are not pins, and the driver's own."""
     pins = [pin.point for pin in joints(scene).pins]
     for point in close:
         if point not in pins or point == scene.driver_pivot:
@@ -222,7 +221,7 @@ def _check_close(scene: Scene, close: Sequence[str]) -> None:
 
 
 def _closures(scene: Scene, at_point: _Groups) -> tuple[LoopPin, ...]:
-    """The pins that the tree leaves open: one closure between each two groups at a point."""
+    """Return the pins outside the tree: one closure between each two groups at a point."""
     closures: list[LoopPin] = []
     for pin in joints(scene).pins:
         first = pin.bodies[0]
@@ -235,11 +234,11 @@ def _closures(scene: Scene, at_point: _Groups) -> tuple[LoopPin, ...]:
 
 
 def _limbs(scene: Scene, where: dict[str, Frame], edges: Sequence[_Edge]) -> tuple[Limb, ...]:
-    """The limbs, from the ground outwards."""
+    """Make the limbs, from the ground outwards."""
     placed = [GROUND]
 
     def grown(parent: str) -> list[Limb]:
-        """The limbs that hang on ``parent``, each followed by its own."""
+        """Return the child limbs of ``parent``, each followed by its own."""
         limbs: list[Limb] = []
         for edge in edges:
             child = {edge.a: edge.b, edge.b: edge.a}.get(parent)
@@ -256,13 +255,13 @@ def _limbs(scene: Scene, where: dict[str, Frame], edges: Sequence[_Edge]) -> tup
 
 
 def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child: str) -> Limb:
-    """One body against its parent, its joint written as one or two coordinates."""
+    """Place one body against its parent, its joint written as one or two coordinates."""
     base, body = where[parent], where[child]
     angle = body.theta - base.theta
     rate = body.omega - base.omega
 
     def hinge(anchor: Point) -> Freedom:
-        """The joint that turns about a point of the child."""
+        """Make the hinge about a point of the child."""
         return Freedom(f"{child}.{edge.point}", "hinge", anchor, 0.0, angle, rate)
 
     if edge.slider is None:
@@ -287,7 +286,7 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
 
 
 def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
-    """What ``close`` of `plan` may name to have other pins closed than by default.
+    """Yield values of ``close`` in `plan` that close other pins than the default.
 
     The fewest pins first; each choice of closures once. Raises EngineError as `plan` does.
     """
@@ -306,13 +305,13 @@ def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
 
 
 def driven_freedom(scene: Scene, limbs: Sequence[Limb]) -> tuple[str, float]:
-    """Its name, and 1.0 where it reads as the driver's own coordinate, or -1.0 where the driven
-    link carries its base.
+    """Return the name of the driven freedom, and 1.0 if it reads as the driver's own coordinate, or
+    -1.0 if the driven link carries its base.
 
     Raises
     ------
     EngineError
-        The driven joint is none of the tree's.
+        The driven joint is not in the tree.
     """
     driver = scene.driver
     if driver.is_crank:

@@ -1,4 +1,4 @@
-r"""What a mechanism is: links, pins, sliders, one driver, the assembly branch, loads.
+r"""Description of a mechanism: links, pins, sliders, one driver, the assembly branch, loads.
 
 Pins are shared point names: two links, or a link and the ground, that list the same point are
 pinned there. A slider lets a point, or a whole link, run along a line of another body::
@@ -30,7 +30,7 @@ V = TypeVar("V")
 
 
 class FixedMapping(dict[K, V]):
-    """A dict that cannot be changed; another one is made of it with ``{**old, ...}``."""
+    """A dict that cannot be changed; ``{**old, ...}`` makes another."""
 
     def _refuse(self, *_: object, **__: object) -> NoReturn:
         raise TypeError("a scene is not changed; make another one with dataclasses.replace")
@@ -47,8 +47,8 @@ class Start:
     """Angles [rad] and angular velocities [rad/s] of links, displacements [m] and speeds [m/s] of
     sliders at time 0, by name.
 
-    Of a mechanism of mobility 1 they say again what the driver's own angle and speed say already,
-    and are held to it; of one with more freedoms they are the rest of its start.
+    In a mechanism of mobility 1 they repeat the driver's own angle and speed, and are checked
+    against them; with more freedoms they are the rest of the start.
     """
 
     angles_rad: Mapping[str, float] = field(default_factory=dict)
@@ -68,7 +68,7 @@ class Start:
 Point = tuple[float, float]
 GROUND = "ground"
 KEPT = 64
-"""Scenes for which is kept what was worked out: more than are shipped."""
+"""Scenes whose derived results are kept: more than are shipped."""
 
 
 @dataclass(frozen=True)
@@ -113,12 +113,12 @@ class Slider:
 
 @dataclass(frozen=True)
 class Driver:
-    """The joint that is driven, and the law that its coordinate follows.
+    """The driven joint, and the law of its coordinate.
 
-    Body ``link`` moves against body ``base``. With neither ``pin`` nor ``slider`` that is a link
-    about its pin to the ground, and the coordinate its angle [rad]. With ``pin`` it is the angle of
-    the link less that of the base, two bodies that share this pin [rad]; with ``slider`` the
-    displacement of that slider [m], of which ``link`` is the body that slides (a link or a block).
+    Body ``link`` moves against body ``base``. With neither ``pin`` nor ``slider`` it is a link
+    about its pin to the ground, and the coordinate its angle [rad]. With ``pin`` the coordinate is
+    the angle of the link less the base's, two bodies that share this pin [rad]; with ``slider`` the
+    displacement of that slider [m], whose sliding body is ``link`` (a link or a block).
     """
 
     link: str
@@ -129,39 +129,39 @@ class Driver:
 
     @property
     def is_crank(self) -> bool:
-        """Whether it is a link whose own angle is told, at its pin to the ground."""
+        """True if the coordinate is the link's own angle, at its pin to the ground."""
         return self.pin is None and self.slider is None
 
     @property
     def is_inner(self) -> bool:
-        """Whether it drives two moving bodies against each other."""
+        """True if it drives two moving bodies against each other."""
         return self.base != GROUND and self.link != GROUND
 
     @property
     def joint(self) -> str:
-        """The driven joint in words: what a message calls it."""
+        """Name of the driven joint in a message."""
         if self.slider is not None:
             return f"slider {self.slider}"
         return self.link if self.pin is None else f"pin {self.pin} of {self.base} and {self.link}"
 
     @property
     def name(self) -> str:
-        """What it is called in a table: the slider, or the link that turns."""
+        """Name in a table: the slider, or the turning link."""
         return self.slider or self.link
 
     @property
     def unit(self) -> str:
-        """Of its coordinate: rad or m."""
+        """Unit of its coordinate: rad or m."""
         return "rad" if self.slider is None else "m"
 
     @property
     def effort(self) -> str:
-        """What moves it: a torque, or of a slider a force along its line."""
+        """Kind of its effort: a torque, or for a slider a force along its line."""
         return "torque" if self.slider is None else "force"
 
     @property
     def effort_unit(self) -> str:
-        """Of what moves it: N m or N."""
+        """Unit of its effort: N m or N."""
         return "N m" if self.slider is None else "N"
 
 
@@ -170,15 +170,15 @@ class Scene:
     """A planar mechanism with one driver.
 
     ``branch`` holds +1 or -1 per assembly choice, by the name of the pin (dyad of two links: +1
-    where the pin lies to the left of the line from the first outer pin to the second, the links
-    in the order of the file) or of the slider (+1: along the direction of the line); +1 where it
-    is silent. Of a group of class III it holds, by the name of its central link, the number of the
-    assembly at time 0: from 1 on, by that link's angle in (-pi, pi]; 1 where it is silent.
-    ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero unless the
-    scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies, ``springs``
-    between bodies. ``start`` says more of the start of free motion than the driver. ``elastic`` are
-    the links that bend or stretch, by name; the others are rigid. ``beams`` are what such a link is
-    where an engine is given nodes for it (`models.scene.cut_scenes`).
+    where the pin lies to the left of the line from the first outer pin to the second, the links in
+    the order of the file) or of the slider (+1: along the direction of the line); the default is
+    +1. For a group of class III it holds, by the name of its central link, the number of the
+    assembly at time 0: from 1 on, by that link's angle in (-pi, pi]; the default is 1.
+    ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero by default;
+    ``loads`` act from outside, ``friction`` in joints of two bodies, ``springs`` between bodies.
+    ``start`` completes the start of free motion beyond the driver. ``elastic`` are the links that
+    bend or stretch, by name; the others are rigid. ``beams`` are these links as an engine with
+    nodes has them (`models.scene.cut_scenes`).
     """
 
     name: str
@@ -214,35 +214,35 @@ class Scene:
                 bodies.setdefault(point, []).append(link.name)
         return FixedMapping({point: tuple(names) for point, names in bodies.items()})
 
-    @cached_property  # asked for at every step of a search
+    @cached_property  # read at every step of a search
     def longest_m(self) -> float:
-        """The longest distance between two points of one link: the scale that errors are over."""
+        """Longest distance between two points of one link: the scale of relative errors."""
         return max(span(link.points) for link in self.links.values())
 
     @property
     def is_free(self) -> bool:
-        """Whether the driver is let go, and not driven."""
+        """True if the motion is free: the driver is released at time 0."""
         return self.driver.law.is_free
 
     @property
     def coulomb_joints(self) -> list[str]:
-        """The joints whose friction follows from the reactions, which no engine is given."""
+        """Joints whose friction follows from the reactions; engines do not get it."""
         return [n for n, one in self.friction.items() if isinstance(one, CoulombFriction)]
 
     @property
     def driver_arm_m(self) -> float:
-        """What the driver's coordinate is over an angle: 1 of an angle; of the displacement of a
-        slider the longest length [m], so that its speed over it is a rate of turning."""
+        """Ratio of the driver's coordinate to an angle: 1 for an angle; for the displacement of a
+        slider the longest length [m], so that speed over it is a rate of turning."""
         return 1.0 if self.driver.slider is None else self.longest_m
 
     @property
     def pace_rad_s(self) -> float:
-        """The driver's largest speed, of a slider over the longest length [rad/s]."""
+        """Largest speed of the driver, for a slider over the longest length [rad/s]."""
         return self.driver.law.peak_speed_rad_s / self.driver_arm_m
 
     @property
     def driver_pivot(self) -> str:
-        """The pin that is driven, of a crank that to the ground; empty where a slider is."""
+        """The driven pin, for a crank its pin to the ground; empty for a slider."""
         if self.driver.pin is not None or self.driver.slider is not None:
             return self.driver.pin or ""
         return next(point for point in self.links[self.driver.link].points if point in self.ground)
@@ -250,8 +250,8 @@ class Scene:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Same:
-    """A scene as itself, to keep under it what was worked out for it: scenes that are equal but for
-    the order of their links are not one."""
+    """A scene by identity, a key for results derived from it: equal scenes may differ in the order
+    of their links."""
 
     scene: Scene
 
@@ -263,13 +263,13 @@ class Same:
 
 
 def as_bytes(scene: Scene) -> bytes:
-    """What a scene holds, without what was worked out from it on the way: to keep under it, in any
-    process, what takes long."""
+    """Return the content of a scene without cached results: a key, in any process, for slow
+    results."""
     return pickle.dumps(replace(scene))
 
 
 def span(points: Mapping[str, Point]) -> float:
-    """The largest distance between two of the points [m]."""
+    """Return the largest distance between two of the points [m]."""
     places = list(points.values())
     return max(
         (((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5 for a in places for b in places),

@@ -1,4 +1,4 @@
-"""How the magnitude of a load goes over time, over the driver's angle or over a displacement."""
+"""Magnitude of a load over time, driver angle, displacement or speed."""
 
 from __future__ import annotations
 
@@ -23,48 +23,48 @@ class Characteristic(ABC):
 
     @abstractmethod
     def at(self, x: Array) -> Array:
-        """The magnitude, shape of ``x``. Raises ValueError where there is none."""
+        """Return the magnitude, shape of ``x``. Raises ValueError where there is none."""
 
     def at_one(self, x: float) -> float:
-        """As `at`, to the bit, of one place: what an engine asks for at every step."""
+        """Return `at`, to the bit, for one place: engines call it at every step."""
         return float(self.at(np.array([x]))[0])
 
     def nearest(self, x: float) -> float:
-        """The place next to ``x`` that has a magnitude."""
+        """Return the place next to ``x`` that has a magnitude."""
         return x
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """The places, within a period where it has one, in which it is not smooth."""
+        """Places, within a period if there is one, in which it is not smooth."""
         return ()
 
     @property
     def repeats_after(self) -> float | None:
-        """Its period; None for one that goes on and never repeats."""
+        """Period; None without one."""
         return None
 
     def kinks_between(self, first: float, last: float) -> Iterator[float]:
-        """The places from ``first`` to ``last`` in which it is not smooth, in order, those of all
+        """Yield, in order, the places from ``first`` to ``last`` in which it is not smooth, of all
         periods; there may be very many."""
         yield from (kink for kink in self.kinks if first <= kink <= last)
 
     @abstractmethod
     def steepest(self, x: Array, by: Array | float) -> Array | float:
-        """A bound on its slope within ``by`` of ``x``."""
+        """Return a bound on the slope within ``by`` of ``x``."""
 
     @abstractmethod
     def rounding(self, x: Array) -> Array | float:
-        """A bound on what rounding does to `at`."""
+        """Return a bound on the rounding error of `at`."""
 
     @abstractmethod
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Characteristic:
-        """``size`` times itself, over an argument that is stretched, then shifted:
-        size c((x - shift) / stretch)."""
+        """Return ``size`` times itself, over an argument that is stretched, then shifted: size c((x
+        - shift) / stretch)."""
 
 
 @dataclass(frozen=True)
 class Constant(Characteristic):
-    """The same everywhere."""
+    """A constant magnitude."""
 
     value: float
 
@@ -86,7 +86,7 @@ class Constant(Characteristic):
 
 @dataclass(frozen=True)
 class Sine(Characteristic):
-    """amplitude sin(2 pi x / period + phase); a constant load beside it shifts it."""
+    """amplitude sin(2 pi x / period + phase); an additional constant load shifts it."""
 
     amplitude: float
     period: float
@@ -159,8 +159,8 @@ class Polynomial(Characteristic):
 class Staircase(Characteristic):
     """``values[k]`` from ``places[k]`` on, up to the next place; 0 before the first.
 
-    In a place itself the new value holds. Its slope is without bound there, so that whoever needs
-    one (`steepest`) is told infinity.
+    The new value holds in the place itself. The slope is unbounded there: `steepest` gives
+    infinity.
     """
 
     places: tuple[float, ...]
@@ -206,7 +206,7 @@ class Staircase(Characteristic):
 class Pulse(Characteristic):
     """amplitude sin(2 pi (x - start) / period) for one period from ``start`` on, and 0 beside it.
 
-    Source: the thesis on elastic mechanisms, whose torque on the crank it is.
+    Source: the thesis on elastic mechanisms (torque on the crank).
     """
 
     amplitude: float

@@ -1,4 +1,4 @@
-"""A scene whose elastic links are cut into bodies: what engines are given, and its motion back.
+"""Scene for engines, its elastic links cut into bodies, and the conversion of its motion back.
 
 ::
 
@@ -29,7 +29,7 @@ from models.scene.loads import Load, PinSpring, Spring
 @dataclass(frozen=True)
 class CutScene(ABC):
     """``scene`` with its elastic links in ``count`` pieces each. Raises CrankcheckError for fewer
-    than two, and where the scene has a name that these need."""
+    than two, and where the scene already has a name that the pieces need."""
 
     scene: Scene
     count: int
@@ -50,33 +50,33 @@ class CutScene(ABC):
 
     @abstractmethod
     def bodies(self, link: str) -> tuple[str, ...]:
-        """The names of the bodies that an elastic link is cut into, from its first pin on; the
-        first of them counts its turns."""
+        """Names of the bodies of an elastic link, from its first pin on; the first body counts its
+        turns."""
 
     @abstractmethod
     def _links(self, link: Link, line: LinkLine) -> dict[str, Link]:
-        """These bodies."""
+        """Make these bodies."""
 
     @abstractmethod
     def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
-        """Which of the bodies carries a place of the link, and where it is in that one's frame."""
+        """Return the index of the body that carries a place of the link, and the place in it."""
 
     def _springs(self, link: str) -> Mapping[str, Spring]:
-        """Those between these bodies."""
+        """Springs between these bodies."""
         return {}
 
     def _beam(self, link: str) -> Beam | None:
-        """The beam that joins them."""
+        """Beam that joins them."""
         return None
 
     def nodes(self, link: str) -> tuple[str, ...]:
-        """The points between and at the ends of its pieces."""
+        """Points between its pieces and at their ends."""
         first, last = line_of(self.scene, link).pins
         return (first, *(f"{link}-{i}-{i + 1}" for i in range(1, self.count)), last)
 
     @cached_property
     def given(self) -> Scene:
-        """The scene that an engine is given."""
+        """Scene for the engine."""
         links: dict[str, Link] = {}
         springs = {name: self._held(spring) for name, spring in self.scene.springs.items()}
         for name, link in self.scene.links.items():
@@ -98,8 +98,8 @@ class CutScene(ABC):
         )
 
     def _carrier(self, body: str, point: str) -> tuple[str, float]:
-        """The body that carries a named point of a body, and by how much it is turned against the
-        frame of that [rad]."""
+        """Return the body that carries a named point of a body, and the lean of the body's frame
+        against it [rad]."""
         if body not in self.scene.elastic:
             return body, 0.0
         line = line_of(self.scene, body)
@@ -107,7 +107,7 @@ class CutScene(ABC):
         return self.bodies(body)[piece], line.lean_rad
 
     def _put(self, load: Load) -> Load:
-        """A load on the body that has its point."""
+        """Move a load to the body that carries its point."""
         if load.point is None:
             return load
         body, lean = self._carrier(load.body, load.point)
@@ -115,14 +115,14 @@ class CutScene(ABC):
         return replace(load, body=body, direction_rad=turned)
 
     def _held(self, spring: Spring) -> Spring:
-        """A spring in a pin between the bodies that meet there."""
+        """Move a spring in a pin to the bodies that meet there."""
         if not isinstance(spring, PinSpring):
             return spring
         (first, lean), (second, other) = (self._carrier(b, spring.point) for b in spring.bodies)
         return replace(spring, bodies=(first, second), free=spring.free + other - lean)
 
     def folded(self, motion: Motion) -> Motion:
-        """A motion of the bodies as one of the scene with its elastic links."""
+        """Convert a motion of the bodies to one of the scene with its elastic links."""
         points = {name: motion.points[name] for name in self._named}
         links = {name: own for name, own in motion.links.items() if name in self.scene.links}
         elastic = {}
@@ -134,14 +134,14 @@ class CutScene(ABC):
 
     @property
     def _named(self) -> tuple[str, ...]:
-        """The points of the scene itself."""
+        """Points of the scene itself."""
         own = {point: None for link in self.scene.links.values() for point in link.points}
         own |= dict.fromkeys(self.scene.ground)
         own |= {slider.point: None for slider in self.scene.sliders.values()}
         return tuple(own)
 
     def _line_motion(self, motion: Motion, link: str) -> LinkMotion:
-        """The line between the two pins of an elastic link, as that of a rigid one."""
+        """Return the motion of the line between an elastic link's two pins, as of a rigid link."""
         line = line_of(self.scene, link)
         a, b = (motion.points[pin] for pin in line.pins)
         way, drift, push = (
@@ -158,7 +158,7 @@ class CutScene(ABC):
         return LinkMotion(theta, omega, alpha)
 
     def _shape(self, motion: Motion, link: str) -> ElasticMotion:
-        """How it is bent, and how far its pins are apart."""
+        """Return its deflection and extension."""
         first, last = (motion.points[pin].position for pin in line_of(self.scene, link).pins)
         way = last - first
         far = np.hypot(way[:, 0], way[:, 1])
@@ -167,7 +167,7 @@ class CutScene(ABC):
         return ElasticMotion(middle, far - line_of(self.scene, link).length_m)
 
     def _middle(self, motion: Motion, link: str) -> Array:
-        """The middle of an elastic link (T, 2) [m]: a node, or between two."""
+        """Return the middle of an elastic link (T, 2) [m]: a node, or the mean of two."""
         nodes = self.nodes(link)
         low, high = nodes[self.count // 2], nodes[(self.count + 1) // 2]
         return 0.5 * (motion.points[low].position + motion.points[high].position)
@@ -175,8 +175,8 @@ class CutScene(ABC):
 
 @dataclass(frozen=True)
 class LinkLine:
-    """From the first of two ``pins`` to the second, in the frame of the link: from ``start`` [m],
-    at ``lean_rad``, ``length_m`` long."""
+    """Line from the first of two ``pins`` to the second, in the frame of the link: from ``start``
+    [m], at ``lean_rad``, ``length_m`` long."""
 
     pins: tuple[str, str]
     start: Point
@@ -185,17 +185,17 @@ class LinkLine:
     density_kg_m: float
 
     def at(self, x: float) -> Point:
-        """The place on it that is x from the first pin [m], in the frame of the link."""
+        """Return the place on the line at x from the first pin [m], in the frame of the link."""
         c, s = turned((x, 0.0), self.lean_rad)
         return self.start[0] + c, self.start[1] + s
 
     def along(self, place: Point) -> Point:
-        """A place in the frame of the link as x along the line from the first pin, and y across."""
+        """Return a place in the link's frame as x along the line from its first pin, and y."""
         return turned(less(place, self.start), -self.lean_rad)
 
 
 def line_of(scene: Scene, link: str) -> LinkLine:
-    """The line of a link that has two pins."""
+    """Return the line of a link with two pins."""
     own, joined = scene.links[link], joined_at(scene)
     first, second = (point for point in own.points if link in joined.get(point, ()))
     (ax, ay), (bx, by) = own.points[first], own.points[second]
@@ -205,5 +205,5 @@ def line_of(scene: Scene, link: str) -> LinkLine:
 
 
 def with_rigid_links(scene: Scene) -> Scene:
-    """The scene with all its links rigid."""
+    """Return the scene with all its links rigid."""
     return replace(scene, elastic={}, start=replace(scene.start, shape=None))

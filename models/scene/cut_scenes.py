@@ -1,4 +1,4 @@
-"""Scenes whose elastic links are cut, as engines have them: into rigid segments, or beams."""
+"""Scenes for engines, with elastic links cut into rigid segments or beam elements."""
 
 import math
 from dataclasses import dataclass, replace
@@ -25,10 +25,10 @@ class SegmentedScene(CutScene):
 
         A o--1--@--2--@--3--@ ... --n--o B        @ a pin with a spring, n - 1 of them
 
-    With segments of length l/n, springs of EI n / l and the inertia of slender rods the chain comes
-    to the beam of Euler and Bernoulli as 1/n^2: its sag under an even load is too large by
-    0.80/n^2. Springs that are stiffer by 1 + pi^2/(12 n^2) mend that, and put its first frequency
-    up by 0.41/n^2 instead. Segments bend, and do not stretch.
+    With segments of length l/n, springs of EI n / l and the inertia of slender rods the chain
+    converges to the beam of Euler and Bernoulli as 1/n^2: its sag under an even load is too large
+    by 0.80/n^2. Springs stiffer by 1 + pi^2/(12 n^2) correct that, and raise its first frequency by
+    0.41/n^2 instead. Segments bend, and do not stretch.
     """
 
     corrected: bool = False
@@ -46,12 +46,12 @@ class SegmentedScene(CutScene):
         return tuple(f"{link}-{i}" for i in range(1, self.count + 1))
 
     def segments(self, link: str) -> tuple[str, ...]:
-        """The names of the segments of an elastic link, from its first pin on."""
+        """Names of the segments of an elastic link, from its first pin on."""
         return self.bodies(link)
 
     @cached_property
     def with_nodes(self) -> Scene:
-        """The elastic scene, its elastic links with their nodes as named points."""
+        """Scene with the nodes of its elastic links as named points."""
         links = dict(self.scene.links)
         for name in self.scene.elastic:
             link, line = links[name], line_of(self.scene, name)
@@ -63,7 +63,7 @@ class SegmentedScene(CutScene):
 
     @property
     def rigid(self) -> Scene:
-        """The scene that an engine of rigid bodies is given."""
+        """Scene for an engine of rigid bodies."""
         return self.given
 
     def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
@@ -73,7 +73,7 @@ class SegmentedScene(CutScene):
         return i, (x - i * piece, y)
 
     def _links(self, link: Link, line: LinkLine) -> dict[str, Link]:
-        """The segments, each in a frame of its own from its first point on."""
+        """Make the segments, each in a frame of its own from its first point on."""
         piece, nodes = line.length_m / self.count, self.nodes(link.name)
         points: list[dict[str, Point]] = [
             {nodes[i]: (0.0, 0.0), nodes[i + 1]: (piece, 0.0)} for i in range(self.count)
@@ -89,7 +89,7 @@ class SegmentedScene(CutScene):
         }
 
     def _springs(self, link: str) -> dict[str, SegmentSpring]:
-        """In all pins between segments."""
+        """Make the springs in all pins between segments."""
         own, line = self.scene.elastic[link], line_of(self.scene, link)
         names, nodes = self.segments(link), self.nodes(link)
         rate = segment_spring(own, line.length_m, self.count, corrected=self.corrected)
@@ -102,32 +102,31 @@ class SegmentedScene(CutScene):
 
 
 def segment_spring(own: ElasticLink, length_m: float, count: int, *, corrected: bool) -> float:
-    """The rate of a spring between two of ``count`` segments [N m/rad]."""
+    """Return the rate of a spring between two of ``count`` segments [N m/rad]."""
     rate = own.flexural_n_m2 * count / length_m
     return rate * (1.0 + math.pi**2 / (12.0 * count**2)) if corrected else rate
 
 
 HARDLY = 1e6
-"""EA l^2/EI of a beam that does not stretch, as of a strip l/290 high: pulled by F it is longer by
-1e-6 F l^3/EI, and what F bends it by across is 2e4 times that. More is no nearer: elements that can
-not stretch lock, by an error that grows with EA and falls with the fourth power of their number."""
+"""EA l^2/EI of a beam that does not stretch, as of a strip l/290 high: a force F lengthens it by
+1e-6 F l^3/EI, and bends it across by 2e4 times that. More gains nothing: elements that cannot
+stretch lock, by an error that grows with EA and falls with the fourth power of their number."""
 AT_NODE = 1e-9
-"""Of an element: how far from a node a place may be that it carries."""
+"""Largest distance from a node of a place that it carries, over the length of an element."""
 
 
 @dataclass(frozen=True)
 class BeamedScene(CutScene):
     """``scene`` with a beam of ``count`` elements for each of its elastic links. Raises
-    CrankcheckError as `CutScene`, for a link that does not bend, and for a point of one that is not
-    at a node.
+    CrankcheckError as `CutScene`, for a link that does not bend, and for a point of a link that is
+    not at a node.
 
     ::
 
         A o===1===@===2===@===3===@ ... ===n===o B        @ a node, whose angle is the tangent's
 
     An engine that has beams (absolute nodal coordinates) bends and stretches the elements itself,
-    so they come to the beam as 1/n^4. What is held by the nodes is told by the nodes: places and
-    tangents.
+    so they converge to the beam as 1/n^4. The nodes carry places and tangents.
     """
 
     def __post_init__(self) -> None:
@@ -141,8 +140,8 @@ class BeamedScene(CutScene):
 
     @cached_property
     def stretching(self) -> Scene:
-        """The elastic scene, its links as stiff along their line as their beams are: what a beam
-        that starts without the strain of its own axial force does is ring."""
+        """Elastic scene whose links are as stiff along their line as their beams: a beam that
+        starts without the strain of its own axial force rings."""
         elastic = {
             name: replace(own, axial_n=self.given.beams[name].axial_n)
             for name, own in self.scene.elastic.items()
@@ -164,7 +163,7 @@ class BeamedScene(CutScene):
         return i, (0.0, y)
 
     def _links(self, link: Link, line: LinkLine) -> dict[str, Link]:
-        """The nodes, each with its point and half of the mass of the elements beside it."""
+        """Make the nodes, each with its point and half of the mass of the adjacent elements."""
         points: list[dict[str, Point]] = [{node: (0.0, 0.0)} for node in self.nodes(link.name)]
         for name, place in link.points.items():
             if name not in line.pins:
@@ -191,7 +190,7 @@ class BeamedScene(CutScene):
         )
 
     def _middle(self, motion: Motion, link: str) -> Array:
-        """A node, or what is between two, by their tangents as well (the cubic of an element)."""
+        """Return a node, or the middle of an element's cubic by its two nodes' tangents."""
         middle = super()._middle(motion, link)
         if self.count % 2 == 0:
             return middle

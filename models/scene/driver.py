@@ -1,4 +1,4 @@
-"""The driver: let go, held to a speed by a torque, and the coordinate of its joint over time."""
+"""Driver: free motion, speed held by a controller, and the coordinate of its joint over time."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscill
 from models.scene.loads import Load, Over
 
 LONGEST_S = 1e6
-"""For which a mechanism may be left free [s]."""
+"""Longest free motion [s]."""
 
 
 def check_duration(name: str, until_s: float) -> None:
-    """Raises CrankcheckError for a time [s] for which the scene of a name cannot be left free."""
+    """Refuse a duration [s] of free motion that is not in range. Raises CrankcheckError."""
     if not 0.0 < until_s <= LONGEST_S:  # or no number
         raise CrankcheckError(
             f"{name}: free for {until_s:g} s; give a time above 0, of at most {LONGEST_S:g} s"
@@ -30,7 +30,7 @@ def check_duration(name: str, until_s: float) -> None:
 
 
 def check_within(scene: Scene, time_s: Array, until_s: float) -> None:
-    """Raises CrankcheckError for times [s] at which a motion that was let go is not known."""
+    """Refuse times [s] outside the integrated free motion. Raises CrankcheckError."""
     if time_s.min() < 0.0 or time_s.max() > until_s * (1.0 + 1e-12):
         raise CrankcheckError(
             f"{scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let go at 0, "
@@ -40,11 +40,11 @@ def check_within(scene: Scene, time_s: Array, until_s: float) -> None:
 
 @dataclass(frozen=True)
 class Released(Law):
-    """A driver that is let go at time 0 at an angle, with a speed, which may be 0.
+    """A driver released at time 0 at an angle, with a speed, which may be 0.
 
-    What it does then follows from masses and forces (`analytic.free`), and not from a law: `at`
-    gives the tangent of the start, of which only time 0 belongs to the motion. Its "turn" is the
-    time ``duration_s`` for which the scene is left free.
+    Its free motion follows from masses and forces (`analytic.free`), not from a law: `at` gives the
+    tangent of the start, of which only time 0 belongs to the motion. Its "turn" is the duration
+    ``duration_s`` of the free motion.
     """
 
     is_free: ClassVar[bool] = True
@@ -67,7 +67,7 @@ class Released(Law):
 
     @property
     def peak_speed_rad_s(self) -> float:
-        """The speed of the start; of a start from rest, one radian in the whole duration."""
+        """Speed at the start; from rest, one radian in the whole duration."""
         return abs(self.speed_rad_s) or 1.0 / self.duration_s
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
@@ -80,17 +80,17 @@ class Released(Law):
 
 
 TURNS = 10.0
-"""Of its own law, for which a driven mechanism is left free where nothing else is said."""
+"""Turns by its own law for which a driven mechanism moves freely by default."""
 
 
 def let_go(scene: Scene, duration_s: float | None = None) -> Scene:
-    """The scene with its driver let go, at the angle and with the speed that its law has at time 0.
+    """Return the scene with its driver released, at the angle and speed of its law at time 0.
 
     Parameters
     ----------
     duration_s : float or None
-        For how long [s]; None for that of a scene whose driver is let go already, and for the time
-        of 10 turns of a driver that follows a law.
+        Duration [s]; None keeps the duration of a released driver, and takes the time of 10 turns
+        of a driver that follows a law.
     """
     law = scene.driver.law
     if isinstance(law, Released):
@@ -108,15 +108,15 @@ def _with_law(scene: Scene, law: Law) -> Scene:
 
 @dataclass(frozen=True)
 class Controlled(ConstantSpeed):
-    """The speed that is asked for, and the gains kP [N m/rad] and kD [N m s/rad]. Raises ValueError
-    for gains below 0.
+    """Set speed, and the gains kP [N m/rad] and kD [N m s/rad]. Raises ValueError for gains below
+    0.
 
-    The torque is what the rigid mechanism needs at that speed, less what the driver is ahead of it,
-    in angle and in speed, times the gains of a controller::
+    The torque is the rigid mechanism's driving torque at that speed, less the driver's lead in
+    angle and in speed times the gains of a controller::
 
         tau = tau_d(t) - kP (theta - theta_d(t)) - kD (theta' - theta_d')
 
-    A rigid mechanism that starts on its way keeps to it; with elastic links the driver gives way,
+    A rigid mechanism that starts on its course stays on it; with elastic links the driver yields,
     and takes energy out of their vibration. Source: Thesis on vibration of planar mechanisms with
     elastic links (2018), control of the crank.
     """
@@ -133,8 +133,8 @@ class Controlled(ConstantSpeed):
             )
 
     def loads(self, link: str, needed: Characteristic) -> Iterator[Load]:
-        """The torque of the controller as loads on the driver, ``link``, that is let go: over time
-        what is ``needed``; and the gains, over time, over the driver's angle and over its angular
+        """Yield the controller's torque as loads on the released driver ``link``: over time the
+        ``needed`` torque; and the gains, over time, over the driver's angle and over its angular
         velocity."""
         kp, kd, speed = self.kp_n_m_rad, self.kd_n_m_s, self.speed_rad_s
         parts: list[tuple[str, Over, Characteristic]] = [("needed", "time", needed)]
@@ -154,8 +154,8 @@ Course = tuple[Array, Array, Array]
 
 
 def driver_course(scene: Scene, motion: Motion) -> Course:
-    """What the driver did: its angle, the angle of its link against its base, or the displacement
-    of its slider. KeyError where the motion has not what that is worked out of."""
+    """Return the driver's course: its angle, the angle of its link against its base, or the
+    displacement of its slider. Raises KeyError where the motion lacks the bodies for it."""
     driver = scene.driver
     if driver.slider is not None:
         slider = motion.sliders[driver.slider]
@@ -168,7 +168,7 @@ def driver_course(scene: Scene, motion: Motion) -> Course:
 
 
 def driver_place(scene: Scene, motion: Motion) -> Array | None:
-    """The driver's coordinate [rad or m], (T,); None where the motion does not tell it."""
+    """Return the driver's coordinate [rad or m], (T,); None where the motion lacks it."""
     try:
         return driver_course(scene, motion)[0]
     except KeyError:
@@ -176,7 +176,7 @@ def driver_place(scene: Scene, motion: Motion) -> Array | None:
 
 
 def driver_rates(scene: Scene, state: State) -> tuple[float, float]:
-    """The rate and the second rate of the driver's coordinate in a state."""
+    """Return the rate and the second rate of the driver's coordinate in a state."""
     driver = scene.driver
     if driver.slider is not None:  # of which a state has no acceleration
         return state.speed[driver.slider], float(driver.law.at(np.array([state.time_s]))[2][0])
@@ -187,7 +187,7 @@ def driver_rates(scene: Scene, state: State) -> tuple[float, float]:
 
 
 def driver_place_in(scene: Scene, state: State) -> float:
-    """The driver's coordinate in a state [rad or m]."""
+    """Return the driver's coordinate in a state [rad or m]."""
     driver = scene.driver
     if driver.slider is not None:
         return state.displacement[driver.slider]
@@ -195,29 +195,29 @@ def driver_place_in(scene: Scene, state: State) -> float:
 
 
 def place_in_words(place: float, unit: str, degrees: str = ".6g") -> str:
-    """A driver's coordinate [rad or m] as it is told, by its ``unit``; angles formatted so."""
+    """Format a driver's coordinate [rad or m] by its ``unit``; angles by ``degrees``."""
     return f"{place:.6g} m" if unit == "m" else f"{math.degrees(place):{degrees}} deg"
 
 
 def driver_unit(scene: Scene) -> str:
-    """Of `driver_shown`: deg or m."""
+    """Return the unit of `driver_shown`: deg or m."""
     return "deg" if scene.driver.slider is None else "m"
 
 
 def driver_axis(scene: Scene) -> str:
-    """What stands along an axis of `driver_shown`."""
+    """Return the label of an axis of `driver_shown`."""
     what = "angle" if scene.driver.slider is None else "place"
     return f"{what} of {scene.driver.joint} [{driver_unit(scene)}]"
 
 
 def driver_shown(scene: Scene, motion: Motion) -> Array:
-    """The driver's coordinate over a motion [deg or m], (T,). KeyError as `driver_course`."""
+    """Return the driver's coordinate in a motion [deg or m], (T,). KeyError as `driver_course`."""
     place = driver_course(scene, motion)[0]
     return place if scene.driver.slider is not None else np.asarray(np.degrees(place))
 
 
 def driver_stands(scene: Scene, motion: Motion, index: int) -> str:
-    """Where the driver is at a sample, as in "crank at 30 deg"."""
+    """Return the driver's position at a sample, as in "crank at 30 deg"."""
     value = float(driver_shown(scene, motion)[index])
     if scene.driver.slider is not None:
         return f"{scene.driver.joint} at {value:.3g} m"
@@ -226,23 +226,23 @@ def driver_stands(scene: Scene, motion: Motion, index: int) -> str:
 
 
 ROUNDING = 1e-12
-"""Of a square: an angle in degrees that is rounded is still the end of a swing."""
+"""Rounding of a square: a rounded angle in degrees is still the end of a swing."""
 
 
 def passing(
     law: Law, theta_rad: float, *, clockwise: bool = False, slides: bool = False
 ) -> tuple[float, float]:
-    """Angular velocity [rad/s] and acceleration [rad/s^2] of the driver at an angle; where it
-    ``slides``, speed [m/s] and acceleration [m/s^2] at a displacement [m].
+    """Return the angular velocity [rad/s] and acceleration [rad/s^2] of the driver at an angle;
+    where it ``slides``, speed [m/s] and acceleration [m/s^2] at a displacement [m].
 
     A start from rest is taken after its rise. Where the law passes an angle both ways, an
-    oscillating one is taken counter-clockwise and an accelerating one for the first time;
-    ``clockwise`` takes the way of falling angle. A driver of one speed is then turned round.
+    oscillating driver is taken counter-clockwise and an accelerating driver at its first passage;
+    ``clockwise`` takes the way of falling angle. A driver of constant speed is then turned round.
 
     Raises
     ------
     ValueError
-        The law does not come to that angle, or not that way; the message names what would do.
+        The law does not reach that angle, or not that way; the message names a remedy.
     """
     if isinstance(law, Oscillating):
         return _swinging(law, theta_rad, clockwise=clockwise, slides=slides)
@@ -272,7 +272,7 @@ def _swinging(
 def _accelerating(
     law: Accelerating, theta: float, *, clockwise: bool, slides: bool
 ) -> tuple[float, float]:
-    """From omega^2 = speed^2 + 2 alpha (theta - start), at a time that is not before 0."""
+    """Solve omega^2 = speed^2 + 2 alpha (theta - start), at a time that is not before 0."""
     start, alpha, turned = law.speed_rad_s, law.acceleration_rad_s2, theta - law.start_rad
     square = start**2 + 2.0 * alpha * turned
     size = math.sqrt(max(square, 0.0)) if turned else abs(start)

@@ -1,14 +1,14 @@
-"""Elastic links: what a link between two pins needs to bend, to stretch, or both.
+"""Elastic links: properties of a link between two pins that bends, stretches, or both.
 
 The link is a slender uniform beam (Euler and Bernoulli: no shear, no rotary inertia). Across the
-line that joins its pins it bends with EI, along it it stretches with EA::
+line that joins its pins it bends with EI, along that line it stretches with EA::
 
         .-- w(x) --.
       A ------------ B        w(0) = w(l) = 0: the line always goes through both pins
       0      x      l         u(0) = 0, and the other pin is u(l) further away
 
 Source: Thesis on vibration of planar mechanisms with elastic links (2018), chapters 2 and 3; the
-shortening of a bent link by half the integral of w'^2, which is left out there, is kept here.
+shortening of a bent link by half the integral of w'^2, left out there, is kept here.
 """
 
 import math
@@ -16,16 +16,16 @@ from dataclasses import dataclass
 from typing import Literal
 
 Shape = Literal["quasi-static", "straight", "periodic"]
-"""What an elastic mechanism starts with: the deflection that its motion as a rigid one asks for,
-none at all, which rings, or that of the motion which comes back after a period."""
+"""Start of an elastic mechanism: the deflection for its rigid motion, none (which rings), or the
+deflection of the motion that repeats after a period."""
 
 
 @dataclass(frozen=True)
 class ElasticLink:
     """``flexural_n_m2`` is EI and ``axial_n`` EA, infinite where the link does not bend, or does
-    not stretch; ``damping_s`` is by how much damping is stiffness, for rates (Kelvin and Voigt).
-    ``height_m`` is that of the section in the plane of the motion, where it is known. The mass is
-    that of the link, spread evenly between its pins."""
+    not stretch; ``damping_s`` is the ratio of damping to stiffness, for rates (Kelvin and Voigt).
+    ``height_m`` is the height of the section in the plane of the motion, if known. The mass of the
+    link is spread evenly between its pins."""
 
     link: str
     flexural_n_m2: float = math.inf
@@ -42,23 +42,23 @@ class ElasticLink:
         return math.isfinite(self.axial_n)
 
     def bending_rad_s(self, length_m: float, density_kg_m: float, mode: int = 1) -> float:
-        """The angular frequency of a mode across, between two pins that far apart [m], with so much
-        mass per length [kg/m]."""
+        """Return the angular frequency of a mode across, between two pins that far apart [m], with
+        so much mass per length [kg/m]."""
         return (mode * math.pi / length_m) ** 2 * math.sqrt(self.flexural_n_m2 / density_kg_m)
 
     def axial_rad_s(self, length_m: float, density_kg_m: float, mode: int = 1) -> float:
-        """That of a mode along, one end held and the other free."""
+        """Return the angular frequency of a mode along, one end fixed and the other free."""
         return (mode - 0.5) * math.pi / length_m * math.sqrt(self.axial_n / density_kg_m)
 
 
 @dataclass(frozen=True)
 class Beam:
-    """Elements of one length between ``nodes``, links of a scene with a point each, whose angle is
-    that of the beam's tangent; they have the mass of the beam in equal parts, the two at its ends
-    half of one, and no inertia of their own.
+    """Elements of one length between ``nodes``: links of a scene with a point each, at the angle of
+    the beam's tangent. They have the mass of the beam in equal parts, the two at its ends half of
+    one, and no inertia of their own.
 
     Straight at rest, ``length_m`` long, of ``density_kg_m`` per length [kg/m]; ``flexural_n_m2`` is
-    EI and ``axial_n`` EA; ``damping_s`` is by how much damping is stiffness, for rates.
+    EI and ``axial_n`` EA; ``damping_s`` is the ratio of damping to stiffness, for rates.
     """
 
     name: str
@@ -70,8 +70,8 @@ class Beam:
     damping_s: float = 0.0
 
     def locked(self, deflection_m: float) -> float:
-        """By which share cubic elements bend too little to a deflection: they can not bend without
-        stretching somewhere, the less so the more they resist that.
+        """Return the relative lack of bending of cubic elements at a deflection: they cannot bend
+        without stretching somewhere, and bend less the more they resist that.
 
         Fitted (exudyn 1.13.6; n = 2 and 4, EA l^2/EI of 1e5 to 1e8) to a third of itself.
         """
@@ -79,13 +79,13 @@ class Beam:
         return 0.04 * stiff / self.elements**5
 
     def between(self) -> float:
-        """By which share of its deflection the middle of a beam is off the cubic of the element
-        that it lies in, where no node is: the fourth derivative of a half-wave, h^4/384 of it."""
+        """Return the relative error of the middle of a beam by the cubic of the element around it,
+        where it is no node: the fourth derivative of a half-wave, h^4/384 of it."""
         return (math.pi / self.elements) ** 4 / 384.0 if self.elements % 2 else 0.0
 
     def pushed(self, deflection_m: float) -> float:
-        """What it starts off by, bent so far: acceleration of its ends over its length [1/s^2].
-        Nodes that stand on the true line leave elements stretched, by (w/l)^2/n^4, until they have
+        """Return the false start of a beam bent so far: acceleration of its ends over its length
+        [1/s^2]. Nodes on the true line leave elements stretched, by (w/l)^2/n^4, until they have
         moved.
 
         Fitted (exudyn 1.13.6; n = 2 to 5, EA l^2/EI of 1e5 and 1e6, frequencies of 3.5 to 20.5
@@ -100,5 +100,5 @@ class Beam:
 
     @property
     def element_m(self) -> float:
-        """The length of an element."""
+        """Length of an element."""
         return self.length_m / self.elements

@@ -1,8 +1,8 @@
-"""Scenes that run into trouble as one of their numbers does: the shapes behind the hard cases.
+"""Scenes that become singular as one of their numbers changes: the shapes behind the hard cases.
 
 All links are slender rods of 1 kg/m, all drivers turn at 10 rad/s unless said otherwise, or swing
-at that circular frequency. Crank angles start off round numbers, so that no sample of a usual step
-falls on a singular position.
+at that circular frequency. Crank angles do not start at round numbers, so that no sample of a usual
+step falls on a singular position.
 """
 
 import math
@@ -124,7 +124,7 @@ on = "lever"
 
 
 def double_parallelogram(name: str, *, source: str) -> Scene:
-    """A parallelogram with a third rocker: by count it cannot move, and it does."""
+    """A parallelogram with a third rocker: it moves, although its mobility by count is 0."""
     return _scene(
         name,
         source,
@@ -171,7 +171,7 @@ plate = {{ points = {{ C = [0.0, 0.0], E = [0.25, -0.05], F = [0.12, 0.18] }} }}
 
 
 def _turning(start_deg: float = START_DEG, speed_rad_s: float = SPEED_RAD_S) -> str:
-    """A crank that turns, in the words of a scene file."""
+    """Text of a turning crank for a scene file."""
     return f"""
 link = "crank"
 speed_rad_s = {speed_rad_s!r}
@@ -180,7 +180,7 @@ start_deg = {start_deg!r}
 
 
 def _swinging(joint: str, unit: str, centre: float, amplitude: float) -> str:
-    """A joint whose coordinate, an angle or a displacement, goes to and fro, from its centre on."""
+    """Text of a joint whose coordinate, angle or displacement, oscillates from its centre on."""
     return f"""
 {joint}
 law = "oscillating"
@@ -191,7 +191,7 @@ frequency_rad_s = {SPEED_RAD_S!r}
 
 
 def _scene(name: str, source: str, ground: str, bodies: str, driver: str = _turning()) -> Scene:
-    """The scene of a driver and of bodies in the words of a scene file."""
+    """Scene of a driver and of bodies in the text of a scene file."""
     return parse_scene(
         f"""
 name = "{name}"
@@ -212,8 +212,8 @@ SOURCE = "IFToMM Library of Computational Benchmark Problems, A02: N-four-bar me
 class WindowChain:
     """A chain of ``count`` windows, N; 0 is the first rocker alone, a pendulum.
 
-    ``length_m`` and ``mass_kg`` are those of every rod; gravity [m/s^2] acts downwards; at time 0
-    the rockers stand upright and B0 moves along x with ``speed_m_s``. Raises CrankcheckError for
+    ``length_m`` and ``mass_kg`` belong to each rod; gravity [m/s^2] acts downwards; at time 0 the
+    rockers stand upright and B0 moves along x with ``speed_m_s``. Raises CrankcheckError for
     numbers that make no chain.
 
     ::
@@ -222,7 +222,7 @@ class WindowChain:
             |       |       |            |         N + 1 rockers
             A0      A1      A2           AN        on the ground, one length apart
 
-    All 2 N + 1 rods are alike. Where they lie flat every window is at a change point, and the
+    All 2 N + 1 rods are alike. Every window of the flat chain is at a change point, and the
     mobility rises from 1 to N + 1 for that instant. Source: problem A02, "N-four-bar mechanism", of
     the Library of Computational Benchmark Problems of the IFToMM Technical Committee for Multibody
     Dynamics, which has N = 40, 20 s, 9.81 m/s^2 downwards, and a start upright with 1 m/s of B0
@@ -265,11 +265,11 @@ class WindowChain:
         return tuple(f"coupler{i}" for i in range(self.count))
 
     def scene(self) -> Scene:
-        """The chain, to be left free; its driver has the place and the speed of the start.
+        """Return the chain for free motion; its driver has the position and speed of the start.
 
-        Driven at rocker0 by `analytic.kinematics.solve` it goes through the flat position up to
-        N = 6, one of 7 is refused there, and longer ones at any angle: each dyad is in a change
-        point with all before it, and from the eighth on that is lost in their rounding.
+        Driven at rocker0 by `analytic.kinematics.solve` it goes through the flat position up to N =
+        6, N = 7 is refused there, and longer chains at any angle: each dyad is in a change point
+        with all before it, and rounding hides that from the eighth on.
         """
         links = [self._rod("rocker0", "A0", "B0")]
         for i, coupler in enumerate(self.couplers()):

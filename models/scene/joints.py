@@ -1,4 +1,4 @@
-"""The joints of a scene: which bodies there are, what ties them to one another, where they stand.
+"""Joints of a scene: its bodies, the pairs between them, and their frames.
 
 ::
 
@@ -53,7 +53,7 @@ class Joints:
 
     @property
     def slides(self) -> tuple[Prism | Slot, ...]:
-        """Everything that runs on a line."""
+        """All joints with a line."""
         return (*self.prisms, *self.slots)
 
 
@@ -63,7 +63,7 @@ def block_name(slider: Slider) -> str:
 
 
 def blocks(scene: Scene) -> dict[str, Slider]:
-    """The slider blocks that are bodies, those with a mass, by body name."""
+    """Slider blocks that have a mass, and are bodies, by body name."""
     return {block_name(s): s for s in scene.sliders.values() if s.link is None and s.mass_kg > 0.0}
 
 
@@ -89,8 +89,8 @@ def _carriers(same: Same) -> Mapping[str, tuple[str, ...]]:
 
 
 def joined_at(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """Every pin with its bodies: the ground first, then links, then slider blocks, those without
-    mass as well."""
+    """Return every pin with its bodies: the ground first, then links, then slider blocks, with mass
+    or without."""
     names_by_point = {point: list(names) for point, names in scene.pins.items()}
     for slider in scene.sliders.values():
         if slider.link is None:
@@ -99,10 +99,9 @@ def joined_at(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def has_loops(scene: Scene) -> bool:
-    """Whether some joint closes a loop: there are more pairs than bodies.
+    """True if some joint closes a loop: there are more pairs than bodies.
 
-    In an open chain the coordinates of the joints say where all is, and an engine that has these
-    solves no constraint.
+    An open chain is placed by its joint coordinates, and an engine with these solves no constraint.
     """
     pairs = sum(len(names) - 1 for names in joined_at(scene).values()) + len(scene.sliders)
     count = len(scene.links) + sum(slider.link is None for slider in scene.sliders.values())
@@ -110,7 +109,7 @@ def has_loops(scene: Scene) -> bool:
 
 
 def joints(scene: Scene) -> Joints:
-    """The joints of the scene; a slot has no bodies where none but its guide carries the point."""
+    """Return the joints of the scene; a slot has no bodies if only its guide carries the point."""
     return _joints(Same(scene))
 
 
@@ -153,7 +152,7 @@ def local_point(scene: Scene, body: str, point: str) -> Point:
 
 
 def sliding_body(slider: Slider) -> str:
-    """The body that a slider is: its link, or a block of its own, with mass or without."""
+    """Return the body of a slider: its link, or a block of its own, with mass or without."""
     return slider.link or block_name(slider)
 
 
@@ -180,7 +179,7 @@ End = tuple[str, Point]
 def line_ends(scene: Scene, spring: LineSpring) -> tuple[End, End]:
     """The two ends of a spring between points, each on the first body that carries the point.
 
-    Raises EngineError for a point that only a slider block without mass has, which is no body.
+    Raises EngineError for a point that only a slider block without mass (no body) has.
     """
     first, second = spring.points
     return _end(scene, spring, first), _end(scene, spring, second)
@@ -197,8 +196,8 @@ def _end(scene: Scene, spring: LineSpring, point: str) -> End:
 
 
 def whole_turns(spring: PinSpring, angle_rad: float) -> float:
-    """The whole turns [rad] to be added to the angle of the second body less that of the first at
-    the start, so that the q of a spring in a pin begins within half a turn of its free angle."""
+    """Return the whole turns [rad] to add to the second body's angle less the first's at the start,
+    so that the q of a spring in a pin begins within half a turn of its free angle."""
     return -math.tau * round((angle_rad - spring.free) / math.tau)
 
 
@@ -207,7 +206,7 @@ class Frame:
     """A body's frame: origin [m], angle [rad], velocity of the origin [m/s], omega [rad/s].
 
     The velocities may belong to a later (or earlier) instant than the position; ``ahead_rad`` is
-    how far the body turns until then.
+    the turn of the body until then.
     """
 
     origin: Point
@@ -237,8 +236,8 @@ FIXED = Frame((0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
 def frames(scene: Scene, state: State, delay_s: float = 0.0) -> dict[str, Frame]:
     """The frames of the ground, the links and the blocks with mass at ``state``.
 
-    Velocities are those of ``delay_s`` later, as engines want them that step positions and
-    velocities by turns; accurate to the second order of the delay.
+    Velocities belong to ``delay_s`` later, for engines that step positions and velocities in turn;
+    accurate to the second order of the delay.
     """
     placed = {GROUND: FIXED}
     for link in scene.links.values():
@@ -281,7 +280,7 @@ def along(slider: Slider, guide: Frame, place: Point, velocity: Point) -> tuple[
 
 
 def inertia_scale(scene: Scene) -> float:
-    """Sum of m L^2 + I over the bodies [kg m^2]: what a drive has to be heavy against."""
+    """Sum of m L^2 + I over the bodies [kg m^2]: the scale of a drive's inertia."""
     total = 0.0  # not `sum`, which adds otherwise from Python 3.12 on
     bodies: list[Link | Slider] = [*scene.links.values(), *scene.sliders.values()]
     for body in bodies:
@@ -290,7 +289,7 @@ def inertia_scale(scene: Scene) -> float:
 
 
 def mass_ratio(scene: Scene) -> float:
-    """The mass of the heaviest body over that of the lightest that has one."""
+    """Mass of the heaviest body over the mass of the lightest that has one."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     given = [mass for mass in masses if mass > 0.0]

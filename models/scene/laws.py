@@ -1,4 +1,4 @@
-"""How the driver moves: its angle, angular velocity and acceleration as functions of time."""
+"""Laws of the driver: its angle, angular velocity and acceleration as functions of time."""
 
 from __future__ import annotations
 
@@ -12,23 +12,22 @@ import numpy as np
 from models.array import Array
 
 MOST_TURNS = 1e7
-"""After so many, 9 digits of the angle within a turn are left: times beyond are dates, or in
+"""Limit at which 9 digits of the angle within a turn are left: times beyond it are dates, or in
 another unit."""
 
 
 class Law(ABC):
     """A smooth law of motion of the driver. Raises ValueError for numbers that drive nothing.
 
-    Its coordinate is an angle, in rad as the names say; of a slider that is driven it is the
-    displacement, in m, and the same names stand for m, m/s and m/s^2 (`models.scene.Driver`).
-    ``period_s`` is what one "turn" of a run means for the law, and ``peak_speed_rad_s`` the
-    speed that errors of velocity are divided by; both are positive. ``offset_rad``,
-    ``phase_rad`` and ``fastest_rad_s``, the constant parts of the angle and of the phase and the
-    fastest circular frequency in the law, are what the rounding of the law grows with.
+    Its coordinate is an angle in rad; for a driven slider it is the displacement in m, and the same
+    names stand for m, m/s and m/s^2 (`models.scene.Driver`). ``period_s`` is the time of one "turn"
+    of a run, and ``peak_speed_rad_s`` the scale of velocity errors; both are positive. The rounding
+    of the law grows with ``offset_rad``, ``phase_rad`` and ``fastest_rad_s``: the constant parts of
+    the angle and of the phase, and the fastest circular frequency.
     """
 
     is_free: ClassVar[bool] = False
-    """Whether nothing drives it after the start."""
+    """True if nothing drives it after the start."""
 
     def __post_init__(self) -> None:
         for name, number in vars(self).items():
@@ -61,11 +60,11 @@ class Law(ABC):
 
     @property
     def kinks_s(self) -> tuple[float, ...]:
-        """The instants [s] at which it is not smooth: it changes its formula."""
+        """Instants [s] at which it is not smooth: its formula changes."""
         return ()
 
     def fastest_until(self, time_s: float) -> float:
-        """The largest speed from the start to a time [rad/s]: the peak, where it stays."""
+        """Return the largest speed from the start to a time [rad/s]; by default the peak."""
         return self.peak_speed_rad_s
 
     @abstractmethod
@@ -79,10 +78,10 @@ class Law(ABC):
 
 @dataclass(frozen=True)
 class _ToSpeed(Law):
-    """A law that starts at an angle and comes to one speed.
+    """A law that starts at an angle and reaches one speed.
 
-    ``travel_rad`` is the way that counts as one "turn" of a run: a whole turn, where a slider is
-    not driven, for which there is none.
+    ``travel_rad`` is the travel that counts as one "turn" of a run: a whole turn, except for a
+    driven slider, which has none.
     """
 
     start_rad: float
@@ -215,7 +214,7 @@ class Accelerating(_ToSpeed):
 
     @property
     def _first_turn(self) -> tuple[float, float]:
-        """How long it takes [s], and the largest speed within it [rad/s]."""
+        """Its duration [s], and the largest speed within it [rad/s]."""
         speed, rate = abs(self.speed_rad_s), abs(self.acceleration_rad_s2)
         turn = self.travel_rad
         slows_down = self.speed_rad_s * self.acceleration_rad_s2 < 0.0

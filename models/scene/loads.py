@@ -1,4 +1,4 @@
-"""Loads, springs with dampers beside them, and friction in joints."""
+"""Loads, springs with parallel dampers, and friction in joints."""
 
 import math
 from collections.abc import Mapping
@@ -26,17 +26,13 @@ UNITS: dict[str, str] = {
 class Load:
     """A force at a point of a body, or a torque on it (``point`` is None).
 
-    ``body`` is a link, or a slider's block (`models.scene.joints.block_name`). The force points
-    along ``direction_rad`` in the frame of the ``ground`` or of the ``body`` where its magnitude is
-    positive; a positive torque is counter-clockwise. ``slider`` is that whose displacement, speed
-    or stroke counts: ``forward`` is where it moves along its direction. Over ``omega`` it follows
-    the angular velocity of ``body``.
-
-    A load has a direction, in the ground's frame or in that of its body, and a magnitude, which is
-    constant or follows time, the driver's angle, the displacement or the speed of a slider, or the
-    angular velocity of the link that it turns, by a `Characteristic`: a motor pulls by its speed.
-    It may act on one stroke of a slider only: a cutting tool works on the way out. Two loads at one
-    point add up.
+    ``body`` is a link, or a slider's block (`models.scene.joints.block_name`). A force of positive
+    magnitude points along ``direction_rad`` in the frame of the ``ground`` or of the ``body``; a
+    positive torque is counter-clockwise. The magnitude, a `Characteristic`, is constant or follows
+    time, the driver's angle, the displacement or the speed of ``slider``, or, over ``omega``, the
+    angular velocity of ``body``: a motor pulls by its speed. The load may act on one stroke of
+    ``slider`` only (a cutting tool works on the way out): ``forward`` is motion along its
+    direction. Two loads at one point add up.
     """
 
     name: str
@@ -58,12 +54,12 @@ class Load:
             Times [s], driver angles [rad], displacements of the slider [m], its speeds [m/s] or
             angular velocities of the body [rad/s], as ``over`` says.
         speed : Array or None
-            Speeds of the slider [m/s], where it acts on one stroke only.
+            Speeds of the slider [m/s], for a load on one stroke only.
 
         Raises
         ------
         CrankcheckError
-            A table that does not reach as far.
+            ``x`` beyond the end of a table.
         """
         try:
             magnitude = self.characteristic.at(x)
@@ -80,13 +76,13 @@ class Load:
         sliders: Mapping[str, tuple[float, float]],
         omega_rad_s: float,
     ) -> float:
-        """The magnitude in one state: the driver at an angle [rad], sliders at displacements [m]
-        with speeds [m/s], the body at an angular velocity.
+        """Return the magnitude in one state: the driver at an angle [rad], sliders at displacements
+        [m] with speeds [m/s], the body at an angular velocity.
 
-        Past its end a table over a displacement or a speed keeps its last value: an engine whose
-        slider goes further than the mechanism can is to be judged by where it goes.
+        A table over a displacement or a speed keeps its last value past its end: an engine whose
+        slider moves too far is judged by its displacement.
 
-        Raises CrankcheckError as `magnitude`, but for that.
+        Raises CrankcheckError as `magnitude`, except for that.
         """
         displacement, speed = (0.0, 0.0) if self.slider is None else sliders[self.slider]
         near = self.characteristic.nearest(displacement)
@@ -104,7 +100,7 @@ class Load:
             raise self._beyond(error) from None
 
     def _beyond(self, error: ValueError) -> CrankcheckError:
-        """That the characteristic does not reach as far."""
+        """Error of a place beyond the characteristic."""
         return CrankcheckError(
             f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
         )
@@ -112,7 +108,7 @@ class Load:
     def uncertain(
         self, x: Array, by: Array | float, speed: Array | None, speed_by: Array | float
     ) -> Array:
-        """A bound on the error of the magnitude where ``x`` and the speed are wrong by as much."""
+        """Return a bound on the error of the magnitude, by the errors of ``x`` and the speed."""
         own = self.characteristic
         error = np.asarray(own.steepest(x, by) * by + own.rounding(x))
         if self.stroke == "both" or speed is None:
@@ -123,7 +119,7 @@ class Load:
 
 @dataclass(frozen=True)
 class _Elastic:
-    """What every spring has: ``rate`` [N/m or N m/rad], ``damping`` [N s/m or N m s], and ``free``,
+    """Base of all springs: ``rate`` [N/m or N m/rad], ``damping`` [N s/m or N m s], and ``free``,
     the q [m or rad] at which it is slack.
 
     With q the distance of the points [m], the angle of the second body against the first [rad], or
@@ -131,7 +127,7 @@ class _Elastic:
 
         rate (q - free) + damping q'                 [N], or [N m] in a pin
 
-    and keeps the energy rate (q - free)^2 / 2. A rate of 0 leaves a damper, a damping of 0 a
+    and stores the energy rate (q - free)^2 / 2. A rate of 0 makes a damper, a damping of 0 a
     spring.
     """
 
@@ -141,26 +137,26 @@ class _Elastic:
     free: float
 
     def pull(self, q: float, speed: float) -> float:
-        """What it pulls q back with [N or N m]."""
+        """Return the force or torque that pulls q back [N or N m]."""
         return self.rate * (q - self.free) + self.damping * speed
 
     def energy(self, q: float) -> float:
-        """What it keeps [J]."""
+        """Return the stored energy [J]."""
         return 0.5 * self.rate * (q - self.free) ** 2
 
 
 @dataclass(frozen=True)
 class LineSpring(_Elastic):
-    """Between two named points. Each end is fixed to one body that has the point: to the ground,
-    else to the first link in the order of the scene, else to a block."""
+    """A spring between two named points. Each end is fixed to one body that has the point: to the
+    ground, else to the first link in the order of the scene, else to a block."""
 
     points: tuple[str, str]
 
 
 @dataclass(frozen=True)
 class PinSpring(_Elastic):
-    """In a pin, between two of the bodies that meet there; q is the angle of the second less that
-    of the first: at the start within half a turn of ``free``, and counted on from there."""
+    """A spring in a pin, between two of its bodies; q is the angle of the second less the angle of
+    the first: at the start within half a turn of ``free``, and continuous from there."""
 
     point: str
     bodies: tuple[str, str]
@@ -168,12 +164,12 @@ class PinSpring(_Elastic):
 
 @dataclass(frozen=True)
 class SegmentSpring(PinSpring):
-    """In a pin between two segments of an elastic link (`models.scene.cut_scenes`)."""
+    """A spring in a pin between two segments of an elastic link (`models.scene.cut_scenes`)."""
 
 
 @dataclass(frozen=True)
 class SlideSpring(_Elastic):
-    """Along the line of a slider, between what slides and the body that the line is on."""
+    """A spring along the line of a slider, between the sliding body and the body with the line."""
 
     slider: str
 
@@ -186,9 +182,9 @@ class CoulombFriction:
     """Friction of ``mu`` times the normal force in the pin or slider ``joint``; in a pin it acts at
     ``radius_m`` [m] from its centre, in a slider ``radius_m`` is 0.
 
-    A joint is named as in the scene's file: a slider by its own name, a pin by its point. Where a
-    slider has the name of its point, that name is the slider; another name for the slider leaves
-    that of the point to the pin.
+    A joint is named as in the scene's file: a slider by its own name, a pin by its point. If a
+    slider has the name of its point, the name means the slider; a slider with another name leaves
+    the point's name to the pin.
     """
 
     joint: str
@@ -201,16 +197,16 @@ class CoulombFriction:
 
         A pin with play touches its bore along one line. The reaction leans from the normal there by
         the angle of friction, atan(mu), and passes the centre at r sin(atan(mu)): mu r is larger by
-        1/cos of that angle. A couple of mu' r times the reaction, as of pins that are run in, is
-        that of mu = tan(asin(mu')).
+        1/cos of that angle. A couple of mu' r times the reaction, as in run-in pins, needs mu =
+        tan(asin(mu')).
         """
         return self.radius_m * self.mu / math.hypot(1.0, self.mu)
 
 
 @dataclass(frozen=True)
 class ConstantFriction:
-    """Friction in the pin or slider ``joint`` that is ``size`` against the motion, whatever the
-    joint bears: a torque [N m] in a pin, a force [N] in a slider."""
+    """Friction of ``size`` against the motion in the pin or slider ``joint``, independent of the
+    reaction: a torque [N m] in a pin, a force [N] in a slider."""
 
     joint: str
     size: float

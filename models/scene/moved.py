@@ -1,6 +1,6 @@
-"""The same mechanism somewhere else: turned, moved, mirrored or scaled, with what acts on it.
+"""Rigid motions and scalings of a scene: turned, moved, mirrored or scaled with its loads.
 
-A mechanism does not know where it stands, so errors as pure numbers must not change either.
+The physics does not depend on the location, so errors as pure numbers must not change either.
 """
 
 from collections.abc import Iterable
@@ -75,8 +75,8 @@ def moved(scene: Scene, by_m: Point) -> Scene:
 
 
 def mirrored(scene: Scene, sides: Iterable[str]) -> Scene:
-    """The scene mirrored in the x-axis; ``sides`` are the pins whose branch changes with it, those
-    of dyads of two links and three pins."""
+    """Return the scene mirrored in the x-axis; the pins ``sides``, of dyads of two links and three
+    pins, change their branch."""
 
     def flip(p: Point) -> Point:
         return (p[0], -p[1])
@@ -142,10 +142,10 @@ def mirrored_law(law: Law) -> Law:
 def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with every length times ``factor``, made of rods of the same mass per length.
 
-    Masses grow with the factor, inertias with its cube; gravity with the factor, so that the
-    motion stays similar at the same speed. Masses times accelerations are forces: those of loads
-    and friction grow with its square, torques with its cube; a load over a displacement is
-    stretched, and the radii of pins that rub grow.
+    Masses grow with the factor, inertias with its cube; gravity with the factor, so that the motion
+    stays similar at the same speed. Forces are masses times accelerations: loads and friction grow
+    with its square, torques with its cube; a load over a displacement is stretched, and the radii
+    of pins with friction grow.
     """
 
     def grow(p: Point) -> Point:

@@ -1,4 +1,4 @@
-"""A characteristic of rows: values at places, with lines or cubics in between."""
+"""A characteristic as a table: values at places, with lines or cubics in between."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from models.scene.characteristics import EPS, Characteristic
 
 Interpolation = Literal["linear", "pchip"]
 END = 1e-9
-"""By how much of its length a table may be left behind: a stroke ends where rounding has it."""
+"""Slack at the ends of a table, over its length: rounding moves the end of a stroke."""
 
 
 @dataclass(frozen=True)
 class Tabulated(Characteristic):
     """Values at places; in between straight (``linear``) or cubics without overshoot (``pchip``).
 
-    With ``period`` it goes on for ever; the places then lie within one period, and where they fill
-    it the last value is the first. Without, there is nothing before its first place and after its
+    With ``period`` it repeats for ever; the places then lie within one period, and the last value
+    is the first if they fill it. Without, there is no value before its first place and after its
     last.
     """
 
@@ -92,9 +92,9 @@ class Tabulated(Characteristic):
             repeated = (kink + turn * self.period for kink in own)
             yield from (kink for kink in repeated if first <= kink <= last)
 
-    @cached_property  # asked for at every step of an engine
+    @cached_property  # read at every step of an engine
     def _knots(self) -> tuple[Array, Array]:
-        """Places and values, those of a period closed by the first row of the next."""
+        """Places and values; a period is closed by the first row of the next."""
         x, y = np.array(self.places), np.array(self.values)
         if self.period is not None and x[-1] - x[0] <= self.period * (1.0 - END):
             x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
@@ -106,7 +106,7 @@ class Tabulated(Characteristic):
 
     @cached_property  # as the knots
     def _rows(self) -> tuple[list[float], list[float], list[float]]:
-        """Places, values and slopes, as numbers: those of an array are read ten times as slowly."""
+        """Places, values and slopes as plain numbers: an array's are read ten times as slowly."""
         places, values = self._knots
         return places.tolist(), values.tolist(), self._slopes.tolist()
 
@@ -189,7 +189,7 @@ class Tabulated(Characteristic):
 
 
 def slopes(x: Array, y: Array, *, closed: bool) -> Array:
-    """The slope at each row (n,) of a table with increasing ``x``; ``closed`` where it repeats.
+    """Return the slope at each row (n,) of a table with increasing ``x``; ``closed`` if periodic.
 
     Source: F. N. Fritsch, J. Butland, A method for constructing local monotone piecewise cubic
     interpolants, SIAM J. Sci. Stat. Comput. 5, 1984: the slope at a row is the weighted harmonic
@@ -218,7 +218,7 @@ def _mean(h0: Array, h1: Array, chord0: Array, chord1: Array) -> Array:
 
 
 def _end(h0: float, h1: float, chord0: float, chord1: float) -> float:
-    """The slope in an end row: of the parabola through three rows, if it does not overshoot."""
+    """Return the slope in an end row, by the parabola through three rows without overshoot."""
     slope = ((2.0 * h0 + h1) * chord0 - h0 * chord1) / (h0 + h1)
     if slope * chord0 <= 0.0:
         return 0.0
@@ -241,9 +241,9 @@ def spline(x: Array, knots: Array, values: Array, slope: Array) -> Array:
 
 
 def largest_near(knots: Array, of_intervals: Array, x: Array, by: Array | float) -> Array:
-    """The largest of the numbers of the intervals between rows (n - 1,) within ``by`` of ``x``.
+    """Return the largest of the intervals' numbers (n - 1,) within ``by`` of ``x``.
 
-    Before the first row and after the last that of the interval there counts.
+    Before the first row and after the last the interval there counts.
     """
     count = len(of_intervals)
     first = np.clip(np.searchsorted(knots, x - by, side="right") - 1, 0, count - 1)

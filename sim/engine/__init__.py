@@ -1,7 +1,7 @@
-"""What an engine is to crankcheck: a session that is opened, stepped and read; and what a run left.
+"""Interface of an engine: a session that is opened, stepped and read; and the result of a run.
 
-One adapter per engine, in a folder of its own, imported only when it is asked for (`sim.registry`).
-An adapter turns the engine's own coordinates into `Poses`; everything after that is shared.
+One adapter per engine, in a folder of its own, imported only on request (`sim.registry`). An
+adapter turns the engine's own coordinates into `Poses`; everything after that is shared.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from models.scene.elastic import Beam
 
 Status = Literal["ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"]
 Drive = Literal["prescribed", "servo", "free"]
-"""Prescribed: the crank is where the driver's law has it, whatever the mechanism does. Servo: a
-motor of limited gain keeps its speed. Free: nothing drives it, it is a link like the others, and
-all velocities at the start are those of the state; the law plays no part."""
+"""Prescribed: the crank follows the driver's law, whatever the mechanism does. Servo: a motor of
+limited gain keeps its speed. Free: nothing drives it, it is a link like the others, and all
+velocities at the start are the state's; the law plays no part."""
 SettingValue = float | int | str
 Settings = Mapping[str, SettingValue]
 Placing = Literal["integrated", "solved"]
-"""Integrated: places come of velocities, step by step, and are off by what a step leaves out.
-Solved: the joints are solved for in each step, so places may be exact to rounding."""
+"""Integrated: positions follow from velocities, step by step, with the error of the step. Solved:
+each step solves for the joints, so positions may be exact to rounding."""
 ForcesOf = Literal["nothing", "states", "steps"]
-"""What forces an engine reports. States: those that go with a state, at every sample. Steps: what
-the last step took, so that they are NaN at the start of a run."""
+"""Forces that an engine reports. States: forces of a state, at every sample. Steps: forces of the
+last step, so that they are NaN at the start of a run."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """One engine setting: its value, and why a profile chose it; one ``of_beams`` changes nothing
-    where there are none."""
+    """An engine setting: its value, and the profile's reason; ``of_beams`` settings act on beams
+    only."""
 
     value: SettingValue
     reason: str
@@ -79,7 +79,7 @@ class Poses:
     lag_s: float = 0.0
 
     def changed(self, change: Callable[[BodyPose], BodyPose]) -> Poses:
-        """The poses with every body changed."""
+        """Return the poses with every body changed."""
         return replace(self, bodies={name: change(body) for name, body in self.bodies.items()})
 
 
@@ -88,11 +88,11 @@ class Facts:
     """The model as the engine holds it, read back before the first step.
 
     Mass, inertia about the centre of mass, and that centre in the link's own frame, by body.
-    ``velocity_shift`` and ``acceleration_shift`` say, in steps, to which instant the reported
-    quantities belong: a velocity logged with the positions of time t belongs to
-    t + velocity_shift * dt. ``springs`` are those of the scene by name, as far as the engine is
-    given them: rate [N/m or N m/rad], damping [N s/m or N m s] and the length or angle at which
-    they are slack [m or rad]. ``beams`` are those of the scene, element by element.
+    ``velocity_shift`` and ``acceleration_shift`` are the instants of the reported quantities, in
+    steps: a velocity logged with the positions of time t belongs to t + velocity_shift * dt.
+    ``springs`` are the scene's, by name, as far as the engine has them: rate [N/m or N m/rad],
+    damping [N s/m or N m s] and slack length or angle [m or rad]. ``beams`` are the scene's,
+    element by element.
     """
 
     version: str
@@ -110,12 +110,11 @@ class Facts:
 
 @dataclass(frozen=True)
 class Log:
-    """What a stretch of stepping left: poses at the logged steps, and how it ended.
+    """Result of a stretch of stepping: poses at the logged steps, and how it ended.
 
-    ``wall_s`` is the time that stepping and logging took; what is computed from the log
-    afterwards (accelerations, poses) is not part of it. ``stopped`` says why the engine itself
-    went no further, in its own words; empty where it went to the end. ``forces`` are those of the
-    logged steps, where they were asked for: their ``time_s`` says when they act.
+    ``wall_s`` is the time of stepping and logging, without later computations from the log
+    (accelerations, poses). ``stopped`` is the engine's own reason for an early stop; empty at the
+    end. ``forces`` belong to the logged steps, if requested: they act at their ``time_s``.
     """
 
     poses: Poses
@@ -131,7 +130,7 @@ class Session(Protocol):
     """One opened model, at its initial state."""
 
     def facts(self) -> Facts:
-        """The model as the engine holds it now."""
+        """Read the model as the engine holds it now."""
         ...
 
     def step(self, steps: int) -> None:
@@ -143,7 +142,7 @@ class Session(Protocol):
         ...
 
     def read(self) -> Poses:
-        """The current state, as poses of one sample."""
+        """Read the current state, as poses of one sample."""
         ...
 
 
@@ -151,28 +150,28 @@ class ForceSession(Session, Protocol):
     """A session of an engine that reports forces."""
 
     def record_forces(self, steps: int, every: int) -> Log:
-        """As `Session.record`, with the forces in all pins and sliders and the driving torque. The
-        motion is the same to the bit."""
+        """Advance and log, as `Session.record`, with the forces in all pins and sliders and the
+        driving torque. The motion is the same to the bit."""
         ...
 
 
 @dataclass(frozen=True)
 class Engine:
-    """A physics engine with its profiles, and what is asked of it.
+    """A physics engine with its profiles.
 
-    ``version`` gives the installed one. ``check`` raises SettingError for a value, of a complete
-    set of settings, that it does not take. ``open`` gives a session at a state, with settings, step
-    [s] and drive; EngineError where the engine cannot hold the scene. An engine that does not
-    report accelerations gives NaN for all. ``holds`` is what the facts of a session say of a
-    complete set of settings, step and drive. How the engine comes by places with a complete set of
-    settings is its ``placing``; where they are integrated their errors shrink as the step to the
-    power ``order`` at most. ``in_seconds`` names what of a complete set of settings is a time, or a
-    loss in a time, of its own: without any, errors of place depend on the steps in a turn, not on
-    the speed. An engine that does not say has all of them so. Where ``forces_of`` is something, its
-    sessions are `ForceSession`s; without ``applies_loads`` scenes with loads are unsupported,
-    without ``applies_constant_friction`` those with friction that is constant, without
-    ``applies_springs`` those with springs; with it `Facts.springs` tells of each. Without
-    ``applies_beams`` it is given elastic links as segments alone; with it `Facts.beams` tells.
+    ``version`` gives the installed version. ``check`` raises SettingError for a value, of a
+    complete set of settings, that the engine does not take. ``open`` gives a session at a state,
+    with settings, step [s] and drive; EngineError where the engine cannot hold the scene. An engine
+    without accelerations gives NaN for all. ``holds`` are the settings in a session's facts, for a
+    complete set of settings, step and drive. ``placing`` is the source of positions with a complete
+    set of settings; errors of integrated positions shrink as the step to the power ``order`` at
+    most. ``in_seconds`` names the settings that are times, or losses in a time: without any, errors
+    of position depend on the steps in a turn, not on the speed; by default it names all. Where
+    ``forces_of`` is not nothing, sessions are `ForceSession`s. Without ``applies_loads`` scenes
+    with loads are unsupported, without ``applies_constant_friction`` scenes with constant friction,
+    without ``applies_springs`` scenes with springs; with it `Facts.springs` has each spring.
+    Without ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the
+    beams.
     """
 
     name: str
@@ -194,8 +193,8 @@ class Engine:
 
 @dataclass(frozen=True)
 class Energy:
-    """Kinetic and potential energy [J], (T,), both at the instants that velocities belong to; the
-    potential one is that of weights and springs."""
+    """Kinetic and potential energy [J], (T,), both at the instants of the velocities; the potential
+    energy of weights and springs."""
 
     kinetic_j: Array
     potential_j: Array
@@ -207,7 +206,7 @@ class Energy:
 
 @dataclass(frozen=True)
 class Cost:
-    """Wall time of stepping [s] and the steps it took; logging is part of it when ``logged``."""
+    """Wall time of stepping [s] and the number of steps; logging is part of it when ``logged``."""
 
     wall_s: float
     steps: int
@@ -220,7 +219,7 @@ class Cost:
 
 @dataclass(frozen=True)
 class Setup:
-    """What a run is asked for: see `Run`, whose own words for the same are held to these."""
+    """Request of a run: see `Run`, whose own fields of these names are checked against it."""
 
     scene: str
     engine: str
@@ -239,17 +238,16 @@ class Setup:
 
 @dataclass(frozen=True)
 class Run:
-    """One scene in one engine: what moved, how it ended, with which settings, at which cost.
+    """One scene in one engine: the motion, the end, the settings and the cost.
 
-    ``gaps`` holds per pin or slider how far the bodies that share it have come apart (T,) [m].
-    ``velocity_time_s`` and ``acceleration_time_s`` are the instants that the reported velocities
-    and accelerations belong to. ``motion`` is None where the run never started; ``stopped_at_s``
-    is the last time that was reached. Commanded were ``steps`` of ``dt_s`` from ``start_s`` on,
-    logged every ``every``-th: what the log is held to. ``asked`` is the complete set of settings
-    that the run was given, and takes to be run again; ``settings`` what the engine then held.
-    ``energy`` is kept of free motion, without what loads, dampers and friction do to it.
-    ``with_forces`` says that forces were asked for; they are in ``motion``, and of what
-    ``forces_of`` the engine says.
+    ``gaps`` holds the opening of each pin or slider (T,) [m]. ``velocity_time_s`` and
+    ``acceleration_time_s`` are the instants of the reported velocities and accelerations.
+    ``motion`` is None where the run never started; ``stopped_at_s`` is the last time reached.
+    Requested were ``steps`` of ``dt_s`` from ``start_s`` on, logged every ``every``-th; the log is
+    checked against them. ``asked`` is the complete set of requested settings, for another run;
+    ``settings`` the engine's own after that. ``energy`` is kept for free motion, without the work
+    of loads, dampers and friction. ``with_forces`` is true if forces were requested; they are in
+    ``motion``, of the kind ``forces_of``.
     """
 
     scene: str

@@ -1,8 +1,8 @@
-"""What an engine is told at each step so that the crank is where the law wants it at the samples.
+"""Drive signals: the input of each step that keeps the crank on its law at the samples.
 
 All rules are open loop: they follow from the law alone, and the engine's own arithmetic is exact
-for them up to rounding, because a crank that is heavy or kinematic does not feel the mechanism. A
-free crank is told nothing.
+for them up to rounding, because a heavy or kinematic crank does not feel the mechanism. A free
+crank has no input.
 """
 
 import math
@@ -17,23 +17,23 @@ from sim.engine import Drive
 
 
 def angles(law: Law, start_s: float, dt_s: float, first: int, last: int) -> Array:
-    """Crank angle [rad] at the steps ``first`` to ``last``, both included."""
+    """Return the crank angle [rad] at the steps ``first`` to ``last``, both included."""
     return law.at(start_s + dt_s * np.arange(first, last + 1, dtype=np.float64))[0]
 
 
 def chords(law: Law, start_s: float, dt_s: float, first: int, last: int) -> Array:
-    """Mean angular velocity [rad/s] from each step to the next, for steps ``first`` to ``last``."""
+    """Return the mean angular velocity [rad/s] over each step, for steps ``first`` to ``last``."""
     if isinstance(law, ConstantSpeed):
         return np.full(last - first + 1, law.speed_rad_s)
     return np.diff(angles(law, start_s, dt_s, first, last + 1)) / dt_s
 
 
 def start_speed(law: Law, start_s: float, dt_s: float, velocity_shift: float) -> float:
-    """Angular velocity [rad/s] that the crank starts with.
+    """Return the angular velocity [rad/s] of the crank at the start.
 
     Half a step before or after the start (``velocity_shift`` -0.5 or 0.5) it is the chord. With
-    velocities at the samples (0) and a torque that is constant within a step, the speed that
-    makes the angles exact alternates about the law unless it starts theta''' dt^2 / 12 below it.
+    velocities at the samples (0) and a constant torque within a step, the speed for exact angles
+    alternates about the law unless it starts theta''' dt^2 / 12 below it.
     """
     if isinstance(law, ConstantSpeed):
         return law.speed_rad_s
@@ -46,7 +46,7 @@ def start_speed(law: Law, start_s: float, dt_s: float, velocity_shift: float) ->
 
 
 def pushes(law: Law, start_s: float, dt_s: float, steps: int, velocity_shift: float) -> Array:
-    """Angular acceleration [rad/s^2] of each of the ``steps`` from the start on.
+    """Return the angular acceleration [rad/s^2] of each of the ``steps`` from the start on.
 
     Velocity before position (``velocity_shift`` -0.5): second differences of the angle. Constant
     acceleration within the step (0): from theta' = theta + v dt + a dt^2 / 2, v' = v + a dt.
@@ -63,10 +63,10 @@ def pushes(law: Law, start_s: float, dt_s: float, steps: int, velocity_shift: fl
 
 
 def pace(scene: Scene, state: State, drive: Drive) -> float:
-    """The angular velocity [rad/s] that a run is measured by: the law's largest.
+    """Return the speed scale of a run [rad/s]: the law's largest angular velocity.
 
-    Of free motion it is the largest that the state shows, or that gravity gives in a fall through
-    the longest link; 0 only where nothing moves and nothing will.
+    For free motion it is the largest of the state, or of a fall through the longest link by
+    gravity; 0 only where nothing moves and nothing will.
     """
     if drive != "free":
         return scene.pace_rad_s
@@ -77,7 +77,7 @@ def pace(scene: Scene, state: State, drive: Drive) -> float:
 
 
 def period(scene: Scene, state: State, drive: Drive) -> float:
-    """The time [s] that a step has to be short against; infinite where nothing moves."""
+    """Return the time scale [s], far longer than a good step; infinite where nothing moves."""
     if drive != "free":
         return scene.driver.law.period_s
     speed = pace(scene, state, drive)

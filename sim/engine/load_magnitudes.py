@@ -1,4 +1,4 @@
-"""How large those loads are that are known before a step; for the others see `Load.size`."""
+"""Magnitudes of loads that are known before a step; for the others see `Load.size`."""
 
 from models.array import Array
 from models.scene import Scene
@@ -7,14 +7,14 @@ from sim.engine import Drive
 
 
 def known_ahead(load: Load, drive: Drive) -> bool:
-    """Whether time alone says how large the load is: it follows no slider, no angular velocity, and
-    the crank's angle only where that is the law's."""
+    """True if time alone determines the load: it follows no slider, no angular velocity, and the
+    crank's angle only if the law prescribes it."""
     return load.slider is None and (
         load.over == "time" or (load.over == "angle" and drive == "prescribed")
     )
 
 
 def ahead(scene: Scene, load: Load, time_s: Array) -> Array:
-    """The magnitude (T,) of a load that is known ahead, in N or N m."""
+    """Return the magnitude (T,) of a load that is known ahead, in N or N m."""
     x = scene.driver.law.at(time_s)[0] if load.over == "angle" else time_s
     return load.magnitude(x)

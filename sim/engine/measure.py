@@ -1,4 +1,4 @@
-"""From the poses of an engine's bodies to the mechanism's motion, joint gaps and energy."""
+"""Motion, joint gaps and energy of a mechanism from the poses of an engine's bodies."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ class BodyPath:
 
 @dataclass(frozen=True)
 class PointPath:
-    """A point fixed to a body, over time in the plane, (T, 2); worked out where it is asked for."""
+    """A point fixed to a body, over time in the plane, (T, 2); computed on access."""
 
     body: BodyPath
     local: Point
@@ -69,8 +69,8 @@ class PointPath:
 
 @dataclass(frozen=True)
 class _Seen:
-    """The point of a slider as seen from its guide, (T, 2): x along the line from ``through_m``, y
-    off the line; worked out where it is asked for."""
+    """Point of a slider in its guide, (T, 2): x along the line from ``through_m``, y off the line;
+    computed on access."""
 
     slider: Slider
     guide: BodyPose
@@ -82,13 +82,13 @@ class _Seen:
 
     @cached_property
     def _drift(self) -> Array:
-        """The velocity against the guide, in the plane."""
+        """Velocity against the guide, in the plane."""
         omega = self.guide.omega[:, None]
         return self.track.velocity - self.guide.velocity - omega * across(self._place)
 
     @cached_property
     def _axes(self) -> tuple[Array, Array]:
-        """Along the line and to the left of it, (T, 2) each."""
+        """Directions along the line and to the left of it, (T, 2) each."""
         angle = self.guide.theta + self.slider.direction_rad
         along = directions(angle)
         return along, across(along)
@@ -119,36 +119,36 @@ class _Seen:
 
 
 def directions(angle_rad: Array) -> Array:
-    """Unit vectors at these angles, (T, 2)."""
+    """Return unit vectors at these angles, (T, 2)."""
     return _pairs(np.cos(angle_rad), np.sin(angle_rad))
 
 
 def arms(theta: Array, local: Point) -> Array:
-    """A vector of a body's frame over time in the plane, (T, 2)."""
+    """Return a vector of a body's frame over time in the plane, (T, 2)."""
     c, s = np.cos(theta), np.sin(theta)
     return _pairs(c * local[0] - s * local[1], s * local[0] + c * local[1])
 
 
 def across(vector: Array) -> Array:
-    """The vectors (T, 2) turned by a quarter, counter-clockwise."""
+    """Return the vectors (T, 2) turned by a quarter turn, counter-clockwise."""
     return _pairs(-vector[:, 1], vector[:, 0])
 
 
 def _pairs(x: Array, y: Array) -> Array:
-    """Vectors of their components, (T, 2)."""
+    """Join components to vectors, (T, 2)."""
     pairs = np.empty((len(x), 2))
     pairs[:, 0], pairs[:, 1] = x, y
     return pairs
 
 
-@np.errstate(all="ignore")  # what has come apart may overflow; it is judged, not warned of
+@np.errstate(all="ignore")  # open joints may overflow; they are judged, not warned of
 def motion(scene: Scene, poses: Poses) -> Motion:
-    """The motion that the poses show.
+    """Compute the motion from the poses.
 
-    Points are taken as carried by the ground or the first link that lists them, else by the first
-    block with mass. A slider's speed and acceleration are those seen from its guide. Where the
-    velocities lag, each level is worked out at its own instant: velocities with the positions of
-    then, accelerations with the velocities of now.
+    Points belong to the ground or the first link that lists them, else to the first block with
+    mass. A slider's speed and acceleration are relative to its guide. Where the velocities lag,
+    each level is computed at its own instant: velocities with the positions of then, accelerations
+    with the velocities of now.
     """
     now, then = _at_now(poses), at_velocities(poses)
     tracks, later = _tracks(scene, now), _tracks(scene, then) if then is not now else None
@@ -173,7 +173,7 @@ def motion(scene: Scene, poses: Poses) -> Motion:
 
 
 def _at_now(poses: Poses) -> Poses:
-    """The poses with the velocities of their own instants, as far as accelerations tell them."""
+    """Return the poses with the velocities of their own instants, as far as accelerations allow."""
     lag = poses.lag_s
 
     def back(body: BodyPose) -> BodyPose:
@@ -184,7 +184,7 @@ def _at_now(poses: Poses) -> Poses:
 
 
 def at_velocities(poses: Poses) -> Poses:
-    """The poses moved on to the instants of their velocities."""
+    """Return the poses moved on to the instants of their velocities."""
     lag = poses.lag_s
 
     def on(body: BodyPose) -> BodyPose:
@@ -196,11 +196,11 @@ def at_velocities(poses: Poses) -> Poses:
 
 @np.errstate(all="ignore")
 def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """How far the bodies that share a joint have come apart (T,) [m], by pin and by slider.
+    """Return the openings of joints between their bodies (T,) [m], by pin and by slider.
 
     For a pin: the largest distance between two bodies' copies of the point. For a slider: the
     distance of its point from the line, plus, for a body that must not turn against the line, the
-    fault of its angle times the longest length of the scene.
+    error of its angle times the longest length of the scene.
     """
     tracks = _tracks(scene, poses)
     openings = {}
@@ -222,7 +222,7 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:
-    """Every point as each of the bodies that list it carries it."""
+    """Return the paths of every point on each of its bodies."""
     bodies = body_paths(poses)
     return {
         point: {body: PointPath(bodies[body], local) for body, local in copies.items()}
@@ -231,7 +231,7 @@ def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:
 
 
 def body_paths(poses: Poses) -> dict[str, BodyPath]:
-    """Every body and the ground."""
+    """Return the paths of every body and the ground."""
     paths = {name: BodyPath(pose) for name, pose in poses.bodies.items()}
     paths[GROUND] = BodyPath(_still(len(poses.time_s)))
     return paths
@@ -239,7 +239,7 @@ def body_paths(poses: Poses) -> dict[str, BodyPath]:
 
 @lru_cache(maxsize=KEPT)
 def _copies(same: Same) -> Mapping[str, Mapping[str, Point]]:
-    """Every point in the frames of the bodies that list it."""
+    """Return every point in the frames of the bodies that list it."""
     scene = same.scene
     return {
         point: {body: local_point(scene, body, point) for body in names}
@@ -248,7 +248,7 @@ def _copies(same: Same) -> Mapping[str, Mapping[str, Point]]:
 
 
 def _rider(scene: Scene, slider: Slider) -> str:
-    """The body whose copy of the slider's point counts."""
+    """Return the body whose copy of the slider's point counts."""
     if slider.link is not None:
         return slider.link
     if block_name(slider) in blocks(scene):
@@ -257,20 +257,20 @@ def _rider(scene: Scene, slider: Slider) -> str:
 
 
 def _guide(slider: Slider, poses: Poses) -> BodyPose:
-    """The body that the line belongs to."""
+    """Return the body of the line."""
     return _still(len(poses.time_s)) if slider.on == GROUND else poses.bodies[slider.on]
 
 
 def _still(samples: int) -> BodyPose:
-    """The ground."""
+    """Return the pose of the ground."""
     zero, pair = np.zeros(samples), np.zeros((samples, 2))
     return BodyPose(pair, zero, pair, zero, pair, zero)
 
 
 def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.scene.loads`.
+    """Return the q (T,) [m or rad] of each spring at the poses; see `models.scene.loads`.
 
-    The first sample is taken as the start, from which whole turns in pins are counted.
+    The first sample is the start, from which whole turns in pins are counted.
     """
     paths, lengths = body_paths(poses), dict[str, Array]()
     for name, spring in scene.springs.items():
@@ -288,18 +288,17 @@ def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 
 
 def energy(scene: Scene, poses: Poses) -> Energy:
-    """Kinetic and potential energy [J] of all bodies and springs, both at the instants of the
-    velocities.
+    """Compute the kinetic and potential energy [J] of all bodies and springs, both at the instants
+    of the velocities.
 
-    Where velocities lag, the positions are moved on to them, which is good to the second order of
-    the step. Heights count from the origin against gravity. A crank that a drive carries counts
-    with the mass of its link. What loads put in and dampers and friction take out is in neither: of
-    a scene that has any the total changes.
+    Where velocities lag, the positions are moved on to them, to the second order of the step.
+    Heights count from the origin against gravity. A driven crank counts with the mass of its link.
+    The work of loads, dampers and friction is in neither: with any of them the total changes.
     """
     then = at_velocities(poses)
     kinetic, potential = np.zeros(len(poses.time_s)), np.zeros(len(poses.time_s))
     gravity = np.array(scene.gravity_m_s2)
-    with np.errstate(all="ignore"):  # what has come apart may overflow
+    with np.errstate(all="ignore"):  # open joints may overflow
         for body in bodies(scene):
             pose, (mass, inertia) = then.bodies[body], mass_of(scene, body)
             centre = PointPath(BodyPath(pose), centre_of(scene, body))

@@ -1,11 +1,11 @@
-"""Reactions and driving torque from what a step did to the momentum of each body.
+"""Reactions and driving torque from the change of each body's momentum in a step.
 
-An engine that steps with impulses tells little of them, if anything. What it did to the bodies
-tells all: over a step, the momentum of each body changes by the impulses of its joints beside those
-of what is known to act on it. All bodies together are one linear system for each sample::
+An engine that steps with impulses reports few of them, if any. The bodies show all: over a step,
+the momentum of each body changes by the impulses of its joints beside the known ones. All bodies
+together are one linear system for each sample::
 
-    sum of the forces of its joints on a body      = what they gave of force
-    sum of their moments, and the drive's torque   = what they gave of moment
+    sum of the forces of its joints on a body      = their action as a force
+    sum of their moments, and the drive's torque   = their action as a moment
 
 It is square where the joints leave the mechanism one freedom, which the drive takes. A pin of k
 bodies counts as the k - 1 hinges that the engine has made of it, and a point on a line as a force
@@ -33,8 +33,8 @@ from models.scene.joints import (
 from sim.engine.measure import across, arms, directions
 
 OnBlocks = Mapping[str, Array]
-"""What acts on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N]
-and a torque [N m]."""
+"""Actions on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N] and
+a torque [N m]."""
 UNDETERMINED = (
     "redundant links share the load by their stiffness and fit: the momentum of rigid bodies "
     "leaves the reactions open, and determines the driving torque alone"
@@ -43,7 +43,7 @@ UNDETERMINED = (
 
 @dataclass(frozen=True)
 class Hinge:
-    """Two bodies that share a point, as an engine holds them together."""
+    """Two bodies that share a point, as an engine joins them."""
 
     point: str
     first: str
@@ -52,8 +52,8 @@ class Hinge:
 
 @dataclass(frozen=True)
 class MomentumGain:
-    """What joints and drive gave a body: ``force`` [N] (T, 2), and ``moment`` [N m] (T,) about the
-    place ``centre`` of its frame [m], which is at ``place`` (T, 2) while its angle is ``theta``."""
+    """Action of joints and drive on a body: ``force`` [N] (T, 2), and ``moment`` [N m] (T,) about
+    ``centre`` of its frame [m], which is at ``place`` (T, 2) while its angle is ``theta``."""
 
     centre: Point
     place: Array
@@ -62,16 +62,16 @@ class MomentumGain:
     moment: Array
 
     def arm(self, local: Point) -> Array:
-        """From ``place`` to a point of the body's frame [m], (T, 2)."""
+        """Return the arm from ``place`` to a point of the body's frame [m], (T, 2)."""
         return arms(self.theta, less(local, self.centre))
 
 
 @dataclass(frozen=True)
 class JointPushes:
-    """What holds the mechanism: the force of each hinge on its other body (T, 2) [N], of each line
-    on what slides, along ``across`` (T, 2), to its left (T,), the moment of each guide on a body
-    that it keeps from turning (T,) [N m] about the slider's point, and the torque of the drive.
-    ``spare`` is how many of them momentum leaves open: where there are any, the torque alone is
+    """Joint forces of the mechanism: the force of each hinge on its other body (T, 2) [N], of each
+    line on the sliding body, along ``across`` (T, 2), to its left (T,), the moment of each guide on
+    a body that it keeps from turning (T,) [N m] about the slider's point, and the torque of the
+    drive. ``spare`` is the number of them that momentum leaves open: if any, the torque alone is
     determined."""
 
     hinges: Mapping[Hinge, Array]
@@ -85,16 +85,16 @@ class JointPushes:
 def joint_pushes(
     scene: Scene, hinges: Sequence[Hinge], gains: Mapping[str, MomentumGain], *, driven: bool
 ) -> JointPushes:
-    """The forces of the joints, and the torque of the drive, 0 where there is none.
+    """Compute the forces of the joints, and the torque of the drive, 0 without one.
 
     Parameters
     ----------
     scene : Scene
         Its sliders, and its driver.
     hinges : Sequence
-        What its pins are made of: of each, one less than it has bodies.
+        Hinges of its pins: one less per pin than it has bodies.
     gains : Mapping
-        What joints and drive gave each body that moves.
+        Action of joints and drive on each moving body.
 
     Returns
     -------
@@ -126,7 +126,7 @@ def joint_pushes(
 
 
 class _System:
-    """The equations of the bodies: three rows each, and a column for each unknown."""
+    """Equations of the bodies: three rows each, and a column for each unknown."""
 
     def __init__(self, gains: Mapping[str, MomentumGain]) -> None:
         self._gains = gains
@@ -135,7 +135,7 @@ class _System:
         self._columns: list[Array] = []
 
     def hold(self, scene: Scene, hinge: Hinge) -> None:
-        """A hinge: a force of any direction, on each body at its own copy of the point."""
+        """Add a hinge: a force of any direction, on each body at its own copy of the point."""
         for axis in np.eye(2):
             column = self._column()
             for body, sense in ((hinge.other, 1.0), (hinge.first, -1.0)):
@@ -144,20 +144,20 @@ class _System:
                     self._push(column, body, arm, np.tile(sense * axis, (self._samples, 1)))
 
     def carry(self, scene: Scene, slide: Prism | Slot) -> Array:
-        """A line: a force across it, in one line of action on both bodies; its direction."""
+        """Add a line: a force across it, the same on both bodies. Return its direction."""
         direction = across(self._along(slide.slider))
         self._push_on(scene, slide.slider, riding_body(slide), direction)
         return direction
 
     def couple(self, body: str, against: str) -> None:
-        """A torque on a body, and the opposite on another."""
+        """Add a torque on a body, and the opposite on another."""
         column = self._column()
         for name, sense in ((body, 1.0), (against, -1.0)):
             if name != GROUND:
                 column[:, self._row[name] + 2] += sense
 
     def drive(self, scene: Scene) -> None:
-        """The driver: a torque between its bodies, or a force along its slider's line."""
+        """Add the driver: a torque between its bodies, or a force along its slider's line."""
         driver = scene.driver
         if driver.slider is None:
             self.couple(driver.link, driver.base)
@@ -166,8 +166,8 @@ class _System:
         self._push_on(scene, slider, driver.link, self._along(slider))
 
     def solution(self) -> Array:
-        """The unknowns (T, unknowns): NaN where the joints are singular; those of least size where
-        there are more of them than equations."""
+        """Solve for the unknowns (T, unknowns): NaN where the joints are singular; of least size
+        where there are more unknowns than equations."""
         rows = [np.column_stack([gain.force, gain.moment]) for gain in self._gains.values()]
         right = np.concatenate(rows, axis=1)[:, :, None]
         matrix = np.stack(self._columns, axis=2)
@@ -183,13 +183,13 @@ class _System:
         return found
 
     def _along(self, slider: Slider) -> Array:
-        """The direction of a line, (T, 2)."""
+        """Return the direction of a line, (T, 2)."""
         guide = self._gains.get(slider.on)
         theta = np.zeros(self._samples) if guide is None else guide.theta
         return directions(slider.direction_rad + theta)
 
     def _push_on(self, scene: Scene, slider: Slider, rider: str, direction: Array) -> None:
-        """Have a further unknown push what slides at its point, and the guide back."""
+        """Add an unknown that pushes the sliding body at its point, and the guide back."""
         own, guide, column = self._gains[rider], self._gains.get(slider.on), self._column()
         arm = own.arm(local_point(scene, rider, slider.point))
         self._push(column, rider, arm, direction)
@@ -197,12 +197,12 @@ class _System:
             self._push(column, slider.on, own.place + arm - guide.place, -direction)
 
     def _column(self) -> Array:
-        """A further unknown, that acts on nothing yet."""
+        """Add an unknown without action."""
         self._columns.append(np.zeros((self._samples, 3 * len(self._row))))
         return self._columns[-1]
 
     def _push(self, column: Array, body: str, arm: Array, direction: Array) -> None:
-        """Have an unknown act on a body as a force."""
+        """Let an unknown act on a body as a force."""
         row = self._row[body]
         column[:, row : row + 2] += direction
         column[:, row + 2] += arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
@@ -215,10 +215,10 @@ def forces_by_body(
     friction: Mapping[str, Array],
     time_s: Array,
 ) -> Forces:
-    """The forces that ``pushes`` are, at ``time_s``; of redundant links the torque alone.
+    """Return the forces of ``pushes``, at ``time_s``; for redundant links the torque alone.
 
-    A block without mass only passes on what it is given: its pin pushes on it as its guide and
-    what else acts on it do not, and its guide takes its torque.
+    A block without mass transfers its forces: its pin balances its guide and other actions on it,
+    and its guide takes its torque.
     """
     if pushes.spare:
         return Forces(time_s, {}, {}, pushes.torque, undetermined=UNDETERMINED, friction=friction)

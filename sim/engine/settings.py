@@ -1,4 +1,4 @@
-"""Settings of a run: those of a profile, overridden one by one."""
+"""Settings of a run: a profile's, overridden one by one."""
 
 from collections.abc import Mapping
 
@@ -11,7 +11,7 @@ class SettingError(EngineError):
 
 
 def profile_of(engine: Engine, name: str) -> Profile:
-    """The profile of that name. Raises EngineError that names the profiles there are."""
+    """Return the profile of that name. Raises EngineError that lists the profiles."""
     if name in engine.profiles:
         return engine.profiles[name]
     raise EngineError(
@@ -20,7 +20,7 @@ def profile_of(engine: Engine, name: str) -> Profile:
 
 
 def resolved(profile: Profile, overrides: Settings | None) -> dict[str, SettingValue]:
-    """All settings of a profile, with some replaced.
+    """Return all settings of a profile, with some replaced.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def resolved(profile: Profile, overrides: Settings | None) -> dict[str, SettingV
 
 
 def check_choices(settings: Settings, choices: Mapping[str, tuple[str, ...]]) -> None:
-    """Refuse a setting that is none of its choices. Raises SettingError that lists them."""
+    """Refuse a setting outside its choices. Raises SettingError that lists them."""
     for name, allowed in choices.items():
         if settings[name] not in allowed:
             raise SettingError(
@@ -50,7 +50,7 @@ def check_choices(settings: Settings, choices: Mapping[str, tuple[str, ...]]) ->
 
 
 def check_ranges(settings: Settings, ranges: Mapping[str, tuple[float, float]]) -> None:
-    """Refuse a number outside its range, both ends included, and a word. Raises SettingError."""
+    """Refuse a number outside its range, both ends included, and text. Raises SettingError."""
     for name, (least, most) in ranges.items():
         value = settings[name]
         if isinstance(value, str) or not least <= value <= most:
@@ -60,7 +60,7 @@ def check_ranges(settings: Settings, ranges: Mapping[str, tuple[float, float]]) 
 
 
 def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
-    """The value as the type of the profile's own."""
+    """Convert the value to the type of the profile's own."""
     kind = type(model)
     try:
         converted = kind(value)

@@ -18,7 +18,7 @@ Plane = NDArray[np.complex128]
 
 @dataclass
 class _MovingFrame:
-    """A frame over time while the joints of its body are applied; complex numbers for the plane."""
+    """A frame over time while its body's joints are applied; complex numbers for the plane."""
 
     place: Plane
     theta: Array
@@ -28,7 +28,7 @@ class _MovingFrame:
     alpha: Array
 
     def shifted(self, arm: Plane) -> _MovingFrame:
-        """The same body seen from a point ``arm`` away, an arm that turns with the body."""
+        """Move the frame to a point at ``arm``, an arm that turns with the body."""
         turn = 1j * self.omega
         return _MovingFrame(
             self.place + arm,
@@ -40,13 +40,13 @@ class _MovingFrame:
         )
 
 
-@np.errstate(over="ignore", invalid="ignore")  # of a run that came apart
+@np.errstate(over="ignore", invalid="ignore")  # for a run with open joints
 def body_poses(
     limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array, lag_s: float = 0.0
 ) -> Mapping[str, BodyPose]:
-    """Poses of all bodies.
+    """Return the poses of all bodies.
 
-    Where the rates belong to ``lag_s`` after the coordinates, each level is worked out at its own
+    Where the rates belong to ``lag_s`` after the coordinates, each level is computed at its own
     instant: velocities at the coordinates of then, accelerations with the rates of now.
 
     Parameters
@@ -67,7 +67,7 @@ def body_poses(
 def _bodies(
     limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array
 ) -> dict[str, _MovingFrame]:
-    """All bodies, every level at one instant."""
+    """Return all bodies, every level at one instant."""
     still = np.zeros(len(q))
     ground = still.astype(np.complex128)
     moving = {GROUND: _MovingFrame(ground, still, ground, still, ground, still)}
@@ -87,7 +87,7 @@ def _bodies(
 def _moved(
     body: _MovingFrame, freedom: Freedom, shift: Array, rate: Array, push: Array
 ) -> _MovingFrame:
-    """The frame after one more joint coordinate."""
+    """Return the frame after one more joint coordinate."""
     if freedom.kind == "hinge":
         pivot = body.shifted(_arm(body.theta, freedom.anchor))
         pivot.theta = pivot.theta + shift
@@ -102,12 +102,12 @@ def _moved(
 
 
 def _arm(theta: Array, local: Point) -> Plane:
-    """A vector of a body's frame in the plane."""
+    """Return a vector of a body's frame in the plane."""
     return np.asarray(np.exp(1j * theta) * complex(*local))
 
 
 def _pose(now: _MovingFrame, then: _MovingFrame) -> BodyPose:
-    """The frame as real arrays: velocities from ``then``, the rest from ``now``."""
+    """Return the frame as real arrays: velocities from ``then``, the rest from ``now``."""
 
     def pair(number: Plane) -> Array:
         return np.stack([number.real, number.imag], axis=-1)

@@ -1,9 +1,9 @@
-"""What turns the crank in exudyn: a constraint of its angle, or a motor; and the torque of it.
+"""Drive of the crank in exudyn: a constraint of its angle, or a motor; and its torque.
 
 exudyn solves M q'' + C' lambda = Q at the end of each step, C' the transposed derivatives of the
-constraints: of a hinge the place of its second marker less that of its first, in the ground's
-frame; of a prismatic joint the guide's distance from the point that slides, and the angle of what
-slides; of the drive the angle of the crank.
+constraints: for a hinge the place of its second marker less the place of its first, in the ground's
+frame; for a prismatic joint the guide's distance from the sliding point, and the angle of the
+sliding body; for the drive the angle of the crank.
 """
 
 import math
@@ -36,23 +36,23 @@ from sim.exudyn.system import Index, PlaneSystem, items
 
 
 def speeds(law: Law, start_s: float, dt_s: float, steps: int) -> Array:
-    """The angular velocity [rad/s] at the start and after each of the ``steps``, of which the
-    trapezoidal rule, ``theta' = theta + (v + v') dt / 2``, makes the angles of the law: joints that
-    are closed in their rates take it, those that are closed in their places the angle."""
+    """Return the angular velocity [rad/s] at the start and after each of the ``steps`` that gives
+    the angles of the law by the trapezoidal rule, ``theta' = theta + (v + v') dt / 2``: joints
+    closed in their rates take it, joints closed in their positions take the angle."""
     first = drives.start_speed(law, start_s, dt_s, 0.0)
     gained = np.cumsum(drives.pushes(law, start_s, dt_s, steps, 0.0))
     return first + dt_s * np.concatenate([[0.0], gained])
 
 
 class CrankCourse:
-    """The angles and speeds of a law at the steps of a run, as functions that exudyn calls.
+    """Angles and speeds of a law at the steps of a run, as functions that exudyn calls.
 
-    Between the steps, where a step that failed was cut, they are those of the law itself. Times
-    count from the start of the run, angles from the angle there.
+    Between the steps, where a failed step was cut, they are the law's own. Times count from the
+    start of the run, angles from the angle there.
     """
 
     NEAR = 1e-6
-    """Over the step: what is no nearer to a step lies between two."""
+    """Distance from a step, over its length, within which a time counts as that step."""
 
     def __init__(self, law: Law, start_s: float, dt_s: float) -> None:
         self._law, self._start_s, self._dt = law, start_s, dt_s
@@ -62,7 +62,7 @@ class CrankCourse:
         self.reach(1)
 
     def reach(self, steps: int) -> None:
-        """Be ready for so many steps from the start."""
+        """Prepare so many steps from the start."""
         if len(self._angles) <= steps:
             longer = max(steps, 2 * len(self._angles))
             turned = drives.angles(self._law, self._start_s, self._dt, 0, longer) - self._first
@@ -70,32 +70,32 @@ class CrankCourse:
             self._speeds = speeds(self._law, self._start_s, self._dt, longer).tolist()
 
     def angle(self, _system: object, time_s: float, _item: object, _offset: float) -> float:
-        """The angle at a time [rad]."""
+        """Return the angle at a time [rad]."""
         step = self._step(time_s)
         if step is not None:
             return self._angles[step]
         return float(self._law.at(np.array(self._start_s + time_s))[0]) - self._first
 
     def speed(self, _system: object, time_s: float, _item: object, _offset: float) -> float:
-        """The angular velocity at a time [rad/s]."""
+        """Return the angular velocity at a time [rad/s]."""
         step = self._step(time_s)
         if step is not None:
             return self._speeds[step]
         return float(self._law.at(np.array(self._start_s + time_s))[1])
 
     def _step(self, time_s: float) -> int | None:
-        """Which step a time is; none between them."""
+        """Return the step of a time; None between steps."""
         exact = time_s / self._dt
         near = round(exact)
         return near if abs(exact - near) < self.NEAR and near < len(self._angles) else None
 
 
 STRAIGHT = 1e-12
-"""Of a unit vector: what counts as along an axis."""
+"""Largest part of a unit vector across an axis that counts as along it."""
 
 
 def refuse_undriven(scene: Scene, drive: Drive) -> None:
-    """Raise EngineError for a joint that exudyn is given nothing to drive with."""
+    """Refuse a joint that this adapter cannot drive in exudyn. Raises EngineError."""
     driver = scene.driver
     if driver.is_crank or drive == "free":
         return
@@ -122,8 +122,8 @@ def refuse_undriven(scene: Scene, drive: Drive) -> None:
 
 
 def slider_axis(scene: Scene) -> tuple[int, float]:
-    """The coordinate that the driven slider runs along, 0 or 1, and its sense. Raises EngineError
-    for an oblique line, along which no coordinate goes."""
+    """Return the coordinate of the driven slider, 0 or 1, and its sense. Raises EngineError for an
+    oblique line, which no coordinate follows."""
     driver = scene.driver
     assert driver.slider is not None
     u = turned((1.0, 0.0), scene.sliders[driver.slider].direction_rad)
@@ -138,8 +138,8 @@ def slider_axis(scene: Scene) -> tuple[int, float]:
 
 
 class CrankDrive:
-    """The drive of a system: nothing where it is free. Constant speeds are parameters; exudyn calls
-    back for those of another law, whose ``course`` it then has."""
+    """Drive of a system: none in free motion. Constant speeds are parameters; for another law
+    exudyn calls back the drive's ``course``."""
 
     def __init__(
         self,
@@ -167,7 +167,7 @@ class CrankDrive:
             self._constrain(made.crank_markers(self._link, scene.driver.base), dt_s)
 
     def _constrain(self, ends: list[Any], dt_s: float) -> None:
-        """A constraint of the speed, or of the angle where the speed changes."""
+        """Add a constraint of the speed, or of the angle where the speed changes."""
         told: dict[str, object]
         if isinstance(self._law, ConstantSpeed):
             told = {"velocityLevel": True, "offset": self._law.speed_rad_s}
@@ -181,7 +181,7 @@ class CrankDrive:
         )
 
     def _add_motor(self, ends: list[Any]) -> None:
-        """A damper to the ground, and the torque that it has at the law's speed."""
+        """Add a damper to the ground, and its torque at the law's speed."""
         law, gain, start_s = self._law, self._gain, self._start_s
         self._system.AddObject(
             items.ObjectConnectorCoordinateSpringDamper(markerNumbers=ends, damping=gain)
@@ -200,8 +200,8 @@ class CrankDrive:
         )
 
     def torque(self, poses: Poses, lambdas: Array, multipliers: Multipliers) -> Array:
-        """What it exerts on the crank [N m], or on a slider along its line [N], at states with such
-        multipliers, a row each."""
+        """Return the torque on the crank [N m], or the force on a slider along its line [N], at
+        states with these multipliers, a row each."""
         if self._constraint is not None:
             (row,) = multipliers.rows(self._constraint)
             return np.asarray(-lambdas[:, row])
@@ -210,21 +210,21 @@ class CrankDrive:
 
 
 class BlockLoads:
-    """Forces (T, 2) [N] and torques (T,) [N m] on blocks without mass, their guides' apart: read
-    off the motion, as exudyn has no body for them. Nothing is left in such a block: what its guide,
-    its loads, springs and friction give it goes to its pin."""
+    """Forces (T, 2) [N] and torques (T,) [N m] on blocks without mass, without their guides': read
+    off the motion, as exudyn has no body for them. All forces on such a block add up to nothing:
+    the forces of its guide, loads, springs and friction go to its pin."""
 
     def __init__(self, scene: Scene, poses: Poses) -> None:
         self._scene, self._poses = scene, poses
         self._motion = motion(scene, poses)
 
     def theta(self, body: str) -> Array:
-        """The angle of a body or the ground."""
+        """Return the angle of a body or the ground."""
         zero = np.zeros(len(self._poses.time_s))
         return zero if body == GROUND else self._poses.bodies[body].theta
 
     def force(self, slider: Slider) -> Array:
-        """All forces on the block, friction and springs of its line among them."""
+        """Return all forces on the block, with friction and springs of its line."""
         line = self.theta(slider.on) + slider.direction_rad
         total = np.zeros((len(line), 2))
         for load in self._of(slider):
@@ -244,12 +244,12 @@ class BlockLoads:
         return total
 
     def torque(self, slider: Slider) -> Array:
-        """All torques on the block, friction of its pin among them."""
+        """Return all torques on the block, with friction of its pin."""
         total = np.zeros(len(self._poses.time_s))
         for load in self._of(slider):
             if load.point is None:
                 total += self._magnitude(load)
-        if slider.point not in self._scene.sliders:  # else its friction is that of a line
+        if slider.point not in self._scene.sliders:  # else its friction is a line's
             for friction in self._rubbing(slider.point):
                 total += self._in_pin(slider, friction)
         return total
@@ -261,7 +261,7 @@ class BlockLoads:
         return against(friction.size, rate, still_rad_s(self._scene))
 
     def _omega(self, body: str) -> Array:
-        """The rate of a body, or of the guide of a block without mass."""
+        """Return the rate of a body, or of the guide of a block without mass."""
         for slider in self._scene.sliders.values():
             if body == block_name(slider) and body not in self._poses.bodies:
                 body = slider.on
@@ -274,7 +274,7 @@ class BlockLoads:
         return [load for load in self._scene.loads.values() if load.body == name]
 
     def _rubbing(self, joint: str) -> list[ConstantFriction]:
-        """What rubs in a joint."""
+        """Return the friction in a joint."""
         return [
             friction
             for friction in self._scene.friction.values()
@@ -300,7 +300,7 @@ def reactions(
     poses: Poses,
     torque: Array,
 ) -> Forces:
-    """The forces at the states of ``poses``, of the multipliers there, a row each."""
+    """Return the forces at the states of ``poses``, from the multipliers there, a row each."""
     count = len(poses.time_s)
     pins = {
         point: {body: np.zeros((count, 2)) for body in names}

@@ -35,16 +35,16 @@ LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
 
 
 def widths(made: PlaneSystem) -> list[int]:
-    """How many coordinates each node has, in turn: x, y, angle, or x, y and the tangent's."""
+    """Return the number of coordinates of each node: x, y, angle, or x, y and the tangent's."""
     return [4 if name in made.looked else 3 for name in made.node]
 
 
 def beam_angles(
     made: PlaneSystem, looked: Mapping[str, float], levels: Sequence[Array]
 ) -> dict[str, Array]:
-    """Angles of the tangents of nodes of beams, the first within half a turn of where they
-    ``looked`` [rad] and each within that of the one before: of samples of every step, or turns are
-    lost."""
+    """Return angles of the tangents of nodes of beams, the first within half a turn of its
+    direction ``looked`` [rad] and each within half a turn of the one before: samples of every step
+    are needed, or turns are lost."""
     angles = {}
     for row, (name, node) in enumerate(made.node.items()):
         if name in looked:
@@ -57,8 +57,8 @@ def beam_angles(
 def body_poses(
     made: PlaneSystem, levels: Sequence[Array], angles: Mapping[str, Array]
 ) -> dict[str, BodyPose]:
-    """Poses by body, of samples (T, width) of the three levels of each node in turn, and of the
-    ``angles`` (T,) of nodes of beams."""
+    """Return poses by body, from samples (T, width) of the three levels of each node in turn, and
+    from the ``angles`` (T,) of nodes of beams."""
     poses = {}
     for row, (name, node) in enumerate(made.node.items()):
         moved, rate, push = (levels[len(LEVELS) * row + k] for k in range(len(LEVELS)))
@@ -71,7 +71,7 @@ def body_poses(
 
 
 def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
-    """The frame in which ``centre`` is where the node is, from coordinates and their rates."""
+    """Return the frame with the node at ``centre``, from coordinates and their rates."""
     theta, omega, alpha = place[:, 2], rate[:, 2], push[:, 2]
     arm = arms(theta, centre)
     turned = across(arm)
@@ -86,7 +86,7 @@ def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
 
 
 def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyPose:
-    """A frame along the tangent of a beam, which is at those angles."""
+    """Return a frame along the tangent of a beam, at those angles."""
     (x, y), (u, v), (a, b) = (each[:, 2:].T for each in (place, rate, push))
     far = x**2 + y**2
     omega = (x * v - y * u) / far
@@ -101,13 +101,13 @@ def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyP
 
 
 LEAST_DT_S = 1e-9
-"""exudyn takes an end of a run that is 1e-10 s away for reached."""
+"""Least step: exudyn counts an end of a run within 1e-10 s as reached."""
 
 
 class ExudynSession:
-    """One system with its solver. exudyn's clock begins at 0, whatever the time of the law. Turns
-    of the nodes of beams are counted from step to step while these are recorded; over steps that
-    are not, up to half a turn."""
+    """A system with its solver. exudyn's clock begins at 0, at any time of the law. Turns of the
+    nodes of beams are counted from step to step in recording; over unrecorded steps, up to half a
+    turn."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
@@ -144,7 +144,7 @@ class ExudynSession:
             self._multipliers = Multipliers(self._system, first)
 
     def _loaded(self, state: State, drive: Drive) -> Applied:
-        """Add what acts from outside and in the joints."""
+        """Add actions from outside and in the joints."""
         scene, applied = self._scene, Applied(self._scene, self._model)
         if scene.loads or scene.friction:
             present = Present(scene, state, self._model)
@@ -153,7 +153,7 @@ class ExudynSession:
         return applied
 
     def _initialized(self) -> Any:
-        """The solver. Raises EngineError for a load that has no size at the start."""
+        """Make the solver. Raises EngineError for a load that has no size at the start."""
         try:
             return initialized(self._system, self._asked, self._settings)
         except ValueError:  # as exudyn has it
@@ -162,7 +162,7 @@ class ExudynSession:
             raise
 
     def _sense(self) -> list[Any]:
-        """A sensor for each level of each body's coordinates."""
+        """Add a sensor for each level of each body's coordinates."""
         return [
             self._system.AddSensor(
                 items.SensorNode(
@@ -177,11 +177,11 @@ class ExudynSession:
         ]
 
     def _set_off(self, course: CrankCourse) -> Array:
-        """Start with the rates that go with the crank's, and accelerations that go with its own;
-        the multipliers that go with these, which exudyn does not work out then.
+        """Set rates that fit the crank's, and accelerations that fit its own; return their
+        multipliers, which exudyn does not compute then.
 
-        exudyn leaves out what a driver's acceleration adds to its initial ones, and the trapezoidal
-        rule would alternate about the true ones ever after.
+        exudyn leaves the part of a driver's acceleration out of its initial ones, and the
+        trapezoidal rule would alternate about the true ones ever after.
         """
         own, rates = exu.ConfigurationType.Initial, self._system.systemData
         law = self._scene.driver.law
@@ -200,7 +200,7 @@ class ExudynSession:
         return first
 
     def facts(self) -> Facts:
-        """The system as exudyn holds it now; its bodies have their centres at their nodes."""
+        """Read the system as exudyn holds it now; its bodies have their centres at their nodes."""
         held_masses = self._model.masses()
         nodes = node_masses(self._scene, self._model)
         loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
@@ -221,12 +221,12 @@ class ExudynSession:
         )
 
     def step(self, steps: int) -> None:
-        """Advance without logging. Raises EngineError where exudyn goes no further."""
+        """Advance without logging. Raises EngineError where exudyn stops early."""
         if stopped := self._advance(steps, log=False):
             raise EngineError(f"exudyn: {stopped}")
 
     def record(self, steps: int, every: int) -> Log:
-        """Advance; exudyn's sensors keep all steps, of which every ``every``-th is taken."""
+        """Advance and log; exudyn's sensors keep all steps, and every ``every``-th is taken."""
         at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
         began = time.perf_counter()
         with quiet(self._heard):
@@ -235,7 +235,7 @@ class ExudynSession:
         wall = time.perf_counter() - began
         kept = [self._system.GetSensorStoredData(each) for each in self._sensors]
         clock = kept[0][:, 0]
-        # Of a step that was cut the last part ends at the sample.
+        # The last part of a cut step ends at the sample.
         rows = np.searchsorted(clock, (at + 1e-6) * self._dt, side="right") - 1
         there = np.abs(clock[rows] - at * self._dt) < 1e-3 * self._dt
         every_step = [each[:, 1:] for each in kept]
@@ -251,7 +251,7 @@ class ExudynSession:
         return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
 
     def record_forces(self, steps: int, every: int) -> Log:
-        """As `record`, with the multipliers of each state as forces."""
+        """Advance and log, as `record`, with the multipliers of each state as forces."""
         done = self._done
         with self._multipliers.kept(done):
             log = self.record(steps, every)
@@ -266,7 +266,7 @@ class ExudynSession:
         )
 
     def read(self) -> Poses:
-        """The current state."""
+        """Read the current state."""
         state = self._system.systemData
         ends = np.cumsum(widths(self._model))[:-1]
         levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
@@ -275,13 +275,13 @@ class ExudynSession:
         return self._shown(of_nodes, np.array([float(self._done)]), angles)
 
     def _shown(self, levels: Sequence[Array], at: Array, angles: Mapping[str, Array]) -> Poses:
-        """Poses of samples, after so many steps, of the three levels of each node in turn, and of
-        the angles of those of beams."""
+        """Return the poses of samples, after so many steps, from the three levels of each node in
+        turn, and from the angles of nodes of beams."""
         return Poses(self._start_s + self._dt * at, body_poses(self._model, levels, angles))
 
     def _advance(self, steps: int, *, log: bool) -> str:
-        """Step in one go or, where steps may be cut, so that each ends in time. Why exudyn goes no
-        further, in its own words; empty where it does."""
+        """Step in one go or, where steps may be cut, so that each ends in time. Return exudyn's own
+        reason for an early stop; empty without one."""
         self._asked.solution.sensors.active = log
         if self._crank.course is not None:
             self._crank.course.reach(self._done + steps)

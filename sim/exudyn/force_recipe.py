@@ -1,4 +1,4 @@
-"""How to read forces out of exudyn: a program that holds a scene, as a user would write it."""
+"""Program that reads forces out of exudyn: it holds a scene, as a user would write it."""
 
 import textwrap
 from typing import Any
@@ -130,7 +130,7 @@ for k, (time_s, against) in enumerate(driving[:, :2]):
 
 
 def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """The program; of scenes without loads, springs and friction, at constant speed. See
+    """Write the program for scenes without loads, springs and friction, at constant speed. See
     `ForceRecipe`."""
     law = scene.driver.law
     lacking = [
@@ -176,7 +176,7 @@ def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
 
 
 def _pins(scene: Scene) -> list[tuple[object, ...]]:
-    """A hinge of the first body of a pin with each of the others."""
+    """List a hinge of the first body of a pin with each of the others."""
     rows: list[tuple[object, ...]] = []
     for pin in joints(scene).pins:
         first, *others = sorted(pin.bodies, key=lambda name: name != GROUND)
@@ -188,7 +188,7 @@ def _pins(scene: Scene) -> list[tuple[object, ...]]:
 
 
 def _lines(scene: Scene) -> list[tuple[object, ...]]:
-    """What runs on a line; a block without mass is a point on it, which may turn."""
+    """List the pairs on lines; a block without mass is a point on a line, which may turn."""
     rows: list[tuple[object, ...]] = []
     for slide in joints(scene).slides:
         slider, rider, keeps = slide.slider, riding_body(slide), isinstance(slide, Prism)
@@ -206,7 +206,7 @@ def _from_centre(scene: Scene, body: str, place: Point) -> Point:
 
 
 def _settings(settings: Settings) -> list[str]:
-    """The profile in exudyn's own words."""
+    """Write the profile in exudyn's own names."""
     lines = [f"stepping.adaptiveStep = {settings['adaptive_step'] == 'enable'}"]
     if settings["integrator"] == "GeneralizedAlpha":
         radius = float(settings["spectral_radius"])
@@ -227,13 +227,13 @@ def _settings(settings: Settings) -> list[str]:
 
 
 def _table(rows: dict[str, Any]) -> str:
-    """A dict with a line for each row."""
+    """Write a dict with a line for each row."""
     lines = "\n".join(f"{name!r}: {row!r}," for name, row in rows.items())
     return "{\n" + textwrap.indent(lines, "    ") + "\n}"
 
 
 def _rows(rows: list[tuple[object, ...]]) -> str:
-    """A list with a line for each row."""
+    """Write a list with a line for each row."""
     return "[\n" + "".join(f"    {row!r},\n" for row in rows) + "]" if rows else "[]"
 
 

@@ -1,4 +1,4 @@
-"""What is searched of exudyn's settings, and what a step costs with them."""
+"""Search space of exudyn's settings, and the cost of a step with them."""
 
 import math
 
@@ -11,28 +11,28 @@ from sim.registry.offers import Knob, SearchSpace, Work
 
 STEP_US, ITERATION_US, MATRIX_US = 12.036, 0.074, 0.0188
 DIGITS_PER_ITERATION = 8.0
-"""How many digits of the residual an iteration takes."""
+"""Digits of the residual that an iteration gains."""
 
 
 def unknowns(scene: Scene) -> int:
-    """Coordinates and constraints, that of the crank included."""
+    """Return the number of coordinates and constraints, including the crank's."""
     ties = joints(scene)
     pins = sum(len(pin.bodies) - 1 for pin in ties.pins)
     return 3 * len(bodies(scene)) + 2 * (pins + len(ties.slides)) + 1
 
 
 def counts(scene: Scene, settings: Settings) -> tuple[float, float, float]:
-    """1; iterations in a step, each over all unknowns; and matrices, over all pairs of these."""
+    """Return 1; iterations in a step, times all unknowns; and matrices, times all their pairs."""
     jacobian, size = str(settings["jacobian"]), unknowns(scene)
     digits = -math.log10(max(float(settings["relative_tolerance"]), 1e-16))
     iterations = 1.0 + digits / DIGITS_PER_ITERATION
-    # One matrix at least, as steps are asked for one by one (see `sim.exudyn.settings`).
+    # One matrix at least, as steps are requested one by one (see `sim.exudyn.settings`).
     matrices = iterations if jacobian == "each-iteration" else 1.0
     return 1.0, iterations * size, matrices * size**2
 
 
 def work(scene: Scene, start: State) -> Work:
-    """A part for the step, one for each iteration and one for each matrix."""
+    """Return the cost of a step: a part for itself, for each iteration and each matrix."""
 
     def us(settings: Settings) -> float:
         step, iterated, filled = counts(scene, settings)

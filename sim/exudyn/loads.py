@@ -1,4 +1,4 @@
-"""The loads of a scene, as exudyn applies them."""
+"""Loads of a scene, as exudyn applies them."""
 
 import math
 from collections.abc import Callable
@@ -29,7 +29,7 @@ KIND = exu.OutputVariableType
 
 
 class Present:
-    """The present of a system, for what acts on it by its state."""
+    """Present state of a system, for actions that depend on it."""
 
     def __init__(self, scene: Scene, state: State, made: PlaneSystem) -> None:
         self._scene, self._made = scene, made
@@ -37,7 +37,7 @@ class Present:
         self._ends = {slide.slider.name: self._ends_of(slide) for slide in joints(scene).slides}
 
     def _ends_of(self, slide: Prism | Slot) -> tuple[Index, Index]:
-        """Markers of the point that slides and of that which the line passes through."""
+        """Return markers of the sliding point and of the point that the line passes through."""
         slider = slide.slider
         return (
             self._made.marker(self._scene, riding_body(slide), slider.point),
@@ -45,7 +45,7 @@ class Present:
         )
 
     def angle(self, system: Any, body: str) -> tuple[float, float]:
-        """Of a body or the ground: angle [rad] and rate [rad/s]."""
+        """Return angle [rad] and rate [rad/s] of a body or the ground."""
         if body == GROUND:
             return 0.0, 0.0
         node = self._made.node[body]
@@ -54,13 +54,13 @@ class Present:
         return self._start_rad[body] + turned, rate
 
     def line(self, system: Any, name: str, turned_rad: float = 0.0) -> Point:
-        """The direction of the line of a slider in the plane, or one turned against it."""
+        """Return the direction of the line of a slider in the plane, or one turned against it."""
         slider = self._scene.sliders[name]
         angle = self.angle(system, slider.on)[0] + slider.direction_rad + turned_rad
         return math.cos(angle), math.sin(angle)
 
     def slider(self, system: Any, name: str) -> tuple[float, float]:
-        """Of a slider: displacement [m] and speed [m/s] as seen from its guide."""
+        """Return displacement [m] and speed [m/s] of a slider, against its guide."""
         tip, start = self._ends[name]
         x, y = self._apart(system, tip, start, KIND.Position)
         u, v = self._apart(system, tip, start, KIND.Velocity)
@@ -80,18 +80,18 @@ Vector = Callable[[Any, float], Point]
 
 
 def massless_blocks(scene: Scene) -> dict[str, str]:
-    """The sliders whose block is no body in exudyn, by the name of the block."""
+    """Return the sliders whose block is no body in exudyn, by the name of the block."""
     return {block_name(slot.slider): slot.slider.name for slot in joints(scene).slots}
 
 
 class Applied:
-    """Adds forces and torques to a system: numbers, or what exudyn calls back for. ``fault`` is why
-    one of them has no size any more.
+    """Adds forces and torques to a system: numbers, or callbacks of exudyn. ``fault`` is the reason
+    why one of them has lost its size.
 
-    It calls with the time and in the state that its Newton's method is at, so that a load belongs
-    to the end of the step, as all forces of an implicit step do. A block without mass is no body
-    here: a force on it is one on the body whose point rides on the line, a torque on it one on the
-    guide, which it turns with.
+    exudyn calls with the time and in the present state of its Newton's method, so that a load
+    belongs to the end of the step, as all forces of an implicit step. A block without mass is no
+    body here: a force on it acts on the body whose point rides on the line, a torque on the guide,
+    with which it turns.
     """
 
     def __init__(self, scene: Scene, made: PlaneSystem) -> None:
@@ -101,17 +101,17 @@ class Applied:
         self._rider = {slide.slider.name: riding_body(slide) for slide in joints(scene).slides}
 
     def turning(self, body: str) -> str:
-        """The body that a body turns as: of a block without mass, its guide."""
+        """Return the body that a body turns with: for a block without mass, its guide."""
         slider = self._massless.get(body)
         return body if slider is None else self._scene.sliders[slider].on
 
     def on(self, body: str, point: str) -> Index:
-        """A marker at a point of a body, or of what rides for a block without mass."""
+        """Return a marker at a point of a body, or of the riding body of a block without mass."""
         slider = self._massless.get(body)
         return self._made.marker(self._scene, body, point) if slider is None else self.tip(slider)
 
     def tip(self, slider: str) -> Index:
-        """A marker at the point that slides."""
+        """Return a marker at the sliding point."""
         point = self._scene.sliders[slider].point
         return self._made.marker(self._scene, self._rider[slider], point)
 
@@ -140,31 +140,30 @@ class Applied:
         self._made.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, **told))
 
     def _called(self, vector: Callable[[Any, float], tuple[float, float, float]]) -> dict[str, Any]:
-        """A load as what exudyn calls."""
+        """Return a load as a callback of exudyn."""
 
         def called(system: Any, time_s: float, _: object) -> list[float]:
             try:
                 return list(vector(system, time_s))
             except CrankcheckError as error:
-                self.fault = str(error)  # exudyn would tell it with a traceback
+                self.fault = str(error)  # exudyn would show it with a traceback
                 raise
 
         return {"loadVectorUserFunction": called}
 
 
 def _fixed(*vector: float) -> dict[str, Any]:
-    """A load as numbers."""
+    """Return a load as numbers."""
     return {"loadVector": list(vector)}
 
 
 class StepMeans:
-    """The mean of a staircase about each step's end, later and earlier times counting less and less
-    up to a step away.
+    """Mean of a staircase about each step's end, with weights that fall to 0 at a step's distance.
 
     A step weighs its two ends alike, so that a jump that only one of them feels acts half a step
-    too early or too late, wherever in the step it is; with these means the impulse over both steps
-    is right, and belongs to the right instant. Before ``start_s`` there is no step: what jumps then
-    or at once is on from there.
+    too early or too late, at any place in the step; with these means the impulse over both steps is
+    right, and belongs to the right instant. There is no step before ``start_s``: a jump up to then
+    counts from there.
     """
 
     def __init__(self, stairs: Staircase, start_s: float, dt_s: float) -> None:
@@ -173,15 +172,15 @@ class StepMeans:
         self._jumps = [(place, value - before) for place, value, before in rises]
 
     def at(self, time_s: float) -> float:
-        """The mean at the end of a step, or at the start [N or N m]."""
+        """Return the mean at the end of a step, or at the start [N or N m]."""
         return math.fsum(height * self._share(time_s, place) for place, height in self._jumps)
 
     def _share(self, time_s: float, place: float) -> float:
-        """How much of a jump counts."""
+        """Return the share of a jump."""
         if place <= self._start_s:
             return 1.0
         since = min(max((time_s - place) / self._dt, -1.0), 1.0)
-        if time_s <= self._start_s:  # the half of the mean that there is
+        if time_s <= self._start_s:  # the available half of the mean
             return (1.0 + since) ** 2
         return 1.0 - 0.5 * (1.0 - since) ** 2 if since > 0.0 else 0.5 * (1.0 + since) ** 2
 
@@ -189,7 +188,7 @@ class StepMeans:
 def apply_loads(
     scene: Scene, state: State, drive: Drive, dt_s: float, applied: Applied, present: Present
 ) -> None:
-    """Add all loads. Raises EngineError for one on a body that the scene has not."""
+    """Add all loads. Raises EngineError for a load on an unknown body."""
     massless = massless_blocks(scene)
     known = [*bodies(scene), *massless]
     for load in scene.loads.values():
@@ -212,7 +211,7 @@ def apply_loads(
 
 
 def follows_rates(scene: Scene, drive: Drive) -> bool:
-    """Whether a load is by a speed that is not known before the step."""
+    """True if a load depends on a speed that is not known before the step."""
     return drive != "prescribed" and any(
         load.over in ("omega", "speed") for load in scene.loads.values()
     )
@@ -221,10 +220,10 @@ def follows_rates(scene: Scene, drive: Drive) -> bool:
 def _size(
     scene: Scene, load: Load, start_s: float, drive: Drive, dt_s: float, present: Present
 ) -> Size | float:
-    """How large a load is: a number where it is always the same.
+    """Return the size of a load: a number for a constant one.
 
-    Where it moves the mechanism, what jumps at a time is as its impulse wants it (`StepMeans`); of
-    a crank that is moved all forces are those of the instant.
+    If the load moves the mechanism, a jump in time keeps its impulse (`StepMeans`); with a
+    prescribed crank all forces belong to the instant.
     """
     if isinstance(load.characteristic, Constant) and load.stroke == "both":
         return load.characteristic.value
@@ -244,7 +243,7 @@ def _size(
 
 
 def _told(scene: Scene, load: Load, start_s: float) -> Size:
-    """The size over time, worked out once in a step."""
+    """Return the size over time, computed once in a step."""
     last = math.nan, 0.0
 
     def at(_: Any, time_s: float) -> float:
@@ -257,7 +256,7 @@ def _told(scene: Scene, load: Load, start_s: float) -> Size:
 
 
 def _along(size: Size | float, angle_rad: float) -> Any:
-    """A force in a fixed direction."""
+    """Return a force in a fixed direction."""
     c, s = math.cos(angle_rad), math.sin(angle_rad)
     if not callable(size):
         return size * c, size * s
@@ -270,7 +269,7 @@ def _along(size: Size | float, angle_rad: float) -> Any:
 
 
 def _turning(size: Size | float, present: Present, slider: str, turned_rad: float) -> Any:
-    """A force in a direction that turns with the line of a slider."""
+    """Return a force in a direction that turns with the line of a slider."""
 
     def vector(system: Any, time_s: float) -> Point:
         force = size(system, time_s) if callable(size) else size

@@ -1,4 +1,4 @@
-"""The springs of a scene in exudyn, and its friction, as forces against the motion."""
+"""Springs of a scene in exudyn, and its friction, as forces against the motion."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -24,15 +24,15 @@ from sim.exudyn.loads import Applied, Present, Size
 from sim.exudyn.system import Index, PlaneSystem, items
 
 Held = tuple[float, float, float]
-"""Rate, damping, and the length or angle at which it is slack."""
+"""Rate, damping, and slack length or angle."""
 
 
 class Springs:
-    """Adds the springs of a scene to a system, at the angles that a state has, as exudyn's own
+    """Adds the springs of a scene to a system, at the angles of a state, as exudyn's own
     spring-dampers, whose derivatives it knows.
 
     Between points along their line; in a pin between the angles of two nodes, which count turns;
-    along the line of a slider between the guide, whose axis turns with it, and what rides on it.
+    along the line of a slider between the guide, whose axis turns with it, and the riding body.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class Springs:
         )
 
     def _in_pin(self, spring: PinSpring) -> object:
-        """Between coordinates of nodes, which count from the start."""
+        """Make a spring between coordinates of nodes, which count from the start."""
         first, second = (self._turning(body) for body in spring.bodies)
         opened = self._theta[second] - self._theta[first]
         ahead = self._ahead[spring.name] = opened + whole_turns(spring, opened)
@@ -86,7 +86,7 @@ class Springs:
         )
 
     def held(self) -> Mapping[str, Held]:
-        """The springs as exudyn has them."""
+        """Return the springs as exudyn has them."""
         told = {}
         for name, index in self._index.items():
             own = self._made.system.GetObject(index)
@@ -97,14 +97,14 @@ class Springs:
 
 
 STILL = 1e-9
-"""Over the largest speed of the driver."""
+"""Least speed with friction, over the largest speed of the driver."""
 
 
 def apply_friction(
     scene: Scene, drive: Drive, made: PlaneSystem, applied: Applied, present: Present
 ) -> None:
-    """Add friction in sliders and pins. Raises EngineError for what is not constant, and for
-    joints that may come to rest, where no force against the motion says what holds them."""
+    """Add friction in sliders and pins. Raises EngineError for friction that is not constant, and
+    for joints that may come to rest, where a force against the motion is undefined."""
     if scene.friction and drive == "free":
         raise EngineError(
             f"friction ({', '.join(scene.friction)}): exudyn is given it as forces against the "
@@ -121,7 +121,7 @@ def apply_friction(
 
 
 def _rub_pin(scene: Scene, friction: ConstantFriction, applied: Applied, present: Present) -> None:
-    """A couple of the two bodies of a pin on one another."""
+    """Add a couple between the two bodies of a pin."""
     first, second = joined_at(scene)[friction.joint]
     turning = applied.turning(first), applied.turning(second)
     still = still_rad_s(scene)
@@ -140,7 +140,7 @@ def _rub_pin(scene: Scene, friction: ConstantFriction, applied: Applied, present
 def _rub_line(
     scene: Scene, friction: ConstantFriction, made: PlaneSystem, applied: Applied, present: Present
 ) -> None:
-    """A force along the line on what slides, and the opposite on the guide, on the same line."""
+    """Add a force along the line on the sliding body, and the opposite on the guide."""
     slider = scene.sliders[friction.joint]
     still = still_rad_s(scene) * scene.longest_m
 
@@ -159,10 +159,10 @@ def _rub_line(
 
 
 def still_rad_s(scene: Scene) -> float:
-    """What turns no faster does not rub, as its direction is rounding [rad/s]."""
+    """Return the least speed with friction; the direction of a lower one is rounding [rad/s]."""
     return STILL * scene.pace_rad_s
 
 
 def against(size: float, speed: Array | float, still: float) -> Array:
-    """The size against speeds, 0 where these are none."""
+    """Return the size against speeds, 0 at rest."""
     return np.where(np.abs(speed) > still, -np.copysign(size, speed), 0.0)

@@ -1,4 +1,4 @@
-"""What may help in exudyn at the same step."""
+"""Remedies in exudyn at the same step."""
 
 from models.motion import State
 from models.scene import Scene
@@ -10,12 +10,12 @@ CHOICES: tuple[Settings, ...] = (
     {"relative_tolerance": 1e-11, "absolute_tolerance": 1e-13},
     {"integrator": "TrapezoidalIndex2"},
 )
-"""A matrix that is never old, for steps that do not converge; more exact places; and joints closed
-in their rates, whose accelerations need no settling at the start."""
+"""A matrix that is never old, for steps that do not converge; more exact positions; and joints
+closed in their rates, whose accelerations need no settling at the start."""
 
 
 def exudyn_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
-    """Those that the settings have not, whatever the scene."""
+    """List the choices that the settings lack, for any scene."""
     return [choice for choice in CHOICES if any(settings[n] != v for n, v in choice.items())]
 
 

@@ -1,16 +1,16 @@
-"""exudyn's settings: the two profiles, and what they are in its own structures."""
+"""exudyn's settings: the two profiles, and their form in its own structures."""
 
 from sim.engine import Drive, Placing, Profile, Setting, Settings
 from sim.engine.settings import check_choices, check_ranges
 
 INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
-"""The implicit ones; explicit ones take no joints."""
+"""Implicit integrators; explicit ones take no joints."""
 JACOBIANS = ("as-needed", "each-step", "each-iteration")
-"""When Newton's method works out its matrix anew: where it converges slowly, or always."""
+"""Updates of the matrix of Newton's method: where it converges slowly, at each step, or always."""
 LINEAR_SOLVERS = ("EXUdense", "EigenDense", "EigenSparse")
 BY_NEED = "by-need"
-"""A choice of ours: EXUdense, or EigenDense where joints are redundant at the start, or EigenSparse
-for more than `MOST_DENSE` coordinates and constraints."""
+"""A choice of crankcheck: EXUdense, or EigenDense where joints are redundant at the start, or
+EigenSparse for more than `MOST_DENSE` coordinates and constraints."""
 MOST_DENSE = 60
 SWITCH = ("enable", "disable")
 CHOICES = {
@@ -29,7 +29,7 @@ RANGES = {
     "beam_rounding": (0.0, 1e9),
     "servo_gain": (1e-9, 1e15),
 }
-"""What exudyn takes, and the ways round it that make sense."""
+"""Ranges in exudyn, and useful limits where it has none."""
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -115,17 +115,17 @@ def checked(settings: Settings) -> None:
 
 
 def of_drive(settings: Settings, drive: Drive) -> Settings:
-    """What exudyn holds of a complete set of settings with a drive."""
+    """Return the settings that exudyn holds with a drive, from a complete set."""
     if drive != "free":
         return settings
     return {**settings, "spectral_radius": settings["free_spectral_radius"]}
 
 
 def of_rigid(settings: Settings) -> Settings:
-    """What exudyn holds of a set of settings where there are no beams."""
+    """Return the settings that exudyn holds without beams."""
     return {n: v for n, v in settings.items() if not AS_SHIPPED.settings[n].of_beams}
 
 
 def placing(settings: Settings) -> Placing:
-    """How places come about: with joints closed in their rates they are integrated."""
+    """Return the source of positions: with joints closed in their rates they are integrated."""
     return "integrated" if settings["integrator"] == "TrapezoidalIndex2" else "solved"

@@ -16,17 +16,17 @@ DRIVES: Mapping[Drive, str] = {
     "speed.",
     "free": "Drive: none. All start with the places, velocities and accelerations of the start.",
 }
-"""How the crank of the measured runs was driven."""
+"""Drive of the crank in the measured runs."""
 
 
 def exudyn_snippet(
     settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
 ) -> str:
-    """Lines that act on variables ``exu`` (the package) and ``simulationSettings``.
+    """Write lines that act on variables ``exu`` (the package) and ``simulationSettings``.
 
-    The integrator and its step, which can only be the whole system's, and how far Newton's method
-    goes, never less far than it would. What else differs from exudyn's defaults might spoil the
-    rest of a user's system and stands in a comment; see `sim.registry.offers.snippet`.
+    The integrator and its step, which can only be the whole system's, and the tolerances of
+    Newton's method, never above its own. Other differences from exudyn's defaults might spoil the
+    rest of a user's system and are in a comment; see `sim.registry.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = of_drive(defaults | dict(settings), drive)
@@ -47,7 +47,7 @@ def exudyn_snippet(
 
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
-    """The length of a step, and how it goes with the speed and with frames."""
+    """Write the length of a step, and its scaling with the speed and with frames."""
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     counted, told = stepping.counted_in(drive), list[str]()
     if counted == "turns":
@@ -69,7 +69,7 @@ def _steps(stepping: Stepping, drive: Drive) -> list[str]:
 
 
 def _newton(complete: Settings, defaults: Settings) -> list[str]:
-    """How far Newton's method goes, where that is farther than by default, and by which matrix."""
+    """Write the tolerances of Newton's method, if lower than by default, and its matrix."""
     lines = []
     for name, own in (
         ("relative_tolerance", "relativeTolerance"),
@@ -86,7 +86,7 @@ def _newton(complete: Settings, defaults: Settings) -> list[str]:
 
 
 def _alone(complete: Settings, defaults: Settings) -> list[str]:
-    """Settings of the measured runs that are for a system of nothing but the mechanism."""
+    """Write the settings of the measured runs for a system of the mechanism alone."""
     lines = []
     for name, own in (
         ("relative_tolerance", "relativeTolerance"),

@@ -1,4 +1,4 @@
-"""A set of settings as exudyn's own structures, and read back from them."""
+"""Conversion of a set of settings to exudyn's own structures, and back."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,18 +12,18 @@ from sim.exudyn.settings import BY_NEED, MOST_DENSE
 from sim.exudyn.system import Index, exu, quiet
 
 FREE = 1e-9
-"""A singular value of the constraints, over the largest, of a motion that they do not hold."""
+"""Singular value of the constraints, over the largest, below which a motion is unconstrained."""
 
 
 def simulation(
     settings: Settings, dt_s: float, *, of_rates: bool = False, rounding_n: float = 0.0
 ) -> Any:
-    """exudyn's settings of a simulation that writes no files and prints nothing of its own.
+    """Return exudyn's settings of a simulation without files and output of its own.
 
     Its sensors keep every step, and no step is longer than ``dt_s``. With loads ``of_rates``
-    Newton's method takes into account how these change in a step: without, it does not converge
-    where a motor is steep. A residual below what rounding leaves of the forces of beams is never
-    found: where it is asked for, steps fail and are cut, and each cut excites what vibrates.
+    Newton's method takes their change in a step into account: without, it does not converge for a
+    steep motor. A residual below the rounding of the forces of beams is never reached: with a lower
+    tolerance steps fail and are cut, and each cut excites vibration.
     """
     asked = exu.SimulationSettings()
     asked.solution.file.write = False
@@ -52,11 +52,11 @@ def simulation(
 
 
 def initialized(system: Any, asked: Any, settings: Settings) -> Any:
-    """A solver of the system, at its start, by the linear solver that it needs if that is left to
-    us."""
+    """Make a solver of the system, at its start, with the linear solver that it needs if that is
+    ``by-need``."""
     solver = exu.MainSolverImplicitSecondOrder()
     if settings["linear_solver"] == BY_NEED:
-        with quiet([]):  # it warns of what is looked for here
+        with quiet([]):  # it warns of the redundancy that is looked for here
             solver.InitializeSolver(system, asked)
         asked.linearSolver.solverType = _needed(solver, constraints(solver, system))
     solver.InitializeSolver(system, asked)
@@ -64,7 +64,7 @@ def initialized(system: Any, asked: Any, settings: Settings) -> Any:
 
 
 def _needed(solver: Any, held_by: Array) -> Any:
-    """The linear solver for a system of that size, and of constraints that are redundant or not."""
+    """Choose the linear solver by the system's size and by redundancy of its constraints."""
     if solver.GetODE2size() + solver.GetAEsize() > MOST_DENSE:
         return exu.LinearSolverType.EigenSparse
     real = held_by[np.any(held_by != 0.0, axis=1)]  # a point on a line has an empty one
@@ -75,8 +75,8 @@ def _needed(solver: Any, held_by: Array) -> Any:
 
 
 def constraints(solver: Any, system: Any) -> Array:
-    """The derivatives of the constraints with respect to the coordinates, a row each, as exudyn has
-    them now; afterwards the solver has to be initialized again."""
+    """Return the present derivatives of the constraints with respect to the coordinates, a row
+    each; afterwards the solver has to be initialized again."""
     count = solver.GetODE2size()
     size = count + solver.GetAEsize()
     solver.SetSystemJacobian(np.zeros((size, size)))
@@ -85,10 +85,10 @@ def constraints(solver: Any, system: Any) -> Array:
 
 
 def per_drive(solver: Any, system: Any) -> Array:
-    """The accelerations of all coordinates over that which the drive asks for, the last of the
-    constraints; afterwards the solver has to be initialized again.
+    """Return the accelerations of all coordinates over the drive's, the last of the constraints;
+    afterwards the solver has to be initialized again.
 
-    Where links bend the constraints leave some free, which follow by their inertia.
+    With bending links the constraints leave some coordinates free, which follow by their inertia.
     """
     held_by = constraints(solver, system)
     asked = np.zeros(len(held_by))
@@ -104,8 +104,8 @@ def per_drive(solver: Any, system: Any) -> Array:
 
 
 def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
-    """Those of the constraints that go with accelerations, as the system stands; afterwards the
-    solver has to be initialized again."""
+    """Return the multipliers of the constraints for accelerations, at the present state; afterwards
+    the solver has to be initialized again."""
     held_by = constraints(solver, system)
     solver.ComputeMassMatrix(system)
     solver.ComputeODE2RHS(system)
@@ -115,10 +115,10 @@ def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
 
 
 def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]:
-    """The settings by our names, as the solver and what it is given hold them.
+    """Return the settings by crankcheck's names, as the solver and its input hold them.
 
-    What ``linear_solver`` came to is ``linear_solver_used``; ``loads_jacobian_used`` is there where
-    loads go by speeds, ``absolute_tolerance_used`` where it is that of beams.
+    The chosen ``linear_solver`` is ``linear_solver_used``; ``loads_jacobian_used`` is there where
+    loads depend on speeds, ``absolute_tolerance_used`` where beams set it.
     """
     newton, linear = solver.newton, asked.linearSolver
     trapezoidal = asked.timeIntegration.generalizedAlpha.useIndex2Constraints
@@ -143,9 +143,9 @@ def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]
 
 
 class Multipliers:
-    """Multipliers that exudyn is asked for at the end of each of its steps.
+    """Multipliers at the end of each of exudyn's steps.
 
-    ``first`` are those of the start, where the system does not hold them itself.
+    ``first`` are the multipliers of the start, where the system does not hold them itself.
     """
 
     def __init__(self, system: Any, first: Array | None) -> None:
@@ -154,12 +154,12 @@ class Multipliers:
         self._rows: list[Array] = []
 
     def rows(self, index: Index) -> list[int]:
-        """Which of them are those of a joint."""
+        """Return the rows of a joint."""
         return [int(row) for row in self._system.systemData.GetObjectLTGAE(index)]
 
     @contextmanager
     def kept(self, steps_done: int) -> Iterator[None]:
-        """Keep those of now, ``steps_done`` steps after the start, and of each step meanwhile."""
+        """Keep the multipliers of now, ``steps_done`` steps after the start, and of each step."""
         state = self._system.systemData
         now = np.array(state.GetAECoordinates())
         self._times_s = [float(state.GetTime())]
@@ -171,15 +171,15 @@ class Multipliers:
             self._system.SetPostStepUserFunction(0)
 
     def _keep(self, system: Any, time_s: float) -> bool:
-        """What exudyn calls; a stretch calls it at its own start as well."""
+        """Keep a step, as exudyn's callback; a stretch calls it at its own start as well."""
         if time_s > self._times_s[-1]:
             self._times_s.append(time_s)
             self._rows.append(np.array(system.systemData.GetAECoordinates()))
         return True
 
     def at(self, time_s: Array) -> Array:
-        """Those of some of the steps, by times on exudyn's clock; a row each."""
+        """Return the multipliers of some of the steps, by times on exudyn's clock; a row each."""
         clock = np.array(self._times_s)
-        # Of a step that was cut the last part ends at the step.
+        # The last part of a cut step ends at the step.
         near = 0.5 * (clock[1:] + clock[:-1])
         return np.array(self._rows)[np.searchsorted(near, time_s)]

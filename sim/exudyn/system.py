@@ -1,10 +1,10 @@
 """The exudyn system of a scene: a rigid body in the plane per link, a joint per pin and line.
 
-The node of a body stands at its centre of mass; where that lies in the link's own frame is kept.
-All bodies have three coordinates, the driven crank too: what drives it is one constraint more. A
-pin of k bodies is k - 1 hinges. What runs on a line is a prismatic joint whose second marker, on
-the guide, lies on the line; a massless block is one that leaves the angle free. The nodes of beams
-have a tangent in place of an angle.
+The node of a body is at its centre of mass, whose place in the link's own frame is kept. All bodies
+have three coordinates, the driven crank too: its drive is one more constraint. A pin of k bodies is
+k - 1 hinges. A pair on a line is a prismatic joint whose second marker, on the guide, lies on the
+line; with a massless block it leaves the angle free. The nodes of beams have a tangent in place of
+an angle.
 
 Its type stubs leave out ``self`` and its items are untyped, so all of it is `Any` here.
 """
@@ -39,14 +39,14 @@ from models.scene.joints import (
 )
 
 SAID = re.compile(r"Python WARNING|Python ERROR")
-"""What begins each of the things that exudyn says of a run."""
+"""Beginning of each of exudyn's messages about a run."""
 PLACE = re.compile(r"\[(?:Python )?file .*?\]:?")
-"""Where in a Python program a call of exudyn stands, which it adds to all that it says."""
+"""Place of a call in a Python program, which exudyn adds to all its messages."""
 
 
 @contextlib.contextmanager
 def quiet(heard: list[str]) -> Iterator[None]:
-    """Add to ``heard`` what exudyn prints meanwhile, which it does by way of ``sys.stdout``."""
+    """Add exudyn's output meanwhile to ``heard``; it prints by way of ``sys.stdout``."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said):
@@ -56,31 +56,31 @@ def quiet(heard: list[str]) -> Iterator[None]:
 
 
 def plain(text: str) -> str:
-    """What exudyn says in one line, without its rules of asterisks."""
+    """Return a message of exudyn in one line, without its rules of asterisks."""
     return " ".join(PLACE.sub("", text).replace("*", "").split())
 
 
-with quiet([]):  # it announces what its environment variables ask of it
+with quiet([]):  # it reports the effects of its environment variables
     exu: Any = import_module("exudyn")
     items: Any = import_module("exudyn.itemInterface")
 VERSION = str(exu.config.Version())
 
 
 ANGLE = 2
-"""The coordinate of a node that is its angle."""
+"""Coordinate of a node that is its angle."""
 Index = Any
 """exudyn's own numbers of nodes, objects, markers and loads."""
 
 
 @dataclass(frozen=True)
 class PlaneSystem:
-    """A system that is not assembled yet: of the bodies by name, in the order they were added.
+    """A system before its assembly: the bodies by name, in the order they were added.
 
-    ``centre`` is where the node of a body lies in the frame of its link [m]. ``hinge`` has, by pin,
+    ``centre`` is the place of a body's node in the frame of its link [m]. ``hinge`` has, by pin,
     the joints of its first body with each of the others, ``prismatic`` the joint of each slider;
-    ``weight`` is the load of each body's gravity. Nodes of beams are in ``node`` alone, and where
-    they look at the start [rad] in ``looked``; the elements of each beam are in ``elements``. A
-    system lives as long as its ``container``.
+    ``weight`` is the load of each body's gravity. Nodes of beams are in ``node`` alone, and their
+    angles at the start [rad] in ``looked``; the elements of each beam are in ``elements``. A system
+    lives as long as its ``container``.
     """
 
     container: Any
@@ -96,11 +96,11 @@ class PlaneSystem:
     elements: dict[str, list[Index]] = field(default_factory=dict)
 
     def marker(self, scene: Scene, name: str, point: str) -> Index:
-        """A new marker at a point of a body or of the ground."""
+        """Add a marker at a point of a body or of the ground."""
         return self.marker_at(name, local_point(scene, name, point))
 
     def marker_at(self, name: str, place: Point) -> Index:
-        """A new marker at a place in the frame of a body or of the ground [m]."""
+        """Add a marker at a place in the frame of a body or of the ground [m]."""
         x, y = less(place, self.centre.get(name, (0.0, 0.0)))
         if name in self.looked:
             if (x, y) != (0.0, 0.0):
@@ -115,16 +115,16 @@ class PlaneSystem:
         )
 
     def crank_markers(self, link: str, base: str = GROUND) -> list[Index]:
-        """New markers of the angles of a base and of a body."""
+        """Add markers of the angles of a base and of a body."""
         return [self.angle_marker(base), self.angle_marker(link)]
 
     def place_markers(self, link: str, coordinate: int) -> list[Index]:
-        """New markers of a coordinate of the ground, which is 0, and of one of a body's centre."""
+        """Add markers of a coordinate of the ground, which is 0, and of a body's centre."""
         own = items.MarkerNodeCoordinate(nodeNumber=self.node[link], coordinate=coordinate)
         return [self.angle_marker(GROUND), self.system.AddMarker(own)]
 
     def angle_marker(self, name: str) -> Index:
-        """A new marker of the angle of a body or of the ground, which both count from the start.
+        """Add a marker of the angle of a body or of the ground, which both count from the start.
 
         Raises EngineError for the node of a beam, whose angle is no coordinate.
         """
@@ -152,8 +152,8 @@ class PlaneSystem:
             )
 
     def masses(self) -> Mapping[str, tuple[float, float]]:
-        """Mass [kg] and inertia about the centre of mass [kg m^2] of the bodies, as exudyn has
-        them."""
+        """Return mass [kg] and inertia about the centre of mass [kg m^2] of the bodies, as exudyn
+        has them."""
         held = {name: self.system.GetObject(body) for name, body in self.body.items()}
         return {name: (float(o["mass"]), float(o["inertia"])) for name, o in held.items()}
 
@@ -180,13 +180,13 @@ def add_node(made: PlaneSystem, name: str, frame: Frame, state: State) -> None:
 
 
 def add_elements(scene: Scene, made: PlaneSystem, beam: Beam) -> None:
-    """Add the elements between the nodes of a beam, straight at rest wherever these stand.
+    """Add the elements between the nodes of a beam, straight at rest for any place of these.
 
     An element is a cubic in its own length (absolute nodal coordinates); it bends by EI times the
     curvature of its axis over its stretch, and stretches by EA (|r'| - 1). Source: exudyn's own
     manual, ObjectANCFCable2D and NodePoint2DSlope1; J. Gerstmayr, H. Irschik, On the correct
-    representation of bending and axial deformation in the absolute nodal coordinate formulation,
-    J. Sound and Vibration 318 (2008).
+    representation of bending and axial deformation in the absolute nodal coordinate formulation, J.
+    Sound and Vibration 318 (2008).
     """
     made.elements[beam.name] = [
         made.system.AddObject(
@@ -207,7 +207,7 @@ def add_elements(scene: Scene, made: PlaneSystem, beam: Beam) -> None:
 
 
 def held_beams(scene: Scene, made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]]:
-    """Of each beam what exudyn has of it, by element: a beam of one element each."""
+    """Return exudyn's values of each beam, by element: a beam of one element each."""
     return {
         name: tuple(
             _held(made.system.GetObject(element), name, pair)
@@ -220,7 +220,7 @@ def held_beams(scene: Scene, made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]
 
 
 def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> Beam:
-    """An element; one whose two dampings are not of one time has none that is a number."""
+    """Return an element; its damping is NaN where its two dampings differ in time."""
     flexural, axial = float(own["bendingStiffness"]), float(own["axialStiffness"])
     times = float(own["bendingDamping"]) / flexural, float(own["axialDamping"]) / axial
     one = math.isclose(*times, rel_tol=1e-12)
@@ -236,7 +236,7 @@ def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> Beam:
 
 
 def node_masses(scene: Scene, made: PlaneSystem) -> dict[str, float]:
-    """The mass of each node [kg], half of that of the elements beside it, as exudyn has these."""
+    """Return the mass of each node [kg], half of the adjacent elements' in exudyn."""
     found: dict[str, float] = {}
     for elements in held_beams(scene, made).values():
         for one in elements:
@@ -247,7 +247,7 @@ def node_masses(scene: Scene, made: PlaneSystem) -> dict[str, float]:
 
 
 def rounding_n(scene: Scene, state: State) -> float:
-    """What rounding leaves of the axial force of a beam [N]: its strain is a difference of places
+    """Return the rounding of the axial force of a beam [N]: its strain is a difference of positions
     over the length of an element. 0 without beams."""
     reach = max([scene.longest_m, *(math.hypot(*place) for place in state.position.values())])
     return max(
@@ -257,7 +257,7 @@ def rounding_n(scene: Scene, state: State) -> float:
 
 
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
-    """The system of ``scene`` at ``state``, with nothing that drives it.
+    """Build the system of ``scene`` at ``state``, without a drive.
 
     Raises
     ------
@@ -299,7 +299,7 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
 
 
 def _refuse_massless(name: str, mass: float, inertia: float, *, turns: bool) -> None:
-    """Raise EngineError for a body that a force would move at no cost."""
+    """Refuse a body that a force would move at no cost. Raises EngineError."""
     if mass <= 0.0 or (inertia <= 0.0 and turns):
         raise EngineError(
             f"{name}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; exudyn moves no body without "
@@ -340,5 +340,5 @@ def _join(scene: Scene, made: PlaneSystem) -> None:
 
 
 def _kept_angle(slide: Prism | Slot) -> float:
-    """The angle that a sliding body keeps to its guide [rad]; any for a point on a line."""
+    """Return the constant angle of a sliding body to its guide [rad]; 0 for a point on a line."""
     return sliding_angle(slide.slider) if isinstance(slide, Prism) else 0.0

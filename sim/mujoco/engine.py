@@ -39,7 +39,7 @@ from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 
 
 class MujocoSession(SteppedModel):
-    """A scene in MuJoCo. Velocities of all integrators but RK4 lag by half a step."""
+    """A scene in MuJoCo. Velocities of all integrators except RK4 lag by half a step."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
@@ -72,7 +72,7 @@ class MujocoSession(SteppedModel):
         self._forward()
 
     def facts(self) -> Facts:
-        """The model as MuJoCo holds it now."""
+        """Read the model as MuJoCo holds it now."""
         model = self._model
         names = [limb.body for limb in self._limbs]
         opt = model.opt
@@ -107,24 +107,24 @@ class MujocoSession(SteppedModel):
         )
 
     def _share_of_weights(self) -> float:
-        """Of the inverse weights as compiled, those that the bodies have now."""
+        """Return the ratio of the bodies' inverse weights to the compiled ones."""
         share = float(self._model.body_invweight0.sum() / self._weights.sum())
         return float(f"{share:.12g}")
 
     def record_forces(self, steps: int, every: int) -> Log:
-        """As `record`, with the forces of `mj_forward` at each kept state."""
+        """Advance and log, as `record`, with the forces of `mj_forward` at each kept state."""
         joint_forces = JointForces(self._model, self._limbs, self._loading.first, self._tendons)
         log = self._recorded(steps, every, joint_forces.look)
         return replace(log, forces=reactions(self._scene, self._tree, log.poses, joint_forces))
 
     def _spring(self, tendon: SpringTendon) -> tuple[float, float, float]:
-        """Rate, damping and the slack length or angle of a spring, as `Facts` has them."""
+        """Return rate, damping and slack length or angle of a spring, as in `Facts`."""
         model, k = self._model, int(self._model.tendon(tendon.name).id)
         slack = tendon.sense * float(model.tendon_lengthspring[k, 0]) + tendon.shift
         return float(model.tendon_stiffness[k]), float(model.tendon_damping[k]), slack
 
     def _inertia(self, body: str) -> float:
-        """Inertia about the centre of mass; a free crank has that of its hinge as well."""
+        """Return the inertia about the centre of mass; a free crank's hinge counts as well."""
         inertia = float(self._model.body(body).inertia[2])
         if self._free and body == self._scene.driver.link:
             inertia += float(self._model.dof_armature[self._crank])
@@ -139,18 +139,18 @@ class MujocoSession(SteppedModel):
         return not self._model.nu
 
     def _start(self) -> Poses:
-        """The current state; the accelerations of the first are there from the opening."""
-        if self._done or self._model.nu:  # by what the law asks for, which the opening left out
+        """Return the current state; the opening has computed the accelerations of the first."""
+        if self._done or self._model.nu:  # by the law's control, which the opening left out
             return self.read()
         return self._placed(self._full_state()[None], np.zeros(1), self._data.qacc[None].copy())
 
     def _controls(self, steps: int) -> Array | None:
-        """The controls of each of the next steps; None where the model has no actuator.
+        """Return the controls of each of the next steps; None where the model has no actuator.
 
-        A load that is known ahead is held through a step at its size in the middle of what the
-        step makes of the velocity. At the start of a step of RK4 it would come half a step late:
-        of first order, where this is of second. Where nothing drives the crank, a step of RK4 sees
-        it in its stages instead (`Loading.in_stages`), which is of fourth.
+        A load that is known ahead keeps through a step its size in the middle of the velocity's
+        step. At the start of a step of RK4 it would come half a step late: of first order, where
+        this is of second. In free motion a step of RK4 sees it in its stages instead
+        (`Loading.in_stages`), which is of fourth.
         """
         if not self._model.nu:
             return None
@@ -159,9 +159,9 @@ class MujocoSession(SteppedModel):
         return np.hstack([self._driving(steps), loads]) if self._controlled else loads
 
     def _driving(self, steps: int) -> Array:
-        """The control of the crank in each of the next steps, (steps, 1)."""
+        """Return the control of the crank in each of the next steps, (steps, 1)."""
         law, end = self._scene.driver.law, self._done + steps
-        if self._servo:  # the speed that the step leads to is its mean speed
+        if self._servo:  # the speed at the end of the step is its mean speed
             return drives.chords(law, self._start_s, self._dt, self._done, end - 1)[:, None]
         if len(self._pushes) < end + 1:
             longer = max(end + 1, 2 * len(self._pushes))
@@ -169,13 +169,13 @@ class MujocoSession(SteppedModel):
         return self._pushes[self._done : end, None]
 
     def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        """Poses of states with their joint accelerations (T, nv)."""
+        """Return the poses of states with their joint accelerations (T, nv)."""
         lag = self._shift * self._dt
         poses = body_poses(self._limbs, *self._joints(states), push, lag)
         return Poses(self._start_s + self._dt * at, poses, lag)
 
     def _control_at(self, at: Array) -> Array | None:
-        """The law's own speed or acceleration at the steps, and the sizes of the loads."""
+        """Return the law's own speed or acceleration at the steps, and the sizes of the loads."""
         if not self._model.nu:
             return None
         time_s = self._start_s + self._dt * at
@@ -187,18 +187,18 @@ class MujocoSession(SteppedModel):
 
     @contextmanager
     def _at_work(self) -> Iterator[None]:
-        """As of any model; and loads follow the motion."""
+        """Let loads follow the motion while MuJoCo works."""
         with super()._at_work(), self._loading.following():
             yield
 
 
 def _pair(vector: Array) -> Point:
-    """The first two of a vector, in the plane."""
+    """Return the first two components of a vector, in the plane."""
     return float(vector[0]), float(vector[1])
 
 
 def _tree(scene: Scene, state: State, chosen: Writing) -> Tree:
-    """The tree; a fault that only the setting ``close`` causes is a fault of the setting."""
+    """Plan the tree; a fault that only the setting ``close`` causes is a fault of the setting."""
     try:
         return planned(scene, state, chosen)
     except EngineError as error:

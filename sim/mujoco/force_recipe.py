@@ -1,4 +1,4 @@
-"""How to read reactions and the driving torque out of MuJoCo, as a program."""
+"""Program that reads reactions and the driving torque out of MuJoCo."""
 
 from models.errors import EngineError
 from models.mjcf.document import build
@@ -68,8 +68,8 @@ for step in range({steps}):
 
 
 def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """Pins of two bodies; those of the tree where neither loads nor springs act, which ``cfrc_int``
-    may count as coming through them. Refused are drives and loads that a file does not hold."""
+    """Write the recipe for pins of two bodies; without loads and springs, which ``cfrc_int`` may
+    count as joint forces, for the tree's too. Refuse drives and loads that a file does not hold."""
     _check_held(scene)
     chosen = writing(scene, settings, dt_s, "prescribed")
     tree = planned(scene, state, chosen)
@@ -92,7 +92,7 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
 
 
 def _check_held(scene: Scene) -> None:
-    """Refuse a mechanism that nothing drives, and what comes as a control of each step."""
+    """Refuse free motion, and loads and laws that need a control at each step."""
     if scene.is_free:
         raise EngineError(
             f"{scene.name}: nothing drives it, and the recipe reads the torque of a drive; take a "
@@ -118,7 +118,7 @@ def _check_held(scene: Scene) -> None:
 
 
 def _loops(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
-    """By pin and its second body: the connect, and the sign of its force there."""
+    """Return, by pin and its second body, the connect, and the sign of its force there."""
     pins = joined_at(scene)
     return {
         f"{c.point}.{pins[c.point][1]}": (
@@ -131,7 +131,7 @@ def _loops(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
 
 
 def _hinges(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
-    """By pin and its second body: the body that hangs there, and the sign of what it is given."""
+    """Return, by pin and its second body, the child body there, and the sign of the force on it."""
     pins = joined_at(scene)
     return {
         f"{limb.point}.{pins[limb.point][1]}": (
@@ -144,7 +144,7 @@ def _hinges(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
 
 
 def _listed(table: dict[str, tuple[str, int]]) -> str:
-    """A dictionary, an entry a line."""
+    """Write a dictionary, an entry a line."""
     rows = "".join(f"    {key!r}: {value!r},\n" for key, value in table.items())
     return f"{{\n{rows}}}" if rows else "{}"
 

@@ -1,4 +1,4 @@
-"""What is searched of MuJoCo's settings, and what a step costs with them.
+"""Search space of MuJoCo's settings, and the cost of a step with them.
 
 Solvers other than Newton are left out, as their passes depend on the state, not on the settings
 alone, and save nothing (PGS: 7 % of a step with 1 pass, and -15 % with 10).
@@ -10,21 +10,21 @@ from models.scene import Scene
 from sim.registry.offers import Knob, SearchSpace, Work, rungs
 
 EVALUATIONS = {"Euler": 1.0, "implicitfast": 1.04, "discrete": 1.08, "implicit": 1.24, "RK4": 3.87}
-"""The time of an integrator over that of Euler, which works out the accelerations once."""
+"""Time of an integrator over Euler's, which computes the accelerations once."""
 STEP_US, BODY_US, LOOP_US = 1.313, 0.035, 0.560
 
 
 def counts(scene: Scene, start: State) -> tuple[float, float, float]:
-    """1, bodies, closed loops: what one evaluation of the accelerations works on."""
+    """Return 1, bodies, closed loops: the size of one evaluation of the accelerations."""
     tree = plan(scene, start)
     return 1.0, float(len(tree.limbs)), float(len(tree.closures))
 
 
 def work(scene: Scene, start: State) -> Work:
-    """Evaluations of the accelerations, each growing with bodies and loops.
+    """Return the cost of the evaluations of the accelerations, each growing with bodies and loops.
 
     The solver's iterations are no part of it: pins make a quadratic problem, which Newton's method
-    solves at its first, so that a limit of 1 and one of 100 take the same time (measured).
+    solves in its first, so that limits of 1 and 100 take the same time (measured).
     """
     step, body, loop = counts(scene, start)
     each = STEP_US * step + BODY_US * body + LOOP_US * loop
@@ -36,7 +36,7 @@ KNOBS = SearchSpace(
         Knob("integrator", ("RK4", "implicitfast", "Euler", "implicit", "discrete")),
         # MuJoCo itself takes 2 steps for anything shorter (refsafe).
         Knob("solref_timeconst_steps", rungs(2.0, 20.0, 1.06)),
-        # Above 5 pins come apart slowly, over tens of turns, which no short run sees.
+        # Above 5 pins open slowly, over tens of turns, which no short run shows.
         Knob("solref_dampratio", rungs(0.2, 5.0, 1.08)),
         Knob(
             "solimp",

@@ -1,4 +1,4 @@
-"""The sizes of a scene's loads while MuJoCo steps, as the controls of their actuators."""
+"""Sizes of a scene's loads while MuJoCo steps, as the controls of their actuators."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,24 +18,24 @@ from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
 
 Parts = tuple[float, float, float]
-"""Of a load, at the begin, the middle and the end of a step."""
+"""Parts of a load, at the begin, the middle and the end of a step."""
 
 
 class StrokeShares:
-    """The parts of loads on forward strokes in the steps from ``first`` on, of sliders whose rates
-    stand at these places of the velocities.
+    """Parts of loads on forward strokes in the steps from ``first`` on, of sliders with their rates
+    at these places of the velocities.
 
-    Where the speed of a slider changes its sign, such a load jumps. Stages that look at their own
-    speed see some of the jump, whenever it was, and the step falls to first order. RK4 adds up a
+    Such a load jumps where the speed of a slider changes its sign. Stages that use their own speed
+    see some of the jump, at any instant of it, and the step falls to first order. RK4 adds up a
     step as Simpson's rule does, from its begin, middle and end; a load that acts for the first
-    share s of the step is kept by it, with its impulse and what goes along and with the square of
-    time, in the parts
+    share s of the step keeps its impulse, and its moments with time and the square of time, in the
+    parts
 
         begin  6 s - 9 s^2 + 4 s^3        middle  3 s^2 - 2 s^3        end  4 s^3 - 3 s^2
 
     The impulse alone is not enough: at a dead centre the slider turns back where the load has no
-    lever, which grows from there. The rate of the speed is that of the stage before, which is the
-    end of the last step.
+    lever, which grows from there. The rate of the speed belongs to the stage before, the end of the
+    last step.
     """
 
     def __init__(self, places: Mapping[str, int], dt_s: float, first: int) -> None:
@@ -44,7 +44,7 @@ class StrokeShares:
         self._parts: dict[str, Parts] = {}
 
     def at(self, data: Any) -> Mapping[str, float]:
-        """By slider, in the stage that MuJoCo's data are at; every stage has to ask, in turn."""
+        """Return the parts by slider, in MuJoCo's present stage; every stage has to call it."""
         half = round(2.0 * float(data.time) / self._dt)
         stage = 1 if half % 2 else 2 if self._last_half == half - 1 else 0
         if stage == 0:
@@ -57,8 +57,8 @@ class StrokeShares:
 
 
 def forward_parts(speed: float, change: float) -> Parts:
-    """The parts of what acts while that goes forward which begins a step with a speed, and changes
-    it evenly by so much."""
+    """Return the parts of a load that acts in forward motion, of a step that begins at a speed and
+    changes it evenly by so much."""
     after = speed + change
     if speed * after >= 0.0:
         whole = float(speed > 0.0 or (speed == 0.0 and after > 0.0))
@@ -71,15 +71,15 @@ def forward_parts(speed: float, change: float) -> Parts:
 
 
 INSIDE = 1e-9
-"""How far within its step, in steps, a stage at its ends looks at the load: above the rounding of
-times, below any error."""
+"""Distance within its step, in steps, at which the end stages evaluate the load: above the rounding
+of times, below any error."""
 STAGES = np.array([INSIDE, 0.5, 1.0 - INSIDE])
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 class LoadStages:
-    """The sizes of ``loads`` in the stages of the steps ``first`` to ``first + count - 1``, and
-    which of them is asked for.
+    """Sizes of ``loads`` in the stages of the steps ``first`` to ``first + count - 1``, and the
+    stage of MuJoCo's clock.
 
     A stage is at the start of its step, in the middle or at the end::
 
@@ -87,10 +87,10 @@ class LoadStages:
 
     Two steps share an instant, and each sees its own side of it: a jump on the grid belongs to the
     step that it begins. Grid and stage are found by the number of the step, as MuJoCo's clock adds
-    up rounding. A jump or kink within a step has stages of the parabola that has the same moments
-    with 1, c and c^2 over the step as the load. Simpson's rule, which RK4 is for a course over
-    time, then has speed and place as the load gives them, but for what the motion in the step does
-    to it. RK4 works out the forces at the start, twice in the middle, and at the end of each step.
+    up rounding. A step with a jump or kink has the stages of the parabola with the load's moments
+    with 1, c and c^2 over the step. Simpson's rule, which is RK4 for a course over time, then gives
+    speed and position as the load does, except for the effect of the motion in the step on it. RK4
+    evaluates the forces at the start, twice in the middle, and at the end of each step.
     """
 
     def __init__(
@@ -103,18 +103,18 @@ class LoadStages:
         self._last_half = 2 * first  # as after a start: no middle was before
 
     def at(self, clock_s: float) -> list[float]:
-        """The sizes in the stage that MuJoCo's clock is at; every stage has to ask, in turn."""
+        """Return the sizes in the stage of MuJoCo's clock; every stage has to call it, in turn."""
         half = round(self._halves_per_s * clock_s)
         step, stage = half // 2 - self._first, half % 2
         if stage == 0 and self._last_half == half - 1:  # after the middle comes the end
             step, stage = step - 1, 2
         self._last_half = half
-        # MuJoCo puts a state that comes apart back to time 0; such a run is thrown away.
+        # MuJoCo puts a state that diverges back to time 0; such a run is thrown away.
         return self._sizes[min(max(step, 0), self._last)][stage]
 
 
 def stage_sizes(load: Load, start_s: float, dt_s: float, first: int, count: int) -> Array:
-    """The sizes (count, 3) of a load over time in the stages of some steps [N or N m]."""
+    """Return the sizes (count, 3) of a load over time in the stages of some steps [N or N m]."""
     begins = start_s + dt_s * np.arange(first, first + count)
     times = begins[:, None] + dt_s * STAGES
     sizes = load.magnitude(times.ravel()).reshape(times.shape)
@@ -126,7 +126,7 @@ def stage_sizes(load: Load, start_s: float, dt_s: float, first: int, count: int)
 def _cut_steps(
     course: Characteristic, start_s: float, dt_s: float, first: int, count: int
 ) -> dict[int, list[float]]:
-    """The steps with a kink within, and where in the step it is, between 0 and 1."""
+    """Return the steps with a kink within, and its places in the step, between 0 and 1."""
     cuts: dict[int, list[float]] = {}
     end_s = start_s + dt_s * (first + count)
     for kink in course.kinks_between(start_s + dt_s * first, end_s):
@@ -138,8 +138,8 @@ def _cut_steps(
 
 
 def _parabola(load: Load, begin_s: float, dt_s: float, cuts: Sequence[float]) -> Array:
-    """At 0, 1/2 and 1 the parabola that comes nearest to the load over a step, in the mean square:
-    the sum of Legendre's P0, P1, P2 with (2 k + 1) times the load's moment with each."""
+    """Return at 0, 1/2 and 1 the parabola nearest to the load over a step, in the mean square: the
+    sum of Legendre's P0, P1, P2 with (2 k + 1) times the load's moment with each."""
     ends = np.array([0.0, *sorted(cuts), 1.0])
     half = 0.5 * np.diff(ends)[:, None]
     places = (ends[:-1, None] + half * (1.0 + NODES)).ravel()
@@ -151,12 +151,12 @@ def _parabola(load: Load, begin_s: float, dt_s: float, cuts: Sequence[float]) ->
 
 
 class Loading:
-    """The controls of the loads, which are the last of the model's.
+    """Controls of the loads, the last of the model's controls.
 
-    What is known ahead is a control of each step (`at_times`), in C throughout. What depends on the
-    motion is set by a callback (`following`) in every evaluation of the forces, four times a step
-    of RK4, from the state of then; that costs some microseconds each. So are loads over time where
-    ``stages_dt_s`` says that steps of RK4, of that length [s], are to see them in their stages
+    Loads known ahead are a control of each step (`at_times`), in C throughout. A callback
+    (`following`) sets loads that depend on the motion in every evaluation of the forces, four times
+    a step of RK4, from the state of then; that costs some microseconds each. The callback also sets
+    loads over time if steps of RK4 of ``stages_dt_s`` [s] are to see them in their stages
     (`in_stages`), and loads of one stroke with their share of the step.
     """
 
@@ -201,11 +201,11 @@ class Loading:
         }
 
     def at_times(self, time_s: Array) -> Array:
-        """The controls (T, n), 0 where they follow from the motion."""
+        """Return the controls (T, n), 0 where they follow from the motion."""
         columns = np.zeros((len(time_s), len(self.loads)))
         for k, load in enumerate(self.loads):
             if k not in self._of_motion:
-                # Where a load jumps at a sample, what comes after it holds there.
+                # Where a load jumps at a sample, its later value holds there.
                 after = time_s + INSIDE * self._dt if k in self._of_time else time_s
                 columns[:, k] = ahead(self._scene, load, after)
         return columns
@@ -224,8 +224,8 @@ class Loading:
 
     @contextmanager
     def in_stages(self, first: int, count: int) -> Iterator[None]:
-        """Let loads over time be those of the stages, and loads of one stroke have their share of
-        the step, while MuJoCo takes ``count`` steps from the step ``first`` on."""
+        """Set loads over time in their stages, and loads of one stroke by their share of the step,
+        while MuJoCo takes ``count`` steps from the step ``first`` on."""
         if not (self._of_time or self._of_strokes):
             yield
             return
@@ -260,9 +260,9 @@ class Loading:
                 controls[first + k] = size
 
     def size(self, load: Load, data: Any) -> float:
-        """The size of a load in the state of the data; all slides are joints, and read as the
-        sliders' displacements."""
-        # Hinges and slides have one coordinate and one rate, so both stand at one place.
+        """Return the size of a load in the state of the data; all slides are joints, and their
+        coordinates are the sliders' displacements."""
+        # Hinges and slides have one coordinate and one rate, so both have the same index.
         sliding = {
             name: (float(data.qpos[k]), float(data.qvel[k])) for name, k in self._slides.items()
         }

@@ -1,4 +1,4 @@
-"""The reactions in all pins and sliders and the driving torque, from what MuJoCo has of them."""
+"""Reactions in all pins and sliders and the driving torque, from MuJoCo's own forces."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class JointWrench:
     place: Array
 
     def moment_about(self, place: Array) -> Array:
-        """The moment about another place."""
+        """Return the moment about another place."""
         x, y = (self.place - place).T
         return np.asarray(self.moment + x * self.force[:, 1] - y * self.force[:, 0])
 
@@ -38,7 +38,7 @@ class JointWrench:
         return JointWrench(-self.force, -self.moment, self.place)
 
     def __sub__(self, other: JointWrench) -> JointWrench:
-        """About the place of the first."""
+        """Subtract, about the place of the first."""
         moment = self.moment - other.moment_about(self.place)
         return JointWrench(self.force - other.force, moment, self.place)
 
@@ -63,8 +63,8 @@ PROBE = """<mujoco>
 
 @lru_cache
 def springs_between_points_are_outside() -> bool:
-    """Whether the springs of spatial tendons are among them, as in 4.0.0, or seem to come through
-    the joints, as those of fixed tendons do; asked of the MuJoCo that is installed."""
+    """True if springs of spatial tendons count as external forces, as in 4.0.0, and not as joint
+    forces, like springs of fixed tendons; tested in the installed MuJoCo."""
     model = mujoco.MjModel.from_xml_string(PROBE)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -73,13 +73,13 @@ def springs_between_points_are_outside() -> bool:
 
 
 class JointForces:
-    """Forces in the joints of the states that it is shown, one row a state.
+    """Forces in the joints at recorded states, one row a state.
 
-    After `mj_forward`, `mj_rnePostConstraint` has the force that each body is given by its parent
-    (``cfrc_int``): inertia and gravity of all that hangs on it, less what the loops take over. That
-    of the crank is without the flywheel, which is no body. The forces at the pins that close the
-    loops are the multipliers of their connects, three rows each in the frame of the world, that of
-    the first body first.
+    After `mj_forward`, `mj_rnePostConstraint` has the force of the parent on each body
+    (``cfrc_int``): inertia and gravity of its whole branch of the tree, less the share of the
+    loops. The crank's force is without the flywheel, which is no body. The forces at the pins that
+    close the loops are the multipliers of their connects, three rows each in the frame of the
+    world, the first body's first.
     """
 
     def __init__(
@@ -101,12 +101,12 @@ class JointForces:
         self._pulls: list[Array] = []
 
     def look(self, model: Any, data: Any) -> None:
-        """Take the forces of a state; `mj_forward` has seen it."""
+        """Record the forces of a state, after `mj_forward`."""
         mujoco.mj_rnePostConstraint(model, data)
         self._wrenches.append(data.cfrc_int[self._bodies, 2:5])
         self._centres.append(data.subtree_com[self._roots, :2])
         loops = np.zeros((model.neq, 3))
-        # Equalities come first among the rows of constraints; one that is off has none. Friction
+        # Equalities come first among the rows of constraints; an inactive one has none. Friction
         # follows them, a row for each joint that has some.
         loops[data.efc_id[: data.ne : 3]] = data.efc_force[: data.ne].reshape(-1, 3)
         self._loops.append(loops[:, :2])
@@ -120,36 +120,36 @@ class JointForces:
         self._pulls.append(self._senses * pulls)
 
     def from_parent(self, limb: Limb) -> JointWrench:
-        """What the parent exerts on a limb, about the place where MuJoCo has it: the centre of mass
-        of the tree that the limb is part of."""
+        """Return the wrench of the parent on a limb, about the place where MuJoCo has it: the
+        centre of mass of the limb's tree."""
         k = self._limbs.index(limb)
         given = np.array([each[k] for each in self._wrenches])
         return JointWrench(given[:, 1:], given[:, 0], np.array([each[k] for each in self._centres]))
 
     def of_load(self, load: int) -> Array:
-        """The size of a load, (T,)."""
+        """Return the size of a load, (T,)."""
         return np.array([each[load] for each in self._sizes])
 
     def of_spring(self, spring: int) -> Array:
-        """What a spring pulls its q back with, (T,)."""
+        """Return the force or torque with which a spring pulls its q back, (T,)."""
         return np.array([each[spring] for each in self._pulls])
 
     def of_friction(self, joint: int) -> Array:
-        """What friction does along a coordinate, (T,)."""
+        """Return the friction along a coordinate, (T,)."""
         return np.array([each[joint] for each in self._friction])
 
     def at_loop(self, equality: int) -> Array:
-        """What a connect exerts on its first body, (T, 2)."""
+        """Return the force of a connect on its first body, (T, 2)."""
         return np.array([each[equality] for each in self._loops])
 
 
 def reactions(scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> Forces:
-    """The forces at the states of ``poses``, which act at the instants of their positions."""
+    """Return the forces at the states of ``poses``, which act at their positions' instants."""
     return _Reactions(scene, tree, poses, joint_forces).forces()
 
 
 class _Reactions:
-    """The reactions while they are put together, joint by joint."""
+    """Builder of the reactions, joint by joint."""
 
     def __init__(self, scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> None:
         self._scene, self._tree, self._poses, self._joint_forces = scene, tree, poses, joint_forces
@@ -184,8 +184,8 @@ class _Reactions:
         return Forces(time_s, self._pins, sliders, self._torque, friction=friction)
 
     def _friction(self) -> dict[str, Array]:
-        """What rubs: in pins the couple of the first body on the second, in sliders the force of
-        the guide along the line."""
+        """Return the friction: in pins the couple of the first body on the second, in sliders the
+        force of the guide along the line."""
         found = {}
         freedoms = [(limb, freedom) for limb in self._tree.limbs for freedom in limb.freedoms]
         for one in self._scene.friction.values():
@@ -196,7 +196,7 @@ class _Reactions:
         return found
 
     def _of_driven_joint(self, friction: Mapping[str, Array]) -> Array | float:
-        """What rubs in the driven joint, on the driver: it is given that and the drive together."""
+        """Return the friction on the driver in its joint, which MuJoCo adds to the drive."""
         driver, pivot = self._scene.driver, self._scene.driver_pivot
         if driver.slider is not None:
             return friction.get(driver.slider, 0.0)
@@ -206,7 +206,7 @@ class _Reactions:
         return friction[pivot] if on_second else -friction[pivot]
 
     def _sense(self, limb: Limb, point: str) -> float:
-        """1 where the limb turns with the second body of a pin, -1 where with the first."""
+        """Return 1 if the limb turns with the second body of a pin, -1 with the first."""
         turning = limb.body
         slider = limb.slider
         if slider is not None and slider.on == limb.body:  # a block turns with its guide
@@ -214,7 +214,7 @@ class _Reactions:
         return 1.0 if joined_at(self._scene)[point][1] == turning else -1.0
 
     def _pin(self, point: str, giver: str, taker: str, force: Array) -> None:
-        """A body exerts a force on another by the pin that they share."""
+        """Add the force of one body on another at their pin."""
         self._pins[point][taker] += force
         self._pins[point][giver] -= force
 
@@ -226,14 +226,14 @@ class _Reactions:
             self._torque = torque if limb.body == self._scene.driver.link else -torque
 
     def _is_driven(self, limb: Limb) -> bool:
-        """Whether the pin between a limb and its parent is the driven one."""
+        """True if the pin between a limb and its parent is driven."""
         driver = self._scene.driver
         if driver.is_crank:
             return limb.body == driver.link
         return limb.point == driver.pin and {limb.body, limb.parent} == {driver.base, driver.link}
 
     def _slide(self, limb: Limb, slider: Slider) -> None:
-        """The guide is the parent of what slides on it, or else its child."""
+        """Compute a slider; its guide is the parent of the sliding body, or else its child."""
         rides = limb.parent == slider.on
         rider = limb.body if rides else limb.parent
         given = self._from_parent(limb) if rides else -self._from_parent(limb)
@@ -248,8 +248,8 @@ class _Reactions:
             self._torque = given.force[:, 0] * np.cos(along) + given.force[:, 1] * np.sin(along)
 
     def _block(self, slider: Slider, rider: str, force: Array) -> Array:
-        """Hand on what acts on a block without mass, in which nothing is left: what its guide, the
-        loads and springs along its line exert goes to the pin. Gives the moment that its guide
+        """Pass on the forces on a block without mass, which add up to nothing: the forces of its
+        guide, loads and springs along its line go to the pin. Return the moment that its guide
         takes from loads."""
         block = block_name(slider)
         self._pin(slider.point, block, rider, force)
@@ -266,8 +266,8 @@ class _Reactions:
         return moment
 
     def _from_parent(self, limb: Limb) -> JointWrench:
-        """What the parent exerts on a limb: what MuJoCo has, less the loads and springs on all that
-        hangs on the limb, which it takes to come through the joint."""
+        """Return the wrench of the parent on a limb: MuJoCo's, less the loads and springs on the
+        limb's branch of the tree, which MuJoCo counts as joint forces."""
         given = self._joint_forces.from_parent(limb)
         hanging = {limb.body}
         for other in self._tree.limbs:  # parents before children
@@ -279,7 +279,7 @@ class _Reactions:
         return given
 
     def _load(self, k: int) -> tuple[str, JointWrench]:
-        """The body on which a load acts in MuJoCo, and what it exerts there."""
+        """Return the body of a load in MuJoCo, and its wrench there."""
         load = list(self._scene.loads.values())[k]
         size, at = self._joint_forces.of_load(k), point_of_application(self._scene, load)
         place = self._place(at.body, at.place)
@@ -290,7 +290,7 @@ class _Reactions:
         return at.body, JointWrench(force, np.zeros_like(size), place)
 
     def _ends(self, spring: Spring, pull: Array) -> list[tuple[str, JointWrench]]:
-        """The two bodies that a spring is between, and what it exerts on each."""
+        """Return the two bodies of a spring, and its wrench on each."""
         if isinstance(spring, PinSpring):
             first, second = spring.bodies
             place = self._point(second, spring.point)
@@ -311,14 +311,14 @@ class _Reactions:
         return [(first, JointWrench(force, none, start)), (second, JointWrench(-force, none, end))]
 
     def _along(self, slider: Slider) -> Array:
-        """The direction of the line of a slider, (T, 2)."""
+        """Return the direction of the line of a slider, (T, 2)."""
         return directions(self._theta(slider.on) + slider.direction_rad)
 
     def _point(self, body: str, point: str) -> Array:
         return self._place(body, local_point(self._scene, body, point))
 
     def _place(self, body: str, local: Point) -> Array:
-        """Where a body has a place of its frame, (T, 2)."""
+        """Return the position of a place of a body's frame, (T, 2)."""
         arm = arms(self._theta(body), local)
         return arm if body == GROUND else arm + self._poses.bodies[body].origin
 

@@ -1,4 +1,4 @@
-"""Reads an MJCF file that somebody else wrote."""
+"""Reader of a user's own MJCF file."""
 
 import copy
 import math
@@ -42,14 +42,14 @@ from sim.registry.own_models import MOST_TURNS, Advised, Disturbance, Reader, To
 
 @dataclass(frozen=True, eq=False)
 class ReadModel:
-    """An MJCF file as it was read: `sim.registry.own_models.OwnModel`."""
+    """An MJCF file as read: `sim.registry.own_models.OwnModel`."""
 
     path: Path
     planar: PlanarModel
 
     @property
     def scene(self) -> Scene:
-        """Without a branch; its driver turns at 1 rad/s from where it is drawn."""
+        """Scene without a branch; its driver turns at 1 rad/s from its drawn position."""
         return self.planar.read.scene
 
     @property
@@ -63,7 +63,7 @@ class ReadModel:
 
     @property
     def disturbances(self) -> list[Disturbance]:
-        """Also points of a link that may have been meant to be one."""
+        """Disturbances, with points of a link that may have been meant to be one."""
         called = self.planar.read.names
         near = [
             Disturbance(
@@ -77,11 +77,11 @@ class ReadModel:
 
     @property
     def files(self) -> list[Path]:
-        """The file, and those that it includes."""
+        """The file, and its included files."""
         return files(self.path)
 
     def drawn(self) -> Poses:
-        """The pose that the file asks for: as drawn, or that of the keyframe."""
+        """Return the pose of the file: as drawn, or of the keyframe."""
         limbs = self.planar.limbs
         q = np.array(limbs.senses) * self.planar.qpos[list(limbs.positions)]
         still = np.zeros((1, len(q)))
@@ -89,20 +89,20 @@ class ReadModel:
         return Poses(np.zeros(1), {name: poses[limb] for name, limb in limbs.shown.items()})
 
     def coordinate_rad(self) -> float:
-        """What the driven joint reads in that pose."""
+        """Return the coordinate of the driven joint in that pose."""
         planar = self.planar
         return float(planar.qpos[planar.model.jnt_qposadr[planar.driven]])
 
     def open_m(self) -> Mapping[str, float]:
-        """By how much each joint is open in that pose [m]."""
+        """Return the opening of each joint in that pose [m]."""
         return {name: float(gap[0]) for name, gap in gaps(self.scene, self.drawn()).items()}
 
     def loose(self) -> list[str]:
-        """The joints that can still move where the driven one is held."""
+        """List the joints that can still move while the driven joint is fixed."""
         return loose_joints(self.planar.linkage.component)
 
     def welds(self) -> list[str]:
-        """The welds that make bodies of the linkage one."""
+        """List the welds that unite bodies of the linkage."""
         component = self.planar.linkage.component
         return [
             f"{' and '.join(body_name(component.model, body) for body in each.bodies)}"
@@ -111,14 +111,14 @@ class ReadModel:
         ]
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
-        """Hold the model in states of its closed form."""
+        """Put the model into states of its closed form."""
         try:
             return tour(self.planar, scene, states)
         except ModelError as error:
             raise ModelError(f"{self.path}: {error}") from None
 
     def engine(self, advised: Advised) -> Engine:
-        """MuJoCo with this model, and the lines to tell of it as profiles."""
+        """Return MuJoCo with this model, and the lines of its report as profiles."""
 
         def opened(
             scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
@@ -130,8 +130,8 @@ class ReadModel:
         return Engine("mujoco", lines, version=lambda: VERSION, check=checked, open=opened)
 
     def patch(self, dt_s: float, advised: Advised) -> str:
-        """The recommended settings as a diff, that was applied and compiled; in words, where the
-        file does not hold all that it would change."""
+        """Return the recommended settings as a diff, applied and compiled; in words, where the file
+        does not hold all that it would change."""
         planar = self.planar
         told = advice(planar.model, dt_s, advised)
         try:
@@ -151,13 +151,13 @@ class ReadModel:
 
 
 def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
-    """The model of a file, driven by one of its joints, from one of its keyframes if one is named.
+    """Read a file, driven by one of its joints, from a keyframe if named.
 
     Raises
     ------
     ModelError
-        See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name, or one that is
-        not finite, or a hinge that is many turns away.
+        See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name, or a keyframe
+        that is not finite, or a hinge that is many turns away.
     """
     model = load(path)
     names = [name_of(model, mujoco.mjtObj.mjOBJ_KEY, index) for index in range(model.nkey)]
@@ -180,7 +180,7 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
 
 
 def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
-    """Refuse a pose with hinges so far round that the rounding of their angles would be judged."""
+    """Refuse hinges with so many turns that the rounding of their angles would be judged."""
     for body in planar.linkage.component.bodies:
         for joint in body.joints:
             turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
@@ -199,7 +199,7 @@ def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
 
 
 def _moved(model: Any, keyframe: int) -> Any:
-    """The model with its mocap bodies where the keyframe has them: they are ground."""
+    """Return the model with its mocap bodies placed by the keyframe: they are ground."""
     moved = copy.copy(model)
     places = model.key_mpos[keyframe].reshape(-1, 3)
     turns = model.key_mquat[keyframe].reshape(-1, 4)

@@ -1,8 +1,8 @@
-"""What may help a mechanism of unequal masses in MuJoCo: other pins, or stiffer ones.
+"""Remedies for a mechanism of unequal masses in MuJoCo: other closing pins, or stiffer ones.
 
-A closure gives way by what its force is over a stiffness that MuJoCo scales by the inverse masses
-of the two bodies as they hang in the tree. `models.mjcf.tree` closes where these are heavy, which
-is the best pin mostly; which one it is depends on the forces.
+A closure yields by its force over a stiffness that MuJoCo scales by the inverse masses of the two
+bodies in the tree. `models.mjcf.tree` closes at heavy bodies, mostly the best pin; the best depends
+on the forces.
 """
 
 from itertools import islice
@@ -15,11 +15,11 @@ from sim.registry.offers import Remedies
 
 MOST_CLOSINGS = 8
 STIFFER: tuple[Settings, ...] = ({"solref_timeconst_steps": 2}, {"solref_dampratio": 0.3})
-"""6 and 4 times as stiff as profile tuned; more than that RK4 does not resolve."""
+"""Settings 6 and 4 times as stiff as profile tuned; RK4 does not resolve more than that."""
 
 
 def mujoco_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
-    """Closings first: they cost nothing. What is as stiff already is left out."""
+    """List closings, which cost nothing, then the settings that are stiffer than these."""
     elsewhere = islice(closings(scene, state), MOST_CLOSINGS)
     stiffer = [
         each

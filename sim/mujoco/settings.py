@@ -1,4 +1,4 @@
-"""MuJoCo's settings: the two profiles, and what a set of settings comes to in the MJCF text."""
+"""MuJoCo's settings: the two profiles, and the MJCF text of a set of settings."""
 
 import re
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.engine.settings import check_choices, check_ranges
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
-"""In MuJoCo's own order."""
+"""Integrators in MuJoCo's own order."""
 CHOICES = {
     "integrator": INTEGRATORS,
     "servo_integrator": INTEGRATORS,
@@ -35,9 +35,9 @@ RANGES = {
     "free_timeconst_steps": (0.0, 1e9),
     "free_inverse_weight_share": (1e-12, 1.0),
 }
-"""What MuJoCo takes; it clips impedances to these without a word."""
+"""Ranges in MuJoCo, which silently clips impedances to these."""
 MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weight_share": 4}
-"""What causes need more iterations than pins as stiff as the compiled weights make them."""
+"""Iterations by cause, beyond those of pins as stiff as by the compiled weights."""
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
 NOT_USED: Mapping[Drive, tuple[str, ...]] = {
@@ -45,14 +45,14 @@ NOT_USED: Mapping[Drive, tuple[str, ...]] = {
     "servo": OF_FREE,
     "free": OF_DRIVES,
 }
-"""The settings that a drive has no use for."""
+"""Settings without effect by drive."""
 
 FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-7
-"""Time constant of the loop closures in steps, and the share of the bodies' inverse weights, where
-nothing drives: `benchmarks/free_loops.py` shows what others come to."""
+"""Time constant of the loop closures in steps, and the share of the bodies' inverse weights, in
+free motion: `benchmarks/free_loops.py` compares others."""
 SEGMENTS_SHARE = 1e-4
-"""The least share for chains of elastic segments: of 16 it leaves 4e-8 of the deflection, weights
-as compiled 1e-7, and 1e-7 of them 5e-6."""
+"""Least share for chains of elastic segments: with 16 it costs 4e-8 of the deflection, weights as
+compiled 1e-7, and 1e-7 of them 5e-6."""
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -137,7 +137,7 @@ def checked(settings: Settings) -> None:
 
 
 def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> options.Writing:
-    """The choices of the MJCF text that the settings amount to."""
+    """Return the options of the MJCF text for the settings."""
     checked(settings)
     held = holds(settings, dt_s, drive)
     servo = None
@@ -167,18 +167,18 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
 
 
 def _iterations(scene: Scene, settings: Settings, drive: Drive) -> int:
-    """Those of the settings, where nothing needs more."""
+    """Return the iterations of the settings, or more where a cause needs them."""
     asked, cause = int(settings["iterations"]), _iterating(scene, settings, drive)
     return max(asked, MORE_ITERATIONS[cause]) if cause else asked
 
 
 def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
-    """What needs more iterations than pins do, which give a quadratic problem.
+    """Return the cause of more iterations than for pins, which give a quadratic problem.
 
-    Friction: which of two signs it has makes the solver's problem more than quadratic. Springs: the
+    Friction: its choice of two signs makes the solver's problem more than quadratic. Springs: the
     integrator `discrete` solves inertia and stiffness together by conjugate gradients, as many of
-    them as there are iterations, and gives the run up where they do not converge. Lower weights of
-    what is let go: so stiff a problem keeps what the first passes round.
+    them as there are iterations, and gives the run up where they do not converge. Lower weights in
+    free motion: the rounding of the first passes remains in so stiff a problem.
     """
     if scene.friction:
         return "friction"
@@ -188,10 +188,10 @@ def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
 
 
 def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
-    """Of the inverse weights as compiled, those that the bodies of what is let go are given.
+    """Return the ratio of the bodies' inverse weights in free motion to the compiled ones.
 
-    Rounding goes up as the weights go down, and makes chains of elastic segments ring, which
-    nothing damps: theirs go down less.
+    Rounding goes up as the weights go down, and makes chains of elastic segments ring, without
+    damping: their weights go down less.
     """
     asked = float(used(settings, drive).get("free_inverse_weight_share", 1.0))
     ringing = any(isinstance(spring, SegmentSpring) for spring in scene.springs.values())
@@ -201,8 +201,8 @@ def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
 def held_share(
     scene: Scene, settings: Settings, drive: Drive, found: float
 ) -> dict[str, SettingValue]:
-    """The share that a model was ``found`` with, as settings: that asked for, and beside it that of
-    segments."""
+    """Return the share ``found`` in a model, as settings: the requested share, with the share of
+    segments if it differs."""
     asked = float(settings["free_inverse_weight_share"])
     given = weight_share(scene, settings, drive)
     if given != asked and found == given:
@@ -213,8 +213,8 @@ def held_share(
 def held_iterations(
     scene: Scene, settings: Settings, drive: Drive, found: int
 ) -> dict[str, SettingValue]:
-    """The iterations that a model was ``found`` with, as settings: those asked for, and beside them
-    those that friction, springs or lower weights were given."""
+    """Return the iterations ``found`` in a model, as settings: the requested ones, with the
+    iterations for friction, springs or lower weights if they differ."""
     cause = _iterating(scene, settings, drive)
     if cause and found == _iterations(scene, settings, drive):
         return {"iterations": int(settings["iterations"]), f"iterations_of_{cause}": found}
@@ -222,8 +222,8 @@ def held_iterations(
 
 
 def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
-    """The settings as MuJoCo is given them: what depends on step and drive worked out; without the
-    pins that close the loops, which depend on the scene."""
+    """Return the settings as MuJoCo has them, with the values that depend on step and drive;
+    without the pins that close the loops, which depend on the scene."""
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
     steps = closing_steps(settings, drive)
     return {name: value for name, value in used(settings, drive).items() if name != "close"} | {
@@ -235,32 +235,32 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
 
 
 def used(settings: Settings, drive: Drive) -> Settings:
-    """The settings that a drive has a use for."""
+    """Return the settings that have an effect with a drive."""
     return {name: value for name, value in settings.items() if name not in NOT_USED[drive]}
 
 
 def closing_steps(settings: Settings, drive: Drive) -> float:
-    """Time constant of the loops in steps; 0 where it is told in seconds."""
+    """Return the time constant of the loops in steps; 0 if given in seconds."""
     own = float(used(settings, drive).get("free_timeconst_steps", 0.0))
     return own or float(settings["solref_timeconst_steps"])
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:
-    """The time constant of the loops, where it is not told in steps."""
+    """Return the time constant of the loops, if not given in steps."""
     return () if float(settings["solref_timeconst_steps"]) else ("solref_timeconst_s",)
 
 
 def velocity_shift(settings: Settings, drive: Drive) -> float:
-    """To which instant, in steps after the positions, the velocities of a state belong.
+    """Return the instant of a state's velocities, in steps after its positions.
 
-    RK4 steps both together; the others move positions with the new velocity, which is the mean
-    over the step before.
+    RK4 steps both together; the others move positions with the new velocity, the mean over the step
+    before.
     """
     return 0.0 if integrator(settings, drive) == "RK4" else -0.5
 
 
 def integrator(settings: Settings, drive: Drive) -> str:
-    """The integrator of a drive."""
+    """Return the integrator of a drive."""
     return str(settings["servo_integrator" if drive == "servo" else "integrator"])
 
 
@@ -271,5 +271,5 @@ def text(
     dt_s: float,
     drive: Drive = "prescribed",
 ) -> str:
-    """The MJCF text that a run with these settings loads."""
+    """Return the MJCF text of a run with these settings."""
     return document.build(scene, state, writing(scene, settings, dt_s, drive))

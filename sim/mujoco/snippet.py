@@ -9,20 +9,20 @@ from sim.registry.offers import SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
 INSET = "  "
-"""Before an element within a comment: it is to be seen as one, and kept on its line."""
+"""Indent of an element within a comment: it keeps its own line."""
 LOOP_CLASS = "crankcheck-loop"
-"""The default class of the connects that close the mechanism, and of nothing else."""
+"""Default class of the connects that close the mechanism, and of nothing else."""
 WIDTH = 96
 
 
 def mujoco_snippet(
     settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
 ) -> str:
-    """Sections to paste into ``<mujoco>``, which merges those that it has twice.
+    """Write sections to paste into ``<mujoco>``, which merges sections that it has twice.
 
     A class for the loop's own connects, and the step and integrator, which can only be the whole
-    model's. What else differs from MuJoCo's defaults would change the rest of a user's model and
-    stands in a comment; see `sim.registry.offers.snippet`.
+    model's. Other differences from MuJoCo's defaults would change the rest of a user's model and
+    are in a comment; see `sim.registry.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
@@ -49,7 +49,7 @@ def mujoco_snippet(
 
 
 def _where(complete: Settings, *, paired: bool) -> str:
-    """Where to paste, and how the loop gets what is its own."""
+    """Say where to paste, and how the loop gets its own settings."""
     text = "Paste at the end of the mujoco element."
     if paired:
         text += f' Write class="{LOOP_CLASS}" on each connect that closes the mechanism.'
@@ -59,8 +59,8 @@ def _where(complete: Settings, *, paired: bool) -> str:
 
 
 def _connect(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
-    """The class of the connects, where they are not as MuJoCo's own; complete, as it would have
-    the rest from the model's own defaults."""
+    """Write the class of the connects, unless it is MuJoCo's own; complete, as the model's own
+    defaults would fill the rest."""
     timeconst, damping = _timeconst(complete, dt_s), float(complete["solref_dampratio"])
     impedance = tuple(complete[name] for name in IMPEDANCE)
     own = (defaults["solref_timeconst_s"], defaults["solref_dampratio"])
@@ -80,13 +80,13 @@ def _connect(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
 
 
 def _timeconst(complete: Settings, dt_s: float) -> float:
-    """Of the loop closures [s]."""
+    """Return the time constant of the loop closures [s]."""
     steps = float(complete["solref_timeconst_steps"])
     return steps * dt_s if steps else float(complete["solref_timeconst_s"])
 
 
 def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
-    """What to write for another crank speed, or another step of what nothing drives."""
+    """Say how to scale the step for another crank speed, or for free motion."""
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     steps = float(complete["solref_timeconst_steps"])
     stiff = f", and solref = {steps:g} timestep." if steps else "."
@@ -107,7 +107,7 @@ def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
 
 
 def _absolute(complete: Settings) -> list[str]:
-    """What does not scale with speed or size, and so limits what was measured."""
+    """Say which settings do not scale with speed or size, and so limit the measured errors."""
     if float(complete["solref_timeconst_steps"]):
         return []
     return [
@@ -117,7 +117,7 @@ def _absolute(complete: Settings) -> list[str]:
 
 
 def _coarse(defaults: Settings, dt_s: float) -> list[str]:
-    """What a step does to contacts that is not short beside their time constant."""
+    """Warn of a step that is not short beside the time constant of contacts."""
     usual = float(defaults["solref_timeconst_s"])
     if 2.0 * dt_s <= usual:
         return []
@@ -128,13 +128,13 @@ def _coarse(defaults: Settings, dt_s: float) -> list[str]:
 
 
 def _measured(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
-    """What the measured runs had besides: settings for a model of nothing else, and the drive."""
+    """List the other settings of the measured runs: for a model of nothing else, and the drive."""
     driven = {"prescribed": _flywheel, "servo": _servo, "free": _free}[drive](complete)
     return [*_alone(complete, defaults, drive), *driven]
 
 
 def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
-    """The option element for a model of nothing but the mechanism."""
+    """Write the option element for a model of the mechanism alone."""
     row = {
         name: str(complete[name])
         for name in ("solver", "iterations")
@@ -160,7 +160,7 @@ def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
 
 
 def _flywheel(complete: Settings) -> list[str]:
-    """How the crank is driven, and what that asks of the solver."""
+    """Describe the drive of the crank, and its demands on the solver."""
     ratio, tolerance = _short(complete["flywheel_ratio"]), _short(complete["tolerance"])
     return [
         f"Drive: the crank's hinge has armature = {ratio} (sum over all bodies of mass L^2 + "
@@ -172,7 +172,7 @@ def _flywheel(complete: Settings) -> list[str]:
 
 
 def _servo(complete: Settings) -> list[str]:
-    """The drive by a servo."""
+    """Describe the drive by a servo."""
     return [
         "Drive: <velocity joint=... kv=.../> on the crank's hinge, kv = "
         f"{complete['servo_gain']:g} speed (sum over all bodies of mass L^2 + inertia), L the "
@@ -181,7 +181,7 @@ def _servo(complete: Settings) -> list[str]:
 
 
 def _free(complete: Settings) -> list[str]:
-    """What starts the runs that were let go, and what no MJCF can say of them."""
+    """Describe the start of free motion, and its settings outside MJCF."""
     share = _short(complete["free_inverse_weight_share"])
     scaled = (
         f"Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
@@ -193,7 +193,7 @@ def _free(complete: Settings) -> list[str]:
 
 
 def _short(value: SettingValue) -> str:
-    """A number without a sign and zeros in its exponent."""
+    """Format a number without a sign and zeros in its exponent."""
     return f"{float(value):g}".replace("e+", "e").replace("e-0", "e-")
 
 
@@ -202,7 +202,7 @@ def _attributes(row: Mapping[str, str]) -> str:
 
 
 def _comment(paragraphs: Sequence[str]) -> list[str]:
-    """Paragraphs as an XML comment, in which two hyphens may not stand together."""
+    """Write paragraphs as an XML comment, in which two hyphens may not stand together."""
     lines: list[str] = []
     for paragraph in paragraphs:
         text = paragraph.replace("--", "- -").replace("--", "- -")

@@ -11,7 +11,7 @@ from typing import Any
 from models.array import Array
 
 # Nothing is drawn here: without this, importing MuJoCo loads a window library by way of a process
-# of its own, which takes longer than the rest and outlives a worker that is told to end.
+# of its own, which takes longer than the rest and outlives a worker that has to end.
 os.environ.setdefault("MUJOCO_GL", "disable")
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
@@ -22,7 +22,7 @@ from models.errors import EngineError
 from sim.engine import Log, Poses
 
 VERSION = str(mujoco.mj_versionString())
-"""Of the C library."""
+"""Version of the C library."""
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
 DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -30,7 +30,7 @@ DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
 Look = Callable[[Any, Any], None]
-"""What is shown a model and its data, after `mj_forward` at a state."""
+"""Function of a model and its data, called after `mj_forward` at a state."""
 
 
 class SteppedModel(ABC):
@@ -51,25 +51,25 @@ class SteppedModel(ABC):
             mujoco.mj_resetDataKeyframe(model, self._data, keyframe)
 
     def _forward(self) -> None:
-        """Work out what follows from the state that was set."""
+        """Compute the derived quantities of the state."""
         with self._at_work():
             mujoco.mj_forward(self._model, self._data)
 
     @abstractmethod
     def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        """Poses of states with their joint accelerations (T, nv)."""
+        """Return the poses of states with their joint accelerations (T, nv)."""
 
     @abstractmethod
     def _controls(self, steps: int) -> Array | None:
-        """The controls of each of the next steps, (steps, nu); None where there are none."""
+        """Return the controls of each of the next steps, (steps, nu); None without any."""
 
     @abstractmethod
     def _control_at(self, at: Array) -> Array | None:
-        """The controls at the steps ``at``, (T, nu); None where there are none."""
+        """Return the controls at the steps ``at``, (T, nu); None without any."""
 
     @property
     def _stays(self) -> bool:
-        """Whether `step` needs no control that differs from step to step."""
+        """True if `step` needs no control that changes from step to step."""
         return True
 
     def step(self, steps: int) -> None:
@@ -88,7 +88,7 @@ class SteppedModel(ABC):
         return self._recorded(steps, every)
 
     def _recorded(self, steps: int, every: int, look: Look | None = None) -> Log:
-        """As `record`; ``look`` is shown each kept state with all that follows from it."""
+        """Advance and log, as `record`; ``look`` gets each kept state after `mj_forward`."""
         first = self._full_state()[None]
         began = time.perf_counter()
         with self._at_work():
@@ -105,16 +105,16 @@ class SteppedModel(ABC):
         return Log(poses, (count - 1) * every, diverged or count < len(kept), self.taken(), wall)
 
     def read(self) -> Poses:
-        """The current state."""
+        """Read the current state."""
         with self._at_work():
             return self._poses(self._full_state()[None], np.array([float(self._done)]))
 
     def taken(self) -> tuple[str, ...]:
-        """The warnings so far, each once."""
+        """Return the warnings so far, each once."""
         return tuple(dict.fromkeys(self._warnings))
 
     def _roll(self, steps: int) -> Array:
-        """States after each of the next steps, (steps, n)."""
+        """Return the states after each of the next steps, (steps, n)."""
         warm = self._data.qacc_warmstart[None].copy()
         control = self._controls(steps)
         given: dict[str, Any] = {} if control is None else {"control": control[None]}
@@ -129,17 +129,17 @@ class SteppedModel(ABC):
         return np.asarray(states[0])
 
     def _full_state(self) -> Array:
-        """Time, positions and velocities as MuJoCo stores them."""
+        """Return time, positions and velocities as MuJoCo stores them."""
         state = np.empty(mujoco.mj_stateSize(self._model, FULL))
         mujoco.mj_getState(self._model, self._data, state, FULL)
         return state
 
     def _poses(self, states: Array, at: Array, look: Look | None = None) -> Poses:
-        """Poses of logged states; accelerations are those of `mj_forward` at each state."""
+        """Return the poses of logged states, with accelerations by `mj_forward` at each state."""
         return self._placed(states, at, self._accelerations(states, at, look))
 
     def _accelerations(self, states: Array, at: Array, look: Look | None) -> Array:
-        """Joint accelerations of the states (T, nv), computed on a copy of the data."""
+        """Compute joint accelerations of the states (T, nv), on a copy of the data."""
         model, data = self._model, mujoco.MjData(self._model)
         rows = np.empty((len(states), model.nv))
         control = self._control_at(at)
@@ -155,20 +155,20 @@ class SteppedModel(ABC):
         return rows
 
     def _joints(self, states: Array) -> tuple[Array, Array]:
-        """Joint coordinates (T, nq) and their rates (T, nv) of states."""
+        """Return joint coordinates (T, nq) and their rates (T, nv) of states."""
         nq, nv = self._model.nq, self._model.nv
         return states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
 
     @contextmanager
     def _at_work(self) -> Iterator[None]:
-        """What goes on while MuJoCo works: its warnings are collected."""
+        """Collect MuJoCo's warnings while it works."""
         with heard(self._warnings.append):
             yield
 
 
 @contextmanager
 def heard(hear: Callable[[str], object]) -> Iterator[None]:
-    """Hear MuJoCo's warnings, instead of having them printed and written to MUJOCO_LOG.TXT."""
+    """Pass MuJoCo's warnings on, instead of printing and writing them to MUJOCO_LOG.TXT."""
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(hear)
     try:
@@ -178,7 +178,7 @@ def heard(hear: Callable[[str], object]) -> Iterator[None]:
 
 
 def compiled(xml: str) -> Any:
-    """The compiled model. Raises EngineError with MuJoCo's own words."""
+    """Compile a model. Raises EngineError with MuJoCo's own words."""
     try:
         return mujoco.MjModel.from_xml_string(xml)
     except ValueError as error:
@@ -186,7 +186,7 @@ def compiled(xml: str) -> Any:
 
 
 def compiled_file(path: Path, text: bytes | None = None) -> Any:
-    """The compiled model of a file, or of another text in its place. Raises EngineError with
+    """Compile the model of a file, or of another text in its place. Raises EngineError with
     MuJoCo's own words."""
     with heard(lambda _: None):
         try:

@@ -1,4 +1,4 @@
-"""MuJoCo's own viewer, for a person to look at a model."""
+"""MuJoCo's own viewer, to look at a model."""
 
 from typing import Any
 
@@ -20,8 +20,8 @@ from sim.registry.offers import Viewer
 def show(scene: Scene, start: State) -> None:
     """Open a scene, assembled at the start; returns when the window is closed.
 
-    Where the model has actuators, the motor of the crank gets the acceleration of the law at every
-    step, and the loads their sizes.
+    The motor of the crank, if any, gets the acceleration of the law at every step, and the loads
+    their sizes.
     """
     writing = exact(scene)
     tree = planned(scene, start, writing)
@@ -40,7 +40,7 @@ def show(scene: Scene, start: State) -> None:
 
 
 def _controlled(law: Law | None, loading: Loading) -> Any:
-    """The control callback that drives the crank by a law, and sizes the loads."""
+    """Return the control callback that drives the crank by a law, and sizes the loads."""
 
     def control(_model: Any, data: Any) -> None:
         if law is not None:

@@ -1,1 +1,1 @@
-"""Engines that are not ours: a user's own, named by module and attribute or by an entry point."""
+"""Users' own engines, named by module and attribute or by an entry point."""

@@ -1,7 +1,7 @@
-"""The engines that are not ours and that this process has met, by their own names.
+"""Users' own engines that this process has loaded, by their own names.
 
-The name that an engine gives itself stands in results, not how it was spelled. A process that is
-to run one is told the spelling (`told`), as the name says nothing of where it is.
+Results have the name that an engine gives itself, not its spelling. Another process that is to run
+it needs the spelling (`told`), as the name does not locate it.
 """
 
 import re
@@ -15,7 +15,7 @@ from sim.own_engine.spelling import WRITTEN, found, installed, only_one, spellin
 from sim.own_engine.watched import watched
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
-"""What is safe as the name of a file, in a table and in `--set NAME.setting=value`."""
+"""Pattern safe as the name of a file, in a table and in `--set NAME.setting=value`."""
 NEEDED = tuple(
     each.name
     for each in fields(Engine)
@@ -28,17 +28,17 @@ SAYS = (
     "applies_springs",
     "applies_beams",
 )
-"""What is yes or no."""
+"""Attributes that are true or false."""
 CALLED = ("version", "check", "open", "holds", "placing", "in_seconds")
 
 
 def looked_over(spelling: str, value: object) -> Engine:
-    """The object as an `Engine`; what it does not say of itself is as that has it.
+    """Convert an object to an `Engine`, with the defaults of that class.
 
     Raises
     ------
     EngineError
-        Something else, with all that is missing or of a wrong kind.
+        Another object, with all its missing and wrong attributes.
     """
     lacking = [name for name in NEEDED if not hasattr(value, name)]
     if lacking or isinstance(value, type):
@@ -60,12 +60,12 @@ def looked_over(spelling: str, value: object) -> Engine:
 
 
 def _faults_of_placing(made: Engine) -> Iterator[str]:
-    """What it says of places under the settings of its profiles."""
+    """Yield faults of its placing under the settings of its profiles."""
     for name, profile in made.profiles.items():
         settings = {each: setting.value for each, setting in profile.settings.items()}
         try:
             found: object = made.placing(settings)
-        except Exception as error:  # whatever somebody else's function raises
+        except Exception as error:  # any error of a user's function
             found = error
         if found not in get_args(Placing):
             yield (
@@ -75,7 +75,7 @@ def _faults_of_placing(made: Engine) -> Iterator[str]:
 
 
 def _faults(given: Mapping[str, Any]) -> Iterator[str]:
-    """What is of a wrong kind."""
+    """Yield attributes of a wrong kind."""
     if not isinstance(given["name"], str) or not NAME.fullmatch(given["name"]):
         yield (
             f"name is {shown(given['name'])}; give letters, digits, - and _, a letter first, "
@@ -111,7 +111,7 @@ def _profiles(profiles: object) -> Iterator[str]:
 
 
 def _kind(value: object) -> str:
-    """What was found, without its contents."""
+    """Return the kind of a value, without its contents."""
     if value is None or isinstance(value, str | int | float):
         return shown(value)
     name = type(value).__name__
@@ -120,7 +120,7 @@ def _kind(value: object) -> str:
 
 @dataclass(frozen=True)
 class _KnownEngine:
-    """An engine, the object that it was made of, and how that is spelled."""
+    """An engine, the object that it was made of, and its spelling."""
 
     engine: Engine
     value: object
@@ -132,13 +132,13 @@ _told: dict[str, str] = {}
 
 
 def own_engine(text: str, ours: Collection[str]) -> Engine:
-    """The engine of that name or spelling; ``ours`` are the names that are taken.
+    """Return the engine of that name or spelling; ``ours`` are the reserved names.
 
     Raises
     ------
     EngineError
-        An unknown name (the message suggests near ones), an engine that is not to be found or
-        imported, an object that is none, one with the name of another.
+        An unknown name (the message suggests near ones), an engine that cannot be found or
+        imported, an object that is no engine, an engine with the name of another.
     """
     if ":" in text:
         return _met(text, ours)
@@ -163,17 +163,17 @@ def own_engine(text: str, ours: Collection[str]) -> Engine:
 
 
 def spellings() -> Mapping[str, str]:
-    """How the engines that are known here are spelled, by name: what `told` takes."""
+    """Return the spellings of the engines known here, by name: the input of `told`."""
     return {**_told, **{name: one.spelling for name, one in _known.items()}}
 
 
 def told(more: Mapping[str, str]) -> None:
-    """Know engines by name that another process has met; they are looked for when asked for."""
+    """Register the engines of another process by name; they are loaded on request."""
     _told.update(more)
 
 
 def _met(spelling: str, ours: Collection[str]) -> Engine:
-    """The engine that is spelled, once it is clear that its name is its own."""
+    """Load the engine of a spelling, and refuse a name that is another engine's."""
     for one in _known.values():
         if one.spelling == spelling:
             return one.engine

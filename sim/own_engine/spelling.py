@@ -1,7 +1,7 @@
-"""How an engine that is not ours is named, and how it is found by that.
+"""Spelling of users' own engines, and their import by it.
 
-`package.module:ATTRIBUTE` names any object that can be imported, also from the folder that the
-command runs in; a package that is installed names its own in the entry points of `GROUP`.
+`package.module:ATTRIBUTE` names any object that can be imported, also from the working folder of
+the command; an installed package names its own in the entry points of `GROUP`.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUP = "crankcheck.engines"
-"""The group of entry points."""
+"""Group of entry points."""
 SPELLING = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
 WRITTEN = "package.module:ATTRIBUTE"
-"""How one is spelled."""
+"""Form of a spelling."""
 
 
 def installed() -> list[EntryPoint]:
-    """The entry points that engines are named by, of all packages that are installed here."""
+    """List the entry points of engines, of all packages installed here."""
     from importlib.metadata import entry_points  # whose import takes longer than all else here
 
     here = entry_points(group=GROUP)
@@ -38,12 +38,12 @@ def installed() -> list[EntryPoint]:
 
 
 def spelling_of(point: EntryPoint) -> str:
-    """The module and attribute that an entry point names."""
+    """Return the module and attribute of an entry point."""
     return f"{point.module}:{point.attr}"
 
 
 def only_one(name: str, points: Iterable[EntryPoint]) -> EntryPoint:
-    """The entry point of that name. Raises EngineError where two packages give one."""
+    """Return the entry point of that name. Raises EngineError where two packages have it."""
     named = {spelling_of(point): point for point in points if point.name == name}
     if len(named) > 1:
         raise EngineError(
@@ -54,13 +54,13 @@ def only_one(name: str, points: Iterable[EntryPoint]) -> EntryPoint:
 
 
 def found(spelling: str) -> object:
-    """The object that is spelled.
+    """Import the object of a spelling.
 
     Raises
     ------
     EngineError
-        A text that is no spelling, a module that is not there or can not be imported (the message
-        says where it fails), an attribute that it lacks, with near names.
+        A text that is no spelling, a module that is missing or cannot be imported (with the place
+        of the failure), a missing attribute, with near names.
     """
     if not SPELLING.fullmatch(spelling):
         raise EngineError(f"engine {cut(spelling)!r}: write it {WRITTEN}")
@@ -77,13 +77,13 @@ def found(spelling: str) -> object:
 
 
 def _public(value: object) -> list[str]:
-    """What may have been meant: the engines that an object has, or else all its public names."""
+    """Return suggestions: the engines of an object, or else all its public names."""
     names = [name for name in dir(value) if not name.startswith("_")]
     return [n for n in names if isinstance(getattr(value, n, None), Engine)] or names
 
 
 def _imported(spelling: str, module: str) -> object:
-    """The module. Raises EngineError in one line, whatever it is that fails."""
+    """Import the module. Raises EngineError in one line for any failure."""
     try:
         with _working_folder():
             importlib.invalidate_caches()  # it may have been written a moment ago
@@ -100,7 +100,7 @@ def _imported(spelling: str, module: str) -> object:
 
 
 def failure(error: BaseException) -> str:
-    """What was raised, and where, in one line."""
+    """Describe an error and its place in one line."""
     text = cut(str(error).partition("\n")[0], 300)
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if not frame.filename.startswith("<frozen ")]
@@ -111,7 +111,7 @@ def failure(error: BaseException) -> str:
 
 
 def _modules() -> Iterator[str]:
-    """Modules and packages in the working folder."""
+    """Yield the modules and packages in the working folder."""
     for path in sorted(Path.cwd().iterdir()):
         if path.suffix == ".py" or (path / "__init__.py").is_file():
             yield path.stem
@@ -119,8 +119,8 @@ def _modules() -> Iterator[str]:
 
 @contextmanager
 def _working_folder() -> Iterator[None]:
-    """The working folder comes first while a module is looked for there, as for `python -m pytest`;
-    afterwards it comes last, so that nothing in it hides what is still to be imported."""
+    """Put the working folder first during an import, as for `python -m pytest`; afterwards it is
+    last, so that nothing in it hides later imports."""
     try:
         here = str(Path.cwd())
     except OSError:  # it is gone

@@ -1,7 +1,7 @@
-"""An engine that is not ours, watched: what it gives back is looked at before it is used.
+"""Contract checks of a user's own engine: its answers are checked before use.
 
-A fault in it is told with the place and the command that says more, and not as one of crankcheck.
-Stepping is handed through, so that times are its own.
+A fault in it is reported with the place and the command that explains more, and not as one of
+crankcheck. Stepping is passed through, so that times are its own.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from sim.engine import (
 from sim.own_engine.spelling import failure
 
 PAIRS = ("origin", "velocity", "origin_acceleration")
-"""What of a `BodyPose` is (T, 2); all else is (T,)."""
+"""Fields of `BodyPose` of shape (T, 2); all others are (T,)."""
 
 
 class BrokenContractError(EngineError):
-    """An engine that does not do what an engine has to; ``fault`` says what, without where."""
+    """An engine that breaks its contract; ``fault`` says how, without the place."""
 
     def __init__(self, name: str, spelling: str, fault: str) -> None:
         self.fault = fault
@@ -46,12 +46,12 @@ class BrokenContractError(EngineError):
         )
 
     def __reduce__(self) -> tuple[type[BrokenContractError], tuple[str, str, str]]:
-        """Rebuilt from its parts, in another process too."""
+        """Rebuild the error from its parts, in another process too."""
         return type(self), self._parts
 
 
 def watched(spelling: str, engine: Engine) -> Engine:
-    """The engine, with every answer looked at."""
+    """Return the engine, with every answer checked."""
     place = _Place(engine.name, spelling)
 
     def guarded(name: str, call: Callable[..., Any], kind: type) -> Callable[..., Any]:
@@ -86,18 +86,18 @@ def watched(spelling: str, engine: Engine) -> Engine:
 
 @dataclass(frozen=True)
 class _Place:
-    """Which engine it is that a fault is in."""
+    """The engine that has a fault."""
 
     name: str
     spelling: str
 
     def fault(self, what: str, text: str) -> BrokenContractError:
-        """A fault in one of the things that are asked of an engine."""
+        """Make the error of a fault in one of an engine's functions."""
         return BrokenContractError(self.name, self.spelling, f"{what} {text}")
 
     @contextmanager
     def told(self, what: str) -> Iterator[None]:
-        """Whatever is raised, but for what is meant to be, is a fault of the engine."""
+        """Turn unexpected errors into faults of the engine."""
         try:
             yield
         except (CrankcheckError, MemoryError):
@@ -106,14 +106,14 @@ class _Place:
             raise self.fault(what, f"raised {failure(error)}") from error
 
     def as_kind(self, what: str, given: object, kind: type) -> object:
-        """What was given, where it is of the kind that is wanted."""
+        """Return a value of the required kind, or refuse it."""
         if isinstance(given, kind):
             return given
         raise self.fault(what, f"gave {shown(given)}, and has to give a {kind.__name__}")
 
 
 class WatchedSession:
-    """A session whose answers are looked at."""
+    """A session whose answers are checked."""
 
     def __init__(self, session: Session, place: _Place, scene: Scene) -> None:
         self._session, self._place, self._scene = session, place, scene
@@ -121,7 +121,7 @@ class WatchedSession:
         self.step = session.step
 
     def facts(self) -> Facts:
-        """The model as the engine holds it now."""
+        """Read the model as the engine holds it now."""
         with self._place.told("facts"):
             facts = self._session.facts()
         self._place.as_kind("facts", facts, Facts)
@@ -130,7 +130,7 @@ class WatchedSession:
         return facts
 
     def read(self) -> Poses:
-        """The current state."""
+        """Read the current state."""
         with self._place.told("read"):
             poses = self._session.read()
         if text := self._wrong(poses, 1):
@@ -138,11 +138,11 @@ class WatchedSession:
         return poses
 
     def record(self, steps: int, every: int) -> Log:
-        """Advance and log. What is raised in it ends the run, as of any engine."""
+        """Advance and log. An error in it ends the run, as for any engine."""
         return self._logged("record", self._session.record, steps, every)
 
     def record_forces(self, steps: int, every: int) -> Log:
-        """As `record`, with forces."""
+        """Advance and log with forces, as `record`."""
         record = cast(ForceSession, self._session).record_forces
         log = self._logged("record_forces", record, steps, every)
         if text := wrong_forces(self._scene, log.forces, log.poses.time_s.size):
@@ -161,7 +161,7 @@ class WatchedSession:
         return log
 
     def _wrong(self, poses: object, count: int | None) -> str:
-        """What is wrong with poses of so many samples; of any number, from 1 on, for None."""
+        """Return the fault of poses of so many samples; None is any number from 1 on."""
         if not isinstance(poses, Poses):
             return f"gave {shown(poses)} for poses, and has to give Poses"
         size = getattr(poses.time_s, "size", -1)
@@ -176,7 +176,7 @@ class WatchedSession:
 
 
 def _pose(pose: object, size: int) -> str:
-    """What is wrong with the pose of a body; nothing of whether it is true."""
+    """Return the fault of a body's pose, independent of its truth."""
     if not isinstance(pose, BodyPose):
         return f"{shown(pose)}, and has to give a BodyPose"
     for each in fields(BodyPose):
@@ -187,7 +187,7 @@ def _pose(pose: object, size: int) -> str:
 
 
 def _facts(facts: Facts) -> Iterator[str]:
-    """What is of a wrong kind in facts."""
+    """Yield facts of a wrong kind."""
     for name in ("mass_kg", "inertia_kg_m2", "centre_m", "settings", "springs"):
         if not isinstance(getattr(facts, name), Mapping):
             yield f"gave {shown(getattr(facts, name))} for {name}, and has to give a dict"
@@ -209,7 +209,7 @@ def _is_number(value: object) -> bool:
 
 
 def wrong_forces(scene: Scene, forces: object, size: int) -> str:
-    """What is wrong with forces of so many samples; nothing of whether they are true."""
+    """Return the fault of forces of so many samples, independent of their truth."""
     if not isinstance(forces, Forces):
         return f"gave {shown(forces)} for forces, and has to give Forces"
     pins = joined_at(scene)
@@ -230,7 +230,7 @@ def wrong_forces(scene: Scene, forces: object, size: int) -> str:
 
 
 def _wrong_arrays(forces: Forces, size: int) -> Iterator[str]:
-    """What is wrong with each series, which is to be float64 of its shape: "" where nothing is."""
+    """Yield the fault of each series, which has to be float64 of its shape: "" for none."""
     for point, by_body in forces.pins.items():
         for body, force in by_body.items():
             yield _wrong(f"the force of pin {point} on {body}", force, (size, 2))
@@ -245,7 +245,7 @@ def _wrong_arrays(forces: Forces, size: int) -> Iterator[str]:
 
 
 def _wrong(what: str, values: object, shape: tuple[int, ...]) -> str:
-    """What of an array is not as it has to be."""
+    """Return the fault of an array."""
     found = shown(values)
     if isinstance(values, np.ndarray):
         if values.shape == shape and values.dtype == np.float64:

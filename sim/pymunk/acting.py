@@ -1,4 +1,4 @@
-"""All that acts on the bodies of a space beside their weight and their joints, step by step."""
+"""Actions on the bodies of a space beside their weight and their joints, step by step."""
 
 import math
 from collections.abc import Mapping
@@ -22,17 +22,17 @@ from sim.pymunk.spring_steps import ChainSprings, SpringSteps, chain_springs
 
 
 class LoadSteps:
-    """The loads of a scene in a space; ``slots`` are its blocks without mass, by body name.
+    """Loads of a scene in a space; ``slots`` are its blocks without mass, by body name.
 
     With the magnitudes of the end of a step the loads act where the joints do, and the step keeps
-    its order. Those of its start would be a step late, and of first order: with a force of a sine
-    on the lecture's four-bar at 1440 steps a turn, reactions are off by 4e-3 of the largest, and by
-    3e-5 as it is.
+    its order. With those of its start they would be a step late, and of first order: with a force
+    of a sine on the lecture's four-bar at 1440 steps a turn, reactions would be off by 4e-3 of the
+    largest, instead of 3e-5.
 
-    Of a free mechanism a step's load is also what the step makes of its velocities, so that a jump,
-    or the end of a stroke, counts with its share of the step about that instant: of a jump at a
-    sample the half. Of a driven one it is what is read as the force at the sample, where a jump has
-    its new value and a load of a stroke that ends there may act or not.
+    In free motion a step's load is also its change of velocity, so that a jump, or the end of a
+    stroke, counts with its share of the step about that instant: half of a jump at a sample. In
+    driven motion it is read as the force at the sample, where a jump has its new value and a load
+    of a stroke that ends there may act or not.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class LoadSteps:
         self._known: dict[str, list[float]] = {}
 
     def look_ahead(self, times: Array) -> None:
-        """Work out what is known before the next steps, which end at these times [s]."""
+        """Compute the known loads of the next steps, which end at these times [s]."""
         self._times = times.tolist()
         self._known = {
             name: self._ahead(load, times).tolist()
@@ -81,7 +81,7 @@ class LoadSteps:
         return sizes
 
     def push(self, step: int, frames: Frames, pushes: Pushes) -> None:
-        """Have the loads act in the step of that number since the look ahead, from 0 on."""
+        """Apply the loads of a step, by its number since the look ahead, from 0 on."""
         for body, course in self._turning.items():
             course.go_on(frames[body].theta)
         for name, load in self._scene.loads.items():
@@ -92,7 +92,7 @@ class LoadSteps:
                 self._on_body(load, size, frames, pushes)
 
     def _size(self, load: Load, step: int) -> float:
-        """The magnitude of a load that follows the motion, at the end of a step."""
+        """Return the magnitude of a load that follows the motion, at the end of a step."""
         crank = self._model.crank
         sliders = {
             name: (track.course.value, track.course.rate) for name, track in self._tracks.items()
@@ -104,7 +104,7 @@ class LoadSteps:
         return load.size(*now)
 
     def _share_of_stroke(self, load: Load) -> float:
-        """The share of the step about its end in which the slider is on the stroke of the load."""
+        """Return the share of the step about its end with the slider on the load's stroke."""
         assert load.slider is not None
         course = self._tracks[load.slider].course
         before, here = course.rate_before, course.rate
@@ -115,7 +115,7 @@ class LoadSteps:
         return forward if load.stroke == "forward" else 1.0 - forward
 
     def _on_body(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
-        """A load on a body of the space."""
+        """Apply a load on a body of the space."""
         if load.point is None:
             pushes.torque(load.body, size)
             return
@@ -124,7 +124,7 @@ class LoadSteps:
         pushes.force(load.body, frame, place, _along(load, size, frame.theta))
 
     def _on_block(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
-        """A load on a block without mass: its pin's body takes the force, its guide a torque."""
+        """Apply a load on a massless block: a force to its pin's body, a torque to its guide."""
         slot = self._slots[load.body]
         slider = slot.slider
         if load.point is None:
@@ -139,11 +139,11 @@ class LoadSteps:
 
 
 def late_share(steps: Staircase, times: Array, dt_s: float, *, first: bool) -> Array:
-    """What is to be added to a staircase at sample times [s] for its mean over a step about each,
+    """Return the correction of a staircase at sample times [s] to its mean over a step about each,
     (T,).
 
-    Before the ``first`` of them the velocities have made half a step with what acts at the start,
-    so that a jump in that half is made up for.
+    Before the ``first`` of them the velocities have made half a step with the load of the start, so
+    the sample makes up for a jump in that half.
     """
     added = np.zeros(len(times))
     rises = np.diff(steps.values, prepend=0.0)
@@ -156,15 +156,15 @@ def late_share(steps: Staircase, times: Array, dt_s: float, *, first: bool) -> A
 
 
 def _along(load: Load, size: float, theta: float) -> Point:
-    """The force of a load on a body at that angle."""
+    """Return the force of a load on a body at that angle."""
     return turned((size, 0.0), load.direction_rad + (theta if load.frame == "body" else 0.0))
 
 
 def slider_friction(scene: Scene, drive: Drive) -> dict[str, float]:
-    """The size of the friction of each slider that has a constant one [N].
+    """Return the size of the constant friction of each slider that has it [N].
 
-    It acts against the speed at the end of a step. What stands still is not held: a mechanism that
-    is driven stands still at the ends of strokes alone. Raises EngineError where nothing drives it.
+    It acts against the speed at the end of a step. It does not hold a slider at rest: a driven
+    mechanism is at rest at the ends of strokes only. Raises EngineError for free motion.
     """
     rubbing = {
         one.joint: one.size
@@ -181,7 +181,7 @@ def slider_friction(scene: Scene, drive: Drive) -> dict[str, float]:
 
 
 class Acting:
-    """The loads, springs and friction of sliders of a scene, in a space."""
+    """Loads, springs and friction of sliders of a scene, in a space."""
 
     def __init__(
         self, scene: Scene, model: SpaceModel, state: State, dt_s: float, drive: Drive
@@ -208,25 +208,25 @@ class Acting:
         self._bodies = (GROUND, *model.bodies)
         self._blocks = tuple(slot.slider.name for slot in slots.values())
         self.on_blocks = dict.fromkeys(self._blocks, NONE)
-        """What the last step was given on slider blocks without mass, by slider."""
+        """Actions of the last step on slider blocks without mass, by slider."""
         self.rubbed: dict[str, float] = {}
-        """The friction of each slider's guide on what slides in the last step [N]."""
+        """Friction of each slider's guide on the sliding body in the last step [N]."""
 
     def __bool__(self) -> bool:
         return self._others or self._chain is not None
 
     def springs(self) -> dict[str, tuple[float, float, float]]:
-        """The springs that act, by name: rate, damping and the length at which each is slack."""
+        """Return the active springs by name: rate, damping and slack length."""
         own = {name: spring.numbers for name, spring in self._model.springs.items()}
         chain = self._chain.numbers if self._chain else {}
         return own | chain | self._springs.numbers
 
     def look_ahead(self, times: Array) -> None:
-        """Work out what is known before the next steps, which end at these times [s]."""
+        """Compute the known loads of the next steps, which end at these times [s]."""
         self._loads.look_ahead(times)
 
     def apply(self, step: int) -> None:
-        """Have all act in the step of that number since the look ahead, from 0 on."""
+        """Apply all actions of a step, by its number since the look ahead, from 0 on."""
         if self._chain and not self._others:
             self._chain.push()
             return
@@ -247,8 +247,8 @@ class Acting:
             body.force, body.torque = (fx, fy), moment + chain.get(name, 0.0)
 
     def pulled(self) -> Pushes:
-        """What the space's own springs did in the step that was made, and with it all that acted on
-        blocks without mass."""
+        """Return the actions of the space's own springs in the last step, and with them all actions
+        on blocks without mass."""
         pushes = Pushes(self._bodies, self._blocks)
         pushes.on_blocks = dict(self.on_blocks)
         if self._model.springs:

@@ -1,16 +1,16 @@
-"""Joints of what is let go, closed for the arcs that their points go in a step, not for its chords.
+"""Joints in free motion, closed for the arcs of their points in a step, not for its chords.
 
 ::
 
         o r           Chipmunk turns a body by omega dt and moves its middle straight on, but gives
        /|             a joint the speeds that close it along the tangents, r x omega: after the step
-      / | arc         its points are apart by what arcs bend, (1 - cos omega dt) r of each body. An
-     /  |             anchor at r cos(omega dt) has the joint mend that beforehand, with the rest of
-    o   o             what it is open by: what goes as dt^2 in every joint goes as dt^3 then.
+      / | arc         its points are apart by the arcs' bend, (1 - cos omega dt) r of each body. An
+     /  |             anchor at r cos(omega dt) corrects that beforehand, with the rest of the
+    o   o             joint's opening: an error of dt^2 in every joint becomes one of dt^3.
 
-omega is that of the step to come, so it is taken to go on as it did; where it jumps, it is the
-last. The idea is that of SHAKE: J.-P. Ryckaert, G. Ciccotti and H. J. C. Berendsen, Journal of
-Computational Physics 23 (1977): constraints hold at the end of a step, whatever the way there.
+omega of the next step is extrapolated from the last two; where it jumps, it is the last. The idea
+is SHAKE: J.-P. Ryckaert, G. Ciccotti and H. J. C. Berendsen, Journal of Computational Physics 23
+(1977): constraints hold at the end of a step, whatever the way there.
 """
 
 import math
@@ -21,11 +21,11 @@ import pymunk
 from models.scene import Point
 
 JUMP_RAD = 0.02
-"""What a body turns more in a step than in the one before, from which on its speed jumps."""
+"""Least change of a body's turn from one step to the next that counts as a jump of its speed."""
 
 
 class Arcs:
-    """The pins of a space, and how its bodies turned in the step before."""
+    """Pins of a space, and the angular velocities of their bodies in the step before."""
 
     def __init__(self, constraints: Iterable[pymunk.Constraint], dt_s: float) -> None:
         self._dt = dt_s
@@ -57,6 +57,6 @@ class Arcs:
 
 
 def _anchored(pin: pymunk.PivotJoint) -> tuple[pymunk.PivotJoint, Point, Point]:
-    """A pin with its anchors as they are."""
+    """Return a pin with its anchors."""
     a, b = pin.anchor_a, pin.anchor_b
     return pin, (a.x, a.y), (b.x, b.y)

@@ -1,14 +1,14 @@
-"""Where the bodies of a space are: as a batch tells it, and at the end of the next step.
+"""Positions of the bodies of a space: from a batch, and at the end of the next step.
 
-A step of Chipmunk moves the positions x with the velocity v that is there, and then changes that by
-the forces it was given and by the joints. The velocities stand half a step after the positions, so
-that this is the leapfrog, of second order if the forces are those of the end of the step::
+A step of Chipmunk moves the positions x with the present velocity v, and then changes v by the
+given forces and by the joints. The velocities belong to half a step after the positions, so that
+this is the leapfrog, of second order with the forces at the end of the step::
 
     x(t + dt) = x(t) + dt v(t + dt/2)
     v(t + 3/2 dt) = v(t + dt/2) + dt a(x, v, t + dt)
 
-The velocity of that instant itself, which dampers and motors follow, would be half of what the step
-is about to make. It is taken from the last three places, to the second order.
+The velocity at that instant itself, for dampers and motors, would be half by the step to come. It
+is taken from the last three positions, to the second order.
 """
 
 from collections.abc import Mapping
@@ -38,13 +38,13 @@ WIDTH = 6
 
 
 def finite(rows: Array) -> int:
-    """How many samples (T, bodies, numbers) are finite, up to the first that is not."""
+    """Return the number of finite samples (T, bodies, numbers) before the first other one."""
     good = np.isfinite(rows).all(axis=(1, 2))
     return len(rows) if good.all() else int(np.argmin(good))
 
 
 def rows_of(model: SpaceModel) -> dict[str, int]:
-    """Which row of a batch belongs to which body; the static body of the space has one too."""
+    """Return the row of each body in a batch; the static body of the space has one too."""
     buffer = pymunk.batch.Buffer()
     pymunk.batch.get_space_bodies(model.space, pymunk.batch.BodyFields.BODY_ID, buffer)
     order = np.frombuffer(buffer.int_buf(), dtype=np.uintp).tolist()
@@ -52,7 +52,7 @@ def rows_of(model: SpaceModel) -> dict[str, int]:
 
 
 def pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
-    """The frame whose point ``centre`` is the origin of the pymunk body; no accelerations."""
+    """Return the frame with the origin of the pymunk body at ``centre``; no accelerations."""
     theta, omega = row[:, 2], row[:, 5]
     none = np.full(len(theta), np.nan)
     return BodyPose(
@@ -66,11 +66,11 @@ def pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
 
 
 Frames = Mapping[str, Frame]
-"""The frames of the pymunk bodies, whose origins are their own, and of the ground."""
+"""Frames of the pymunk bodies, with their own origins, and of the ground."""
 
 
 def frames_at_end(model: SpaceModel, dt_s: float) -> Frames:
-    """The frames of all bodies at the end of the next step; they have no velocities."""
+    """Return the frames of all bodies at the end of the next step; they have no velocities."""
     return {GROUND: FIXED} | {
         name: Frame(
             (
@@ -86,7 +86,7 @@ def frames_at_end(model: SpaceModel, dt_s: float) -> Frames:
 
 
 def anchor_of(scene: Scene, model: SpaceModel, body: str, point: str) -> Point:
-    """A named point in the coordinates of the pymunk body that carries it [m]."""
+    """Return a named point in the coordinates of its pymunk body [m]."""
     return less(local_point(scene, body, point), model.centre[body])
 
 
@@ -98,18 +98,18 @@ class Course(Generic[Value]):
         self._values: list[Value] = [start]
 
     def go_on(self, value: Value) -> None:
-        """To the end of the next step."""
+        """Go on to the end of the next step."""
         self._values.append(value)
         del self._values[:-3]
 
     @property
     def value(self) -> Value:
-        """At the end of the step."""
+        """Value at the end of the step."""
         return self._values[-1]
 
     @property
     def rate(self) -> Value:
-        """There: that of the parabola through the last three values, or of the line through two."""
+        """Rate there, by the parabola through the last three values, or the line through two."""
         if len(self._values) < 3:
             return (self._values[-1] - self._values[0]) / self._dt
         first, second, third = self._values
@@ -117,12 +117,12 @@ class Course(Generic[Value]):
 
     @property
     def rate_before(self) -> Value:
-        """Half a step before the end."""
+        """Rate half a step before the end."""
         return (self._values[-1] - self._values[-2]) / self._dt
 
 
 class SliderCourse:
-    """The displacement of a slider [m], and pushes along its line."""
+    """Displacement of a slider [m], and pushes along its line."""
 
     def __init__(
         self, scene: Scene, model: SpaceModel, slide: Prism | Slot, start_m: float, dt_s: float
@@ -135,13 +135,13 @@ class SliderCourse:
         self.course = Course(start_m, dt_s)
 
     def follow(self, frames: Frames) -> None:
-        """Go on to where the bodies will be at the end of a step."""
+        """Go on to the positions of the bodies at the end of a step."""
         seen = frames[self._guide].into(frames[self._rider].at(self._anchor))
         x, y = less(seen, self._start)
         self.course.go_on(x * self._along[0] + y * self._along[1])
 
     def push(self, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Push what slides by so much along the line [N], and the guide back."""
+        """Push the sliding body by so much along the line [N], and the guide back."""
         slider, rider, guide = self._slide.slider, frames[self._rider], frames[self._guide]
         fx, fy = turned((size, 0.0), guide.theta + slider.direction_rad)
         if isinstance(self._slide, Slot):

@@ -1,13 +1,13 @@
-"""How many iterations the joints of a chain of light segments ask for in each step.
+"""Iterations in each step for the joints of a chain of light segments.
 
-Chipmunk goes over the joints one after the other and gives each the impulse that would mend it
-alone: the method of Gauss and Seidel for the errors e of their speeds,
+Chipmunk visits the joints one after the other and gives each the impulse that would close it alone:
+the method of Gauss and Seidel for the errors e of their speeds,
 
     A = J M^-1 J^T = L + U        e <- -L^-1 U e        L with the blocks of each joint
 
 so each iteration leaves a share rho of the slowest error, the spectral radius of L^-1 U, and k of
-them g = rho^k. A step begins with the impulses of the last one, in which the whole error of the
-places was mended too (`error_bias` 0). Errors w of the speeds and c of the places then follow
+them g = rho^k. A step begins with the impulses of the last one, which also corrected the whole
+position error (`error_bias` 0). Errors w of the speeds and c of the positions then follow
 
     c' = c + w dt        w' = -(1 - g) c' / dt + g (2 w - w'')        w'' of the step before
 
@@ -31,28 +31,28 @@ from sim.pymunk.space import SpaceModel
 from sim.pymunk.spring_steps import chain_springs
 
 HALVINGS = 3.0
-"""How often an error is halved in a step, at least, in the position of the start. One is what holds
+"""Least number of halvings of an error in a step, in the position of the start. One is enough
 there. Half as many again are needed elsewhere in a turn (six-bar: 1.44), and half as many again for
 smooth accelerations; more gain nothing."""
 MOST = 30_000
-"""Iterations that nobody asked for: a step takes milliseconds with them."""
+"""Largest number of iterations without a request: a step takes milliseconds with them."""
 REDUNDANT = 1e-12
-"""What an iteration may take of an error at most that no impulse can change."""
+"""Largest part of an error that an iteration removes although no impulse can change it."""
 
 
 def held_by_iterations(scene: Scene, settings: Settings) -> bool:
-    """Whether a scene has a chain that enough iterations hold: with a bias that mends little of an
-    error in a step it comes apart with no number of them."""
+    """True if a scene has a chain that enough iterations hold: no number of them is enough for a
+    bias that corrects little of an error in a step."""
     return float(settings["error_bias"]) == 0.0 and bool(chain_springs(scene))
 
 
 def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
-    """Those of the settings, or more where the chain of a scene needs them.
+    """Return the iterations of the settings, or more where the chain of a scene needs them.
 
     Raises
     ------
     EngineError
-        More than `MOST` are needed, and fewer asked for.
+        More than `MOST` are needed, and fewer requested.
     """
     asked = int(settings["iterations"])
     if not held_by_iterations(scene, settings):
@@ -68,13 +68,13 @@ def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
 
 
 def chain_iterations(model: SpaceModel) -> int:
-    """The iterations with which the joints of a space hold, judged where it stands."""
+    """Return the iterations that hold the joints of a space, in its present position."""
     return math.ceil(HALVINGS * math.log(2.0) / -math.log(left_over(model)))
 
 
 def left_over(model: SpaceModel) -> float:
-    """rho: the share of the slowest error of its joints that an iteration leaves, which takes them
-    in the order of the space. Friction and springs, which give way, are none."""
+    """Return rho: the share of the slowest error of its joints after an iteration, which takes them
+    in the order of the space. Friction and springs, which yield, do not count."""
     made = {model.motor, *model.hinges.values(), *model.lines.values(), *model.gears.values()}
     column = {body: 3 * k for k, body in enumerate(model.bodies.values())}
     blocks = [_rows(joint, column) for joint in model.space.constraints if joint in made]
@@ -88,14 +88,14 @@ def left_over(model: SpaceModel) -> float:
 
 
 def _inverse_masses(body: pymunk.Body) -> Array:
-    """Of a body that moves along x, along y, and turns; 0 where nothing moves it."""
+    """Return the inverse masses of a body along x, along y, and in turning; 0 for a driven body."""
     if not moves_freely(body):
         return np.zeros(3)
     return 1.0 / np.array([body.mass, body.mass, body.moment])
 
 
 def _rows(joint: pymunk.Constraint, column: Mapping[pymunk.Body, int]) -> Array:
-    """The speeds of a joint over those of all bodies, (1 or 2, 3 bodies)."""
+    """Return the speeds of a joint over those of all bodies, (1 or 2, 3 bodies)."""
     ways = _ways(joint)
     rows = np.zeros((len(ways), 3 * len(column)))
     for body, sign in ((joint.a, -1.0), (joint.b, 1.0)):
@@ -112,7 +112,7 @@ def _rows(joint: pymunk.Constraint, column: Mapping[pymunk.Body, int]) -> Array:
 
 
 def _ways(joint: pymunk.Constraint) -> Array:
-    """The directions in which a joint holds its two places together; none of angles."""
+    """Return the constrained directions of a joint's two places; none for angles."""
     if isinstance(joint, pymunk.PivotJoint):
         return np.eye(2)
     if isinstance(joint, pymunk.GrooveJoint):
@@ -128,7 +128,7 @@ def _ways(joint: pymunk.Constraint) -> Array:
 
 
 def _place(joint: pymunk.Constraint, body: pymunk.Body) -> pymunk.Vec2d:
-    """Where in the plane a joint acts on a body; on what has a groove, at the point in it."""
+    """Return the place of a joint on a body in the plane; for a groove, its point in it."""
     if body is joint.b or isinstance(joint, pymunk.GrooveJoint):
         return joint.b.local_to_world(joint.anchor_b)
     return joint.a.local_to_world(joint.anchor_a)

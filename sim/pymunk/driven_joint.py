@@ -1,4 +1,4 @@
-"""What drives a space: a crank or a slider that is told where it is, or a motor in a pin."""
+"""Drive of a space: a prescribed crank or slider, or a motor in a pin."""
 
 import math
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from sim.engine import Drive
 from sim.pymunk.space import SpaceModel
 
 SHARE = 0.1
-"""Of what a motor is off by: all at once is more than the iterations of profile as-shipped settle,
-and the joints beside it come apart at any step; from 0.2 on they do in some positions."""
+"""Share of a motor's error that a step corrects: all at once is more than the iterations of profile
+as-shipped settle, and adjacent joints open at any step; from 0.2 on in some positions."""
 
 
 class DrivenJoint(Protocol):
-    """The driver of a space."""
+    """Driver of a space."""
 
     def start(self, speed: float) -> None:
         """Take the speed of the first step."""
         ...
 
     def turn(self, place: float, speed: float) -> None:
-        """Before a step: be at a place from which it is moved on at the speed, that of the step
-        after it, to where the law has it at its end."""
+        """Set the driver before a step: at a position from which the speed, of the step after it,
+        moves it to the law's position at its end."""
         ...
 
 
@@ -63,7 +63,7 @@ class KinematicSlider:
 
 @dataclass(frozen=True)
 class ServoMotor:
-    """A motor that is told the speed alone."""
+    """A motor with a set speed only."""
 
     motor: pymunk.SimpleMotor
 
@@ -76,7 +76,7 @@ class ServoMotor:
 
 @dataclass(frozen=True)
 class PinMotor:
-    """A motor between two bodies, which takes back in each step a `SHARE` of what it is off by."""
+    """A motor between two bodies, which corrects in each step a `SHARE` of its error."""
 
     motor: pymunk.SimpleMotor
     link: pymunk.Body
@@ -97,14 +97,14 @@ class PinMotor:
 def driven_joint(
     scene: Scene, model: SpaceModel, start_s: float, dt_s: float, drive: Drive
 ) -> DrivenJoint:
-    """The driver of a space at its start."""
+    """Make the driver of a space at its start."""
     driver = scene.driver
     if drive == "servo" and model.motor is not None:
         return ServoMotor(model.motor)
     if driver.slider is not None:
         slider = scene.sliders[driver.slider]
         along = turned((1.0, 0.0), slider.direction_rad)
-        # The origin of the body is its centre of mass, which keeps its way to the slider's point.
+        # The origin of the body is its centre of mass, at a constant way to the slider's point.
         tip = scene.links[driver.link].points[slider.point] if slider.link else (0.0, 0.0)
         centre = model.centre[driver.link]
         angle = model.crank.angle

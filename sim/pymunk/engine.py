@@ -35,14 +35,14 @@ from sim.pymunk.space import SpaceModel, build
 from sim.pymunk.spring_steps import chain_springs
 
 ROOM = 64
-"""Numbers of memory to spare: the buffer may not grow memory that is not its own."""
+"""Spare numbers of memory: the buffer may not grow memory that is not its own."""
 VERSION = str(pymunk.version)
 VELOCITY_SHIFT = 0.5
 """Chipmunk moves positions with the velocity of the step before: it belongs half a step later."""
 
 
 class PymunkSession:
-    """One space."""
+    """A session with one space."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
@@ -79,7 +79,7 @@ class PymunkSession:
         self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
 
     def facts(self) -> Facts:
-        """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
+        """Read the space as pymunk holds it now; only freely moving bodies have a mass."""
         free = {name: body for name, body in self._model.bodies.items() if moves_freely(body)}
         space = self._space
         biases = {float(constraint.error_bias) for constraint in space.constraints}
@@ -107,12 +107,12 @@ class PymunkSession:
         self._advance(steps, 0)
 
     def record(self, steps: int, every: int) -> Log:
-        """Advance; one batch call per logged step appends all bodies to one buffer."""
+        """Advance and log; one batch call per logged step appends all bodies to one buffer."""
         log, _ = self._recorded(steps, every)
         return log
 
     def record_forces(self, steps: int, every: int) -> Log:
-        """As `record`, with the forces of each logged step; the first sample has none."""
+        """Advance and log with the forces of each logged step; the first sample has none."""
         bent = self._arcs is not None
         reactions = Reactions(self._scene, self._model, self._rows, self._dt, bent=bent)
         log, rows = self._recorded(steps, every, reactions)
@@ -123,7 +123,7 @@ class PymunkSession:
     def _recorded(
         self, steps: int, every: int, reactions: Reactions | None = None
     ) -> tuple[Log, Array]:
-        """The log, and the rows of the buffer: with ``reactions`` each step has two."""
+        """Return the log, and the rows of the buffer: with ``reactions`` each step has two."""
         at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
         each = 1 if reactions is None else 2
         began = time.perf_counter()
@@ -138,14 +138,14 @@ class PymunkSession:
         return Log(poses, (count - 1) * every, count < len(at), (), wall), rows
 
     def read(self) -> Poses:
-        """The current state."""
+        """Read the current state."""
         self._make_room(1)
         self._log()
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         return self._poses(rows.reshape(1, -1, WIDTH), np.array([float(self._done)]))
 
     def _make_room(self, samples: int) -> None:
-        """Empty the buffer, after lending it memory for the samples; what it grows it leaks."""
+        """Empty the buffer, after lending it memory for the samples; it leaks its own memory."""
         need = samples * (len(self._rows) + 1) * WIDTH + ROOM
         if len(self._memory) < need:
             self._memory = np.empty(need)
@@ -167,7 +167,7 @@ class PymunkSession:
         self._done += steps
 
     def _coast(self, steps: int, every: int) -> None:
-        """Step with the crank free or at constant speed; tight loops, that logging slows little."""
+        """Step with a free crank, or one of constant speed; logging slows tight loops little."""
         step, dt = self._space.step, self._dt
         log, space, buffer = pymunk.batch.get_space_bodies, self._space, self._buffer
         if every == 1:
@@ -186,8 +186,8 @@ class PymunkSession:
         """Step with the crank on its law.
 
         A step turns the crank by speed * dt before the other bodies' velocities are solved for, so
-        the crank is set back by the next step's turn and ends at the law's angle, with the speed
-        of the step to come.
+        the crank is set back by the next step's turn and ends at the law's angle, with the speed of
+        the next step.
         """
         step, dt, turn = self._space.step, self._dt, self._driven.turn
         for k, (angle, speed) in enumerate(self._turns(steps), 1):
@@ -197,15 +197,15 @@ class PymunkSession:
                 self._log()
 
     def _turns(self, steps: int) -> list[tuple[float, float]]:
-        """The angle and the speed that the crank is set to before each of the next steps."""
+        """Return the angle and the speed of the crank before each of the next steps."""
         law, first = self._scene.driver.law, self._done + 1
         theta = drives.angles(law, self._start_s, self._dt, first, first + steps - 1)
         chord = drives.chords(law, self._start_s, self._dt, first, first + steps - 1)
         return list(zip((theta - chord * self._dt).tolist(), chord.tolist(), strict=True))
 
     def _each(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
-        """Step with all that acts, and log every ``every``-th step: with ``reactions`` before it
-        too, and what its joints bore."""
+        """Step with all actions, and log every ``every``-th step; with ``reactions`` also before
+        it, with the impulses of its joints."""
         space, dt, turn = self._space, self._dt, self._driven.turn
         turns = None if self._coasts else self._turns(steps)
         acting = self._acting if self._acting else None
@@ -229,7 +229,7 @@ class PymunkSession:
                     reactions.read(self._acting.pulled(), self._acting.rubbed)
 
     def _poses(self, rows: Array, at: Array) -> Poses:
-        """Poses of the links' own frames from the bodies' centres of gravity."""
+        """Return the poses of the links' own frames from the bodies' centres of gravity."""
         lag = VELOCITY_SHIFT * self._dt
         poses = {
             name: pose(rows[:, row], self._model.centre[name], lag)
@@ -239,7 +239,7 @@ class PymunkSession:
 
 
 def _sum(a: Point, b: Point) -> Point:
-    """Sum of two vectors."""
+    """Return the sum of two vectors."""
     return a[0] + b[0], a[1] + b[1]
 
 

@@ -1,4 +1,4 @@
-"""How to read reactions and the driving torque out of pymunk, as a program of its own."""
+"""Program that reads reactions and the driving torque out of pymunk."""
 
 import math
 import re
@@ -19,8 +19,8 @@ from sim.registry.offers import ForceRecipe
 
 
 def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """See `sim.registry.offers.ForceRecipe`: the force of every pin that pymunk holds on its second
-    body, and the torque. Covers what a driver at constant speed moves without loads, springs,
+    """Write the recipe (`sim.registry.offers.ForceRecipe`): the force of every pymunk pin on its
+    second body, and the torque. It covers a driver at constant speed without loads, springs,
     friction or redundant links."""
     checked(settings)
     _check_covered(scene)
@@ -48,7 +48,7 @@ def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
 
 
 def _check_covered(scene: Scene) -> None:
-    """Refuse what the program would leave out."""
+    """Refuse scenes that the program does not cover."""
     acting = {"loads": scene.loads, "springs": scene.springs, "friction": scene.friction}
     extra = [f"{table}.{name}" for table, named in acting.items() for name in named]
     if scene.is_free:
@@ -73,14 +73,14 @@ def _check_covered(scene: Scene) -> None:
 
 
 def _crank(scene: Scene, model: SpaceModel) -> str:
-    """Name and mass of the crank, and the way from its pivot to its centre of mass."""
+    """Return name and mass of the crank, and the way from its pivot to its centre of mass."""
     name = scene.driver.link
     centre = less(centre_of(scene, name), model.centre[name])
     return repr((name, mass_of(scene, name)[0], centre))
 
 
 def _bodies(model: SpaceModel) -> Iterator[str]:
-    """Name, mass, moment of inertia, position, angle, velocity, angular velocity."""
+    """Yield name, mass, moment of inertia, position, angle, velocity, angular velocity."""
     for name, body in model.bodies.items():
         mass, inertia = (0.0, 0.0) if body is model.crank else (body.mass, body.moment)
         turning = "math.inf" if math.isinf(inertia) else repr(inertia)
@@ -89,7 +89,7 @@ def _bodies(model: SpaceModel) -> Iterator[str]:
 
 
 def _pins(scene: Scene, model: SpaceModel) -> Iterator[str]:
-    """Point, its two bodies, and where each has it, from its origin."""
+    """Yield the point, its two bodies, and its place on each, from its origin."""
     for hinge, joint in model.hinges.items():
         if isinstance(joint, pymunk.PivotJoint):
             anchors = _pair(joint.anchor_a), _pair(joint.anchor_b)
@@ -101,9 +101,9 @@ def _pins(scene: Scene, model: SpaceModel) -> Iterator[str]:
 
 
 def _slides(scene: Scene, model: SpaceModel) -> Iterator[str]:
-    """Guide, body, its anchor, a place of the line and its direction, the ends of the groove or
-    None for a rail, and the angle that is kept: None for a block without mass, 0 where an infinite
-    moment keeps it."""
+    """Yield the guide, the body, its anchor, a place of the line and its direction, the ends of the
+    groove or None for a rail, and the constant angle: None for a block without mass, 0 where an
+    infinite moment keeps it."""
     for slide in joints(scene).slides:
         slider, line = slide.slider, model.lines[slide.slider.name]
         centre = (0.0, 0.0) if slider.on == GROUND else model.centre[slider.on]
@@ -121,8 +121,8 @@ def _slides(scene: Scene, model: SpaceModel) -> Iterator[str]:
 
 
 def _read(scene: Scene, model: SpaceModel) -> list[int]:
-    """The pins whose force on their second body is the force of the hinge: not those where a block
-    without mass has its part."""
+    """Return the pins whose force on their second body is the force of the hinge: not those with a
+    block without mass."""
     blocks = {slot.slider.point for slot in joints(scene).slots}
     return [k for k, hinge in enumerate(model.hinges) if hinge.point not in blocks]
 
@@ -132,7 +132,7 @@ def _pair(vector: pymunk.Vec2d) -> Point:
 
 
 def _rows(items: Iterable[str]) -> str:
-    """The items of a tuple, one a line."""
+    """Write the items of a tuple, one a line."""
     return "".join(f"\n    {item}," for item in items)
 
 
@@ -140,7 +140,7 @@ FORCE_RECIPE: ForceRecipe = pymunk_force_recipe
 
 
 def program(sliders: bool) -> str:
-    """The text, with ``<NAME>`` and the like where something belongs; with sliders or without."""
+    """Return the program with ``<NAME>`` and other placeholders; with sliders or without."""
     text = PROGRAM.replace("<SLIDERS>", SLIDERS if sliders else "")
     return text.replace("<ACROSS>", ACROSS if sliders else "")
 

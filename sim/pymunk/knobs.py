@@ -1,4 +1,4 @@
-"""What is searched of pymunk's settings, and what a step costs with them."""
+"""Search space of pymunk's settings, and the cost of a step with them."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -12,20 +12,20 @@ from sim.registry.offers import Knob, SearchSpace, Work, rungs
 
 STEP_US, BODY_US, RAIL_US = 0.612, 0.022, 2.753
 PASS_US = {"PivotJoint": 0.00761, "GrooveJoint": 0.01893, "PinJoint": 0.01747}
-"""One joint in one iteration; pin joints are the rails of `sim.pymunk.space`, a gear takes nothing
-that could be measured."""
+"""Time of one joint in one iteration; pin joints are the rails of `sim.pymunk.space`, a gear takes
+no measurable time."""
 
 
 def counts(scene: Scene, start: State, exact: bool) -> tuple[float, float, Mapping[str, int]]:
-    """1, bodies, and the joints by their kind."""
+    """Return 1, bodies, and the joints by their kind."""
     model = build(scene, start, exact_lines=exact)
     kinds = Counter(type(joint).__name__ for joint in model.space.constraints)
     return 1.0, float(len(model.bodies)), kinds
 
 
 def work(scene: Scene, start: State) -> Work:
-    """A part for the step and its bodies, one for the rails' far ends, and the joints once per
-    iteration: pymunk does all iterations that it is told to."""
+    """Return the cost of a step: a part for the step and its bodies, one for the rails' far ends,
+    and the joints once per iteration, as pymunk does all its iterations."""
     base: dict[bool, float] = {}
     each: dict[bool, float] = {}
     for exact in (False, True):

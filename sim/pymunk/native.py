@@ -1,4 +1,4 @@
-"""What acts on bodies in a step, and what a space has of its own: springs, and friction in pins."""
+"""Actions on bodies in a step, and a space's own springs and friction in pins."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -34,13 +34,13 @@ NONE: Push = (0.0, 0.0, 0.0)
 
 
 def moves_freely(body: pymunk.Body) -> bool:
-    """Whether pushes move a body: it is neither the ground nor driven."""
+    """True if pushes move a body: it is neither the ground nor driven."""
     return bool(body.body_type == pymunk.Body.DYNAMIC)
 
 
 class Pushes:
-    """Forces at the origins of bodies with moments about them, by body, and what of that acts on
-    slider blocks without mass, which pass it on, by slider."""
+    """Forces at the origins of bodies with moments about them, by body, and their part on slider
+    blocks without mass, which transfer it, by slider."""
 
     def __init__(self, bodies: Iterable[str], blocks: Iterable[str]) -> None:
         self.on_bodies = dict.fromkeys(bodies, NONE)
@@ -51,13 +51,13 @@ class Pushes:
         self.on_bodies[body] = _sum(self.on_bodies[body], (0.0, 0.0, size))
 
     def force(self, body: str, frame: Frame, place: Point, force: Point) -> None:
-        """Add a force [N] on a body, whose frame stands there, at a place of the plane [m]."""
+        """Add a force [N] on a body with that frame, at a place of the plane [m]."""
         x, y = less(place, frame.origin)
         push = force[0], force[1], x * force[1] - y * force[0]
         self.on_bodies[body] = _sum(self.on_bodies[body], push)
 
     def note(self, slider: str, push: Push) -> None:
-        """Say what acts on a block without mass, beside the bodies that take it."""
+        """Note an action on a block without mass, beside the bodies that take it."""
         self.on_blocks[slider] = _sum(self.on_blocks[slider], push)
 
 
@@ -66,18 +66,18 @@ def _sum(a: Push, b: Push) -> Push:
 
 
 WHOLE = 1.0 - 1e-9
-"""The share of its largest couple from which on a motor counts as overcome."""
+"""Share of its largest couple from which on a motor counts as overcome."""
 
 
 @dataclass(frozen=True)
 class PinFriction:
-    """The friction of a pin, always as large: a motor that wants no turning, and can do so much.
+    """Friction of a pin, of constant size: a motor of speed 0 with a limited couple.
 
-    ``first`` and ``second`` are its bodies in the space, of which a block without mass is one with
-    its guide. Chipmunk's motor of rate 0 brings their turning to rest, by an impulse of at most
-    ``max_force * dt``: where the mechanism goes on turning it is as large as that, and where it
-    would stop, it holds. ``motor`` is None where neither can be braked, a kinematic crank or the
-    ground: their friction is added to what the drive gives.
+    ``first`` and ``second`` are its bodies in the space; a block without mass counts as its guide.
+    Chipmunk's motor of rate 0 brings their turning to rest, by an impulse of at most ``max_force *
+    dt``: it is as large as that while the mechanism goes on turning, and holds where it would stop.
+    ``motor`` is None where neither can be braked, a kinematic crank or the ground: their friction
+    is added to the drive's torque.
     """
 
     joint: str
@@ -87,16 +87,16 @@ class PinFriction:
     motor: pymunk.SimpleMotor | None
 
     def couple(self, impulse: Array, before: Array, after: Array, dt_s: float) -> Array:
-        """What the first body exerted on the second over each step [N m], (T,).
+        """Return the couple of the first body on the second over each step [N m], (T,).
 
         Parameters
         ----------
         impulse : Array
-            Of the motor; empty where there is none.
+            Impulse of the motor; empty without one.
         before, after : Array
             The angular velocity of the second body against the first [rad/s] before and after the
-            step: a motor that was overcome is against what is left, another one brought the body to
-            rest, against what was there.
+            step: a motor that was overcome acts against the speed after, another brought the body
+            to rest, against the speed before.
         """
         if self.motor is None:
             return np.asarray(-self.size * np.sign(after))
@@ -107,8 +107,8 @@ class PinFriction:
 
 
 def pin_friction(scene: Scene, made: Mapping[str, pymunk.Body]) -> tuple[PinFriction, ...]:
-    """The constant friction of the pins of a scene, for its bodies in the space, by name, the
-    ground among them. Raises EngineError for a pin that has not two."""
+    """Make the constant friction of the pins of a scene, for its bodies in the space, by name, with
+    the ground. Raises EngineError for a pin without exactly two."""
     guides = {
         block_name(slide.slider): slide.slider.on
         for slide in joints(scene).slides
@@ -128,7 +128,7 @@ def pin_friction(scene: Scene, made: Mapping[str, pymunk.Body]) -> tuple[PinFric
 
 
 def _two(scene: Scene, joint: str, guides: Mapping[str, str]) -> tuple[str, str]:
-    """The bodies in the space that a pin joins."""
+    """Return the two bodies in the space that a pin joins."""
     names = joined_at(scene).get(joint, ())
     if len(names) != 2:
         raise EngineError(
@@ -141,13 +141,12 @@ def _two(scene: Scene, joint: str, guides: Mapping[str, str]) -> tuple[str, str]
 @dataclass(frozen=True)
 class NativeSpring:
     """A spring between two bodies of a space, by name: pymunk's length is the spring's q less
-    ``q_at_zero`` [m or rad]. Along a line, ``block`` is the slider whose block without mass it is
-    that is pulled.
+    ``q_at_zero`` [m or rad]. Along a line, ``block`` is the slider of a pulled block without mass.
 
-    It pulls with the length at the end of a step, as `sim.pymunk.spring_steps` does. What it damps
-    is the velocity before the joints of the step have corrected it, by turns with them, so that
-    damping is of first order (numbers: the reason in `sim.pymunk.settings`); by an exponential, so
-    that a damper however stiff is stable.
+    It pulls with the length at the end of a step, as `sim.pymunk.spring_steps` does. It damps the
+    velocity before the joints of the step have corrected it, by turns with them, so that damping is
+    of first order (numbers: the reason in `sim.pymunk.settings`); by an exponential, so that a
+    damper of any stiffness is stable.
     """
 
     constraint: pymunk.DampedSpring | pymunk.DampedRotarySpring
@@ -158,13 +157,13 @@ class NativeSpring:
 
     @property
     def numbers(self) -> tuple[float, float, float]:
-        """Rate, damping and the q at which it is slack, as pymunk holds them."""
+        """Rate, damping and slack q, as pymunk holds them."""
         own = self.constraint
         slack = own.rest_length if isinstance(own, pymunk.DampedSpring) else own.rest_angle
         return own.stiffness, own.damping, slack + self.q_at_zero
 
     def push(self, dt_s: float, frames: Mapping[str, Frame], pushes: Pushes) -> None:
-        """What it did in the step that was made, in which the bodies came to these frames."""
+        """Add its forces in the last step, which brought the bodies to these frames."""
         own, impulse = self.constraint, float(self.constraint.impulse)
         if isinstance(own, pymunk.DampedRotarySpring):
             pushes.torque(self.first, impulse / dt_s)
@@ -188,11 +187,10 @@ def native_springs(
     centre: Mapping[str, Point],
     far_m: float,
 ) -> dict[str, NativeSpring]:
-    """The springs of a scene between its bodies in the space, by name, the ground among them.
+    """Make the springs of a scene between its bodies in the space, by name, with the ground.
 
-    One between two bodies that do not move freely is left out: pymunk takes none there. One along a
-    line hangs on a place of it ``far_m`` behind the slider, so far that the slider never comes
-    there.
+    A spring between two bodies that do not move freely is left out: pymunk takes none there. A
+    spring along a line hangs on a place of it ``far_m`` behind the slider, out of its reach.
     """
     slides = {slide.slider.name: slide for slide in joints(scene).slides}
     springs = {}
@@ -249,8 +247,8 @@ def _between(
 def _behind(
     scene: Scene, slide: Prism | Slot, state: State, far_m: float
 ) -> tuple[float, tuple[End, End]]:
-    """The displacement of a place of the line behind the slider, and a spring's ends there and at
-    the slider."""
+    """Return the displacement of a place of the line behind the slider, and a spring's ends there
+    and at the slider."""
     slider, rider = slide.slider, riding_body(slide)
     behind = state.displacement[slider.name] - far_m
     ux, uy = turned((behind, 0.0), slider.direction_rad)

@@ -1,14 +1,14 @@
-"""What pymunk's joints bear: vectors from the momentum of the bodies, held to pymunk's impulses.
+"""Reactions in pymunk: vectors from the momentum of the bodies, checked against pymunk's impulses.
 
-Chipmunk tells of a constraint the magnitude of its impulse in the last step, and no direction. A
-step moves the positions first and solves for the velocities there, so its impulses belong to its
-end, where the arms are: over the step they are the forces at the logged sample, to second order.
+Chipmunk reports the magnitude of a constraint's impulse in the last step, and no direction. A step
+moves the positions first and solves for the velocities there, so its impulses belong to its end,
+where the arms are: over the step they are the forces at the logged sample, to second order.
 
-A run starts with closed joints, and goes on with ones that are open by what the curvature of paths
-makes of a step. The first two steps make up for that, and their forces are wrong by 0.1 to 0.5 of
-the largest whatever the step (every shipped scene but one that starts at rest); the third is of
-first order, the fourth as all after it. Where iterations do not come to an end it dies off by and
-by: with 150 on the shaper, whose ram is heavy, within ten samples, with 1000 in the second.
+A run starts with closed joints, and continues with joints that the curvature of paths in a step
+opens. The first two steps make up for that, and their forces are wrong by 0.1 to 0.5 of the largest
+at any step size (every shipped scene except one that starts at rest); the third is of first order,
+the fourth as all after it. The error dies off slowly where iterations do not converge: with 150 on
+the shaper, whose ram is heavy, within ten samples, with 1000 in the second.
 """
 
 import math
@@ -33,16 +33,16 @@ BEFORE = (
     | pymunk.batch.BodyFields.FORCE
     | pymunk.batch.BodyFields.TORQUE
 )
-"""What a step starts with: vx, vy, omega, and the force and torque that it is given."""
+"""Input of a step: vx, vy, omega, and the given force and torque."""
 SAME = 1e-6
-"""Difference between the impulse of a joint over a step and what momentum says, over the largest
+"""Largest difference of a joint's impulse over a step from the momentum balance, over the largest
 force (for moments, times the longest link), that counts as none. On the shipped scenes it is 2e-12
 at most, with either profile and every drive; rounding of velocities grows with the steps in a turn,
 and near dead points. Where anchors are bent for arcs, arms are off by half the square of a turn."""
 
 
 class Reactions:
-    """The forces in the joints of a space, from what is read of it at each logged step."""
+    """Forces in the joints of a space, from the readings at each logged step."""
 
     def __init__(
         self,
@@ -65,25 +65,25 @@ class Reactions:
         self._pulled: list[Mapping[str, Push]] = []
 
     def read(self, pulled: Pushes, rubbed: Mapping[str, float]) -> None:
-        """The impulses of the step that was made, what the space's own springs did to bodies, all
-        that acted on slider blocks without mass, and the friction of sliders."""
+        """Record the impulses of the last step, the forces of the space's own springs on bodies,
+        all actions on slider blocks without mass, and the friction of sliders."""
         self._impulses.append([constraint.impulse for constraint in self._constraints])
         self._braked.append([one.motor.impulse if one.motor else 0.0 for one in self._model.rubs])
         self._on_blocks.append(pulled.on_blocks)
         self._rubbed.append(rubbed)
         self._pulled.append(pulled.on_bodies)
 
-    @np.errstate(all="ignore")  # what comes apart may overflow; it is judged, not warned of
+    @np.errstate(all="ignore")  # open joints may overflow; they are judged, not warned of
     def forces(self, before: Array, after: Array, time_s: Array) -> Forces:
-        """The forces at logged steps, with what pymunk's impulses say against them.
+        """Return the forces at logged steps, with the contradictions by pymunk's impulses.
 
         Parameters
         ----------
         before : Array
-            What each logged step started with, (T - 1, bodies, 6), as `BEFORE`.
+            Input of each logged step, (T - 1, bodies, 6), as `BEFORE`.
         after : Array
-            Positions, angles and velocities at all samples, (T, bodies, 6), first those of the
-            start: no step led there, so that its forces are NaN.
+            Positions, angles and velocities at all samples, (T, bodies, 6), the start first: no
+            step led there, so that its forces are NaN.
         time_s : Array
             The instants of the samples, (T,).
         """
@@ -106,7 +106,7 @@ class Reactions:
         return replace(forces, time_s=time_s, contradictions=against)
 
     def _couples(self, before: Array, after: Array) -> dict[str, Array]:
-        """The friction of pins, by joint, (T,)."""
+        """Return the friction of pins, by joint, (T,)."""
         couples = {}
         for k, one in enumerate(self._model.rubs):
             first, second = (self._rows.get(name) for name in (one.first, one.second))
@@ -125,7 +125,7 @@ class Reactions:
         couples: Mapping[str, Array],
         pulled: Mapping[str, Array],
     ) -> MomentumGain:
-        """What joints and drive gave a body, friction and springs apart."""
+        """Return the action of joints and drive on a body, without friction and springs."""
         body, centre = self._model.bodies[name], self._model.centre[name]
         start, end = before[:, self._rows[name]], after[:, self._rows[name]]
         if moves_freely(body):
@@ -139,8 +139,8 @@ class Reactions:
         return MomentumGain(centre, end[:, 0:2], end[:, 2], given[:, 0:2], given[:, 2])
 
     def _change(self, body: pymunk.Body, start: Array, end: Array) -> Array:
-        """Momentum that a free body gained in a second, less what weight and damping gave it:
-        force and moment, (T, 3)."""
+        """Return the momentum that a free body gained in a second, less weight and damping: force
+        and moment, (T, 3)."""
         kept = self._model.space.damping**self._dt
         gain = (end[:, 3:6] - kept * start[:, 0:3]) / self._dt
         gain[:, 0:2] -= np.array(self._model.space.gravity)
@@ -148,8 +148,8 @@ class Reactions:
         return np.asarray(gain * np.array([body.mass, body.mass, inertia]))
 
     def _told(self, name: str, theta: Array, time_s: Array) -> Array:
-        """The same of the kinematic crank, or slider, which has no mass in pymunk: that of the
-        scene, about its pivot or its centre of mass, as its law has it move."""
+        """Return the same for the kinematic crank, or slider, which has no mass in pymunk: with the
+        scene's mass, about its pivot or its centre of mass, in the motion of its law."""
         mass, inertia = mass_of(self._scene, name)
         (x, y), pivot = centre_of(self._scene, name), self._model.centre[name]
         arm = MomentumGain(pivot, np.empty(0), theta, np.empty(0), np.empty(0)).arm((x, y))
@@ -164,7 +164,7 @@ class Reactions:
         return np.column_stack([force, moment])
 
     def _contradictions(self, pushes: JointPushes, time_s: Array, same: float) -> Iterator[str]:
-        """Joints whose impulse is not what momentum says of them, to that share of the largest."""
+        """Yield joints whose impulse differs from the momentum balance by more than ``same``."""
         held = [hinge for hinge, joint in self._model.hinges.items() if joint is not None]
         found = {
             f"pin {each.point} of {each.first} and {each.other}": np.hypot(*pushes.hinges[each].T)
@@ -189,16 +189,16 @@ class Reactions:
 
 
 def _turning(omega: Array, first: int | None, second: int | None) -> Array:
-    """The angular velocity of a body against another, (T,), by their rows; None is the ground."""
+    """Return the rate of a body against another, (T,), by their rows; None is the ground."""
     one, other = (0.0 if row is None else omega[:, row] for row in (first, second))
     return np.asarray(other - one)
 
 
 def _by_name(rows: Sequence[Mapping[str, Push] | Mapping[str, float]]) -> dict[str, Array]:
-    """Numbers of the steps as one array for each name."""
+    """Return the numbers of the steps as one array for each name."""
     return {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else {}
 
 
 def _with_start(series: Array) -> Array:
-    """The series with a sample before it of which nothing is known."""
+    """Return the series with an unknown sample before it."""
     return np.concatenate([np.full((1, *series.shape[1:]), np.nan), series])

@@ -1,4 +1,4 @@
-"""What may help in pymunk, whose joints take more iterations the more the masses differ."""
+"""Remedies in pymunk, whose joints take more iterations the more the masses differ."""
 
 from models.errors import EngineError
 from models.motion import State
@@ -10,13 +10,13 @@ from sim.pymunk.space import build
 from sim.registry.offers import Remedies
 
 ITERATIONS = (300, 700, 2000)
-"""Iterations that are tried."""
+"""Numbers of iterations to try."""
 TIMES = (2, 5)
-"""As many times those that a chain of segments has anyway."""
+"""Multiples of the iterations that a chain of segments has anyway."""
 
 
 def pymunk_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
-    """More iterations than there were; none for a chain that is given none (`iterations`)."""
+    """List more iterations; none for a chain that needs too many (`iterations`)."""
     if not held_by_iterations(scene, settings):
         asked = int(settings["iterations"])
         return [{"iterations": count} for count in ITERATIONS if count > asked]

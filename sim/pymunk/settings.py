@@ -62,7 +62,7 @@ RANGES = {
     "error_bias": (0.0, 1.0),
     "damping": (0.0, 1.0),
 }
-"""What Chipmunk takes; outside of it some values end the process."""
+"""Ranges in Chipmunk; some values outside of them end the process."""
 
 
 def checked(settings: Settings) -> None:
@@ -77,8 +77,8 @@ def checked(settings: Settings) -> None:
 
 
 def held_iterations(settings: Settings, given: int, found: int) -> dict[str, SettingValue]:
-    """The iterations that a space was ``found`` with, as settings: where it has those that a chain
-    of segments was ``given`` (`sim.pymunk.convergence`), they stand beside those asked for."""
+    """Return the iterations ``found`` in a space, as settings: if they are the number ``given`` for
+    a chain of segments (`sim.pymunk.convergence`), it stands beside the requested one."""
     asked = int(settings["iterations"])
     if found == given > asked:
         return {"iterations": asked, "iterations_of_segments": found}
@@ -86,24 +86,24 @@ def held_iterations(settings: Settings, given: int, found: int) -> dict[str, Set
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:
-    """What is a loss in a second, whatever the speed: a bias or a damping, but for those that take
-    all at once, or nothing."""
+    """Return the settings that are a loss in a second, at any speed: a bias or a damping, unless it
+    takes all at once, or nothing."""
     biased, damped = settings["error_bias"] not in (0.0, 1.0), settings["damping"] != 1.0
     return ("error_bias",) * biased + ("damping",) * damped
 
 
 def exact_lines(settings: Settings) -> bool:
-    """Whether points on lines are held exactly."""
+    """True if points on lines are held exactly."""
     return settings["lines"] == "exact"
 
 
 def paths_are_arcs(settings: Settings, drive: Drive) -> bool:
-    """Whether pins are closed for the arcs of a step: of what is let go, and mends all of an error
-    in a step."""
+    """True if pins are closed for the arcs of a step: in free motion, if a step corrects the whole
+    error."""
     wanted = settings["free_paths"] == "arcs" and float(settings["error_bias"]) == 0.0
     return wanted and drive == "free"
 
 
 def springs_as_forces(settings: Settings) -> bool:
-    """Whether springs are forces of the end of each step, and not pymunk's own."""
+    """True if springs are forces of the end of each step, and not pymunk's own."""
     return settings["springs"] == "forces"

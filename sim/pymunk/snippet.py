@@ -16,7 +16,7 @@ DRIVES: Mapping[Drive, str] = {
     "omega + alpha dt / 2; with those of the start itself errors fall as dt. What acts is set "
     "before each step, with the size and the place of its end.",
 }
-"""How the crank of the measured runs was driven."""
+"""Drive of the crank in the measured runs."""
 OF_FREE = {
     ("springs", "forces"): (
         "Dampers: not those of DampedSpring and DampedRotarySpring, but forces set before each "
@@ -29,18 +29,18 @@ OF_FREE = {
         "but places at the same crank angle are 10 to 400 times as far off."
     ),
 }
-"""What is said of free motion, by the setting that needs it."""
+"""Notes on free motion, by the setting that needs them."""
 
 
 def pymunk_snippet(
     settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
 ) -> str:
-    """Lines that act on variables ``space`` and ``joints``, and make the space's next step, or all
-    of a frame.
+    """Write lines that act on variables ``space`` and ``joints``, and make the space's next step,
+    or all of a frame.
 
-    The bias of the mechanism's own joints, and the iterations and step, which can only be the
-    whole space's. What else differs from pymunk's defaults would change the rest of a user's space
-    and stands in a comment; see `sim.registry.offers.snippet`.
+    The bias of the mechanism's own joints, and the iterations and step, which can only be the whole
+    space's. Other differences from pymunk's defaults would change the rest of a user's space and
+    are in a comment; see `sim.registry.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
@@ -62,7 +62,7 @@ def pymunk_snippet(
 
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
-    """The next step, or the steps of a frame."""
+    """Write the next step, or the steps of a frame."""
     counted = stepping.counted_in(drive)
     if counted == "nothing":
         return [f"dt = {stepping.dt_s!r}", "space.step(dt)  # steps all that the space holds"]
@@ -88,7 +88,7 @@ def _steps(stepping: Stepping, drive: Drive) -> list[str]:
 
 
 def _notes(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
-    """How lines are held and, of free motion, springs; what limits the promise."""
+    """Write notes on lines and, for free motion, springs; and on the limits of the errors."""
     notes = []
     if complete["lines"] == "exact":
         notes.append(
@@ -108,7 +108,7 @@ def _notes(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
 
 
 def _alone(complete: Settings, defaults: Settings) -> list[str]:
-    """Settings of the measured runs that are for a space of nothing but the mechanism."""
+    """Write the settings of the measured runs for a space of the mechanism alone."""
     lines = []
     if int(complete["iterations"]) < int(defaults["iterations"]):
         lines.append(f"#   space.iterations = {complete['iterations']!r}")

@@ -1,17 +1,17 @@
 """The pymunk space of a scene: a body per link, joints as constraints, no shapes.
 
-Bodies have their origin at the centre of gravity, as Chipmunk wants it; `Body.local` keeps where
-the link's own frame lies. A driven crank is a kinematic body on its pivot. A massless slider block
-is a groove that the point of its link runs in. A body that slides on the ground cannot turn: it
-gets an infinite moment; on a moving guide a gear of ratio 1 holds its angle.
+Bodies have their origin at the centre of gravity, as Chipmunk needs it; `Body.local` keeps the
+place of the link's own frame. A driven crank is a kinematic body on its pivot. A massless slider
+block is a groove for the point of its link. A body that slides on the ground cannot turn: it gets
+an infinite moment; on a moving guide a gear of ratio 1 holds its angle.
 
-A groove is in error where pushed bodies turn; ``sim.pymunk.space`` says why, and holds the cure.
+A groove is in error where pushed bodies turn; the reason and the remedy follow.
 
 Chipmunk's groove joint solves for both components of the impulse and then drops the one along the
-line. Unless the bodies answer to a push along the line with a motion along the line alone, the
-sliding speed leaks into the constraint: the point leaves its line, by an error of first order in
-the step however many iterations there are, and a slider-crank with a massless piston comes apart.
-A rail holds the point by one scalar constraint across the line.
+line. Unless a push along the line moves the bodies along the line alone, the sliding speed leaks
+into the constraint: the point leaves its line, by an error of first order in the step with any
+number of iterations, and a slider-crank with a massless piston falls apart. A rail holds the point
+by one scalar constraint across the line.
 """
 
 import math
@@ -48,8 +48,8 @@ from sim.pymunk.native import NativeSpring, PinFriction, moves_freely, native_sp
 class Rail:
     """A point held on a line by a pin joint whose far end moves along with the point.
 
-    The far end stands across the line from the point, at a fixed distance, in the frame of the
-    guide; it is set between the position and the velocity half of each step.
+    The far end lies across the line from the point, at a fixed distance, in the frame of the guide;
+    it is set between the position and the velocity half of each step.
     """
 
     rider: pymunk.Body
@@ -60,7 +60,7 @@ class Rail:
     arm: float
 
     def joint(self) -> pymunk.PinJoint:
-        """The pin joint, set for the present positions."""
+        """Make the pin joint, set for the present positions."""
         joint = pymunk.PinJoint(self.guide, self.rider, (0.0, 0.0), self.anchor)
         joint.distance = self.arm
         self.follow(joint, None)
@@ -79,19 +79,18 @@ class Rail:
 
 
 FAR = 1e3
-"""Ends of a groove over the sum of all lengths: where lines cross at a small angle a slider travels
-much further than any link is long. Chipmunk rounds at 1e-13 of the lengths then."""
+"""Distance of a groove's ends over the sum of all lengths: where lines cross at a small angle a
+slider travels much further than any link is long. Chipmunk then rounds at 1e-13 of the lengths."""
 
 
 @dataclass(frozen=True)
 class SpaceModel:
     """A space, its moving bodies by name in the order they were added, and the crank.
 
-    ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
-    ``motor`` is the servo, or what drives an inner pin, where there is one. Of the constraints,
-    ``hinges`` are what the pins are made of (None is what holds a kinematic crank), and by slider
-    ``lines`` hold a point on its line, ``gears`` an angle. ``rubs`` is what rubs in pins;
-    ``springs`` are the space's own.
+    ``centre`` is the origin of each pymunk body in the frame of the link [m]. ``motor`` is the
+    servo, or the motor of an inner pin, if any. Of the constraints, ``hinges`` belong to the pins
+    (None for a kinematic crank), and by slider ``lines`` hold a point on its line, ``gears`` an
+    angle. ``rubs`` is the friction of pins; ``springs`` are the space's own.
     """
 
     space: pymunk.Space
@@ -115,12 +114,12 @@ def build(
     with_springs: bool = False,
     delay_s: float = 0.0,
 ) -> SpaceModel:
-    """The space of ``scene`` at ``state``.
+    """Build the space of ``scene`` at ``state``.
 
-    A crank that is not prescribed is dynamic: with a motor under a servo, free without one.
-    Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
-    is in error. ``with_springs`` the space has those of the scene. Velocities are those of
-    ``delay_s`` later (see `models.scene.joints.frames`).
+    A crank that is not prescribed is dynamic: with a motor under a servo, free without one. Points
+    on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove is in
+    error. ``with_springs`` the space has the scene's springs. Velocities belong to ``delay_s``
+    later (see `models.scene.joints.frames`).
 
     Raises
     ------
@@ -164,7 +163,7 @@ def build(
     for slide in ties.slides:
         name = slide.slider.name
         if name == driver.slider and not pinned:
-            continue  # a kinematic body, which is told where it is
+            continue  # a kinematic body, at a prescribed position
         lines[name] = _line(scene, state, slide, made, centre, exact_lines)
         space.add(_plain(lines[name]))
         if isinstance(slide, Prism) and slide.slider.on != GROUND:
@@ -182,7 +181,7 @@ def build(
 
 
 def _check_drive(scene: Scene, drive: Drive) -> None:
-    """Raise EngineError for a joint that pymunk has nothing to drive with."""
+    """Refuse a joint that pymunk cannot drive. Raises EngineError."""
     driver = scene.driver
     if not driver.is_crank and any(load.over == "angle" for load in scene.loads.values()):
         raise EngineError(
@@ -206,7 +205,7 @@ def _check_drive(scene: Scene, drive: Drive) -> None:
 
 
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
-    """A body with the mass of the scene."""
+    """Make a body with the mass of the scene."""
     if kinematic:
         return pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     mass, inertia = mass_of(scene, name)
@@ -219,7 +218,7 @@ def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk
 
 
 def _plain(constraint: pymunk.Constraint) -> pymunk.Constraint:
-    """The constraint without collision bookkeeping; there are no shapes."""
+    """Return the constraint without collision bookkeeping; there are no shapes."""
     constraint.collide_bodies = False
     return constraint
 
@@ -232,7 +231,7 @@ def _pins(
     *,
     pinned: bool,
 ) -> dict[Hinge, pymunk.Constraint | None]:
-    """All pins; a kinematic crank needs none to the ground and is not ``pinned``."""
+    """Make all pins; a kinematic crank needs none to the ground and is not ``pinned``."""
     hinges: dict[Hinge, pymunk.Constraint | None] = {}
     for joint in ties.pins:
         first, *others = _pinned_bodies(scene, joint.bodies)
@@ -256,7 +255,7 @@ def _line(
     centre: Mapping[str, Point],
     exact_lines: bool,
 ) -> pymunk.Constraint:
-    """A point on a line."""
+    """Make the constraint of a point on a line."""
     slider, rider = slide.slider, riding_body(slide)
     guide, body = made[slider.on], made[rider]
     anchor = _anchor(scene, centre, rider, slider.point)
@@ -272,7 +271,7 @@ def _line(
 
 
 def _gear(prism: Prism, made: Mapping[str, pymunk.Body]) -> pymunk.Constraint:
-    """What keeps a sliding body's angle on a moving guide."""
+    """Make the gear for a sliding body's angle on a moving guide."""
     guide, body = made[prism.slider.on], made[prism.body]
     # A gear counts whole turns, and each of the two bodies comes with some of its own.
     kept = sliding_angle(prism.slider)
@@ -281,28 +280,28 @@ def _gear(prism: Prism, made: Mapping[str, pymunk.Body]) -> pymunk.Constraint:
 
 
 def _firm(body: pymunk.Body) -> bool:
-    """Whether no push turns the body."""
+    """True if no push turns the body."""
     return not moves_freely(body) or math.isinf(body.moment)
 
 
 def _anchor(scene: Scene, centre: Mapping[str, Point], body: str, point: str) -> Point:
-    """A point in the coordinates of the pymunk body."""
+    """Return a point in the coordinates of the pymunk body."""
     return less(local_point(scene, body, point), centre[body])
 
 
 def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
-    """The bodies of a pin, immovable ones first, so that all others hang on the firmest."""
+    """Return the bodies of a pin, immovable ones first, so that all others hang on the firmest."""
     firm = {GROUND: 0} if scene.driver.is_inner else {GROUND: 0, scene.driver.link: 1}
     return tuple(sorted(names, key=lambda name: firm.get(name, 2)))
 
 
 def _reach(scene: Scene) -> float:
-    """Farther than a slider can go [m]."""
+    """Return a distance out of reach of any slider [m]."""
     return FAR * sum(map(span, (scene.ground, *(link.points for link in scene.links.values()))))
 
 
 def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Point, Point]:
-    """Ends of a groove in the frame of the guide [m], far enough that no motion reaches them."""
+    """Return the ends of a groove in the frame of the guide [m], out of reach of any motion."""
     where = frames(scene, state)
     place = where[rider].at(local_point(scene, rider, slider.point))
     now, _ = along(slider, where[slider.on], place, (0.0, 0.0))

@@ -1,4 +1,4 @@
-"""What can be broken in a session of pymunk: its space, with bodies and constraints, in place."""
+"""Faults for a session of pymunk: changes of its space, bodies and constraints, in place."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -15,7 +15,7 @@ from sim.run.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
 
 class PymunkSpoiler:
-    """Every joint is a constraint; that of two moving bodies closes the loop."""
+    """pymunk's faults: all joints are constraints; one of two moving bodies closes the loop."""
 
     wrong_settings: Mapping[WrongSetting, Callable[[float], Settings]] = {
         "few-iterations": lambda size: {"iterations": round(1.0 / size)},
@@ -23,18 +23,18 @@ class PymunkSpoiler:
     }
 
     def open_loop(self, session: Session) -> None:
-        """The constraint leaves the space."""
+        """Remove the constraint from the space."""
         model = _model(session)
         model.space.remove(_closing(model))
 
     def soften(self, session: Session, opening: Opening, share: float) -> None:
-        """`error_bias` is the share of a gap that is left after a second."""
+        """Raise `error_bias`, the share of a gap that is left after a second."""
         a_step = float(opening.settings["error_bias"]) ** opening.dt_s + share
         for constraint in _model(session).space.constraints:
             constraint.error_bias = a_step ** (1.0 / opening.dt_s)
 
     def slip(self, session: Session, by_m: float) -> None:
-        """The anchor on the second body moves."""
+        """Move the anchor on the second body."""
         joint = _closing(_model(session))
         joint.anchor_b = (joint.anchor_b[0] + by_m, joint.anchor_b[1])
         arcs = cast(PymunkSession, session)._arcs
@@ -42,21 +42,21 @@ class PymunkSpoiler:
             arcs.move(joint, (by_m, 0.0))
 
     def pull(self, session: Session, gravity_m_s2: float) -> None:
-        """Down is -y."""
+        """Add gravity along -y."""
         space = _model(session).space
         space.gravity = (space.gravity[0], space.gravity[1] - gravity_m_s2)
 
     def load(self, session: Session, share: float) -> None:
-        """Of the last body."""
+        """Make the last body heavier."""
         _last(session).mass *= 1.0 + share
 
     def turn(self, session: Session, angle_rad: float) -> None:
-        """About its centre of gravity."""
+        """Turn the last body about its centre of gravity."""
         _last(session).angle += angle_rad
 
     def block(self, session: Session, opening: Opening, body: str, post: Post) -> None:
-        """The post is a part of the ground, which joints keep from colliding with what they hold.
-        The bar of ``body`` is as thick as MuJoCo's."""
+        """Add the post to the ground, and let joints permit collisions of their own bodies. The bar
+        of ``body`` is as thick as MuJoCo's."""
         model = _model(session)
         for constraint in model.space.constraints:
             constraint.collide_bodies = True
@@ -68,7 +68,7 @@ class PymunkSpoiler:
         model.space.add(pymunk.Circle(ground, post.radius_m, post.centre), *bars)
 
     def round_state(self, session: Session, relative: float) -> None:
-        """Places, angles and velocities of all bodies, the crank's too."""
+        """Round places, angles and velocities of all bodies, the crank's too."""
         for body in _model(session).bodies.values():
             state = np.array(
                 [*body.position, body.angle, *body.velocity, body.angular_velocity],
@@ -79,25 +79,25 @@ class PymunkSpoiler:
             body.velocity, body.angular_velocity = (vx, vy), omega
 
     def damp(self, session: Session, per_s: float) -> None:
-        """What Chipmunk calls damping is the share of a velocity that is left after a second."""
+        """Lower Chipmunk's damping, the share of a velocity that is left after a second."""
         _model(session).space.damping *= math.exp(-per_s)
 
     def slow(self, session: Session, share: float) -> None:
-        """The last body, about its centre of gravity."""
+        """Make the last body slower to turn, about its centre of gravity."""
         _last(session).moment *= 1.0 + share
 
     def spin(self, session: Session, by_rad_s: float) -> None:
-        """The last body."""
+        """Add to the angular velocity of the last body."""
         _last(session).angular_velocity += by_rad_s
 
     def quicken(self, session: Session, share: float) -> None:
-        """Of every body."""
+        """Scale the velocities of every body."""
         for body in _model(session).bodies.values():
             body.velocity *= 1.0 + share
             body.angular_velocity *= 1.0 + share
 
     def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
-        """Velocities lie half a step after positions: what they change in a step is all too new."""
+        """Take back the whole change of velocity, as velocities are half a step newer."""
         bodies = list(_model(session).bodies.values())
         now = np.array([[*body.velocity, body.angular_velocity] for body in bodies])
         off = np.zeros_like(now) if before is None else by_s * (now - before)
@@ -107,23 +107,23 @@ class PymunkSpoiler:
         return now
 
     def lose(self, session: Session) -> None:
-        """Of the last body."""
+        """Make the velocity of the last body NaN."""
         _last(session).velocity = (math.nan, math.nan)
 
 
 def _model(session: Session) -> SpaceModel:
-    """The space of the session, which is reached into here, and by nothing else."""
+    """Return the space of the session, which only this file accesses."""
     return cast(PymunkSession, session)._model
 
 
 def _last(session: Session) -> pymunk.Body:
-    """The body that was added last."""
+    """Return the body that was added last."""
     return list(_model(session).bodies.values())[-1]
 
 
 def _closing(model: SpaceModel) -> pymunk.PivotJoint | pymunk.GrooveJoint | pymunk.PinJoint:
-    """The last joint that holds a point: of two bodies that both can move freely where there is
-    one, else of one of them and the ground or the crank."""
+    """Return the last joint that holds a point: of two freely moving bodies if there is one, else
+    of one of them and the ground or the crank."""
     kinds = (pymunk.PivotJoint, pymunk.GrooveJoint, pymunk.PinJoint)
     dynamic = pymunk.Body.DYNAMIC
     holding = [c for c in model.space.constraints if isinstance(c, kinds)]

@@ -1,5 +1,5 @@
-"""The springs and dampers of a scene, given like loads: with the lengths and rates of the end of
-the step."""
+"""Springs and dampers of a scene, applied like loads: with the lengths and rates of the end of the
+step."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -17,7 +17,7 @@ from sim.pymunk.space import SpaceModel
 
 
 class SpringSteps:
-    """The springs of a scene that its space has not of its own, ``but`` those of a chain."""
+    """Springs of a scene that are not the space's own, ``but`` the springs of a chain."""
 
     def __init__(
         self,
@@ -44,12 +44,12 @@ class SpringSteps:
 
     @property
     def numbers(self) -> dict[str, tuple[float, float, float]]:
-        """Rate, damping and the length at which it is slack, of each by name."""
+        """Rate, damping and slack length of each spring by name."""
         springs = (step.spring for step in self._steps)
         return {one.name: (one.rate, one.damping, one.free) for one in springs}
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
-        """Have them act."""
+        """Apply the springs."""
         for step in self._steps:
             step.push(frames, pushes)
 
@@ -71,7 +71,7 @@ class _OnLine:
         return first, second
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
-        """At the end of the step; of a length of 0 it is open where it would pull."""
+        """Apply the spring at the end of the step; at length 0 it has no direction."""
         first, second = self._places(frames)
         length = math.dist(first, second)
         self._course.go_on(length)
@@ -122,19 +122,18 @@ TORQUE = pymunk.batch.BodyFields.TORQUE
 
 
 def chain_springs(scene: Scene) -> tuple[SegmentSpring, ...]:
-    """The springs between the segments of the elastic links of a scene; no others that it has."""
+    """Return the springs between the segments of a scene's elastic links, and no others."""
     return tuple(one for one in scene.springs.values() if isinstance(one, SegmentSpring))
 
 
 class ChainSprings:
-    """What springs in pins of a chain of segments do, all at once, with the angles and rates of the
-    end of each step: one by one, as `SpringSteps` has them, they would take most of a run's time.
-    """
+    """Springs in pins of a chain of segments, applied all at once, with the angles and rates of the
+    end of each step: one by one, as in `SpringSteps`, they would take most of a run's time."""
 
     def __init__(self, model: SpaceModel, springs: Sequence[SegmentSpring], dt_s: float) -> None:
         self._space, self._dt, self._rows = model.space, dt_s, rows_of(model)
         self.numbers = {one.name: (one.rate, one.damping, one.free) for one in springs}
-        """Rate, damping and the angle at which it is slack, of each by name."""
+        """Rate, damping and slack angle of each spring by name."""
         self._angles, self._torques = pymunk.batch.Buffer(), pymunk.batch.Buffer()
         self._first, self._second = (
             np.array([self._rows[one.bodies[k]] for one in springs]) for k in (0, 1)
@@ -143,7 +142,7 @@ class ChainSprings:
             np.array([getattr(one, key) for one in springs]) for key in ("rate", "damping", "free")
         )
         theta = self._turning()[:, 0]
-        # Of each body, from each spring.
+        # Rows for bodies, columns for springs.
         self._share = np.zeros((len(theta), len(springs)))
         self._share[self._first, range(len(springs))] = 1.0
         self._share[self._second, range(len(springs))] = -1.0
@@ -154,17 +153,17 @@ class ChainSprings:
         self._course = Course(opened + self._whole, dt_s)
 
     def by_body(self) -> dict[str, float]:
-        """The torques on all bodies in the next step [N m]."""
+        """Return the torques on all bodies in the next step [N m]."""
         torques = self._next().tolist()
         return {name: torques[row] for name, row in self._rows.items()}
 
     def push(self) -> None:
-        """Have them act in the next step, where nothing else does."""
+        """Apply the springs in the next step, where they act alone."""
         self._torques.set_float_buf(self._next())
         pymunk.batch.set_space_bodies(self._space, TORQUE, self._torques)
 
     def _next(self) -> Array:
-        """The torques in the next step [N m], by row of a batch."""
+        """Return the torques in the next step [N m], by row of a batch."""
         theta, omega = self._turning().T
         theta = theta + self._dt * omega
         q = theta[self._second] - theta[self._first] + self._whole
@@ -173,7 +172,7 @@ class ChainSprings:
         return np.asarray(self._share @ pull)
 
     def _turning(self) -> Array:
-        """Angle and angular velocity of all bodies of the space, (rows, 2)."""
+        """Return angle and angular velocity of all bodies of the space, (rows, 2)."""
         self._angles.clear()
         pymunk.batch.get_space_bodies(self._space, TURNING, self._angles)
         return np.frombuffer(self._angles.float_buf()).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""The engines by name, and what each offers; nothing of it is loaded before it is asked for."""
+"""Registry of engines by name, and their capabilities; nothing is loaded before its use."""
 
 import importlib
 import os
@@ -18,26 +18,26 @@ ENGINES: Mapping[str, str] = {
     "pymunk": "..pymunk",
     "exudyn": "..exudyn",
 }
-"""Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
+"""Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
-"""The one that is taken where one is enough, and none was named."""
+"""Default engine where one is enough."""
 Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"]
-"""What an engine may lack."""
+"""Optional parts of an engine."""
 
 
 class BrokenEngineError(EngineError):
-    """An engine that is installed, and fails when it is imported."""
+    """An installed engine that fails on import."""
 
 
 @dataclass(frozen=True)
 class Declaration:
-    """What stands in the folder of an engine; its ``__init__`` has it as ``DECLARATION``.
+    """Content of an engine's folder; its ``__init__`` has it as ``DECLARATION``.
 
-    ``package`` is what Python imports, ``install`` what pip calls it; an ``extra`` is no part of a
-    plain install of crankcheck, and runs where it is named. The adapter is the value ``ENGINE`` of
-    the file ``engine``; each of what it ``offers`` has a file of that name too, with a value of
-    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer`,
-    `Reader` or `ForceRecipe`.
+    ``package`` is the name for Python's import, ``install`` for pip; an ``extra`` is no part of a
+    plain install of crankcheck, and runs only by name. The adapter is the value ``ENGINE`` of the
+    file ``engine``; each capability in ``offers`` has a file of its name too, with a value of that
+    name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer`, `Reader` or
+    `ForceRecipe`.
     """
 
     package: str
@@ -47,13 +47,13 @@ class Declaration:
 
 
 OWN = Declaration("", "", extra=True)
-"""What is declared of an engine that is not ours."""
+"""Declaration of a user's own engine."""
 
 
 @dataclass(frozen=True)
 class Availability:
-    """Whether an engine can be used here: its version, or the command that installs it; why not,
-    where it is installed."""
+    """Availability of an engine here: its version, or the command that installs it; the fault of a
+    broken one."""
 
     name: str
     version: str | None
@@ -62,8 +62,8 @@ class Availability:
 
 
 def declaration(name: str) -> Declaration:
-    """What an engine's folder holds; one that is not ours has its adapter alone. Raises
-    EngineError, with near names, for an unknown one."""
+    """Return the declaration of an engine's folder; a user's own engine has its adapter alone.
+    Raises EngineError, with near names, for an unknown name."""
     if name not in ENGINES:
         own_engine(name, ENGINES)
         return OWN
@@ -71,19 +71,19 @@ def declaration(name: str) -> Declaration:
 
 
 def usual() -> list[str]:
-    """The engines that run where none is named: those that a plain install brings."""
+    """List the default engines: the engines of a plain install."""
     return [name for name in ENGINES if not declaration(name).extra]
 
 
 def engine(name: str) -> Engine:
-    """The engine of that name: one of ours, or of an installed package that has it in its entry
-    points; or of the spelling `package.module:ATTRIBUTE`, by whose name it is known from then on.
+    """Return the engine of that name: shipped, or of an installed package that has it in its entry
+    points; or of the spelling `package.module:ATTRIBUTE`, known by its own name from then on.
 
     Raises
     ------
     EngineError
-        No such engine (the message suggests near names), or its package is not installed, or can
-        not be imported here; or what is there is no engine, or has the name of another.
+        No such engine (the message suggests near names), or its package is not installed, or cannot
+        be imported here; or the object is no engine, or has the name of another.
     """
     if name not in ENGINES:
         return own_engine(name, ENGINES)
@@ -91,12 +91,12 @@ def engine(name: str) -> Engine:
 
 
 def capability(name: str, what: Capability) -> object:
-    """What an engine offers beside its adapter.
+    """Return a capability of an engine beside its adapter.
 
     Raises
     ------
     EngineError
-        As `engine` does, and where the engine does not offer it: the message says which ones do.
+        As `engine`, and where the engine lacks it: the message lists the engines that have it.
     """
     if what not in declaration(name).offers:
         others = " or ".join(offering(what))
@@ -106,12 +106,12 @@ def capability(name: str, what: Capability) -> object:
 
 
 def offering(what: Capability) -> list[str]:
-    """The engines that offer it, installed or not."""
+    """List the engines with the capability, installed or not."""
     return [name for name in ENGINES if what in declaration(name).offers]
 
 
 def _loaded(name: str, part: str) -> object:
-    """The value that a file in the folder of an engine is there for."""
+    """Return the value of a file in the folder of an engine."""
     package = declaration(name).package
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
@@ -119,7 +119,7 @@ def _loaded(name: str, part: str) -> object:
         _refuse_broken(name, package)
         if not isinstance(error, ImportError | AttributeError):
             raise
-        # What a half-removed package leaves of an engine is a module that lacks attributes.
+        # A half-removed package leaves of an engine a module that lacks attributes.
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
         if (lacking or package).split(".")[0] != package:
             raise
@@ -128,13 +128,13 @@ def _loaded(name: str, part: str) -> object:
 
 
 def _refuse_broken(name: str, package: str) -> None:
-    """Import the package of an engine by itself: what fails in that is no fault of ours. Raises
-    BrokenEngineError for a package that is there, and fails."""
+    """Import the package of an engine by itself: a failure there is no fault of crankcheck. Raises
+    BrokenEngineError for an installed package that fails."""
     try:
         importlib.import_module(package)
     except Exception as error:
         if isinstance(error, ModuleNotFoundError) and error.name == package:
-            return  # what imports it says what to do
+            return  # the importing code says what to do
         why = f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}"
         named = [f"{key}={value}" for key, value in os.environ.items() if package.upper() in key]
         cure = f"look at {', '.join(named)}, or install it again" if named else "install it again"
@@ -145,7 +145,7 @@ def _refuse_broken(name: str, package: str) -> None:
 
 
 def _module_name(value: object) -> str:
-    """The name of a module, or of that of a class or value; empty where nothing is known."""
+    """Return the name of a module, or of the module of a class or value; empty if unknown."""
     if isinstance(value, ModuleType):
         return value.__name__
     home = getattr(value, "__module__", None) or type(value).__module__
@@ -153,29 +153,29 @@ def _module_name(value: object) -> str:
 
 
 def install_command(name: str) -> str:
-    """The command that installs an engine's package."""
+    """Return the command that installs an engine's package."""
     return f"{sys.executable} -m pip install {declaration(name).install}"
 
 
 def available() -> tuple[Availability, ...]:
-    """All engines of ours, installed or not."""
+    """List all shipped engines, installed or not."""
     return tuple(_available(name, install_command(name), BrokenEngineError) for name in ENGINES)
 
 
 def applying_beams() -> list[str]:
-    """The installed engines of ours that have beams of their own."""
+    """List the installed shipped engines with beams of their own."""
     return [one.name for one in available() if one.version and engine(one.name).applies_beams]
 
 
 def brought() -> tuple[Availability, ...]:
-    """The engines that other installed packages bring, by their entry points; what is wrong with
-    one that can not be used is said."""
+    """List the engines of other installed packages, by their entry points; an unusable engine has
+    its fault in words."""
     names = dict.fromkeys(point.name for point in installed())
     return tuple(_available(name, "", EngineError) for name in names)
 
 
 def _available(name: str, install: str, told: type[EngineError]) -> Availability:
-    """Whether an engine can be used; what is wrong with it is said of errors of these kinds."""
+    """Return the availability of an engine; errors of the kind ``told`` give its fault in words."""
     try:
         return Availability(name, engine(name).version(), install)
     except EngineError as error:

@@ -1,6 +1,4 @@
-"""A model that somebody wrote in an engine's own format: what an engine that reads such files makes
-of one.
-"""
+"""A user's own model in an engine's format: the interface of an engine that reads such files."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,14 +12,14 @@ from sim.engine import Engine, Poses
 from sim.registry import capability, offering
 
 MOST_TURNS = 100
-"""A joint may read so many turns either way at the start; at more, the rounding of its angle nears
-what a run is held to."""
+"""Largest number of turns of a joint at the start, either way; with more, the rounding of its angle
+nears the tolerance of a run."""
 
 
 @dataclass(frozen=True)
 class Tour:
-    """What a model meets in the poses of its closed form: by pair of bodies or shapes the share of
-    the poses in which they touch; by joint how far the way leads past its limits, in words."""
+    """Events of a model in the poses of its closed form: by pair of bodies or shapes the share of
+    the poses with contact; by joint the excess beyond its limits, in words."""
 
     touching: Mapping[tuple[str, str], float]
     passed: Sequence[str]
@@ -30,8 +28,8 @@ class Tour:
 @dataclass(frozen=True)
 class Disturbance:
     """Something in a model that can move a run off its closed form: ``text`` names it, with its
-    joint or body; what is of one ``kind`` goes away together where a line of that name without it
-    is told (``contacts`` in ``contacts-off``)."""
+    joint or body; a run with a variant that names its ``kind`` (``contacts`` in ``contacts-off``)
+    leaves out all of this kind."""
 
     kind: str
     text: str
@@ -39,18 +37,18 @@ class Disturbance:
 
 @dataclass(frozen=True)
 class Advised:
-    """What the recommended settings set beside stiff loops and a tight solver: the integrator (the
-    file's own where not), contacts off."""
+    """Recommended settings beside stiff loops and a tight solver: the integrator (else the file's
+    own), contacts off."""
 
     integrator: bool = True
     contacts_off: bool = False
 
 
 class OwnModel(Protocol):
-    """A model as it was read.
+    """A model as read.
 
-    Its ``scene`` has no branch, and a driver that turns at 1 rad/s from where the model is drawn,
-    and whose angle is what its joint reads; ``dt_s`` is the model's own step [s].
+    Its ``scene`` has no branch, and a driver that turns at 1 rad/s from the drawn position, with
+    the angle of its joint; ``dt_s`` is the model's own step [s].
     """
 
     @property
@@ -61,56 +59,56 @@ class OwnModel(Protocol):
 
     @property
     def disturbances(self) -> Sequence[Disturbance]:
-        """What can move a run off its closed form, but for what its tour shows."""
+        """Disturbances of a run against its closed form, except those of its tour."""
         ...
 
     @property
     def files(self) -> Sequence[Path]:
-        """The file, and those that it includes."""
+        """The file, and its included files."""
         ...
 
     def drawn(self) -> Poses:
-        """The pose that the file asks for, one sample."""
+        """Return the pose of the file, one sample."""
         ...
 
     def coordinate_rad(self) -> float:
-        """What the driven joint reads in that pose."""
+        """Return the coordinate of the driven joint in that pose."""
         ...
 
     def open_m(self) -> Mapping[str, float]:
-        """By how much each joint of the scene is open in that pose [m]."""
+        """Return the opening of each joint of the scene in that pose [m]."""
         ...
 
     def loose(self) -> Sequence[str]:
-        """The joints that can still move where the driven one is held."""
+        """List the joints that can still move while the driven joint is fixed."""
         ...
 
     def welds(self) -> Sequence[str]:
-        """The welds that make bodies of the linkage one, with these bodies, in words."""
+        """List the welds that unite bodies of the linkage, with these bodies, in words."""
         ...
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
-        """Hold the model in states of its closed form. Raises EngineError where the engine sees a
-        loop open that is shut there."""
+        """Put the model into states of its closed form. Raises EngineError where the engine sees a
+        loop open that is closed there."""
         ...
 
     def engine(self, advised: Advised) -> Engine:
-        """The engine, which runs this model whatever scene it is given: its profiles are the lines
-        to tell, as written first and recommended last."""
+        """Return the engine, which runs this model for any scene: its profiles are the lines of the
+        report, as written first and recommended last."""
         ...
 
     def patch(self, dt_s: float, advised: Advised) -> str:
-        """The recommended settings at a step as a diff of the file, or in words."""
+        """Return the recommended settings at a step as a diff of the file, or in words."""
         ...
 
 
 Reader = Callable[[Path, str, str | None], OwnModel]
-"""Reads a file whose driven joint has that name, at the keyframe of that name or as drawn. Raises
-EngineError for what can not be read, or is no planar linkage with one driver."""
+"""Reads a file by the name of the driven joint, at the named keyframe or as drawn. Raises
+EngineError for an unreadable file, or no planar linkage with one driver."""
 
 
 def reading_engine() -> str:
-    """The engine that reads files of others. Raises EngineError where none does."""
+    """Return the engine that reads users' own files. Raises EngineError where none does."""
     able = offering("reader")
     if not able:
         raise EngineError("no engine reads models of others")
@@ -118,5 +116,5 @@ def reading_engine() -> str:
 
 
 def reader() -> Reader:
-    """What reads a model. Raises EngineError where its engine is not installed."""
+    """Return the reader of a model. Raises EngineError where its engine is not installed."""
     return cast(Reader, capability(reading_engine(), "reader"))

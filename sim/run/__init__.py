@@ -1,4 +1,4 @@
-"""Run one scene in one engine, stretch by stretch, and time its stepping."""
+"""Run of one scene in one engine, stretch by stretch, and timing of its stepping."""
 
 import gc
 import math
@@ -39,20 +39,20 @@ from sim.registry import engine as engine_of
 from sim.run.check import refuse_other_model, refuse_unknown_forces
 
 CHUNK_STEPS = 4000
-"""Steps between two looks at whether the run has diverged."""
+"""Steps between two checks for divergence."""
 LEAST_STEPS_PER_PERIOD = 8
 RUNAWAY = 1e6
-"""Angular velocity over the pace of the run (`drive.pace`) that counts as diverged."""
+"""Least angular velocity that counts as diverged, over the pace of the run (`drive.pace`)."""
 
 
 def chunks(steps: int, every: int) -> list[int]:
-    """Lengths of the stretches, each a multiple of ``every`` but the last."""
+    """Return the lengths of the stretches, each a multiple of ``every`` except the last."""
     chunk = max(CHUNK_STEPS // every, 1) * every
     return [min(chunk, steps - done) for done in range(0, steps, chunk)]
 
 
 def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: float) -> Run:
-    """The run, chunk by chunk, until its end or until it comes apart."""
+    """Record the run, chunk by chunk, until its end or divergence."""
     every = blank.every
     logs: list[Poses] = []
     acting: list[Forces] = []
@@ -67,7 +67,7 @@ def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: 
             log = record(count, every)
         except BrokenContractError:
             raise
-        except Exception as error:  # whatever an engine throws is a row of the result
+        except Exception as error:  # any error of an engine is a row of the result
             status, reason = "crashed", f"{type(error).__name__}: {error}"
             break
         wall, done = wall + log.wall_s, done + count
@@ -104,10 +104,10 @@ def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: 
 
 
 def _sound(scene: Scene, log: Log, apart_m: Mapping[str, Array], runaway: float) -> tuple[int, str]:
-    """How many samples of a log hold together, and what came apart after them.
+    """Return the number of sound samples of a log, and the fault after them.
 
-    A joint that is open by more than the longest link, or a link that spins faster than
-    ``runaway`` [rad/s], a million times the pace of the run, is not a mechanism any more.
+    A joint that is open by more than the longest link, or a link that spins faster than ``runaway``
+    [rad/s], a million times the pace of the run, is not a mechanism any more.
     """
     poses = log.poses
     joints_hold = [gap <= scene.longest_m for gap in apart_m.values()]  # not where it is NaN
@@ -123,7 +123,7 @@ def _sound(scene: Scene, log: Log, apart_m: Mapping[str, Array], runaway: float)
 
 
 def stretch(poses: Poses, kept: slice) -> Poses:
-    """Some of the samples, one after the other."""
+    """Return some of the samples, one after the other."""
 
     def cut(body: BodyPose) -> BodyPose:
         return BodyPose(**{name: array[kept] for name, array in vars(body).items()})
@@ -132,7 +132,7 @@ def stretch(poses: Poses, kept: slice) -> Poses:
 
 
 def joined(logs: Sequence[Poses]) -> Poses:
-    """Stretches of samples one after the other."""
+    """Join stretches of samples one after the other."""
     if len(logs) == 1:
         return logs[0]
 
@@ -161,21 +161,21 @@ def run(
 ) -> Run:
     """Run ``scene`` from ``state`` for ``steps`` of ``dt_s`` [s], logging every ``every``-th step.
 
-    Joints of ``state`` may be open by ``open_m`` [m], to see what the engine makes of it. With
-    forces, the motion has the reactions in all joints and the driving torque.
+    Joints of ``state`` may be open by ``open_m`` [m], to see the engine's reaction. With forces,
+    the motion has the reactions in all joints and the driving torque.
 
     Returns
     -------
     Run
-        Also for a scene that the engine cannot hold (status ``unsupported``), a run that came
-        apart (``diverged``, stopped early) and an engine that failed (``crashed``), with a reason.
+        Also for a scene that the engine cannot hold (status ``unsupported``), a run whose joints
+        opened (``diverged``, stopped early) and an engine that failed (``crashed``), with a reason.
 
     Raises
     ------
     EngineError
         An unknown engine, profile or setting, a missing package, a step that is not positive or
         leaves under 8 steps in a period (`sim.engine.drive.period`), or a model in the engine that
-        is not the scene; an engine of the user's own that breaks its contract.
+        is not the scene; a user's own engine that breaks its contract.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     told = setup(
@@ -206,7 +206,7 @@ def run(
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
     refuse_other_model(scene, state, facts, dt_s, drive, open_m)
-    # What almost rests may be set going by what acts later: a radian in the whole run, at least.
+    # Later loads may move a scene that almost rests: a radian in the whole run, at least.
     own = pace(scene, state, drive)
     runaway = RUNAWAY * max(own, 1.0 / (dt_s * steps)) if own else math.inf
     return recorded(replace(blank, settings=facts.settings), scene, session, facts, runaway)
@@ -225,7 +225,7 @@ def setup(
     settings: Settings | None = None,
     with_forces: bool = False,
 ) -> Setup:
-    """What `run` is asked for with these.
+    """Return the request of `run` with these arguments.
 
     Raises
     ------
@@ -251,7 +251,7 @@ def setup(
 
 
 def check_steps(scene: Scene, period: float, dt_s: float, steps: int, every: int) -> None:
-    """Refuse steps that mean nothing; ``period`` is the time that they have to resolve [s]."""
+    """Refuse useless steps; ``period`` is the time that they have to resolve [s]."""
     for name, number in (("dt", dt_s), ("steps", steps), ("every", every)):
         if not isinstance(number, Real):
             raise EngineError(f"{name}: found {shown(number)}; it takes a number")
@@ -269,7 +269,7 @@ def check_steps(scene: Scene, period: float, dt_s: float, steps: int, every: int
 
 @dataclass(frozen=True)
 class Timing:
-    """Wall times [s] of several repeats of the same ``steps``; logging is part when ``logged``."""
+    """Wall times [s] of several repeats of the same ``steps``, with logging when ``logged``."""
 
     walls_s: tuple[float, ...]
     steps: int
@@ -277,12 +277,12 @@ class Timing:
 
     @property
     def best(self) -> Cost:
-        """The fastest repeat: the one that was disturbed least."""
+        """Fastest repeat: the least disturbed."""
         return Cost(min(self.walls_s), self.steps, self.logged)
 
     @property
     def median(self) -> Cost:
-        """The middle repeat."""
+        """Middle repeat."""
         return Cost(statistics.median(self.walls_s), self.steps, self.logged)
 
 
@@ -301,8 +301,8 @@ def time_run(
 ) -> Timing:
     """Time the stepping alone, or with logging where ``every`` is above 0.
 
-    Each repeat opens a new session and steps it warm first; the collector is off meanwhile.
-    Raises EngineError as `run` does, and for a scene that the engine cannot hold.
+    Each repeat opens a new session and steps it warm first; the collector is off meanwhile. Raises
+    EngineError as `run`, and for a scene that the engine cannot hold.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     asked = resolved(profile_of(chosen, profile), settings)
@@ -323,7 +323,7 @@ def time_run(
 
 
 def _wall(session: Session, steps: int, every: int) -> float:
-    """Wall time of the steps [s]."""
+    """Return the wall time of the steps [s]."""
     if every:
         return sum(session.record(n, every).wall_s for n in chunks(steps, every))
     began = time.perf_counter()

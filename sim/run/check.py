@@ -1,4 +1,4 @@
-"""Before the first step: is the model in the engine the scene that was asked for?"""
+"""Comparison of the model in the engine with the requested scene, before the first step."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -18,18 +18,17 @@ from sim.engine.measure import gaps
 SAME = 1e-9
 """Relative difference that counts as none: rounding of a few operations, far below any error."""
 SHUT = 1e-12
-"""Loop gap at the start, over the longest link, that counts as assembled."""
+"""Largest loop gap at the start, over the longest link, that counts as assembled."""
 
 
 def refuse_other_model(
     scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive, open_m: float = 0.0
 ) -> None:
-    """Raise EngineError, naming everything that differs, unless the engine holds the scene.
+    """Refuse a model that differs from the scene. Raises EngineError with all differences.
 
     Compared are mass, inertia, gravity, springs, beams, position and angle of every body, loop
-    gaps, and the velocities at the instant that the engine's own belong to. A prescribed crank need
-    not have a mass, nor a body that cannot turn an inertia; a free one has both, and nothing
-    beside.
+    gaps, and the velocities at the engine's own instant. A prescribed crank need not have a mass,
+    nor a body that cannot turn an inertia; a free crank needs both, and nothing else.
     """
     faults = [
         *_matter(scene, facts, drive),
@@ -49,9 +48,9 @@ def refuse_unknown_forces(
     with_forces: bool,
     applying_beams: Callable[[], Iterable[str]] = tuple,
 ) -> None:
-    """Raise EngineError for a scene with loads, springs or friction in an engine that would leave
-    them out without a word, and for forces of an engine that reports none; of beams it names the
-    engines that are ``applying_beams``."""
+    """Refuse loads, springs or friction that an engine would silently leave out, and forces of an
+    engine that reports none; for beams the message names the engines of ``applying_beams``. Raises
+    EngineError."""
     for what, given, applied in (
         ("loads", scene.loads, engine.applies_loads),
         ("springs", scene.springs, engine.applies_springs),
@@ -89,7 +88,7 @@ def refuse_unknown_forces(
 
 
 def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
-    """Differences of mass, inertia and gravity."""
+    """Yield differences of mass, inertia and gravity."""
     for body in bodies(scene):
         mass, inertia = mass_of(scene, body)
         if body not in facts.mass_kg:
@@ -108,7 +107,7 @@ def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
 
 
 def _springs(scene: Scene, facts: Facts) -> Iterator[str]:
-    """Differences of springs; a free length of 0 has no relative one."""
+    """Yield differences of springs; a free length of 0 has no relative difference."""
     for name, spring in scene.springs.items():
         if name not in facts.springs:
             yield f"springs.{name} is not there"
@@ -130,7 +129,7 @@ def _springs(scene: Scene, facts: Facts) -> Iterator[str]:
 
 
 def _beams(scene: Scene, facts: Facts) -> Iterator[str]:
-    """Differences of beams, by the first element that has one."""
+    """Yield differences of beams, at their first element."""
     for name, beam in scene.beams.items():
         elements = facts.beams.get(name, ())
         if len(elements) != beam.elements:
@@ -150,12 +149,12 @@ def _beams(scene: Scene, facts: Facts) -> Iterator[str]:
 
 
 def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) -> Iterator[str]:
-    """Differences of position and velocity.
+    """Yield differences of position and velocity.
 
-    Angular velocities are compared at the engine's own instant, to the second order of the delay
-    where there is one. Velocities of origins there follow from a chord in one engine and a tangent
-    in another, so they may differ by half a step's acceleration. The crank of a law other than
-    constant speed starts with a chord of the law.
+    Angular velocities are compared at the engine's own instant, to the second order of a delay.
+    Velocities of origins there follow from a chord in one engine and a tangent in another, so they
+    may differ by half a step's acceleration. A crank that follows another law than constant speed
+    starts with a chord of the law.
     """
     delay = facts.velocity_shift * dt_s
     wanted = frames(scene, state, delay)
@@ -187,7 +186,7 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) 
 
 
 def _gaps(scene: Scene, facts: Facts, open_m: float) -> Iterator[str]:
-    """Joints that are open at the start by more than ``open_m`` [m]."""
+    """Yield joints that are open at the start by more than ``open_m`` [m]."""
     farthest = max(float(np.abs(facts.start.bodies[link].origin).max()) for link in scene.links)
     limit = SHUT * max(scene.longest_m, farthest)
     for name, gap in gaps(scene, facts.start).items():

@@ -1,7 +1,7 @@
-"""An engine broken on purpose: opened as ever, then meddled with at chosen steps.
+"""An engine spoilt on purpose: opened as usual, then changed at chosen steps.
 
-What is done to a session is the engine's own affair, and stands in the file ``spoiler`` of its
-folder: the model in the engine is changed, not its log.
+The file ``spoiler`` in the engine's folder does it: it changes the model in the engine, not its
+log.
 """
 
 import math
@@ -20,13 +20,13 @@ from sim.registry import capability
 from sim.run import joined, stretch
 
 WrongSetting = Literal["few-iterations", "first-order", "light-drive", "semi-implicit"]
-"""What settings alone can spoil: an iterative solver ends after one over the size, errors shrink as
-dt, the drive is a share of what it should be, velocities belong between the positions."""
+"""Faults by settings alone: an iterative solver ends after one over the size, errors shrink as dt,
+the drive is a share of its proper strength, velocities belong between the positions."""
 
 
 @dataclass(frozen=True)
 class Opening:
-    """What a session was opened with."""
+    """Arguments that opened a session."""
 
     scene: Scene
     state: State
@@ -44,19 +44,19 @@ class Post:
 
 
 class Spoiler(Protocol):
-    """What can be broken in the sessions of one engine. Every size of 0 changes nothing."""
+    """Faults for the sessions of one engine. Every size of 0 changes nothing."""
 
     @property
     def wrong_settings(self) -> Mapping[WrongSetting, Callable[[float], Settings]]:
-        """The settings by what they spoil, as far as the engine has such, from a size above 0."""
+        """Return the settings by their fault, as far as the engine has them, by a size above 0."""
         ...
 
     def open_loop(self, session: Session) -> None:
-        """Take away the joint that closes the loop."""
+        """Remove the joint that closes the loop."""
         ...
 
     def soften(self, session: Session, opening: Opening, share: float) -> None:
-        """Let the joints give way, at each step, by a share more of what they should hold."""
+        """Let the joints yield, at each step, by a share more of their load."""
         ...
 
     def slip(self, session: Session, by_m: float) -> None:
@@ -100,8 +100,8 @@ class Spoiler(Protocol):
         ...
 
     def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
-        """Take back of all positions what velocities that are newer by ``by_s`` have made of them
-        since they were as ``before``; returns those of now."""
+        """Take back of all positions the change by velocities that are newer by ``by_s``, since the
+        velocities ``before``; return the present velocities."""
         ...
 
     def lose(self, session: Session) -> None:
@@ -110,18 +110,18 @@ class Spoiler(Protocol):
 
 
 Spoil = Callable[[Spoiler, Session, Opening, int], None]
-"""What is done to a session that stands after so many steps."""
+"""Action on a session after so many steps."""
 
 
 def spoiler(engine: str) -> Spoiler:
-    """What can be broken in that engine. Raises EngineError where it has no spoiler."""
+    """Return the spoiler of an engine. Raises EngineError where it has none."""
     return cast(Spoiler, capability(engine, "spoiler"))
 
 
 def spoilt(engine: Engine, at: tuple[int, ...], spoil: Spoil) -> Engine:
-    """The engine with sessions that are spoilt after the steps ``at``, in rising order.
+    """Return the engine with sessions that are spoilt after the steps ``at``, in rising order.
 
-    What is done after 0 steps the look at the model before the run (`sim.run.check`) can see.
+    The check of the model before the run (`sim.run.check`) can see faults after 0 steps.
     """
 
     def opened(
@@ -150,11 +150,11 @@ class SpoiltSession:
         self._meddle()
 
     def facts(self) -> Facts:
-        """The model as the engine holds it now."""
+        """Read the model as the engine holds it now."""
         return self._session.facts()
 
     def read(self) -> Poses:
-        """The current state."""
+        """Read the current state."""
         return self._session.read()
 
     def step(self, steps: int) -> None:
@@ -164,7 +164,7 @@ class SpoiltSession:
             self._advance(count)
 
     def record(self, steps: int, every: int) -> Log:
-        """Advance and log; spoilt only where a sample is logged, so that all are."""
+        """Advance and log; spoilt only at samples, so that all are logged."""
         logs: list[Log] = []
         for count in self._stretches(steps, every):
             logs.append(self._session.record(count, every))
@@ -180,7 +180,7 @@ class SpoiltSession:
         )
 
     def _stretches(self, steps: int, every: int) -> list[int]:
-        """The next ``steps``, cut where the session is to be spoilt, or at the next sample."""
+        """Cut the next ``steps`` where the session is to be spoilt, or at the next sample."""
         cuts = {math.ceil((at - self._done) / every) * every for at in self._ahead}
         edges = [0, *sorted(cut for cut in cuts if 0 < cut < steps), steps]
         return [b - a for a, b in pairwise(edges)]
@@ -190,7 +190,7 @@ class SpoiltSession:
         self._meddle()
 
     def _meddle(self) -> None:
-        """Spoil, once, if that is due."""
+        """Spoil the session, once, if due."""
         due = [at for at in self._ahead if at <= self._done]
         if due:
             self._ahead = self._ahead[len(due) :]
@@ -198,7 +198,7 @@ class SpoiltSession:
 
 
 def rounded(values: Array, relative: float) -> Array:
-    """The values with mantissas rounded to multiples of ``relative``; 2^-24 makes them float32."""
+    """Round mantissas to multiples of ``relative``; 2^-24 makes them float32."""
     if not relative:
         return values
     mantissa, exponent = np.frexp(values)

@@ -1,4 +1,4 @@
-"""Tasks of curves: of a function, a path, a straight line."""
+"""Tasks of curves: a function, a path, a straight line."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Formula = Annotated[str, StringConstraints(min_length=1, max_length=LONGEST_TEXT
 
 
 class FunctionTable(TaskTable):
-    """``formula`` of x, or a table of ``x`` and ``y``, over ``range_of_x``.
+    """A function as ``formula`` of x, or as a table of ``x`` and ``y``, over ``range_of_x``.
 
-    While x goes through its range the input turns by ``input_range_deg``, and the output goes
-    through ``output_range_deg`` (of a four-bar) or ``output_range_m`` (of a slider-crank) as y goes
-    through its own; negative ranges go clockwise, or back. ``points`` is the number of precision
-    points in Chebyshev's spacing, or their x. Starts that are silent are found by four and five
-    points, and tried on a grid otherwise.
+    While x runs through its range the input turns by ``input_range_deg``, and the output runs
+    through ``output_range_deg`` (four-bar) or ``output_range_m`` (slider-crank) as y runs through
+    its own; negative ranges go clockwise, or back. ``points`` is the number of precision points in
+    Chebyshev's spacing, or their x. Missing starts are found by four and five points, and tried on
+    a grid otherwise.
     """
 
     formula: Formula | None = None
@@ -68,12 +68,11 @@ LEAST_POINTS, MOST_POINTS = 4, 50
 
 
 class PathTable(TaskTable):
-    """``points_m`` in their order; with ``crank_deg``, timing: the crank's angles in them, of which
-    only the differences count. A ``closed`` path comes back to its first point, listed once.
+    """A path: ``points_m`` in their order; with ``crank_deg``, timing: the crank's angles in them,
+    of which only the differences count. A ``closed`` path returns to its first point, listed once.
 
-    ``starts`` is from how many places least squares begins, ``seed`` that of the draw among them;
-    ``time_s`` ends the search after so long. Mechanisms below ``least_transmission_deg`` are not
-    taken.
+    ``starts`` is the number of starts of least squares, ``seed`` the seed of their draw; ``time_s``
+    limits the search. Mechanisms below ``least_transmission_deg`` are not taken.
     """
 
     points_m: Annotated[list[Coordinates], Field(min_length=LEAST_POINTS, max_length=MOST_POINTS)]
@@ -96,9 +95,9 @@ class PathTable(TaskTable):
 class StraightLineTable(TaskTable):
     """A straight part of ``length_m`` from ``start_m`` on, in a direction.
 
-    ``deviation`` is the largest distance from the line, over the length; of Hoeken's ``turn_deg``,
-    the turn of the crank over the straight part, says it as well, and ``even`` whether the line or
-    the speed is to be best. Peaucellier's eight bars lead a point exactly.
+    ``deviation`` is the largest distance from the line, over the length; Hoeken's linkage takes
+    instead ``turn_deg``, the turn of the crank over the straight part, and ``even`` is line or
+    speed, whichever is to be best. Peaucellier's eight bars guide a point exactly.
     """
 
     linkage: Literal["hoeken", "chebyshev", "watt", "roberts", "evans", "peaucellier"]

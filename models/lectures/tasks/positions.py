@@ -11,10 +11,10 @@ from models.files.schema import Coordinates, Degrees, Name, NonNegative, Positiv
 from models.lectures.shipped_tables import TaskTable
 
 RIGID = 1e-3
-"""By what share of it the distance of two points may differ between positions: exercises round."""
+"""Relative difference of the distance of two points between positions: exercises round."""
 
 RESERVED = ("O2", "O4", "O6", "input", "coupler", "output", "crank", "rod", "rocker", "ground")
-"""What solutions call their fixed pivots and their links."""
+"""Names of fixed pivots and links in solutions."""
 
 
 class PoseTable(Table):
@@ -68,7 +68,7 @@ class PositionsTask(TaskTable):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The two points that positions are given by, in the order of the first; none of them."""
+        """Names of the two points of the positions, in the order of the first; empty for angles."""
         return tuple(self.positions[0].points)
 
     def _pair(self, position: PoseTable) -> tuple[complex, complex]:
@@ -77,8 +77,8 @@ class PositionsTask(TaskTable):
 
     @property
     def poses(self) -> list[tuple[complex, float]]:
-        """Place of the reference point [m] and angle [rad] of the body in each position: of two
-        points those of the first, and of the line to the second."""
+        """Place of the reference point [m] and angle [rad] of the body in each position; with two
+        points the place of the first, and the angle of the line to the second."""
         found = []
         for one in self.positions:
             if one.points:
@@ -92,7 +92,7 @@ class PositionsTask(TaskTable):
 
     @property
     def own_points(self) -> dict[str, complex]:
-        """The named points in the body's own frame [m]; P of a body that is given by its angle."""
+        """Named points in the body's own frame [m]; P for a body given by its angle."""
         if not self.names:
             return {"P": 0j}
         first, second = self._pair(self.positions[0])
@@ -100,13 +100,13 @@ class PositionsTask(TaskTable):
 
 
 class CouplerTask(PositionsTask):
-    """A body is to be the coupler of a four-bar, in two to five positions.
+    """A body that is to be the coupler of a four-bar, in two to five positions.
 
-    ``moving_m`` are moving pivots, where they are in the first position (of two and three; the two
-    named points where it is silent); ``fixed_m`` the fixed pivots in their place (three positions).
-    Of two positions, ``distances_m`` says how far the fixed pivots lie from the middles, to the
-    left of the way along the bisector. ``driver`` is the side that is driven. ``best`` is how many
-    solutions are listed where there are infinitely many.
+    ``moving_m`` are the moving pivots in the first position (of two and three; by default the two
+    named points); ``fixed_m`` the fixed pivots in their place (three positions). With two
+    positions, ``distances_m`` are the distances of the fixed pivots from the middles, to the left
+    of the way along the bisector. ``driver`` is the driven side. ``best`` is the number of listed
+    solutions where there are infinitely many.
     """
 
     moving_m: tuple[Coordinates, Coordinates] | None = None
@@ -150,11 +150,11 @@ Swing = Annotated[float, Field(strict=True, gt=0.0, lt=180.0)]
 
 
 class RockerTask(TaskTable):
-    """A crank is to swing a rocker, by its angle or between two positions of a body on it.
+    """A crank that is to swing a rocker, by its angle or between two positions of a body on it.
 
-    ``rocker_m`` is the distance of its pin B from its pivot O4 (of positions silent: as far as the
-    body's first point); ``distance_m`` that of the crank's pivot O2 from the middle of the chord
-    B1 B2, on whose extension it lies: silent, several are tried.
+    ``rocker_m`` is the distance of its pin B from its pivot O4 (default with positions: the
+    distance of the body's first point); ``distance_m`` the distance of the crank's pivot O2 from
+    the middle of the chord B1 B2, on whose extension it lies: by default several are tried.
     """
 
     swing_deg: Swing | None = None
@@ -176,19 +176,19 @@ class RockerTask(TaskTable):
 
     @property
     def body(self) -> PositionsTask:
-        """The body in its two positions. Raises ValidationError for positions of no rigid body."""
+        """Body in its two positions. Raises ValidationError for positions of no rigid body."""
         return PositionsTask(name=self.name, source=self.source, positions=self.positions)
 
 
 TimeRatio = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=1.0, lt=1000.0)]
-"""Time of the slow stroke over that of the quick one."""
+"""Time of the slow stroke over the time of the quick stroke."""
 
 
 class StrokeTask(TaskTable):
     """A slider-crank of a stroke: ``central`` (of 2 cranks), ``isosceles`` (rod as long as the
     crank, 4 cranks), or ``offset`` by a length, or by its time ratio.
 
-    ``rod_m`` is the rod; silent, several are tried.
+    ``rod_m`` is the rod; by default several are tried.
     """
 
     stroke_m: Positive
@@ -216,15 +216,15 @@ NEEDS = {
     "whitworth": ("crank_m", "pivots_m", "stroke_m"),
     "crank-rocker": ("rocker_m",),
 }
-"""What gives a mechanism its size, one of them."""
+"""Keys that give a mechanism its size, one of them."""
 
 
 class QuickReturnTask(TaskTable):
     """A mechanism whose slow stroke takes ``time_ratio`` times the quick one, at constant speed.
 
-    Its size is that of the ``crank_m``, of the distance of the pivots (``pivots_m``) or of the
-    ram's ``stroke_m``; of a crank-rocker ``rocker_m``, whose ``swing_deg`` is asked for as well. A
-    ram has a rod of ``rod_m``, silent twice its stroke.
+    Its size is given by ``crank_m``, by the distance of the pivots (``pivots_m``) or by the ram's
+    ``stroke_m``; for a crank-rocker by ``rocker_m``, which needs ``swing_deg`` as well. A ram has a
+    rod of ``rod_m``, by default twice its stroke.
     """
 
     mechanism: Literal["slotted-lever", "whitworth", "crank-rocker"]

@@ -1,1 +1,1 @@
-"""A model that somebody else wrote for MuJoCo: read as a scene, and run as it is."""
+"""A user's own model for MuJoCo: read as a scene, and run as it is."""

@@ -1,4 +1,4 @@
-"""The equality constraints of a compiled model: those that close loops, and those that do not."""
+"""Equality constraints of a compiled model: loop closures, and others."""
 
 import re
 from collections.abc import Container
@@ -13,17 +13,17 @@ from models.errors import EngineError
 
 
 class ModelError(EngineError):
-    """A model that can not be read, or that is no planar mechanism with one driver."""
+    """A model that cannot be read, or that is no planar mechanism with one driver."""
 
 
 MOST = 40
 SEPARATORS = "./:"
-"""What stands between the name of a body and that of a thing on it."""
+"""Separators between the names of a body and of a thing on it."""
 REMARK = ": "
 
 
 def scene_name(name: str, otherwise: str, taken: Container[str]) -> str:
-    """A name that a scene may have, and that is not taken: the model's own as far as that goes."""
+    """Return an unused name for a scene: the model's own as far as possible."""
     plain = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_")[:MOST]
     if not plain or not plain[0].isalpha():
         plain = f"{otherwise}{'-' if plain else ''}{plain}"[:MOST]
@@ -36,7 +36,7 @@ def scene_name(name: str, otherwise: str, taken: Container[str]) -> str:
 
 
 def point_of(name: str, bodies: Container[str]) -> str:
-    """What a name says of a point: ``crank.B`` on body ``crank`` is ``B``, and a remark after a
+    """Return the point of a name: ``crank.B`` on body ``crank`` is ``B``, and a remark after a
     colon is left out."""
     point = name.partition(REMARK)[0] or name
     for at, sign in enumerate(point):
@@ -47,7 +47,7 @@ def point_of(name: str, bodies: Container[str]) -> str:
 
 SITE = mujoco.mjtObj.mjOBJ_SITE.value
 IDLE = int(mujoco.mjtDisableBit.mjDSBL_EQUALITY) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
-"""Flags of a model that ties nothing."""
+"""Flags of a model without active constraints."""
 KINDS = {
     kind.value: kind.name.removeprefix("mjEQ_").lower()
     for kind in mujoco.mjtEq.__members__.values()
@@ -59,8 +59,8 @@ class ModelClosure:
     """A `connect` or `weld` between two bodies.
 
     ``anchors`` are the two copies of its point in space (3,) [m] as the model is drawn;
-    ``rotation`` (3, 3) is that of the second body when the weld holds, as the first stands. A weld
-    of no torque is a ``connect`` here: it leaves the angle free.
+    ``rotation`` (3, 3) is the second body's when the weld holds, for the first as drawn. A weld of
+    no torque is a ``connect`` here: it leaves the angle free.
     """
 
     index: int
@@ -73,8 +73,7 @@ class ModelClosure:
 
 @dataclass(frozen=True)
 class Coupling:
-    """Any other equality, with the bodies that it ties; it couples coordinates, and closes no
-    loop."""
+    """Any other equality, with its bodies; it couples coordinates, and closes no loop."""
 
     name: str
     kind: str
@@ -82,17 +81,17 @@ class Coupling:
 
 
 def name_of(model: Any, kind: Any, index: int) -> str:
-    """The name that the file gives; empty where it gives none."""
+    """Return the name in the file; empty without one."""
     return mujoco.mj_id2name(model, kind.value, index) or ""
 
 
 def body_name(model: Any, body: int) -> str:
-    """The name of a body, or its number."""
+    """Return the name of a body, or its number."""
     return name_of(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body{body}"
 
 
 def equalities(model: Any, data: Any) -> tuple[list[ModelClosure], list[Coupling]]:
-    """The active equalities of the model, at the pose of ``data``."""
+    """Return the active equalities of the model, at the pose of ``data``."""
     closures, couplings = [], []
     if int(model.opt.disableflags) & IDLE:
         return [], []
@@ -120,7 +119,7 @@ def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> ModelCl
         name = name or REMARK.join(filter(None, sites))
     else:
         first, second = ends
-        # In a weld the anchors stand the other way round.
+        # In a weld the anchors are the other way round.
         locals_ = (own[0:3], own[3:6]) if kind == "connect" else (own[3:6], own[0:3])
         anchors = tuple(
             data.xpos[body] + _rotation(data, body) @ local
@@ -149,7 +148,7 @@ def _rotation(data: Any, body: int) -> Array:
 
 
 def _coupled(model: Any, index: int, kind: str) -> tuple[int, ...]:
-    """The bodies whose coordinates an equality couples."""
+    """Return the bodies whose coordinates an equality couples."""
     ends = [int(model.eq_obj1id[index]), int(model.eq_obj2id[index])]
     if kind == "joint":
         return tuple(int(model.jnt_bodyid[joint]) for joint in ends if joint >= 0)
@@ -161,7 +160,7 @@ def _coupled(model: Any, index: int, kind: str) -> tuple[int, ...]:
 
 
 def tendon_bodies(model: Any, tendon: int) -> tuple[int, ...]:
-    """The bodies that a tendon goes over."""
+    """Return the bodies that a tendon goes over."""
     first = int(model.tendon_adr[tendon])
     bodies = []
     for wrap in range(first, first + int(model.tendon_num[tendon])):

@@ -1,4 +1,4 @@
-"""What of a compiled model moves with the driven joint: its rigid bodies, joints and closures."""
+"""Part of a compiled model that moves with the driven joint: rigid bodies, joints and closures."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ UP, ACROSS = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Unit vectors in space, (3,): ``x`` and ``y`` in the plane, ``normal`` towards who looks at
-    it. Points and vectors of the plane are complex numbers; the origin is that of the world."""
+    """Unit vectors in space, (3,): ``x`` and ``y`` in the plane, ``normal`` towards the viewer.
+    Points and vectors of the plane are complex numbers; the origin is the world's."""
 
     x: Array
     y: Array
@@ -36,8 +36,8 @@ class Plane:
 
     @staticmethod
     def across(axis: Array) -> Plane:
-        """The plane across an axis, seen from where the axis points to: counter-clockwise is
-        positive. Up is what is up in the world, or the y-axis of the world for the x-y plane."""
+        """Make the plane across an axis, seen against the axis: counter-clockwise is positive. Up
+        is up in the world, or the y-axis of the world for the x-y plane."""
         normal = axis / np.linalg.norm(axis)
         up = UP if abs(normal @ UP) < 0.99 else ACROSS
         y = up - (up @ normal) * normal
@@ -45,21 +45,21 @@ class Plane:
         return Plane(np.cross(y, normal), y, normal)
 
     def flat(self, vector: Array) -> complex:
-        """The part of a point or vector in space (3,) that lies in the plane."""
+        """Return the part of a point or vector in space (3,) that lies in the plane."""
         return complex(vector @ self.x, vector @ self.y)
 
     def height(self, vector: Array) -> float:
-        """Its part across the plane."""
+        """Return its part across the plane."""
         return float(vector @ self.normal)
 
     def off_normal_deg(self, axis: Array) -> float:
-        """By how much an axis is off the normal, whichever way it points [deg]."""
+        """Return the angle of an axis to the normal, whichever way it points [deg]."""
         return math.degrees(
             math.atan2(float(np.linalg.norm(np.cross(axis, self.normal))), abs(self.height(axis)))
         )
 
     def turned(self, rotation: Array) -> tuple[float, float]:
-        """By how much a rotation (3, 3) turns within the plane [rad], and tilts out of it [deg]."""
+        """Return a rotation's (3, 3) angle within the plane [rad], and its tilt out of it [deg]."""
         turn = self.flat(rotation @ self.x)
         return math.atan2(turn.imag, turn.real), self.off_normal_deg(rotation @ self.normal)
 
@@ -69,15 +69,15 @@ JOINTS = {
     for kind in mujoco.mjtJoint.__members__.values()
 }
 PARALLEL_DEG = 0.01
-"""An axis off its direction by less is rounding of the file; it changes lengths by 2e-8 of
-themselves."""
+"""Smallest angle of an axis to its direction that is more than rounding of the file; less changes
+lengths by 2e-8 of themselves."""
 SHOWN = 6
 WORLD = 0
 
 
 @dataclass(frozen=True, eq=False)
 class PlanarJoint:
-    """A hinge or a slide as the model is drawn: its anchor, and the direction of a slide, in the
+    """A hinge or a slide of the model as drawn: its anchor, and the direction of a slide, in the
     plane; ``sense`` is -1 for a hinge whose positive angles are clockwise."""
 
     index: int
@@ -91,7 +91,7 @@ class PlanarJoint:
 @dataclass(frozen=True, eq=False)
 class RigidBody:
     """Bodies of the model without joints between them, by the id of the first; ``parent`` is the
-    rigid body that its joints turn or slide against."""
+    rigid body against which its joints turn or slide."""
 
     id: int
     name: str
@@ -101,7 +101,7 @@ class RigidBody:
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """All that hangs together with the driven joint without the ground, which has the id 0."""
+    """Everything connected with the driven joint without the ground, which has the id 0."""
 
     model: Any
     data: Any
@@ -111,24 +111,24 @@ class Component:
     closures: tuple[ModelClosure, ...]
 
     def rigid(self, body: int) -> int:
-        """The rigid body of a body of the model."""
+        """Return the rigid body of a body of the model."""
         return rigid(self.model, body)
 
 
 def rigid(model: Any, body: int) -> int:
-    """The rigid body that a body belongs to; what is moved from outside counts as ground."""
+    """Return the rigid body of a body; mocap bodies count as ground."""
     root = int(model.body_weldid[body])
     return WORLD if int(model.body_mocapid[root]) >= 0 else root
 
 
 def component(model: Any, joint: str) -> Component:
-    """What moves with the joint of that name, at the drawn pose of the model.
+    """Return the component of the joint of that name, at the drawn pose of the model.
 
     Raises
     ------
     ModelError
-        No joint of that name, or one that is no hinge against the ground; no loop; a joint off the
-        plane, or of another kind; an equality that couples coordinates.
+        No joint of that name, or no hinge against the ground; no loop; a joint off the plane, or of
+        another kind; an equality that couples coordinates.
     """
     driven = _driven(model, joint)
     data = mujoco.MjData(model)
@@ -145,7 +145,7 @@ def component(model: Any, joint: str) -> Component:
 
 
 def _driven(model: Any, joint: str) -> int:
-    """The joint of that name, which can be driven as it is."""
+    """Return the joint of that name, or refuse it as the driver."""
     names = [name_of(model, mujoco.mjtObj.mjOBJ_JOINT, index) for index in range(model.njnt)]
     able = [name for index, name in enumerate(names) if name and not _not_drivable(model, index)]
     can = f"drivable: {few(able, SHOWN)}" if able else "no named hinge turns against the ground"
@@ -162,7 +162,7 @@ def _driven(model: Any, joint: str) -> int:
 
 
 def _not_drivable(model: Any, index: int) -> str:
-    """Why a joint can not be the driver: "" where it can."""
+    """Return the reason why a joint cannot be the driver; "" if it can."""
     kind, body = JOINTS[int(model.jnt_type[index])], int(model.jnt_bodyid[index])
     if kind != "hinge":
         return f"it is a {kind}, and a crank turns on a hinge"
@@ -175,13 +175,13 @@ def _not_drivable(model: Any, index: int) -> str:
 
 
 def joint_name(model: Any, joint: int) -> str:
-    """The name of a joint, or that of its body."""
+    """Return the name of a joint, or of its body."""
     name = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint)
     return name or f"a joint of {body_name(model, int(model.jnt_bodyid[joint]))}"
 
 
 def _together(model: Any, body: int, closures: Sequence[ModelClosure]) -> set[int]:
-    """The rigid bodies that joints and closures tie to that of a body, the ground left out."""
+    """Return the rigid bodies connected with a body by joints and closures, without the ground."""
     ties = [
         (rigid(model, root), rigid(model, int(model.body_parentid[root])))
         for root in range(1, model.nbody)
@@ -229,7 +229,7 @@ def _body(model: Any, data: Any, plane: Plane, root: int) -> RigidBody:
 
 
 def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
-    """A joint in the plane. Raises ModelError for one that leaves it."""
+    """Return a joint in the plane. Raises ModelError for a joint that leaves it."""
     name, kind = joint_name(model, index), JOINTS[int(model.jnt_type[index])]
     of = f"joint {name} of body {body_name(model, int(model.jnt_bodyid[index]))}"
     if kind not in ("hinge", "slide"):
@@ -258,13 +258,13 @@ def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
 
 
 NOTHING = 1e-9
-"""Singular values of the closures below this, over the largest, hold nothing; shares of a motion
-below its root are rounding."""
+"""Singular values of the closures below this, over the largest, constrain nothing; shares of a
+motion below its root are rounding."""
 
 
 def loose_joints(component: Component) -> list[str]:
-    """The joints that move in some motion of the model as it is drawn, while the driven one stands:
-    the null space of the Jacobian of its closures."""
+    """List the joints that move in some motion of the model as drawn, while the driven joint is
+    fixed: the null space of the Jacobian of its closures."""
     model = component.model
     joints = [
         joint.index
@@ -283,7 +283,7 @@ def loose_joints(component: Component) -> list[str]:
 
 
 def _rows(component: Component, closure: ModelClosure) -> Array:
-    """The speeds in the plane that a closure forbids, (2 or 3, nv)."""
+    """Return the speeds in the plane that a closure forbids, (2 or 3, nv)."""
     model, data, plane = component.model, component.data, component.plane
     ends = []
     for body, anchor in zip(closure.bodies, closure.anchors, strict=True):

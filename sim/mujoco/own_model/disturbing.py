@@ -1,4 +1,4 @@
-"""What a model holds beside its linkage, and what of it can disturb a comparison."""
+"""Disturbances of a model: everything beside its linkage that can spoil a comparison."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -14,13 +14,13 @@ from sim.mujoco.own_model.linkage import NEAR, Linkage, size
 from sim.registry.own_models import Disturbance
 
 ROUNDED = 1e-5
-"""A distance below this, over the size of the linkage, is rounding of what a file says."""
+"""Distance, over the size of the linkage, below which a difference is rounding of the file."""
 BARS = (mujoco.mjtGeom.mjGEOM_CAPSULE.value, mujoco.mjtGeom.mjGEOM_CYLINDER.value)
 BALL = mujoco.mjtGeom.mjGEOM_SPHERE.value
 
 
 def misses(linkage: Linkage) -> Iterator[str]:
-    """The pins that are near to a mark of their body, and in none."""
+    """Yield the pins that are near to a mark of their body, and in none."""
     extent = size(linkage)
     for name, body, place in _pins(linkage.component):
         near = [(abs(mark - place), what) for what, mark in _marks(linkage.component, body)]
@@ -31,7 +31,7 @@ def misses(linkage: Linkage) -> Iterator[str]:
 
 
 def _pins(component: Component) -> Iterator[tuple[str, int, complex]]:
-    """Name, rigid body and place of each copy of a pin, as the model is drawn."""
+    """Yield name, rigid body and place of each copy of a pin, in the model as drawn."""
     for body in component.bodies:
         for joint in body.joints:
             if joint.kind == "hinge":
@@ -45,7 +45,7 @@ def _pins(component: Component) -> Iterator[tuple[str, int, complex]]:
 
 
 def _marks(component: Component, body: int) -> Iterator[tuple[str, complex]]:
-    """The sites, the ends of bars and the centres of balls on a rigid body that moves."""
+    """Yield the sites, the ends of bars and the centres of balls on a moving rigid body."""
     model, data, plane = component.model, component.data, component.plane
     if body == WORLD:
         return
@@ -70,18 +70,18 @@ def _marks(component: Component, body: int) -> Iterator[tuple[str, complex]]:
 
 SHOWN = 6
 OPEN = 1e-4
-"""A loop that is open by more in a keyframe, over the size of the linkage, is not just rounded."""
+"""Gap of a loop in a keyframe, over the size of the linkage, that is more than rounding."""
 HEAVY = 1e3
-"""An armature over the largest inertia of a body: from there on soft loops give way first."""
+"""Armature over the largest inertia of a body from which on soft loops yield first."""
 SOFT_S = 0.02
-"""MuJoCo's own time constant of a loop; one that is longer is softer."""
+"""MuJoCo's own time constant of a loop; a longer one is softer."""
 STIFFNESS, DAMPING = 1.0 / SOFT_S**2, 2.0 / SOFT_S
-"""Of MuJoCo's own loop [1/s^2] and [1/s], as a solref with both numbers below 0 gives them."""
+"""Stiffness [1/s^2] and damping [1/s] of MuJoCo's own loop, as by a solref of numbers below 0."""
 
 
 def disturbances(linkage: Linkage) -> list[Disturbance]:
-    """All that there is, but for contacts, which depend on where the links are; a kind that can be
-    switched off is a key of `variants.OFF`."""
+    """List all disturbances except contacts, which depend on the positions of the links; a kind
+    with a switch is a key of `variants.OFF`."""
     model = linkage.component.model
     ids = {body.id for body in linkage.component.bodies}
     return [
@@ -100,15 +100,15 @@ def disturbances(linkage: Linkage) -> list[Disturbance]:
 
 
 def _own(model: Any, ids: set[int]) -> Iterator[tuple[int, int, str]]:
-    """The joints of the linkage, their first freedom, and their name."""
+    """Yield the joints of the linkage, their first freedom, and their name."""
     for joint in range(model.njnt):
         if rigid(model, int(model.jnt_bodyid[joint])) in ids:
             yield joint, int(model.jnt_dofadr[joint]), joint_name(model, joint)
 
 
 def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
-    """Springs, damping, dry friction, heavy armatures and limits of joints; of the driven one too,
-    whose armature does not matter."""
+    """Yield springs, damping, dry friction, heavy armatures and limits of joints; the driven
+    joint's armature does not matter."""
     for joint, dof, name in _own(model, ids):
         hinge = JOINTS[int(model.jnt_type[joint])] == "hinge"
         force, length = ("N m", "rad") if hinge else ("N", "m")
@@ -132,7 +132,7 @@ def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
 
 
 def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Disturbance]:
-    """A joint that is drawn outside its limits: its ref is wrong, or they are."""
+    """Yield a joint that is drawn outside its limits: its ref is wrong, or they are."""
     drawn = float(model.qpos0[model.jnt_qposadr[joint]])
     low, high = (float(end) for end in model.jnt_range[joint])
     if not low <= drawn <= high:
@@ -141,7 +141,7 @@ def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Dist
 
 
 def _readings(model: Any, ids: set[int]) -> Iterator[Disturbance]:
-    """The joints that a ref makes read something as they are drawn."""
+    """Yield the joints that have a coordinate other than 0 as drawn, by their ref."""
     readings = [
         f"{name} {_reading(ref, JOINTS[int(model.jnt_type[joint])] == 'hinge')}"
         for joint, _, name in _own(model, ids)
@@ -153,7 +153,7 @@ def _readings(model: Any, ids: set[int]) -> Iterator[Disturbance]:
 
 
 def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
-    """Keyframes in which the loops are open."""
+    """Yield keyframes with open loops."""
     component, extent = linkage.component, size(linkage)
     model, data = component.model, mujoco.MjData(component.model)
     own = {each.index for each in component.closures}
@@ -172,7 +172,7 @@ def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
 
 
 def _reading(coordinate: float, hinge: bool) -> str:
-    """A joint coordinate in degrees or metres."""
+    """Format a joint coordinate in degrees or metres."""
     return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
 
 
@@ -199,7 +199,7 @@ def _tendons(model: Any, ids: set[int]) -> Iterator[Disturbance]:
 
 
 def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
-    """Actuators of joints and tendons of the linkage; their control is 0, or that of the key."""
+    """Yield actuators of joints and tendons of the linkage; their control is 0, or the key's."""
     kinds = mujoco.mjtTrn
     for index in range(model.nu):
         kind, target = int(model.actuator_trntype[index]), int(model.actuator_trnid[index, 0])
@@ -217,7 +217,7 @@ def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
 
 
 def _loads(linkage: Linkage) -> Iterator[Disturbance]:
-    """Gravity, and a medium."""
+    """Yield gravity, and a medium."""
     opt, plane = linkage.component.model.opt, linkage.component.plane
     gravity = np.array(opt.gravity, dtype=np.float64)
     across = plane.height(gravity)
@@ -237,7 +237,7 @@ def _loads(linkage: Linkage) -> Iterator[Disturbance]:
 
 
 def _carried(model: Any, ids: set[int]) -> Iterator[Disturbance]:
-    """Bodies of the linkage whose weight is taken off or added to, where there is gravity."""
+    """Yield bodies of the linkage whose weight is reduced or increased, where there is gravity."""
     if not np.any(model.opt.gravity):
         return
     for body in np.flatnonzero(model.body_gravcomp):
@@ -248,7 +248,7 @@ def _carried(model: Any, ids: set[int]) -> Iterator[Disturbance]:
 
 
 def _loops(linkage: Linkage) -> Iterator[Disturbance]:
-    """Loops that are softer than MuJoCo's own."""
+    """Yield loops that are softer than MuJoCo's own."""
     model = linkage.component.model
     for each in linkage.component.closures:
         first, second = (float(number) for number in model.eq_solref[each.index])
@@ -269,7 +269,7 @@ def _loops(linkage: Linkage) -> Iterator[Disturbance]:
 
 
 def _apart(linkage: Linkage) -> Iterator[Disturbance]:
-    """Closures whose two points are at different heights over the plane: they never meet."""
+    """Yield closures whose two points are at different heights over the plane: they never meet."""
     component = linkage.component
     for each in component.closures:
         first, second = each.anchors
@@ -282,7 +282,7 @@ def _apart(linkage: Linkage) -> Iterator[Disturbance]:
 
 
 def _others(model: Any, ids: Iterable[int]) -> Iterator[Disturbance]:
-    """Bodies that move beside the linkage, and what is moved from outside."""
+    """Yield moving bodies beside the linkage, and mocap bodies."""
     roots = {int(body) for body in model.body_weldid} - set(ids) - {WORLD}
     moving = [body_name(model, body) for body in sorted(roots) if int(model.body_mocapid[body]) < 0]
     if moving:

@@ -1,4 +1,4 @@
-"""Read and compile an MJCF file, and what it includes from its own folder."""
+"""Reading and compiling of an MJCF file, and of its included files in its own folder."""
 
 import itertools
 import re
@@ -17,18 +17,18 @@ from sim.mujoco.own_model.closures import ModelError, name_of
 from sim.mujoco.stepped import compiled_file
 
 NESTED = 300
-"""Elements within each other; MuJoCo's own reader calls itself for each."""
+"""Largest number of nested elements; MuJoCo's own reader is recursive."""
 TAG = re.compile(rb"""<(?:[^<>"']|"[^"]*"|'[^']*')*>""")
 
 
 class XmlError(Exception):
-    """A text that is no XML, or more than is read of it; its text says why."""
+    """A text that is no XML, or exceeds a limit; its text gives the reason."""
 
 
 @dataclass(frozen=True)
 class Tag:
-    """A start tag: the names of the elements around it and its own, outermost first, its
-    attributes, and where it stands in the text [byte]."""
+    """A start tag: the names of its enclosing elements and its own, outermost first, its
+    attributes, and its place in the text [byte]."""
 
     path: tuple[str, ...]
     attributes: Mapping[str, str]
@@ -37,12 +37,12 @@ class Tag:
 
 
 def tags(raw: bytes) -> list[Tag]:
-    """The start tags in the order of the text; comments and the like have none.
+    """Parse the start tags in the order of the text; comments and the like have none.
 
     Raises
     ------
     XmlError
-        No XML; entities, or elements that are nested deeper than `NESTED`.
+        No XML; entities, or elements nested deeper than `NESTED`.
     """
     parser, path, found = expat.ParserCreate(), [], []
 
@@ -68,16 +68,16 @@ def tags(raw: bytes) -> list[Tag]:
 
 
 MOST_BYTES = 20_000_000
-"""MJCF text is shorter; meshes stand in files of their own."""
+"""Largest size of MJCF text [byte]; meshes are in files of their own."""
 DEEPEST = 20
-"""Files that include one another."""
+"""Largest depth of files that include one another."""
 MOST_FILES = 1000
 NUMBERS = (
     *(("body", f"body_{name}") for name in ("pos", "quat", "ipos", "iquat", "mass", "inertia")),
     *(("jnt", f"jnt_{name}") for name in ("pos", "axis", "range", "stiffness")),
     *(("site", f"site_{name}") for name in ("pos", "quat")),
 )
-"""Numbers of a model that MuJoCo takes though they may not be finite."""
+"""Numbers of a model that MuJoCo accepts even if not finite."""
 KINDS = {
     "body": mujoco.mjtObj.mjOBJ_BODY,
     "jnt": mujoco.mjtObj.mjOBJ_JOINT,
@@ -89,13 +89,13 @@ CURE = "give an MJCF file, such as model.xml"
 
 
 def load(path: Path) -> Any:
-    """The compiled model.
+    """Compile the model of a file.
 
     Raises
     ------
     ModelError
         No such file, no MJCF, an included file that is missing or outside the folder of the model,
-        or what MuJoCo refuses, in its own words.
+        or a model that MuJoCo refuses, in its own words.
     """
     files(path)
     try:
@@ -110,12 +110,12 @@ def load(path: Path) -> Any:
 
 
 def _called(model: Any, kind: str, index: int) -> str:
-    """What a file calls an element, or its number."""
+    """Return the name of an element in the file, or its number."""
     return name_of(model, KINDS[kind], index) or f"{kind} {index}"
 
 
 def text_of(path: Path) -> bytes:
-    """What stands in the file. Raises ModelError for no plain file, and for a larger one."""
+    """Read the file. Raises ModelError for no plain file, and for a larger one."""
     try:
         return regular_bytes(path, MOST_BYTES)
     except UnreadableError as error:
@@ -123,7 +123,7 @@ def text_of(path: Path) -> bytes:
 
 
 def files(path: Path) -> list[Path]:
-    """The file and all that it includes. Raises ModelError for what can not be included."""
+    """List the file and all that it includes. Raises ModelError for a faulty inclusion."""
     found = list(itertools.islice(_files(path, path.resolve().parent, 0), MOST_FILES + 1))
     if len(found) > MOST_FILES:
         raise ModelError(f"{path}: it includes more than {MOST_FILES} files")
@@ -131,7 +131,7 @@ def files(path: Path) -> list[Path]:
 
 
 def _files(path: Path, folder: Path, depth: int) -> Iterator[Path]:
-    """As `files`, some of them several times."""
+    """Yield `files`, some of them several times."""
     try:
         found = tags(text_of(path))
     except XmlError as error:
@@ -157,6 +157,6 @@ def _files(path: Path, folder: Path, depth: int) -> Iterator[Path]:
 
 
 def _included(path: Path, folder: Path, name: str) -> Path:
-    """The file that MuJoCo takes: as seen from the main file, else from the including one."""
+    """Return the file that MuJoCo takes: relative to the main file, else to the including one."""
     nearer = path.parent / name
     return nearer if nearer.exists() and not (folder / name).exists() else folder / name

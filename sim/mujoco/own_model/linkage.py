@@ -1,7 +1,7 @@
-"""From rigid bodies, joints and closures to the links of a planar linkage and its pairs.
+"""Links of a planar linkage and its pairs, from rigid bodies, joints and closures.
 
-Everything lies in one plane, as the model is drawn: a point of a body is where it is drawn. Bodies
-that a weld ties are one link, in the pose that the weld asks for::
+Everything lies in one plane, as the model is drawn: so do the points of bodies. Welded bodies are
+one link, in the pose of the weld::
 
     rocker --hinge-- half of the coupler ==weld== other half --hinge-- crank
 
@@ -34,7 +34,7 @@ PAIRS = {
 
 @dataclass(frozen=True)
 class Placement:
-    """Where a rigid body is drawn, and where it stands in its link: z becomes turn z + shift."""
+    """Placement of a drawn rigid body in its link: z becomes turn z + shift."""
 
     turn: complex = 1.0 + 0.0j
     shift: complex = 0.0j
@@ -44,11 +44,11 @@ class Placement:
 
     @property
     def inverse(self) -> Placement:
-        """The way back."""
+        """Inverse placement."""
         return Placement(1.0 / self.turn, -self.shift / self.turn)
 
     def after(self, first: Placement) -> Placement:
-        """This one of what ``first`` gives."""
+        """Return this placement after ``first``."""
         return Placement(self.turn * first.turn, self(first.shift))
 
 
@@ -70,9 +70,9 @@ class Pivot:
 
 @dataclass(frozen=True)
 class ModelGuide:
-    """``rider`` slides along ``direction`` of link ``on``: the whole link, or, where ``mark`` says
-    so, one point of it, through ``through`` on the link ``on``. Where the whole link slides
-    ``meets`` says where its places are on the link ``on``, as the pair is drawn."""
+    """Slide of ``rider`` along ``direction`` of link ``on``: of the whole link, or of its one point
+    ``mark``, through ``through`` on the link ``on``. For a whole link ``meets`` maps its places to
+    the link ``on``, in the pair as drawn."""
 
     name: str
     on: int
@@ -94,17 +94,17 @@ class Linkage:
 
     @property
     def links(self) -> tuple[int, ...]:
-        """The moving links, in the order of the file."""
+        """Moving links, in the order of the file."""
         return tuple(sorted({link for link, _ in self.placements.values()} - {WORLD}))
 
     def mark(self, body: int, place: complex) -> ModelMark:
-        """A place that is drawn on a rigid body, on its link."""
+        """Return a place that is drawn on a rigid body, on its link."""
         link, placement = self.placements[body]
         return ModelMark(link, placement(place))
 
 
 def linkage(component: Component) -> Linkage:
-    """The linkage of a component.
+    """Make the linkage of a component.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def linkage(component: Component) -> Linkage:
 
 
 def _welded(component: Component) -> dict[int, tuple[int, Placement]]:
-    """Link and placement of every rigid body, by following the welds from the first of each."""
+    """Return link and placement of every rigid body, along the welds from the first of each."""
     welds = [each for each in component.closures if each.kind == "weld"]
     placed: dict[int, tuple[int, Placement]] = {}
     for start in (WORLD, *(body.id for body in component.bodies)):
@@ -150,7 +150,7 @@ def _welded(component: Component) -> dict[int, tuple[int, Placement]]:
 
 
 def _placement(component: Component, weld: ModelClosure) -> Placement:
-    """Where the second body of a weld stands when it holds, from where it is drawn."""
+    """Return the placement of a weld's second body when it holds, from its drawn pose."""
     drawn = component.data.xmat[weld.bodies[1]].reshape(3, 3)
     turn, tilt_deg = component.plane.turned(weld.rotation @ drawn.T)
     if tilt_deg > PARALLEL_DEG:
@@ -162,7 +162,7 @@ def _placement(component: Component, weld: ModelClosure) -> Placement:
 
 
 def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | ModelGuide]:
-    """What ties a body to its parent."""
+    """Yield the pair of a body and its parent."""
     kinds = " ".join(joint.kind for joint in body.joints)
     kind = PAIRS.get(kinds)
     if kind is None:
@@ -199,10 +199,10 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | ModelGuide]:
 
 
 SAME = 1e-9
-"""Marks of one link that are nearer than this, over the size of the linkage, are one point."""
+"""Largest distance, over the size of the linkage, between marks of one link that are one point."""
 ROUNDING = 1e-15
 NEAR = 0.02
-"""Marks of one link that are nearer, and not the same, may have been meant to be one."""
+"""Distance, over the size, between marks of one link that may have been meant to be one point."""
 
 
 @dataclass(frozen=True)
@@ -214,7 +214,7 @@ class NamedPoint:
 
     @cached_property
     def places(self) -> Mapping[int, complex]:
-        """By link; where marks of a link coincide, the place of the first."""
+        """Places by link; where marks of a link coincide, the place of the first."""
         return {mark.link: mark.place for mark in reversed(self.marks)}
 
 
@@ -229,7 +229,7 @@ class Near:
 
 
 def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
-    """All points of the linkage, in the order of the file."""
+    """Return all points of the linkage, in the order of the file."""
     groups: list[tuple[list[str], list[ModelMark]]] = []
     tolerance = SAME * size(linkage)
     for names, marks in _ties(linkage):
@@ -253,7 +253,7 @@ def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
 
 
 def nearly(found: Sequence[NamedPoint], linkage: Linkage) -> Iterator[Near]:
-    """Points of a link that lie near to each other, as an anchor does that missed its pin."""
+    """Yield near points of a link, such as an anchor beside its pin."""
     limit = NEAR * size(linkage)
     for index, one in enumerate(found):
         for other in found[index + 1 :]:
@@ -264,7 +264,7 @@ def nearly(found: Sequence[NamedPoint], linkage: Linkage) -> Iterator[Near]:
 
 
 def size(linkage: Linkage) -> float:
-    """The largest extent of the marks of one link [m]; of all of them, where that is nothing."""
+    """Return the largest extent of the marks of one link [m]; if that is 0, of all marks."""
     by_link: dict[int, list[complex]] = {}
     for _, marks in _ties(linkage):
         for mark in marks:
@@ -278,8 +278,8 @@ def _extent(places: Sequence[complex]) -> float:
 
 
 def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[ModelMark]]]:
-    """The marks of every pin, of every point on a line, and one of each link that carries nothing
-    but lines: a link without a point is none."""
+    """Yield the marks of every pin, of every point on a line, and one of each link with nothing but
+    lines: a link needs a point."""
     marked: set[int] = {WORLD}
     for pivot in linkage.pivots:
         marked.update(mark.link for mark in pivot.marks)
@@ -301,7 +301,7 @@ def _meet(first: Sequence[ModelMark], second: Sequence[ModelMark], tolerance: fl
 
 
 def pair(place: complex) -> Point:
-    """A place as a point of a scene; a coordinate that is rounding of the other one is 0."""
+    """Return a place as a point of a scene; a coordinate that is rounding of the other is 0."""
     least = ROUNDING * abs(place)
     x, y = (part if abs(part) > least else 0.0 for part in (place.real, place.imag))
     return x, y

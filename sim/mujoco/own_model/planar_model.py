@@ -1,4 +1,4 @@
-"""A compiled model with the planar linkage that was read off it."""
+"""A compiled model with its planar linkage."""
 
 import cmath
 import math
@@ -22,9 +22,8 @@ from sim.mujoco.own_model.scene import Matter, SceneRead
 class Limbs:
     """Limbs, parents before children.
 
-    Of each freedom, in their order, the columns of qpos and qvel, and -1 where MuJoCo counts it
-    clockwise. ``shown`` says which limb shows a body of the scene, ``of`` which body a limb belongs
-    to.
+    For each freedom, in their order, the columns of qpos and qvel, and -1 where MuJoCo counts it
+    clockwise. ``shown`` maps a body of the scene to its limb, ``of`` a limb to its body.
     """
 
     limbs: tuple[Limb, ...]
@@ -36,7 +35,7 @@ class Limbs:
 
 
 def limbs_of(linkage: Linkage, read: SceneRead) -> Limbs:
-    """The limbs of a linkage: each has the frame of the body of the scene that it belongs to."""
+    """Make the limbs of a linkage: each has the frame of its body in the scene."""
     model = linkage.component.model
     called = {WORLD: GROUND}
     own: dict[int, Placement] = {WORLD: Placement()}
@@ -87,9 +86,9 @@ STILL = _Moving(0j, 0.0, 0j, 0.0, 0j, 0.0)
 def coordinates(
     limbs: Limbs, scene: Scene, state: State, near: Array
 ) -> tuple[Array, Array, Array]:
-    """Joint coordinates with their first and second rates at a state, (n,) each, in the order of
-    the freedoms and in the senses of the scene; hinges read the whole turns that bring them nearest
-    to the coordinates ``near``."""
+    """Return joint coordinates with their first and second rates at a state, (n,) each, in the
+    order of the freedoms and in the senses of the scene; hinges get the whole turns that bring them
+    nearest to the coordinates ``near``."""
     moving = {GROUND: STILL} | _moving(scene, state)
     q: list[float] = []
     rate: list[float] = []
@@ -105,7 +104,7 @@ def coordinates(
 
 
 def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
-    """The frames of links and blocks at a state."""
+    """Return the frames of links and blocks at a state."""
     frames: dict[str, _Moving] = {GROUND: STILL}
     for link in scene.links.values():
         theta, omega, alpha = (each[link.name] for each in (state.theta, state.omega, state.alpha))
@@ -135,7 +134,7 @@ def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
 
 
 def _seen_from(base: _Moving, body: _Moving) -> _Moving:
-    """A frame as another one sees it."""
+    """Return a frame relative to another one."""
     back = cmath.exp(-1j * base.theta)
     place = body.place - base.place
     turning = 1j * base.omega
@@ -152,7 +151,7 @@ def _seen_from(base: _Moving, body: _Moving) -> _Moving:
 
 
 def _joints(limb: Limb, seen: _Moving) -> tuple[list[float], list[float], list[float]]:
-    """The coordinates of the joints of a limb with their rates, where its parent sees it so."""
+    """Return the joint coordinates of a limb and their rates, by its motion in its parent."""
     turn = math.remainder(seen.theta - limb.angle_rad, math.tau)
     angle, place = limb.angle_rad, complex(*limb.offset)
     pivot, after = place, False
@@ -185,7 +184,7 @@ def _in_order(
     limb: Limb,
     values: tuple[tuple[float, float, float], list[float], list[float], list[float]],
 ) -> tuple[list[float], list[float], list[float]]:
-    """Coordinates from their refs on, and rates, in the order of the freedoms."""
+    """Return coordinates from their refs on, and rates, in the order of the freedoms."""
     turns, slid, sped, pushed = values
     slides = iter(zip(slid, sped, pushed, strict=True))
     rows = [turns if freedom.kind == "hinge" else next(slides) for freedom in limb.freedoms]
@@ -198,7 +197,7 @@ def _in_order(
 
 
 def _split(axes: Sequence[complex], vector: complex) -> list[float]:
-    """The vector as a sum of axes. What no axis can reach stays; `sim.run.check` sees it."""
+    """Split the vector along axes. A part that no axis reaches stays; `sim.run.check` sees it."""
     if not axes:
         return []
     matrix = np.array([[axis.real for axis in axes], [axis.imag for axis in axes]])
@@ -208,7 +207,7 @@ def _split(axes: Sequence[complex], vector: complex) -> list[float]:
 
 @dataclass(frozen=True, eq=False)
 class PlanarModel:
-    """``keyframe`` is the one to start from, None for the pose as drawn."""
+    """A model with its linkage and scene, from ``keyframe`` on, None for the pose as drawn."""
 
     model: Any
     linkage: Linkage
@@ -218,18 +217,18 @@ class PlanarModel:
 
     @property
     def driven(self) -> int:
-        """The joint that is driven."""
+        """Driven joint."""
         return self.linkage.component.driven
 
     @property
     def loops(self) -> list[int]:
-        """The equalities that close loops, or are part of a link."""
+        """Equalities that close loops, or are part of a link."""
         return [each.index for each in self.linkage.component.closures]
 
     @property
     def inertia_kg_m2(self) -> float:
-        """The largest that a joint of the linkage has to move as the model is drawn; the mass on a
-        slide counts at the size of the linkage."""
+        """Largest inertia on a joint of the linkage in the model as drawn; the mass on a slide
+        counts at the size of the linkage."""
         model, extent = self.model, size(self.linkage)
         return max(
             float(model.dof_M0[model.jnt_dofadr[joint.index]])
@@ -240,11 +239,11 @@ class PlanarModel:
 
     @property
     def qpos(self) -> Array:
-        """The joint coordinates of its own pose, all of the model."""
+        """All joint coordinates of the model in its own pose."""
         model = self.model
         return np.array(model.qpos0 if self.keyframe is None else model.key_qpos[self.keyframe])
 
     def matter(self, body: str) -> Matter:
-        """Mass and inertia of a body of the scene, as its bodies in the model add up to."""
+        """Return mass and inertia of a body of the scene, the sum of its bodies in the model."""
         link = next(link for link, name in self.read.names.items() if name == body and link)
         return self.read.parts.matter[link]

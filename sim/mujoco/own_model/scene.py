@@ -1,4 +1,4 @@
-"""The scene of a model that somebody else wrote: links with their points, sliders, masses."""
+"""Scene of a user's own model: links with their points, sliders, masses."""
 
 import cmath
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ class Matter:
 
 
 def matter_of(linkage: Linkage, link: int) -> Matter:
-    """What the bodies of a link weigh together, as the link is drawn."""
+    """Return the mass and inertia of all bodies of a link, as the link is drawn."""
     component = linkage.component
     model, data, plane = component.model, component.data, component.plane
     parts = []
@@ -51,14 +51,14 @@ def matter_of(linkage: Linkage, link: int) -> Matter:
 
 
 CENTRED = 1e-9
-"""A centre of mass that is nearer to a point, over the size of things, is in it."""
+"""Distance of a centre of mass from a point, over the size, below which it is in the point."""
 
 
 @dataclass(frozen=True, eq=False)
 class SceneParts:
-    """By link id what it is ``called`` and its ``matter``, without the ground; all ``points``;
-    which links are ``blocks``, that are a point and a mass; the ``driver``, and what its joint
-    ``reads`` as it is drawn [rad]."""
+    """Parts of a scene: by link id the name ``called`` and the ``matter``, without the ground; all
+    ``points``; the ``blocks``, links of a point and a mass; the ``driver``, and the coordinate that
+    its joint ``reads`` as drawn [rad]."""
 
     linkage: Linkage
     called: Mapping[int, str]
@@ -69,23 +69,23 @@ class SceneParts:
     reads: float
 
     def points_of(self, link: int) -> list[NamedPoint]:
-        """The points of a link; of the driven one its pivot first, which is that of its joint."""
+        """Return the points of a link; of the driven link its pivot, the joint's, first."""
         own = [point for point in self.points if link in point.places]
         return sorted(own, key=lambda point: WORLD not in point.places)
 
     def point(self, name: str) -> NamedPoint:
-        """The point of that name."""
+        """Return the point of that name."""
         return next(point for point in self.points if point.name == name)
 
 
 def parts_of(linkage: Linkage) -> SceneParts:
-    """The parts of a linkage.
+    """Make the parts of a linkage.
 
     Raises
     ------
     ModelError
-        A link that nothing but its own joint holds, named with the joint; a driven body that is
-        tied to the ground.
+        A link with no pair besides its own joint, named with the joint; a driven body welded to the
+        ground.
     """
     model, joint = linkage.component.model, linkage.component.driven
     called: dict[int, str] = {WORLD: GROUND}
@@ -108,7 +108,7 @@ def parts_of(linkage: Linkage) -> SceneParts:
 
 
 def _refuse_loose(linkage: Linkage, driver: int, called: Mapping[int, str]) -> None:
-    """Refuse a link that only one pair holds: it moves as it likes."""
+    """Refuse a link with only one pair: it moves freely."""
     held = dict.fromkeys(linkage.links, 0)
     for pivot in linkage.pivots:
         for mark in pivot.marks:
@@ -130,7 +130,7 @@ def _refuse_loose(linkage: Linkage, driver: int, called: Mapping[int, str]) -> N
 
 
 def _is_block(parts: SceneParts, link: int) -> bool:
-    """Whether a sliding link is a block: one point, that holds its mass, and nothing on it."""
+    """True if a sliding link is a block: one point, with its mass, and no guide on it."""
     guides = parts.linkage.guides
     slides = [guide for guide in guides if guide.rider == link and guide.mark is None]
     own, centre = parts.points_of(link), parts.matter[link].centre
@@ -141,8 +141,8 @@ def _is_block(parts: SceneParts, link: int) -> bool:
 
 
 def _centres(parts: SceneParts) -> list[NamedPoint]:
-    """The centres of mass of links that have one point alone: such a link has no length, and none
-    of its places but that one would be judged."""
+    """Return the centres of mass of links with a single point: such a link has no length, and no
+    other of its places would be judged."""
     taken = {point.name for point in parts.points}
     centres = []
     for link in parts.linkage.links:
@@ -157,9 +157,9 @@ def _centres(parts: SceneParts) -> list[NamedPoint]:
 
 @dataclass(frozen=True, eq=False)
 class SceneRead:
-    """The scene, without a branch and at speed 1, whose driver's angle is what its joint reads;
-    ``frames`` say, by link id, where the frame of each of its bodies is drawn (a link or a block),
-    and ``names`` what the body is called there."""
+    """The scene read from a model, without a branch and at speed 1, with its joint's coordinate as
+    the driver's angle; ``frames`` are, by link id, the drawn frames of its bodies (a link or a
+    block), and ``names`` the names of these bodies."""
 
     scene: Scene
     frames: Mapping[int, Placement]
@@ -168,17 +168,17 @@ class SceneRead:
 
     @property
     def points(self) -> tuple[NamedPoint, ...]:
-        """The points of the scene, as its links are drawn."""
+        """Points of the scene, as its links are drawn."""
         return tuple(self.parts.points)
 
 
 def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
-    """The scene of a linkage.
+    """Make the scene of a linkage.
 
     Raises
     ------
     ModelError
-        As `parts_of`; links that have no length.
+        As `parts_of`; links without length.
     """
     parts = parts_of(linkage)
     frames = {link: _frame(parts, link) for link in linkage.links}
@@ -214,7 +214,7 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
 
 
 def _link(parts: SceneParts, link: int, frame: Placement) -> Link:
-    """A link in its own frame."""
+    """Make a link in its own frame."""
     matter = parts.matter[link]
     return Link(
         parts.called[link],
@@ -226,8 +226,8 @@ def _link(parts: SceneParts, link: int, frame: Placement) -> Link:
 
 
 def _frame(parts: SceneParts, link: int) -> Placement:
-    """The frame of a link: origin in its first point, x-axis towards its second, along its line,
-    or towards its centre of mass."""
+    """Return the frame of a link: origin in its first point, x-axis towards its second, along its
+    line, or towards its centre of mass."""
     places = [point.places[link] for point in parts.points_of(link)]
     centre = parts.matter[link].centre
     origin = places[0] if places else centre
@@ -241,8 +241,8 @@ def _frame(parts: SceneParts, link: int) -> Placement:
 
 
 def _reading(parts: SceneParts, frame: Placement) -> Placement:
-    """The frame of the driven link, turned about its origin so that its angle is what the joint
-    reads: all that is told of the driver's angle is in the joint's own coordinate."""
+    """Return the frame of the driven link, turned about its origin so that its angle is the joint's
+    coordinate, which alone determines the driver's angle."""
     component = parts.linkage.component
     body = rigid(component.model, int(component.model.jnt_bodyid[component.driven]))
     turn = cmath.exp(-1j * parts.reads) / parts.linkage.placements[body][1].turn
@@ -250,7 +250,7 @@ def _reading(parts: SceneParts, frame: Placement) -> Placement:
 
 
 def _block_frame(parts: SceneParts, guide: ModelGuide, slider: Slider, on: Placement) -> Placement:
-    """The frame of a block: its point is its origin, and its x-axis lies along the line."""
+    """Return the frame of a block: its point is its origin, and its x-axis lies along the line."""
     turn = cmath.exp(-1j * slider.direction_rad) * on.turn * guide.meets.turn
     return Placement(turn, -turn * parts.point(slider.point).places[guide.rider])
 
@@ -261,7 +261,7 @@ def _slider(
     frames: Mapping[int, Placement],
     sliders: Mapping[str, Slider],
 ) -> Slider:
-    """A pair that slides."""
+    """Make a sliding pair."""
     rider, on = guide.rider, frames[guide.on]
     direction = cmath.phase(on.turn * guide.direction)
     if guide.mark is None:
@@ -279,6 +279,6 @@ def _slider(
     if rider in parts.blocks:
         matter = parts.matter[rider]
         return Slider(*common, mass_kg=matter.mass_kg, inertia_kg_m2=matter.inertia_kg_m2)
-    # From the frame of the guide to that of the link.
+    # From the guide's frame to the link's.
     turn = frames[rider].turn / (guide.meets.turn * on.turn)
     return Slider(*common, link=parts.called[rider], angle_rad=-cmath.phase(turn) - direction)

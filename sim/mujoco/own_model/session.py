@@ -1,8 +1,8 @@
-"""A model of the user's own in MuJoCo, as it is: only the driven hinge is given a flywheel.
+"""A user's own model in MuJoCo, unchanged: only the driven hinge gets a flywheel.
 
-The flywheel is an armature set at run time, so that nothing which MuJoCo works out when it compiles
-changes with it, above all not how soft the loops are; the tolerance of the solver is divided by
-its ratio, as MuJoCo's stopping rule feels it (and does not feel ``stat.meaninertia``).
+The flywheel is an armature set at run time, so that it changes nothing that MuJoCo computes when it
+compiles, above all not the softness of the loops; the tolerance of the solver is divided by its
+ratio, as MuJoCo's stopping rule depends on it (and not on ``stat.meaninertia``).
 """
 
 import copy
@@ -31,19 +31,19 @@ from sim.mujoco.stepped import VERSION, SteppedModel, heard
 from sim.registry.own_models import Tour
 
 FLYWHEEL_RATIO = 1e15
-"""Of the flywheel over the largest inertia of the linkage. Measured, with the mean inertia in its
-place, on a rod that is led 119 deg past a limit: from 1e10 to 1e16 no error of a link changes in
-its third digit, and the crank is off by 7.7e-5 rad after twenty turns at 1e10, and by 7.7e-10 at
+"""Inertia of the flywheel over the largest of the linkage. Measured, with the mean inertia in its
+place, on a rod driven 119 deg past a limit: from 1e10 to 1e16 no error of a link changes in its
+third digit, and the crank is off by 7.7e-5 rad after twenty turns at 1e10, and by 7.7e-10 at
 1e15."""
 
 LOST_RAD = 1e-4
-"""A driven joint that is off by more is not driven. Damping of 5e3 N s/m,
-a spring of 1e7 N/m and an armature of 1e6 kg m^2 on other joints leave it within 1e-12 rad over two
-turns, even while they diverge."""
+"""Largest error of a driven joint; with more it is not driven. Damping of 5e3 N s/m, a spring of
+1e7 N/m and an armature of 1e6 kg m^2 on other joints leave it within 1e-12 rad over two turns, even
+while they diverge."""
 
 
 class OwnModelSession(SteppedModel):
-    """The model, from a state of the scene that was read off it."""
+    """A session of the model, from a state of its scene."""
 
     def __init__(
         self,
@@ -69,7 +69,7 @@ class OwnModelSession(SteppedModel):
         self._forward()
 
     def _place(self, scene: Scene, state: State) -> None:
-        """Set all joints from the closed form, with the velocities that the integrator wants."""
+        """Set all joints from the closed form, with velocities at the integrator's instant."""
         near = self._senses * self._own.qpos[list(self._own.limbs.positions)]
         q, rate, push = coordinates(self._own.limbs, scene, state, near)
         rate = rate + self._shift * self._dt * push
@@ -79,7 +79,7 @@ class OwnModelSession(SteppedModel):
         self._data.qvel[crank] = float(scene.driver.law.at(np.array([state.time_s]))[1][0])
 
     def record(self, steps: int, every: int) -> Log:
-        """As of any model. Raises EngineError where the driven joint has left its way."""
+        """Advance and log. Raises EngineError where the driven joint has left its course."""
         log = super().record(steps, every)
         if not log.diverged:
             self._refuse_lost_drive(log.poses)
@@ -97,7 +97,7 @@ class OwnModelSession(SteppedModel):
             )
 
     def facts(self) -> Facts:
-        """The model as MuJoCo holds it now."""
+        """Read the model as MuJoCo holds it now."""
         matter = {name: self._own.matter(name) for name in bodies(self._scene)}
         return Facts(
             version=VERSION,
@@ -127,7 +127,7 @@ class OwnModelSession(SteppedModel):
         return Poses(self._start_s + self._dt * at, shown, lag)
 
     def _controls(self, steps: int) -> Array | None:
-        """The controls stay as the keyframe has them, or 0."""
+        """Return the constant controls of the keyframe, or 0."""
         return np.tile(self._data.ctrl, (steps, 1)) if self._model.nu else None
 
     def _control_at(self, at: Array) -> Array | None:
@@ -135,7 +135,7 @@ class OwnModelSession(SteppedModel):
 
 
 def _give_flywheel(model: Any, crank: int, inertia_kg_m2: float) -> None:
-    """Let a freedom keep its rate, in a linkage whose inertia is at most this."""
+    """Let a freedom keep its rate, in a linkage of at most this inertia."""
     flywheel = FLYWHEEL_RATIO * inertia_kg_m2
     model.dof_armature[crank] += flywheel
     # Of a leaf body whose centre of mass is on its hinge MuJoCo takes the inertia from here.
@@ -144,18 +144,17 @@ def _give_flywheel(model: Any, crank: int, inertia_kg_m2: float) -> None:
 
 
 MISREAD = 1e-6
-"""A loop that MuJoCo sees open by more, over the size of the linkage, is not the one that was
-read."""
+"""Largest loop gap in MuJoCo, over the size of the linkage; with more the model was misread."""
 EQUALITY = mujoco.mjtConstraint.mjCNSTR_EQUALITY.value
 
 
 def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
-    """Hold the model in each of the states, and look at what MuJoCo says.
+    """Put the model into each of the states, and record MuJoCo's contacts and limits.
 
     Raises
     ------
     ModelError
-        MuJoCo sees a loop open that the closed form has shut: the model was misread.
+        MuJoCo sees a loop open that is closed in the closed form: the model was misread.
     """
     model, data = own.model, mujoco.MjData(own.model)
     touching: dict[tuple[str, str], int] = {}
@@ -182,7 +181,7 @@ def _refuse_misread(own: PlanarModel, data: Any, state: State) -> None:
     rows = np.flatnonzero(np.array(data.efc_type) == EQUALITY)
     for closure in own.linkage.component.closures:
         mine = [row for row in rows if int(data.efc_id[row]) == closure.index][:3]
-        if not mine:  # MuJoCo leaves out what holds nothing, such as a pin in the axis of a hinge
+        if not mine:  # MuJoCo leaves out idle ones, such as a pin in the axis of a hinge
             continue
         gap = abs(plane.flat(np.array([data.efc_pos[row] for row in mine])))
         if not gap <= limit:
@@ -193,8 +192,8 @@ def _refuse_misread(own: PlanarModel, data: Any, state: State) -> None:
 
 
 def _touching(own: PlanarModel, data: Any) -> set[tuple[str, str]]:
-    """The pairs of geoms that push one another, one of them on the linkage: a body beside it may
-    rest on its floor."""
+    """Return the pairs of geoms that push one another, one of them on the linkage: a body beside it
+    may rest on its floor."""
     model, pairs = own.model, set()
     moving = {body.id for body in own.linkage.component.bodies}
     for index in range(int(data.ncon)):
@@ -208,7 +207,7 @@ def _touching(own: PlanarModel, data: Any) -> set[tuple[str, str]]:
 
 
 def _geom(model: Any, geom: int) -> str:
-    """The name of a geom, or that of its body."""
+    """Return the name of a geom, or of its body."""
     if geom < 0:
         return "a flex"
     name = name_of(model, mujoco.mjtObj.mjOBJ_GEOM, geom)
@@ -216,7 +215,7 @@ def _geom(model: Any, geom: int) -> str:
 
 
 def _passed(own: PlanarModel, low: Any, high: Any) -> list[str]:
-    """The limited joints that the way leads past their limits."""
+    """List the limited joints that pass their limits."""
     model, texts = own.model, []
     for body in own.linkage.component.bodies:
         for joint in (each.index for each in body.joints):

@@ -1,5 +1,5 @@
-"""What is changed of a model at run time to see what it costs: something off, or the recommended
-settings. Its profiles say which."""
+"""Variants of a model at run time that show the effect of a part: something off, or the recommended
+settings. Its profiles name them."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -22,8 +22,8 @@ AS_WRITTEN, RECOMMENDED = "as-written", "recommended"
 KEPT, STIFF = "as-written", "stiff"
 INTEGRATOR = "RK4"
 TOLERANCE = 1e-16
-"""Of the solver, recommended: below it no error falls any more, and it costs no iteration where the
-only constraints are pins, which Newton solves in one."""
+"""Recommended tolerance of the solver: below it no error falls any more, and it costs no iteration
+where the only constraints are pins, which Newton solves in one."""
 STIFF_SOLIMP = (STIFF_IMPEDANCE, STIFF_IMPEDANCE, 0.001, 0.5, 2.0)
 OFF: Mapping[str, Any] = {
     "contacts": mujoco.mjtDisableBit.mjDSBL_CONTACT,
@@ -34,16 +34,16 @@ OFF: Mapping[str, Any] = {
     "actuators": mujoco.mjtDisableBit.mjDSBL_ACTUATION,
     "gravity": mujoco.mjtDisableBit.mjDSBL_GRAVITY,
 }
-"""What can be off, and MuJoCo's flag for it."""
+"""Parts that can be off, and MuJoCo's flags for them."""
 SOLVERS = ("PGS", "CG", "Newton")
 SOLVER = "Newton"
 LEAST: Mapping[str, int] = {"iterations": 100, "ls_iterations": 50}
-"""Iterations of the solver, recommended: MuJoCo's own; a model that allows more keeps them."""
+"""Recommended iterations of the solver: MuJoCo's own; a model that allows more keeps them."""
 CHOICES = {"integrator": (KEPT, *INTEGRATORS), "loops": (KEPT, STIFF)}
 
 
 def profiles(present: Iterable[str], advised: Advised) -> dict[str, Profile]:
-    """The lines of a model: as written, without each of what is ``present``, and recommended."""
+    """Return the profiles: as written, without each part that is ``present``, recommended."""
     lines = [
         _profile(AS_WRITTEN, "the file as it is"),
         *(
@@ -77,13 +77,13 @@ def _profile(
 
 
 def stiff_solref(dt_s: float) -> tuple[float, float]:
-    """Time constant [s] and damping ratio of a loop, recommended at a step; in six digits, as it is
-    to be pasted."""
+    """Return the recommended time constant [s] and damping ratio of a loop at a step; in six
+    digits, for pasting."""
     return float(f"{STIFF_STEPS * dt_s:.6g}"), STIFF_DAMPING
 
 
 def checked(settings: Settings) -> None:
-    """Refuse values that mean nothing here. Raises SettingError."""
+    """Refuse meaningless values. Raises SettingError."""
     check_choices(settings, CHOICES)
     for name in _names(settings):
         if name not in OFF:
@@ -109,7 +109,7 @@ def applied(model: Any, loops: Iterable[int], settings: Settings, dt_s: float) -
 
 
 def held(model: Any, loops: Iterable[int], settings: Settings) -> dict[str, SettingValue]:
-    """The settings, and what MuJoCo holds of all that decides accuracy."""
+    """Return the settings, and MuJoCo's values of all that decides accuracy."""
     opt = model.opt
     told: dict[str, SettingValue] = {
         **settings,
@@ -143,7 +143,7 @@ class RecommendedAttributes:
     loop: Mapping[str, str]
 
     def words(self) -> str:
-        """What to set where, in words."""
+        """Describe the attributes and their places in words."""
         parts = []
         for place, attributes in (
             ("in <option>", self.option),
@@ -157,7 +157,7 @@ class RecommendedAttributes:
 
 
 def advice(model: Any, dt_s: float, advised: Advised) -> RecommendedAttributes:
-    """What is recommended at a step, where the model has not got it."""
+    """Return the recommendations at a step that the model does not have yet."""
     option = {}
     if float(model.opt.timestep) != dt_s:
         option["timestep"] = repr(dt_s)
@@ -182,14 +182,14 @@ def advice(model: Any, dt_s: float, advised: Advised) -> RecommendedAttributes:
 
 
 def patched(raw: bytes, loops: Iterable[int], count: int, advised: RecommendedAttributes) -> bytes:
-    """The text of a model with the recommended attributes in it.
+    """Return the text of a model with the recommended attributes in it.
 
     ``loops`` are the numbers of its ``count`` equalities that close loops.
 
     Raises
     ------
     EngineError
-        The equalities do not all stand in this text, one by one.
+        The equalities are not all in this text, one by one.
     """
     found = tags(raw)
     own = [tag for tag in found if len(tag.path) == 3 and tag.path[1] == "equality"]
@@ -205,20 +205,20 @@ def patched(raw: bytes, loops: Iterable[int], count: int, advised: RecommendedAt
 
 
 def diff(path: Path, raw: bytes, new: bytes) -> str:
-    """Both texts as a unified diff. Without the lines around a change `git apply` refuses it, and
-    `patch` changes any other file. Raises EngineError for what is not UTF-8."""
+    """Return both texts as a unified diff. Without the lines around a change `git apply` refuses
+    it, and `patch` changes any other file. Raises EngineError for text that is not UTF-8."""
     try:
         lines = list(unified_diff(_lines(raw), _lines(new), path.name, path.name, n=3))
     except UnicodeDecodeError:
         raise EngineError("the file is not UTF-8") from None
-    # A last line without an end has to say so.
+    # A last line without an end has a remark.
     return "".join(
         line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines
     )
 
 
 def _lines(raw: bytes) -> list[str]:
-    """Lines with their ends; those of Windows keep theirs."""
+    """Split into lines with their ends; Windows ends stay."""
     return [line + "\n" for line in raw.decode().split("\n")[:-1]] + [
         line for line in raw.decode().split("\n")[-1:] if line
     ]
@@ -227,8 +227,8 @@ def _lines(raw: bytes) -> list[str]:
 def _options(
     raw: bytes, found: list[Tag], advised: RecommendedAttributes
 ) -> Iterator[tuple[int, int, bytes]]:
-    """Where <option> and its <flag> change, the last of each, as it overrides the ones before;
-    elements that are not there are put in."""
+    """Yield the changes of <option> and its <flag>, the last of each, as it overrides the ones
+    before; missing elements are added."""
     if not advised.option and not advised.flag:
         return
     flag_tag = _tag(b"flag", advised.flag) if advised.flag else b""
@@ -254,17 +254,17 @@ def _options(
 
 
 def _tag(name: bytes, attributes: Mapping[str, str]) -> bytes:
-    """An element without content."""
+    """Write an element without content."""
     return _set(b"<" + name + b"/>", attributes)
 
 
 def _with(raw: bytes, tag: Tag, attributes: Mapping[str, str]) -> bytes:
-    """A start tag of the text with some attributes set."""
+    """Return a start tag of the text with some attributes set."""
     return _set(raw[tag.start : tag.end], attributes)
 
 
 def _set(tag: bytes, attributes: Mapping[str, str]) -> bytes:
-    """A start tag with some attributes set: what is there is replaced, the rest added."""
+    """Return a start tag with some attributes set: existing ones are replaced, the rest added."""
     left = dict(attributes)
 
     def replaced(found: re.Match[bytes]) -> bytes:
