@@ -46,7 +46,7 @@ FLOORS: Mapping[str, str] = {
         lectures
         elastic
         free
-        circuits mechanism forces
+        mechanism forces
         kinematics
         prepared
         assur

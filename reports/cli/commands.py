@@ -76,7 +76,7 @@ inversions with the class of each, and their types with sliders."""),
     "structure": ("lectures.drawing.structure:StructureRequest", """
 Show what a scene is made of: links and joints, mobility, Assur groups with class and order,
 the class with every other joint as the driver, and all its assemblies at one place."""),
-    "rotatability": ("requests.rotatability:RotatabilityRequest", """
+    "rotatability": ("lectures.machine.rotatability:RotatabilityRequest", """
 Show which links turn fully and how far others swing, the Grashof type, circuits and
 branches, dead points and transmission angles.
 

@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.circuits.arcs import Arc
-from analytic.circuits.circuits import SAME, Circuits, Defect, Position, circuits_of
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
+from analytic.lectures.circuits.arcs import Arc
+from analytic.lectures.circuits.circuits import SAME, Circuits, Defect, Position, circuits_of
 from analytic.lectures.synthesis.design import PrecisionPosition, Proposal, asked_motion
 from analytic.mechanism.fourbar import grashof_of
 from models.array import Array

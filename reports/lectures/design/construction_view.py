@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.circuits.arcs import SignedScene
 from analytic.kinematics import solve_driven
+from analytic.lectures.circuits.arcs import SignedScene
 from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.lectures.synthesis.design import (
     Dot,

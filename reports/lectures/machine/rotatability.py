@@ -8,10 +8,16 @@ from typing import Annotated, Any
 
 from rich.console import Console
 
-from analytic.circuits.arcs import own_arc
-from analytic.circuits.circuits import AngleExtreme, Circuits, Position, circuits_of, transmissions
-from analytic.circuits.rotatability import Rotation, at_limit, dead_points, rotations
 from analytic.dyads.chunk import driver_scale
+from analytic.lectures.circuits.arcs import own_arc
+from analytic.lectures.circuits.circuits import (
+    AngleExtreme,
+    Circuits,
+    Position,
+    circuits_of,
+    transmissions,
+)
+from analytic.lectures.circuits.rotatability import Rotation, at_limit, dead_points, rotations
 from analytic.mechanism.fourbar import grashof_of
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError, harmless, shown

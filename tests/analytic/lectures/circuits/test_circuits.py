@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.circuits.arcs import own_arc
-from analytic.circuits.circuits import Position, circuits_of, transmissions
-from analytic.circuits.rotatability import Rotation, dead_points, rotations
 from analytic.dyads.chunk import driver_scale
 from analytic.kinematics import reach, solve, solve_driven
+from analytic.lectures.circuits.arcs import own_arc
+from analytic.lectures.circuits.circuits import Position, circuits_of, transmissions
+from analytic.lectures.circuits.rotatability import Rotation, dead_points, rotations
 from analytic.mechanism.fourbar import FourBar
 from models.array import Array
 from models.errors import CrankcheckError, ReachError

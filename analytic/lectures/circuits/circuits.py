@@ -21,8 +21,8 @@ from typing import Literal
 import numpy as np
 
 from analytic.change_points.find import passages
-from analytic.circuits.arcs import Arc, ArcEnd, SignedScene, Signs, arcs
 from analytic.dyads.chunk import Chunk
+from analytic.lectures.circuits.arcs import Arc, ArcEnd, SignedScene, Signs, arcs
 from analytic.prepared import prepared
 from analytic.structure.groups import Group
 from analytic.structure.mobility import analyse

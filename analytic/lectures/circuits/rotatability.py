@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.circuits.arcs import Arc
-from analytic.circuits.circuits import Circuits
+from analytic.lectures.circuits.arcs import Arc
+from analytic.lectures.circuits.circuits import Circuits
 from analytic.prepared import prepared
 from analytic.structure.mobility import analyse
 from models.array import Array
