@@ -6,24 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 
 from models.errors import SceneError
+from models.files import elastic_table, schema
 from models.files.driver_table import DriverTable, driver_of, driver_table
-from models.files.elastic_table import (
-    elastic_of,
-    faults_of_beams,
-    faults_of_free_motion,
-    mass_of,
-    start_of,
-)
 from models.files.load_table import LawOfLoad, in_degrees, load_of, load_table
-from models.files.schema import (
-    LARGEST,
-    ElasticTable,
-    FrictionTable,
-    LinkTable,
-    SceneTable,
-    SliderTable,
-    within_a_turn,
-)
 from models.files.spring_table import springs_of
 from models.scene import GROUND, Link, Point, Scene, Slider, Start, span
 from models.scene.elastic import ElasticLink
@@ -44,7 +29,7 @@ BLOCK_OF_LONGEST = 0.1
 
 
 def scene_from_table(
-    table: SceneTable, driver: DriverTable, loads: Mapping[str, LawOfLoad], place: str
+    table: schema.SceneTable, driver: DriverTable, loads: Mapping[str, LawOfLoad], place: str
 ) -> Scene:
     """Return the scene of the tables.
 
@@ -90,15 +75,18 @@ def scene_from_table(
         loads={name: load for name, load in found.items() if load is not None},
         friction={joint: _friction(joint, table) for joint, table in table.friction.items()},
         springs=springs_of(table),
-        start=start_of(table.start),
-        elastic=elastic_of(table),
+        start=elastic_table.start_of(table.start),
+        elastic=elastic_table.elastic_of(table),
     )
-    if impossible := [*faults_of_free_motion(scene), *faults_of_beams(scene)]:
+    if impossible := [
+        *elastic_table.faults_of_free_motion(scene),
+        *elastic_table.faults_of_beams(scene),
+    ]:
         raise SceneError(place, impossible)
     return scene
 
 
-def _points(link: LinkTable) -> dict[str, Point]:
+def _points(link: schema.LinkTable) -> dict[str, Point]:
     """Return all points of a link in its frame, including the ends of its bar."""
     bar: dict[str, Point] = {}
     if link.bar is not None and link.length_m is not None:
@@ -106,7 +94,9 @@ def _points(link: LinkTable) -> dict[str, Point]:
     return bar | dict(link.points)
 
 
-def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Point]]) -> list[str]:
+def _faults_of_lengths(
+    table: schema.SceneTable, points: Mapping[str, Mapping[str, Point]]
+) -> list[str]:
     """List points that coincide, and links whose mass cannot be spread over a length."""
     faults = []
     for name, places in [(GROUND, table.ground.points), *points.items()]:
@@ -116,7 +106,7 @@ def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Poin
             f"{math.dist(places[a], places[b]):g}; set the points apart"
             for i, a in enumerate(names)
             for b in names[i + 1 :]
-            if math.dist(places[a], places[b]) < 1 / LARGEST
+            if math.dist(places[a], places[b]) < 1 / schema.LARGEST
         ]
     for name, link in table.links.items():
         if link.bar is not None and set(link.bar) & set(link.points):
@@ -149,14 +139,14 @@ def _longest(points: Mapping[str, Point]) -> tuple[float, Point, Point]:
 
 def _link(
     name: str,
-    table: LinkTable,
+    table: schema.LinkTable,
     points: dict[str, Point],
-    elastic: ElasticTable | None,
+    elastic: schema.ElasticTable | None,
     faults: list[str],
 ) -> Link:
     """Make a link; missing mass data default to a uniform slender rod on its longest span."""
     length, a, b = _longest(points)
-    given, own = mass_of(elastic, length), table.mass_kg
+    given, own = elastic_table.mass_of(elastic, length), table.mass_kg
     if given is not None and own is not None:
         faults.append(
             f"links.{name}: mass_kg is {own:g}, and its section and density_kg_m3 give {given:g}; "
@@ -175,7 +165,7 @@ def _link(
     return Link(name, points, mass, centre, inertia + table.flywheel_kg_m2)
 
 
-def _slider(name: str, table: SliderTable, longest: float) -> Slider:
+def _slider(name: str, table: schema.SliderTable, longest: float) -> Slider:
     """Make a slider with angles in rad and, if it has a mass, the inertia of a square block."""
     mass = table.mass_kg or 0.0
     side = BLOCK_OF_LONGEST * longest
@@ -185,15 +175,15 @@ def _slider(name: str, table: SliderTable, longest: float) -> Slider:
         point=table.point or name,
         on=table.on,
         through_m=table.through_m,
-        direction_rad=within_a_turn(table.direction_deg),
+        direction_rad=schema.within_a_turn(table.direction_deg),
         link=table.link,
-        angle_rad=within_a_turn(table.angle_deg),
+        angle_rad=schema.within_a_turn(table.angle_deg),
         mass_kg=mass,
         inertia_kg_m2=inertia,
     )
 
 
-def _friction(joint: str, table: FrictionTable) -> Friction:
+def _friction(joint: str, table: schema.FrictionTable) -> Friction:
     """Make the friction of a joint."""
     if table.mu is not None:
         return CoulombFriction(joint, table.mu, table.radius_m or 0.0)

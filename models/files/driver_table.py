@@ -9,34 +9,23 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, model_validator
 
 from models.errors import CrankcheckError
+from models.files import schema
 from models.files.load_table import in_degrees
-from models.files.schema import (
-    Degrees,
-    Duration,
-    Name,
-    NonNegative,
-    Number,
-    Positive,
-    RateNumber,
-    Table,
-    not_tiny,
-    within_a_turn,
-)
 from models.scene import GROUND, Driver, Link, Point, Slider
 from models.scene.driver import Controlled, Released
 from models.scene.joints import sliding_body
 from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 
-TinyChecked = AfterValidator(not_tiny)
+TinyChecked = AfterValidator(schema.not_tiny)
 
 
-class TurningDriver(Table):
+class TurningDriver(schema.Table):
     """A turning driver: a ``link`` about its ground pin; or a ``pin``, by the angle of the second
     of two ``links`` less the angle of the first."""
 
-    link: Name | None = None
-    pin: Name | None = None
-    links: tuple[Name, Name] | None = None
+    link: schema.Name | None = None
+    pin: schema.Name | None = None
+    links: tuple[schema.Name, schema.Name] | None = None
 
     @model_validator(mode="after")
     def _is_one_joint(self) -> TurningDriver:
@@ -49,79 +38,79 @@ class TurningDriver(Table):
         return self
 
 
-class SlidingDriver(Table):
+class SlidingDriver(schema.Table):
     """A driven ``slider``, by its displacement."""
 
-    slider: Name
+    slider: schema.Name
 
 
 class ConstantDriver(TurningDriver):
     law: Literal["constant"] = "constant"
-    speed_rad_s: RateNumber
-    start_deg: Degrees = 0.0
+    speed_rad_s: schema.RateNumber
+    start_deg: schema.Degrees = 0.0
 
 
 class ConstantSlide(SlidingDriver):
     law: Literal["constant"] = "constant"
-    speed_m_s: RateNumber
-    start_m: Number = 0.0
-    travel_m: Positive
+    speed_m_s: schema.RateNumber
+    start_m: schema.Number = 0.0
+    travel_m: schema.Positive
 
 
 class OscillatingDriver(TurningDriver):
     law: Literal["oscillating"]
-    centre_deg: Degrees
-    amplitude_deg: Annotated[Degrees, TinyChecked]
-    frequency_rad_s: RateNumber
-    phase_deg: Degrees = 0.0
+    centre_deg: schema.Degrees
+    amplitude_deg: Annotated[schema.Degrees, TinyChecked]
+    frequency_rad_s: schema.RateNumber
+    phase_deg: schema.Degrees = 0.0
 
 
 class OscillatingSlide(SlidingDriver):
     law: Literal["oscillating"]
-    centre_m: Number
-    amplitude_m: RateNumber
-    frequency_rad_s: RateNumber
-    phase_deg: Degrees = 0.0
+    centre_m: schema.Number
+    amplitude_m: schema.RateNumber
+    frequency_rad_s: schema.RateNumber
+    phase_deg: schema.Degrees = 0.0
 
 
 class FromRestDriver(TurningDriver):
     law: Literal["from-rest"]
-    speed_rad_s: RateNumber
-    rise_s: Positive
-    start_deg: Degrees = 0.0
+    speed_rad_s: schema.RateNumber
+    rise_s: schema.Positive
+    start_deg: schema.Degrees = 0.0
 
 
 class FromRestSlide(SlidingDriver):
     law: Literal["from-rest"]
-    speed_m_s: RateNumber
-    rise_s: Positive
-    start_m: Number = 0.0
-    travel_m: Positive
+    speed_m_s: schema.RateNumber
+    rise_s: schema.Positive
+    start_m: schema.Number = 0.0
+    travel_m: schema.Positive
 
 
 class AcceleratingDriver(TurningDriver):
     law: Literal["accelerating"]
-    speed_rad_s: RateNumber
-    acceleration_rad_s2: RateNumber
-    start_deg: Degrees = 0.0
+    speed_rad_s: schema.RateNumber
+    acceleration_rad_s2: schema.RateNumber
+    start_deg: schema.Degrees = 0.0
 
 
 class AcceleratingSlide(SlidingDriver):
     law: Literal["accelerating"]
-    speed_m_s: RateNumber
-    acceleration_m_s2: RateNumber
-    start_m: Number = 0.0
-    travel_m: Positive
+    speed_m_s: schema.RateNumber
+    acceleration_m_s2: schema.RateNumber
+    start_m: schema.Number = 0.0
+    travel_m: schema.Positive
 
 
 class ControlledDriver(TurningDriver):
     """A link driven at a constant speed by a torque, from a controller with two gains."""
 
     law: Literal["controlled"]
-    speed_rad_s: RateNumber
-    kp_n_m_rad: NonNegative
-    kd_n_m_s: NonNegative
-    start_deg: Degrees = 0.0
+    speed_rad_s: schema.RateNumber
+    kp_n_m_rad: schema.NonNegative
+    kd_n_m_s: schema.NonNegative
+    start_deg: schema.Degrees = 0.0
 
     @model_validator(mode="after")
     def _turns_at_the_ground(self) -> ControlledDriver:
@@ -134,9 +123,9 @@ class FreeDriver(TurningDriver):
     """A driver released at time 0, with a speed or from rest, in free motion for a duration."""
 
     law: Literal["free"]
-    speed_rad_s: RateNumber = 0.0
-    start_deg: Degrees = 0.0
-    duration_s: Duration = 10.0
+    speed_rad_s: schema.RateNumber = 0.0
+    start_deg: schema.Degrees = 0.0
+    duration_s: schema.Duration = 10.0
 
     @model_validator(mode="after")
     def _is_told_by_a_link(self) -> FreeDriver:
@@ -207,7 +196,7 @@ def _turning(table: DriverTable) -> Law:
             math.radians(table.centre_deg),
             math.radians(table.amplitude_deg),
             table.frequency_rad_s,
-            within_a_turn(table.phase_deg),
+            schema.within_a_turn(table.phase_deg),
         )
     if isinstance(table, FromRestDriver):
         return FromRest(math.radians(table.start_deg), table.speed_rad_s, table.rise_s)
@@ -225,7 +214,7 @@ def _turning(table: DriverTable) -> Law:
 def _sliding(table: DriverTable) -> Law:
     """Make the law of a displacement."""
     if isinstance(table, OscillatingSlide):
-        phase = within_a_turn(table.phase_deg)
+        phase = schema.within_a_turn(table.phase_deg)
         return Oscillating(table.centre_m, table.amplitude_m, table.frequency_rad_s, phase)
     assert isinstance(table, ConstantSlide | FromRestSlide | AcceleratingSlide)
     start, speed, travel = table.start_m, table.speed_m_s, table.travel_m

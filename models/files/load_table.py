@@ -10,16 +10,7 @@ from pydantic import Field, model_validator
 
 from models.errors import CrankcheckError
 from models.files.schema import Degrees, Name, Number, Positive, Table, within_a_turn
-from models.scene import Slider
-from models.scene.characteristics import (
-    Characteristic,
-    Constant,
-    FourierSum,
-    Polynomial,
-    Pulse,
-    Sine,
-    Staircase,
-)
+from models.scene import Slider, characteristics
 from models.scene.joints import block_name
 from models.scene.loads import Load, Over, Stroke
 from models.scene.tabulated import Interpolation, Tabulated
@@ -241,26 +232,26 @@ def load_of(
     )
 
 
-def _characteristic(table: LawOfLoad) -> Characteristic:
+def _characteristic(table: LawOfLoad) -> characteristics.Characteristic:
     """Make the characteristic of the magnitude, angles in radians. Raises ValueError."""
     magnitude = table.force_n if table.force_n is not None else table.torque_n_m
     if isinstance(table, PolynomialLoad):
-        return Polynomial(tuple(magnitude))  # type: ignore[arg-type]
+        return characteristics.Polynomial(tuple(magnitude))  # type: ignore[arg-type]
     turning = getattr(table, "over", "time") == "angle"
     if isinstance(table, SineLoad):
         period = math.radians(table.period) if turning else table.period
-        return Sine(float(magnitude), period, within_a_turn(table.phase_deg))  # type: ignore[arg-type]
+        return characteristics.Sine(float(magnitude), period, within_a_turn(table.phase_deg))  # type: ignore[arg-type]
     if isinstance(table, PulseLoad):
-        return Pulse(float(magnitude), table.period_s, table.start_s)  # type: ignore[arg-type]
+        return characteristics.Pulse(float(magnitude), table.period_s, table.start_s)  # type: ignore[arg-type]
     if isinstance(table, StepsLoad):
-        return Staircase(table.at_s, tuple(magnitude))  # type: ignore[arg-type]
+        return characteristics.Staircase(table.at_s, tuple(magnitude))  # type: ignore[arg-type]
     if isinstance(table, FourierLoad):
         period = math.radians(table.period) if turning else table.period
         count = max(len(table.cosines), len(table.sines))
         cosines, sines = (
             (*waves, *[0.0] * (count - len(waves))) for waves in (table.cosines, table.sines)
         )
-        return FourierSum(float(magnitude), cosines, sines, period)  # type: ignore[arg-type]
+        return characteristics.FourierSum(float(magnitude), cosines, sines, period)  # type: ignore[arg-type]
     if isinstance(table, TableLoad):
         places, values = table.places, tuple(magnitude)  # type: ignore[arg-type]
         if not turning:
@@ -268,7 +259,7 @@ def _characteristic(table: LawOfLoad) -> Characteristic:
         period = math.radians(table.period_deg or 360.0)
         places = tuple(math.radians(place) for place in places)
         return Tabulated(places, values, table.interpolation, period)
-    return Constant(float(magnitude))  # type: ignore[arg-type]
+    return characteristics.Constant(float(magnitude))  # type: ignore[arg-type]
 
 
 def load_table(load: Load) -> Mapping[str, object]:
@@ -300,23 +291,23 @@ def _law_table(load: Load, key: str) -> dict[str, object]:
     """Write the law with its numbers; ``key`` is the key of the magnitude."""
     unit, turns = UNIT[load.over], load.over == "angle"
     match load.characteristic:
-        case Constant(value):
+        case characteristics.Constant(value):
             return {"law": "constant", key: value}
-        case Sine(amplitude, period, phase_rad):
+        case characteristics.Sine(amplitude, period, phase_rad):
             own = {
                 f"period_{unit}": in_degrees(period) if turns else period,
                 "phase_deg": in_degrees(phase_rad),
             }
             return {"law": "sine", "over": load.over, key: amplitude, **own}
-        case Pulse(amplitude, period, start):
+        case characteristics.Pulse(amplitude, period, start):
             return {"law": "pulse", key: amplitude, "period_s": period, "start_s": start}
-        case Staircase(places, values):
+        case characteristics.Staircase(places, values):
             return {"law": "steps", "at_s": places, key: values}
-        case FourierSum(mean, cosines, sines, period):
+        case characteristics.FourierSum(mean, cosines, sines, period):
             own = {f"period_{unit}": in_degrees(period) if turns else period}
             waves = {"cosines": cosines, "sines": sines, **own}
             return {"law": "fourier", "over": load.over, key: mean, **waves}
-        case Polynomial(coefficients):
+        case characteristics.Polynomial(coefficients):
             return {"law": "polynomial", "over": load.over, key: coefficients}
         case Tabulated(places, values, interpolation, period):
             at = tuple(map(in_degrees, places)) if turns else places

@@ -26,15 +26,9 @@ from models.motion import Motion
 from models.scene import Scene, as_bytes
 from models.scene.cut_links import with_rigid_links
 from models.scene.cut_scenes import SegmentedScene
+from reports.compare import elastic_truth
 from reports.compare.beam_theory import FreeBeamTheory
 from reports.compare.beside import Beside, first_samples
-from reports.compare.elastic_truth import (
-    STEADY,
-    ChainTruth,
-    ElasticBeside,
-    cut_scene,
-    kept_theory,
-)
 from reports.compare.free_truth import (
     LEAST_KNOWN,
     FreeBeside,
@@ -72,8 +66,8 @@ def _truth(
     pickled: bytes, count: int, springs: str, steps: int, dt_s: float, known_rad: float
 ) -> ReleasedElasticTruth:
     scene: Scene = pickle.loads(pickled)
-    theory = kept_theory(pickled, long_enough_s(scene, dt_s * steps), FreeBeamTheory)
-    chain = cut_scene(scene, count, springs)
+    theory = elastic_truth.kept_theory(pickled, long_enough_s(scene, dt_s * steps), FreeBeamTheory)
+    chain = elastic_truth.cut_scene(scene, count, springs)
     if not isinstance(chain, SegmentedScene):
         raise EngineError(
             f"{scene.name}: it is let go, and what engines make of it with beams of their own is "
@@ -85,7 +79,7 @@ def _truth(
 
 
 @dataclass(frozen=True)
-class ReleasedElasticTruth(ChainTruth):
+class ReleasedElasticTruth(elastic_truth.ChainTruth):
     """The reference of a free scene with elastic links. ``rigid`` is that with rigid links: errors
     are judged over its sensitivity, and its ``scene`` has the largest speed of the driver. Samples
     count as long as the uncertainty of the beam's angles, over the sensitivity, is at most
@@ -111,7 +105,7 @@ class ReleasedElasticTruth(ChainTruth):
 
     @property
     def needed_step(self) -> str:
-        return f"a step of {STEADY / self.fastest_rad_s:.3g} s"
+        return f"a step of {elastic_truth.STEADY / self.fastest_rad_s:.3g} s"
 
     @cached_property
     def known_s(self) -> float:
@@ -190,7 +184,7 @@ class BentReference:
 
 
 @dataclass(frozen=True)
-class ReleasedElasticBeside(ElasticBeside, FreeBeside):
+class ReleasedElasticBeside(elastic_truth.ElasticBeside, FreeBeside):
     """As `FreeBeside`, without a geometry at the driver's own angle."""
 
     compared_by: ClassVar[tuple[str, ...]] = (

@@ -15,25 +15,8 @@ from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.joints import mass_ratio
 from models.scene.laws import ConstantSpeed, Law
+from reports.compare import error_rows, errors
 from reports.compare.beside import Beside
-from reports.compare.error_rows import (
-    Instants,
-    differenced_rows,
-    instants_of,
-    rate_rows,
-    reported_rows,
-    uncertain,
-    whole_rows,
-)
-from reports.compare.errors import (
-    Departure,
-    Error,
-    Errors,
-    ForceFacts,
-    MotionFacts,
-    SceneFacts,
-    Unbalanced,
-)
 from reports.compare.hardness import curvature, inertia_share, load_slopes, unevenly_turned
 from reports.compare.tracks import length
 from reports.output.numbers import count
@@ -62,10 +45,10 @@ def force_rows(beside: Beside) -> ForceErrors:
     assert reference.forces is not None
     tracks = beside.tracks(named("force"), reference)
     determined: Mask = np.isfinite(reference.forces.torque) & ~near_jumps(scene, reference)
-    at = instants_of(beside, time_s, reference)
+    at = error_rows.instants_of(beside, time_s, reference)
     if run.forces_of == "steps":
         at = replace(at, settling=min(at.settling, OF_STEPS))
-    rows, missing, start = list[Error](), list[str](), 0.0
+    rows, missing, start = list[errors.Error](), list[str](), 0.0
     left: Mask = ~determined
     unsure = dict[tuple[str, str], float]()
     for track in tracks:
@@ -80,14 +63,14 @@ def force_rows(beside: Beside) -> ForceErrors:
             continue
         judged = beside.judged(track, time_s)
         sure = replace(judged, error=judged.error[kept], bound=judged.bound[kept])
-        rows += rate_rows(sure, at[kept], "reported")
+        rows += error_rows.rate_rows(sure, at[kept], "reported")
     borne = acting(run)
     force, torque = largest_reaction(scene, reference), largest_torque(scene, reference)
     return ForceErrors(
         tuple(rows),
         tuple(missing),
         force_notes(run, reference.forces, int(np.sum(left)), int(np.sum(at[~left].passed))),
-        ForceFacts(
+        errors.ForceFacts(
             contradictions=() if borne is None else borne.contradictions,
             unbalanced=unbalanced(run, force),
             start_load=start if run.forces_of == "steps" else 0.0,
@@ -107,10 +90,10 @@ ROUNDING = 1e-9
 class ForceErrors:
     """Result of the comparison of forces, in the terms of `reports.compare.errors.Errors`."""
 
-    rows: tuple[Error, ...] = ()
+    rows: tuple[errors.Error, ...] = ()
     not_reported: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    facts: ForceFacts = field(default_factory=ForceFacts)
+    facts: errors.ForceFacts = field(default_factory=errors.ForceFacts)
     incomplete: str = ""
     unsure: Mapping[tuple[str, str], float] = field(default_factory=dict)
     """Uncertainty of the reference, as a pure number, of forces that it knows at no sample."""
@@ -133,7 +116,7 @@ def off_stamps(run: Run) -> str:
     )
 
 
-def unbalanced(run: Run, largest_n: float) -> Unbalanced | None:
+def unbalanced(run: Run, largest_n: float) -> errors.Unbalanced | None:
     """Return the pin with the largest sum of forces, over the largest reaction; values that are not
     finite are reported elsewhere."""
     forces = acting(run)
@@ -143,7 +126,7 @@ def unbalanced(run: Run, largest_n: float) -> Unbalanced | None:
         if np.any(np.isfinite(off)):
             sums[point] = float(np.max(off, where=np.isfinite(off), initial=0.0)) / largest_n
     point = max(sums, key=lambda name: sums[name], default="")
-    return Unbalanced(point, sums[point]) if point else None
+    return errors.Unbalanced(point, sums[point]) if point else None
 
 
 def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[str, ...]:
@@ -203,38 +186,38 @@ def _turns(series: Array) -> Mask:
 class ComparedParts:
     """The parts of a comparison that differ from kind to kind: rows before those of the gaps and
     ``conserved`` ones after the rates, ``notes`` before those of forces, and facts as of
-    `SceneFacts`. ``borne`` is the result for the forces."""
+    `errors.SceneFacts`. ``borne`` is the result for the forces."""
 
-    placed: Iterable[Error]
+    placed: Iterable[errors.Error]
     notes: tuple[str, ...]
     borne: ForceErrors
-    departure: Departure | None
+    departure: errors.Departure | None
     conditioning: float
     summed_rad: float
     far: Mapping[tuple[BodyKind, str], float]
-    motion: MotionFacts
-    conserved: Iterable[Error] = ()
+    motion: errors.MotionFacts
+    conserved: Iterable[errors.Error] = ()
     drives_within: bool = False
 
 
-def whole_errors(beside: Beside, at: Instants, parts: ComparedParts) -> Errors:
+def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) -> errors.Errors:
     """Return all errors of a run; ``at`` are the instants of its positions."""
     scene, run, borne = beside.scene, beside.run, parts.borne
-    reported, not_reported = reported_rows(beside)
+    reported, not_reported = error_rows.reported_rows(beside)
     jolt = jolts(scene, beside.whole)
     growth = parts.motion.sensitivity
-    return Errors(
+    return errors.Errors(
         rows=(
             *parts.placed,
-            *whole_rows(beside, at, "closure"),
+            *error_rows.whole_rows(beside, at, "closure"),
             *reported,
-            *differenced_rows(beside, at),
+            *error_rows.differenced_rows(beside, at),
             *parts.conserved,
             *borne.rows,
         ),
         not_reported=(*not_reported, *borne.not_reported),
         notes=(*parts.notes, *borne.notes),
-        of_scene=SceneFacts(
+        of_scene=errors.SceneFacts(
             curvature=curvature(scene, beside.whole),
             conditioning=parts.conditioning,
             step_rad=scene.pace_rad_s * run.dt_s,
@@ -251,7 +234,7 @@ def whole_errors(beside: Beside, at: Instants, parts: ComparedParts) -> Errors:
         of_motion=parts.motion,
         missing=beside.missing,
         incomplete=beside.incomplete or borne.incomplete,
-        uncertain={key: bound / growth for key, bound in uncertain(beside).items()}
+        uncertain={key: bound / growth for key, bound in error_rows.uncertain(beside).items()}
         | dict(borne.unsure),
         departure=parts.departure,
     )

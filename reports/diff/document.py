@@ -7,19 +7,7 @@ from xml.etree.ElementTree import Element
 from rich.console import Console
 from rich.text import Text
 
-from reports.diff.words import (
-    HEADS,
-    PrintedRow,
-    footer,
-    headline,
-    left_out,
-    lines,
-    ratio,
-    remarks,
-    size,
-    told,
-    verdict,
-)
+from reports.diff import words
 from reports.output.console import hanging, plain_table, say
 from reports.output.formats import case_of, counted, folded, plain, remark, suite_of, table
 from reports.results.changes import CellPair, Diff
@@ -36,25 +24,25 @@ STYLES = {"worse": "bold red", "better": "green"}
 def show(console: Console, diff: Diff, strict: bool = False) -> None:
     """Print the whole diff."""
     style = STYLES["worse"] if diff.code(strict) else "bold green"
-    console.print(Text(f"{verdict(diff, strict)}: {headline(diff)}", style))
-    for line in remarks(diff):
+    console.print(Text(f"{words.verdict(diff, strict)}: {words.headline(diff)}", style))
+    for line in words.remarks(diff):
         hanging(console, "  ", line)
     console.print()
-    _grid(console, "worse", lines(diff, "worse"))
-    _grid(console, "better", lines(diff, "better"))
+    _grid(console, "worse", words.lines(diff, "worse"))
+    _grid(console, "better", words.lines(diff, "better"))
     _left_out(console, "new", diff.added)
     _left_out(console, "missing", diff.missing)
-    console.print(Text("\n".join(footer(diff)), "dim"), highlight=False)
+    console.print(Text("\n".join(words.footer(diff)), "dim"), highlight=False)
 
 
-def _grid(console: Console, word: str, rows: Sequence[PrintedRow]) -> None:
+def _grid(console: Console, word: str, rows: Sequence[words.PrintedRow]) -> None:
     """Print the rows of worse cells, or better ones, and the reasons of engines that gave up."""
     if not rows:
         return
     wide = console.width >= NARROW
     shown = rows[: MOST[word]]
     table = plain_table(word, STYLES[word])
-    for head in HEADS:
+    for head in words.HEADS:
         number = head in ("old", "new", "ratio")
         if wide or not number or head == "ratio":
             side: Literal["left", "right"] = "right" if number else "left"
@@ -75,7 +63,7 @@ def _grid(console: Console, word: str, rows: Sequence[PrintedRow]) -> None:
 
 def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
     """Print the cells of one run only."""
-    texts = left_out(cells)
+    texts = words.left_out(cells)
     if not texts:
         return
     console.print(Text(word, "bold"))
@@ -96,29 +84,32 @@ HEAD = 6_000
 
 def markdown(diff: Diff, strict: bool = False) -> str:
     """Return the whole diff; rows that exceed their room are counted."""
-    parts = [f"## crankcheck diff: {verdict(diff, strict).lower()}", f"**{headline(diff)}**"]
-    parts.append(_fitted((f"- {plain(text)}" for text in remarks(diff)), HEAD))
-    worse, better = lines(diff, "worse"), lines(diff, "better")
+    parts = [
+        f"## crankcheck diff: {words.verdict(diff, strict).lower()}",
+        f"**{words.headline(diff)}**",
+    ]
+    parts.append(_fitted((f"- {plain(text)}" for text in words.remarks(diff)), HEAD))
+    worse, better = words.lines(diff, "worse"), words.lines(diff, "better")
     if worse:
         parts.append(f"### worse\n\n{_rows(worse, BUDGETS['worse'])}")
     if better:
         parts.append(folded(f"{len(better)} better", _rows(better, BUDGETS["better"])))
     for word, cells in (("new", diff.added), ("missing", diff.missing)):
-        texts = (f"- {plain(text)}" for text in left_out(cells))
+        texts = (f"- {plain(text)}" for text in words.left_out(cells))
         if listed := _fitted(texts, BUDGETS[word]):
             parts.append(folded(f"{len(cells)} {word}", listed))
-    parts.append(_fitted((f"{plain(text)}  " for text in footer(diff)), HEAD))
+    parts.append(_fitted((f"{plain(text)}  " for text in words.footer(diff)), HEAD))
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _rows(rows: Sequence[PrintedRow], room: int) -> str:
+def _rows(rows: Sequence[words.PrintedRow], room: int) -> str:
     """Return rows as a table; the compared values are numbers."""
-    heads = [head.replace("\n", " ") for head in HEADS]
+    heads = [head.replace("\n", " ") for head in words.HEADS]
     heads[-NUMBERS:] = [f"{head}:" for head in heads[-NUMBERS:]]
     return table(heads, map(_cells, rows), room, "rows")
 
 
-def _cells(line: PrintedRow) -> tuple[str, ...]:
+def _cells(line: words.PrintedRow) -> tuple[str, ...]:
     quantity = f"{line.quantity}: {line.reason}" if line.reason else line.quantity
     return line.scene, line.engine, line.steps, quantity, line.old, line.new, line.ratio
 
@@ -152,15 +143,15 @@ def _compared(pair: CellPair) -> Element:
     if pair.word == "worse":
         versions = f"{pair.name.engine} {pair.old.version} -> {pair.new.version}"
         rows = [
-            f"{change.quantity}: {size(change.old)} -> {size(change.new)}, ratio {ratio(change)}"
-            f" ({change.word(pair.factor)})"
+            f"{change.quantity}: {words.size(change.old)} -> {words.size(change.new)}, "
+            f"ratio {words.ratio(change)} ({change.word(pair.factor)})"
             for change in pair.changes
         ]
         kind = "status" if pair.turned else "error"
-        message = f"{pair.name.label}: {told(pair)}"
+        message = f"{pair.name.label}: {words.told(pair)}"
         remark(case, "failure", "\n".join([versions, *rows]), message=message, type=kind)
     elif pair.word == "better":
-        remark(case, "system-out", f"better: {told(pair)}")
+        remark(case, "system-out", f"better: {words.told(pair)}")
     return case
 
 

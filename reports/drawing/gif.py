@@ -20,15 +20,8 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
+from reports.drawing import shape
 from reports.drawing.force_arrows import ForceArrows, force_arrows
-from reports.drawing.shape import (
-    PATH_SAMPLES,
-    box_of,
-    colours_of,
-    guide_direction,
-    size_of_motion,
-    turn_of,
-)
 from reports.output.numbers import readable
 from reports.way.way import way_of
 
@@ -38,7 +31,7 @@ INK = "#1f2933"
 
 def draw_arrows(axes: Axes, arrows: ForceArrows, motion: Motion, index: int) -> None:
     """Draw the forces at a sample, each in the colour of the body that it acts on."""
-    colours = colours_of(arrows.scene)
+    colours = shape.colours_of(arrows.scene)
     for arrow in arrows.at(motion, index):
         colour = colours.get(arrow.body, INK)
         end = arrow.head(arrows.size)[1:].mean(axis=0) if arrow.is_whole else arrow.tip
@@ -133,10 +126,10 @@ class _Turn:
     @staticmethod
     def of(scene: Scene, positions: int, *, with_forces: bool) -> _Turn:
         most_s = way_of(scene).drawn_s(FRAMES * FRAME_S)
-        path = turn_of(scene, PATH_SAMPLES, most_s, with_forces=with_forces)
-        motion = turn_of(scene, positions + 1, most_s, with_forces=with_forces)
+        path = shape.turn_of(scene, shape.PATH_SAMPLES, most_s, with_forces=with_forces)
+        motion = shape.turn_of(scene, positions + 1, most_s, with_forces=with_forces)
         arrows = None if path.forces is None else force_arrows(scene, path)
-        box = box_of(path) if arrows is None else arrows.box(path)
+        box = shape.box_of(path) if arrows is None else arrows.box(path)
         return _Turn(scene, motion, path, box, arrows)
 
 
@@ -161,7 +154,7 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
 
 def _legend(figure: Figure, turn: _Turn) -> None:
     """Draw the links by colour, below everything that moves."""
-    colours = colours_of(turn.scene)
+    colours = shape.colours_of(turn.scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
     if turn.arrows is not None:
         words = "force on the body of that colour, black: on a block"
@@ -212,11 +205,11 @@ def draw_bodies(
     They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn. Returns the size of
     the moving parts [m].
     """
-    size = size_of_motion(path)
+    size = shape.size_of_motion(path)
     for name, point in path.points.items():
         if name not in scene.ground:
             axes.plot(*point.position.T, color=GUIDE, linewidth=line, zorder=1)
-    colours = colours_of(scene)
+    colours = shape.colours_of(scene)
     for slider in scene.sliders.values():
         rail = GUIDE if slider.on == GROUND else colours[slider.on]
         _slider(axes, slider, rail, motion, path, index, size)
@@ -255,7 +248,7 @@ def _slider(
     travel = path.sliders[slider.name].displacement
     place = motion.points[slider.point].position[index]
     along = float(motion.sliders[slider.name].displacement[index])
-    direction = guide_direction(slider, motion, index)
+    direction = shape.guide_direction(slider, motion, index)
     reach = 0.06 * size
     ends = [travel.min() - reach - along, travel.max() + reach - along]
     rail = place + np.outer(ends, direction)

@@ -15,18 +15,8 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
+from reports.drawing import shape
 from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows
-from reports.drawing.shape import (
-    Name,
-    Sheet,
-    box_of,
-    clearest,
-    guide_direction,
-    names,
-    rail,
-    size_of_motion,
-    turn_of,
-)
 
 WIDTH, HEIGHT = 440, 320
 """Largest picture [px]; the mechanism's own shape makes it narrower or lower."""
@@ -66,17 +56,19 @@ def svg(
     Paths of ``logged``, the motion of a run, are drawn over the reference paths. Raises
     CrankcheckError where the mechanism can not go through all of that, or there are no forces.
     """
-    path = turn_of(scene, SAMPLES, most_s, with_forces=with_forces)
+    path = shape.turn_of(scene, SAMPLES, most_s, with_forces=with_forces)
     arrows = None if path.forces is None else force_arrows(scene, path)
-    low, high = box_of(path) if arrows is None else arrows.box(path)
-    at = clearest(path) if arrows is None else arrows.largest_at(path)
+    low, high = shape.box_of(path) if arrows is None else arrows.box(path)
+    at = shape.clearest(path) if arrows is None else arrows.largest_at(path)
     per_m = float(min(WIDTH / (high[0] - low[0]), HEIGHT / (high[1] - low[1])))
     wide, tall = (float(each) * per_m for each in high - low)
     paper = _Paper(float(low[0]), float(high[1]), per_m)
-    size = size_of_motion(path)
+    size = shape.size_of_motion(path)
     colours = colours_of(scene)
     spare_m = 0.08 * size
-    sheet = Sheet(low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH)
+    sheet = shape.Sheet(
+        low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH
+    )
     title = f"{scene.name}, {driver_stands(scene, path, at)}"
     acting = arrows.at(path, at) if arrows else []
     taken = [each.shaft for each in acting]
@@ -89,7 +81,7 @@ def svg(
         *(_block(slider, path, at, paper) for slider in scene.sliders.values()),
         *(_pin(point.position[at], paper) for point in path.points.values()),
         *(_arrow(each, paper, size, colours) for each in acting),
-        *(_text(name, paper) for name in names(scene, path, at, sheet, _size, taken)),
+        *(_text(name, paper) for name in shape.names(scene, path, at, sheet, _size, taken)),
         *(_scale_bar(arrows, paper, (wide, tall)) if arrows else ()),
     ]
     return (
@@ -119,7 +111,7 @@ def _guides(
 ) -> Iterable[str]:
     """Yield the lines of sliders, as far as they run on them."""
     for slider in scene.sliders.values():
-        ends = rail(slider, path, at, spare_m)[[0, -1]]
+        ends = shape.rail(slider, path, at, spare_m)[[0, -1]]
         colour = "currentColor" if slider.on == GROUND else colours[slider.on]
         yield (
             f'<polyline points="{_points(paper.at(ends))}" stroke="{colour}" stroke-width="1.5" '
@@ -140,7 +132,7 @@ def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: 
 
 def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
     """Return the block of a slider, along its line."""
-    direction = guide_direction(slider, path, at)
+    direction = shape.guide_direction(slider, path, at)
     across = np.array([-direction[1], direction[0]])
     half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * BLOCK / paper.per_m
     corners = path.points[slider.point].position[at] + half @ np.array([direction, across])
@@ -190,7 +182,7 @@ def _scale_bar(arrows: ForceArrows, paper: _Paper, size: tuple[float, float]) ->
         )
 
 
-def _text(name: Name, paper: _Paper) -> str:
+def _text(name: shape.Name, paper: _Paper) -> str:
     x, y = paper.at(np.array([name.x, name.y]))
     size, style = (LETTER, "") if name.is_point else (LINK_NAME, ' font-style="italic"')
     return (

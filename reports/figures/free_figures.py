@@ -13,28 +13,18 @@ from analytic.free.free_motion import FreeMotion
 from models.array import Array
 from models.motion import LinkMotion
 from models.scene import Scene
+from reports.figures import style
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
-from reports.figures.style import (
-    COLUMN_IN,
-    INK,
-    QUIET,
-    FigureSet,
-    Look,
-    loads_told,
-    mark_zero,
-    note,
-    shorten,
-)
 from reports.output.numbers import error_text
 
 LEAST, MOST, IN_A_TURN = 2401, 7201, 180
 """Samples: of a motion that hardly turns, of one that turns very often, and in a turn at its
 largest speed, whose peaks are narrow."""
-DRIVER: Look = {"color": "#1f5f9e", "linewidth": 1.0}
-START: Look = {"color": "#c04a1d", "marker": "o", "markersize": 3.5, "linestyle": "none"}
-KINETIC: Look = {"color": "#c04a1d", "linewidth": 1.0}
-TOTAL: Look = {"color": INK, "linewidth": 0.9, "linestyle": (0, (5.0, 2.0))}
-WORK: Look = {"color": "#2f7d4c", "linewidth": 0.9, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
+DRIVER: style.Look = {"color": "#1f5f9e", "linewidth": 1.0}
+START: style.Look = {"color": "#c04a1d", "marker": "o", "markersize": 3.5, "linestyle": "none"}
+KINETIC: style.Look = {"color": "#c04a1d", "linewidth": 1.0}
+TOTAL: style.Look = {"color": style.INK, "linewidth": 0.9, "linestyle": (0, (5.0, 2.0))}
+WORK: style.Look = {"color": "#2f7d4c", "linewidth": 0.9, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
 ROUNDING = 1e-9
 
 
@@ -57,9 +47,9 @@ class FreeCourse:
     def mark_time(self, axes: Axes) -> None:
         """Set limits of a time axis, short numbers on the other, and draw the limit positions."""
         axes.set_xlim(float(self.time_s[0]), float(self.time_s[-1]))
-        shorten(axes)
+        style.shorten(axes)
         for one in self.free.passages:
-            axes.axvline(one.time_s, color=QUIET, linewidth=0.5, linestyle=(0, (1.0, 2.0)))
+            axes.axvline(one.time_s, color=style.QUIET, linewidth=0.5, linestyle=(0, (1.0, 2.0)))
 
     @property
     def notes(self) -> list[str]:
@@ -67,7 +57,7 @@ class FreeCourse:
         scene, end = self.scene, self.time_s[-1:]
         how = f"integrated to {error_text(float(self.free.error_rad(end)[0]))} rad"
         springs = [f"springs: {', '.join(scene.springs)}"] if scene.springs else []
-        return [note(scene, how, scene.driver.link, loads_told(scene), *springs)]
+        return [style.note(scene, how, scene.driver.link, style.loads_told(scene), *springs)]
 
     @property
     def notes_over_time(self) -> list[str]:
@@ -91,13 +81,13 @@ def _over_time(course: FreeCourse) -> Figure:
     driver, name = course.driver, course.scene.driver.link
     panels = Panels(2, 1, 1.25, *SIDES, 0.15, between=(0.15, 0.12))
     title = f"Free motion: {course.scene.name}"
-    figure, (upper, lower) = sheet(COLUMN_IN, panels, title, [], course.notes_over_time)
+    figure, (upper, lower) = sheet(style.COLUMN_IN, panels, title, [], course.notes_over_time)
     turns = float(np.ptp(driver.theta)) > 4 * math.tau
     unit, per = ("turns", math.tau) if turns else ("deg", math.radians(1.0))
     upper.plot(course.time_s, driver.theta / per, **DRIVER)
     upper.set_ylabel(f"angle of {name} [{unit}]")
     upper.tick_params(labelbottom=False)
-    mark_zero(lower, driver.omega)
+    style.mark_zero(lower, driver.omega)
     lower.plot(course.time_s, driver.omega, **DRIVER)
     lower.set_ylabel("angular velocity [rad/s]")
     lower.set_xlabel("time [s]")
@@ -119,8 +109,8 @@ def _energy(course: FreeCourse) -> Figure:
         lines.append(("work of loads, dampers, friction", course.work, WORK))
     entries = [(Line2D([], [], **look), label) for label, _, look in lines]
     title = f"Energy: {course.scene.name}"
-    figure, (axes,) = sheet(COLUMN_IN, ONE, title, entries, course.notes_over_time)
-    mark_zero(axes, *(series for _, series, _ in lines))
+    figure, (axes,) = sheet(style.COLUMN_IN, ONE, title, entries, course.notes_over_time)
+    style.mark_zero(axes, *(series for _, series, _ in lines))
     for _, series, look in lines:
         axes.plot(course.time_s, series, **look)
     axes.set_xlabel("time [s]")
@@ -138,13 +128,15 @@ def _phase(course: FreeCourse) -> Figure:
         degrees, omega = _over_one_turn(degrees, omega)
         label = "angle within a turn of"
     title = f"Phase diagram: {course.scene.name}"
-    figure, (axes,) = sheet(COLUMN_IN, ONE, title, [], [*course.notes, "The dot is the start."])
-    mark_zero(axes, course.driver.omega)
+    figure, (axes,) = sheet(
+        style.COLUMN_IN, ONE, title, [], [*course.notes, "The dot is the start."]
+    )
+    style.mark_zero(axes, course.driver.omega)
     axes.plot(degrees, omega, **DRIVER | {"linewidth": 0.8})
     axes.plot(degrees[:1], omega[:1], **START)
     axes.set_xlabel(f"{label} {course.scene.driver.link} [deg]")
     axes.set_ylabel("angular velocity [rad/s]")
-    shorten(axes)
+    style.shorten(axes)
     if turning:
         axes.set_xlim(0.0, 360.0)
         axes.xaxis.set_major_locator(MultipleLocator(60.0))
@@ -169,6 +161,6 @@ def _over_one_turn(degrees: Array, omega: Array) -> tuple[Array, Array]:
     )
 
 
-FREE_FIGURES: FigureSet[FreeCourse] = FigureSet(
+FREE_FIGURES: style.FigureSet[FreeCourse] = style.FigureSet(
     "a free motion", {"over-time": _over_time, "energy": _energy, "phase": _phase}
 )

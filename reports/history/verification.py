@@ -16,13 +16,7 @@ from filelock import FileLock, Timeout
 from packaging.version import InvalidVersion, Version
 
 from models.errors import CrankcheckError
-from reports.history.environments import (
-    EngineVersion,
-    NotMeasuredError,
-    clean_variables,
-    held_numpy,
-    shortened,
-)
+from reports.history import environments
 from reports.output.write import check_folder, crankcheck_version, processor
 from reports.quantities import QUANTITIES, named
 from reports.results.runs import StoredCell, StoredRun
@@ -74,11 +68,11 @@ def key_of(what: Iterable[object]) -> str:
 
     ``what`` are the cells to verify, with scene and settings in full, and any further inputs.
     """
-    parts = [code_key(), held_numpy(), platform.python_version(), processor()]
+    parts = [code_key(), environments.held_numpy(), platform.python_version(), processor()]
     return hashlib.sha256("\n".join([*parts, *map(repr, what)]).encode()).hexdigest()[:16]
 
 
-def place(cache: Path, asked: EngineVersion, key: str) -> Path:
+def place(cache: Path, asked: environments.EngineVersion, key: str) -> Path:
     """Return the folder of the result of a version."""
     return cache / "results" / f"{asked.name}-{key}"
 
@@ -90,7 +84,7 @@ def kept(folder: Path) -> bool:
 
 def measure(
     folder: Path,
-    asked: EngineVersion,
+    asked: environments.EngineVersion,
     python: Path,
     arguments: Sequence[str],
     run: Runner = patient,
@@ -112,9 +106,9 @@ def measure(
         signals = leave_to_parent.__module__
         code = LAUNCH.format(engine=package, folders=borrowed(), signals=signals)
         options = ["verify", "--engine", asked.engine, "-o", str(aside), *arguments]
-        ended = run([str(python), "-P", "-c", code, *options], clean_variables(), None)
+        ended = run([str(python), "-P", "-c", code, *options], environments.clean_variables(), None)
         if not kept(aside):
-            raise NotMeasuredError(_not_run(ended))
+            raise environments.NotMeasuredError(_not_run(ended))
         if folder.exists():
             shutil.rmtree(folder)
         aside.replace(folder)
@@ -128,7 +122,7 @@ def _not_run(ended: Ended) -> str:
     if ended.code < 0:
         return f"not run: the process was ended by signal {-ended.code}"
     why = lines[-1].removeprefix("crankcheck: ") if lines else f"exit code {ended.code}"
-    return shortened(f"not run: {why}")
+    return environments.shortened(f"not run: {why}")
 
 
 def user_cache(
@@ -228,7 +222,7 @@ class VersionResult:
     ``folder`` holds the files of the verification; ``kept`` says that an earlier call made them.
     """
 
-    asked: EngineVersion
+    asked: environments.EngineVersion
     run: StoredRun = NO_RUN
     reason: str = ""
     folder: Path | None = None

@@ -5,21 +5,12 @@ from dataclasses import replace
 
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
+from reports.logs import map_file
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.column_meaning import GapColumn, Reader, column_meaning, gaps_told
 from reports.logs.columns import Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
 from reports.logs.kinds import LENGTH
-from reports.logs.map_file import (
-    HEAD,
-    LEFT_OUT,
-    ChannelTable,
-    Map,
-    file_lines,
-    form_lines,
-    told_lines,
-    toml_text,
-)
 from reports.logs.names import SceneNames, meaning
 from reports.logs.time_columns import (
     further_instants,
@@ -34,7 +25,7 @@ A_FORCE = "a force, which is judged with --forces"
 
 
 def understood(
-    columns: Columns, scene: Scene, map_: Map | None = None, *, forces: bool = False
+    columns: Columns, scene: Scene, map_: map_file.Map | None = None, *, forces: bool = False
 ) -> OwnLog:
     """Return the log of a scene, with its ``forces`` on request.
 
@@ -49,7 +40,7 @@ def understood(
     map_ : Map or None
         The user's meanings of columns, in place of their names.
     """
-    map_ = map_ or Map()
+    map_ = map_ or map_file.Map()
     times = time_columns(columns, map_)
     told = {one.column: one for one in map_.channel}
     columns.require(told, "[[channel]] column")
@@ -92,7 +83,7 @@ def understood(
     )
 
 
-def wanted(scene: Scene, map_: Map, *, forces: bool = False) -> Callable[[str], bool]:
+def wanted(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
     """Return a test of the names of columns that are worth reading: others are only named."""
     named = SceneNames(scene)
     told = {one.column: one for one in map_.channel}
@@ -114,7 +105,10 @@ def wanted(scene: Scene, map_: Map, *, forces: bool = False) -> Callable[[str], 
 
 
 def _by_meaning(
-    columns: Columns, scene: Scene, told: Mapping[str, ChannelTable], times: Mapping[str, str]
+    columns: Columns,
+    scene: Scene,
+    told: Mapping[str, map_file.ChannelTable],
+    times: Mapping[str, str],
 ) -> tuple[list[Channel], list[GapColumn], list[tuple[str, str]]]:
     """Return the columns of the scene, and the others with the reason. Raises CrankcheckError."""
     named = SceneNames(scene)
@@ -127,7 +121,7 @@ def _by_meaning(
         found = column_meaning(column, told.get(column), named, times)
         if isinstance(found, str):
             told_so = A_FORCE if names_force(column, scene) else why_not_judged(column, scene)
-            unused.append((column, found if found == LEFT_OUT else told_so or found))
+            unused.append((column, found if found == map_file.LEFT_OUT else told_so or found))
         elif isinstance(found, GapColumn):
             gaps.append(found)
         else:
@@ -196,7 +190,7 @@ def judged_channels(
     return sorted(main, key=lambda one: place[one.column]), copies, spare
 
 
-def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | None:
+def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, str] | None:
     """Return a form of the map of a log with all its columns, and the entries still missing.
 
     None where names and map give the times and a column of the scene, as the fault is another one
@@ -220,21 +214,21 @@ def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | No
     points = (name for name in scene.pins if name not in scene.ground)
     every = (*scene.links, *points, *scene.sliders)
     lines = [
-        *HEAD,
+        *map_file.HEAD,
         f"# Still to be filled in: {'; '.join(lacks)}.",
-        f"# The scene has {', '.join(map(toml_text, dict.fromkeys(every)))}.",
+        f"# The scene has {', '.join(map(map_file.toml_text, dict.fromkeys(every)))}.",
         "",
-        *(file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
+        *(map_file.file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
         *_time_lines(map_, times, columns.raw),
     ]
     for name in others:
         lines.append("")
         if name in told:
-            lines += told_lines(told[name])
+            lines += map_file.told_lines(told[name])
         elif name in bodies:
-            lines.append(f"# {toml_text(name)} is taken as its name says")
+            lines.append(f"# {map_file.toml_text(name)} is taken as its name says")
         else:
-            lines += form_lines(name, _why_not(name, named))
+            lines += map_file.form_lines(name, _why_not(name, named))
     return "\n".join(lines) + "\n", "; ".join(lacks)
 
 
@@ -250,12 +244,12 @@ def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
     return found
 
 
-def _time_lines(map_: Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
+def _time_lines(map_: map_file.Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
     """Return the table of times; with remarks for missing entries."""
     told = map_.time.model_dump(exclude_defaults=True)
-    lines = ["[time]", *(f"{key} = {toml_text(value)}" for key, value in told.items())]
+    lines = ["[time]", *(f"{key} = {map_file.toml_text(value)}" for key, value in told.items())]
     if not times:
-        lines += [f"# column = {toml_text(name)}" for name in names]
+        lines += [f"# column = {map_file.toml_text(name)}" for name in names]
         lines.append('# unit = "s"')
     return lines
 

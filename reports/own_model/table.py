@@ -16,20 +16,9 @@ from reports.judge.rows import cell_row, error_row
 from reports.judge.rules import RULES
 from reports.output.console import hanging, plain_table
 from reports.output.numbers import finite, short
+from reports.own_model import sentences
 from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, errors_of
-from reports.own_model.sentences import (
-    factor_text,
-    footer,
-    gaps,
-    groups,
-    reading,
-    recommended_head,
-    step_heads,
-    steps_text,
-    still_out,
-    verdict_text,
-)
 from reports.verify.table import MARKS, halved, mark
 
 WIDE, NARROW = 76, 52
@@ -41,17 +30,20 @@ STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
 def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
     """Print the whole model."""
     _failures(console, judged)
-    _told(console, str(judged.account.request.path), reading(judged.account))
+    _told(console, str(judged.account.request.path), sentences.reading(judged.account))
     console.print()
     console.print(_table(judged, console.width), "")
-    if text := still_out(judged):
+    if text := sentences.still_out(judged):
         hanging(console, "recommended: ", harmless(text))
-    if text := gaps(judged):
+    if text := sentences.gaps(judged):
         hanging(console, "joints: ", harmless(text))
     _disturbing(console, judged)
     _recommended(console, judged)
-    console.print(Text(harmless(verdict_text(judged)), STYLES[judged.verdict]))
-    lines = [*footer(judged), ", ".join(f"{name} {value}" for name, value in facts.items())]
+    console.print(Text(harmless(sentences.verdict_text(judged)), STYLES[judged.verdict]))
+    lines = [
+        *sentences.footer(judged),
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
     console.print(escape("\n".join(lines)), style="dim", highlight=False)
 
 
@@ -79,10 +71,10 @@ def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
 def _table(judged: JudgedModel, width: int) -> Table:
     """Return the three lines, each with its gain, and the others worth reporting."""
     wide = width >= WIDE
-    table = plain_table(f"largest error of place {steps_text(judged)}")
+    table = plain_table(f"largest error of place {sentences.steps_text(judged)}")
     table.add_column("")
     table.add_column("line", no_wrap=True)
-    for head in step_heads(judged):
+    for head in sentences.step_heads(judged):
         table.add_column(head, justify="right", no_wrap=True)
     if wide:
         table.add_column("gap\n/ L", justify="right", no_wrap=True)
@@ -97,11 +89,11 @@ def _table(judged: JudgedModel, width: int) -> Table:
 def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> None:
     """Add a line, and its gain below it."""
     columns = len(table.columns) - 2
-    steps = len(step_heads(judged))
+    steps = len(sentences.step_heads(judged))
     table.add_row(mark(one), one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
     if one is not judged.own and any(map(math.isfinite, judged.gains(one))):
         factors = [
-            "" if math.isnan(factor) else factor_text(factor)
+            "" if math.isnan(factor) else sentences.factor_text(factor)
             for factor in judged.gains(one)[:steps]
         ]
         table.add_row("", Text("  gain", "dim"), *(Text(each, "cyan") for each in factors))
@@ -125,7 +117,7 @@ def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
 
 def _disturbing(console: Console, judged: JudgedModel) -> None:
     """Print possible disturbances of the comparison, a paragraph for each kind."""
-    found = groups(judged)
+    found = sentences.groups(judged)
     if found:
         console.print("can disturb it:")
     for group in found:
@@ -136,7 +128,7 @@ def _disturbing(console: Console, judged: JudgedModel) -> None:
 
 def _recommended(console: Console, judged: JudgedModel) -> None:
     """Print the recommended settings, or why there are none."""
-    console.print(Text(recommended_head(judged), "bold"))
+    console.print(Text(sentences.recommended_head(judged), "bold"))
     console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
 
 
@@ -154,7 +146,7 @@ def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:
             "key": account.request.key,
             "scene": scene_text(account.scene),
             "notes": list(account.notes),
-            "disturbances": [vars(group) for group in groups(judged)],
+            "disturbances": [vars(group) for group in sentences.groups(judged)],
             "recommended": judged.patch,
             "helps": account.helps,
         },

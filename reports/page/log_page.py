@@ -12,17 +12,8 @@ from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
 from reports.logs.channel import Channel
 from reports.output.numbers import count, readable
+from reports.own_log import table
 from reports.own_log.judged import JudgedLog, LogRow
-from reports.own_log.table import (
-    fit_text,
-    footer,
-    missing_text,
-    rest_text,
-    shown_rows,
-    taken_text,
-    unexplained,
-    verdict_line,
-)
 from reports.page.build import Head, assembled
 from reports.page.log_curves import DrawnChannel, Samples, curves
 from reports.page.log_motion import has_places, log_motion
@@ -73,14 +64,14 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
     """Return the verdict in one line, its reasons, text for the map, and every error; columns link
     to their curves, by their numbers among those ``drawn``."""
     numbers = {curve.column: number for number, curve in enumerate(drawn)}
-    rows = sorted(shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
+    rows = sorted(table.shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
     unused = judged.log.unused
     return Section(
         anchor="verdict",
         title="Verdict",
         template="log_verdict.html",
         words={
-            "verdict": sentence_text(verdict_line(judged).plain),
+            "verdict": sentence_text(table.verdict_line(judged).plain),
             "level": judged.verdict,
             "failures": [
                 (each.rule, RULES[each.rule].title, sentence_text(each.text))
@@ -88,11 +79,11 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
             ],
             "causes": [(sentence_text(each.text), map_lines(each)) for each in judged.causes],
             "unexplained": _unexplained(judged),
-            "fit": fit_text(judged) if judged.fit else "",
+            "fit": table.fit_text(judged) if judged.fit else "",
             "notes": [sentence_text(note) for note in judged.notes],
             "rows": [_row(row, numbers) for row in rows],
-            "rest": rest_text(judged),
-            "not_judged": missing_text(judged),
+            "rest": table.rest_text(judged),
+            "not_judged": table.missing_text(judged),
             "unused": [(name_text(name), sentence_text(why)) for name, why in unused[:MOST_UNUSED]],
             "number": len(unused),
         },
@@ -104,7 +95,7 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
 def _unexplained(judged: JudgedLog) -> str:
     """Return the columns that no cause explains; causes of a free motion are not searched."""
     is_explained = judged.scene.is_free or not judged.failures
-    return "" if is_explained else sentence_text(few(unexplained(judged), 6))
+    return "" if is_explained else sentence_text(few(table.unexplained(judged), 6))
 
 
 def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
@@ -123,7 +114,7 @@ def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
         "limit": row.limit.number,
         "origin": row.limit.origin,
         "taken": row.taken,
-        "taken_told": taken_text(row.taken),
+        "taken_told": table.taken_text(row.taken),
         "time_s": error.time_of_maximum_s,
     }
 
@@ -184,7 +175,7 @@ def standing(curve: DrawnChannel) -> str:
     if curve.taken < 0.0:
         return "not judged"
     verdict = "ok" if all(row.verdict == "within" for row in curve.judged) else "OUT"
-    return f"{verdict} {taken_text(curve.taken)}"
+    return f"{verdict} {table.taken_text(curve.taken)}"
 
 
 def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> dict[str, object]:
@@ -233,7 +224,7 @@ def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
         error = row.error
         joined = " of both its coordinates together" if len(row.columns) > 1 else ""
         where = {"start": " at the start", "passage": " near a change point"}.get(error.kind, "")
-        of = f"{readable(error.pure)} {share(error)}, {taken_text(row.taken)} of the limit"
+        of = f"{readable(error.pure)} {share(error)}, {table.taken_text(row.taken)} of the limit"
         told = f"The {error.quantity} error{joined}{where} is {of}"
         yield f"{told}, {readable(row.limit.number)} ({row.limit.origin})."
     if curve.turns:
@@ -266,7 +257,7 @@ def _made(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
             "settings": _settings(judged),
             "channels": [_channel_row(channel, note) for channel, note in channels[:MOST_CHANNELS]],
             "facts": {name_text(k): name_text(str(v)) for k, v in facts.items() if k != "made"},
-            "means": footer(judged, facts)[0],
+            "means": table.footer(judged, facts)[0],
         },
     )
 

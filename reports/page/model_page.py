@@ -11,23 +11,9 @@ from reports.drawing.moving import INSTANTS, displacements, drawing, singles
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
 from reports.output.numbers import count
+from reports.own_model import sentences
 from reports.own_model.account import CheckedLine
 from reports.own_model.judged import PARTS, JointGap, JudgedModel, errors_of
-from reports.own_model.sentences import (
-    EACH,
-    factor_text,
-    factor_words,
-    footer,
-    groups,
-    is_diff,
-    reading,
-    recommended_head,
-    share_text,
-    step_heads,
-    steps_text,
-    still_out,
-    verdict_text,
-)
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section, name_text, sentence_text
@@ -94,17 +80,17 @@ def _verdict(judged: JudgedModel) -> Section:
         title="Verdict",
         template="model_verdict.html",
         words={
-            "verdict": sentence_text(verdict_text(judged)),
+            "verdict": sentence_text(sentences.verdict_text(judged)),
             "level": "within" if judged.verdict == "within" else "out",
             "failures": [
                 (each.rule, RULES[each.rule].title, sentence_text(each.text))
                 for each in judged.failures
             ],
             "cure": sentence_text(judged.own.remedy),
-            "steps": steps_text(judged),
-            "heads": step_heads(judged),
+            "steps": sentences.steps_text(judged),
+            "heads": sentences.step_heads(judged),
             "rows": [_row(judged, one) for one in (*judged.three, *judged.others)],
-            "still_out": sentence_text(still_out(judged)),
+            "still_out": sentence_text(sentences.still_out(judged)),
             "lines": [one.cell.profile for one in judged.three],
             "joints": [_joint(judged, joint) for joint in judged.joints()],
         },
@@ -115,7 +101,7 @@ def _verdict(judged: JudgedModel) -> Section:
 def _row(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
     """Return a line of the table: its error and its gain at each step."""
     worst = worst_place(one.errors) if one.errors else None
-    steps = len(step_heads(judged))
+    steps = len(sentences.step_heads(judged))
     first = math.nan if worst is None else worst.pure
     gains = [math.nan] * steps if one is judged.own else judged.gains(one)[:steps]
     ended = one.convergence.words if one.convergence else ""
@@ -132,7 +118,7 @@ def _row(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
 
 
 def _gain(factor: float) -> str:
-    return "" if math.isnan(factor) else factor_text(factor)
+    return "" if math.isnan(factor) else sentences.factor_text(factor)
 
 
 def _joint(judged: JudgedModel, joint: JointGap) -> dict[str, object]:
@@ -143,7 +129,7 @@ def _joint(judged: JudgedModel, joint: JointGap) -> dict[str, object]:
         "open_m": joint.open_m,
         "gaps": [joint.gap_m.get(name, math.nan) for name in names],
         "share": joint.share,
-        "share_told": share_text(joint.share) if math.isfinite(joint.share) else "",
+        "share_told": sentences.share_text(joint.share) if math.isfinite(joint.share) else "",
         "out": joint.share > 1.0,
     }
 
@@ -245,7 +231,7 @@ MOST = 300
 
 def _disturbing(judged: JudgedModel) -> Section | None:
     """Return parts beside the linkage that can disturb the comparison, by kind; None if none."""
-    found = groups(judged)
+    found = sentences.groups(judged)
     if not found:
         return None
     return Section(
@@ -262,7 +248,7 @@ def _disturbing(judged: JudgedModel) -> Section | None:
                 }
                 for group in found
             ],
-            "each": EACH,
+            "each": sentences.EACH,
         },
         styles=("log.css",),
     )
@@ -277,12 +263,12 @@ def _recommended(judged: JudgedModel) -> Section:
         title="Recommended settings" if judged.account.helps else "No settings help",
         template="model_recommended.html",
         words={
-            "head": recommended_head(judged),
+            "head": sentences.recommended_head(judged),
             "patch": harmless(judged.patch),
-            "is_diff": is_diff(judged.patch),
+            "is_diff": sentences.is_diff(judged.patch),
             "file": name_text(judged.account.request.path.name),
             "within": last.verdict == "within",
-            "gain": factor_words(gain) if gain == gain else "",
+            "gain": sentences.factor_words(gain) if gain == gain else "",
         },
         scripts=("copying.js",),
         styles=("log.css",),
@@ -292,7 +278,7 @@ def _recommended(judged: JudgedModel) -> Section:
 def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
     """Return how the model was read, driven and run: settings of every line, versions."""
     account = judged.account
-    told = {"file": str(account.request.path), **reading(account)}
+    told = {"file": str(account.request.path), **sentences.reading(account)}
     return Section(
         anchor="made",
         title="How it was read and run",
@@ -302,7 +288,7 @@ def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
             "lines": [one.cell.profile for one in judged.lines],
             "settings": _settings(judged),
             "facts": {name_text(k): name_text(str(v)) for k, v in facts.items() if k != "made"},
-            "means": [sentence_text(text) for text in footer(judged)],
+            "means": [sentence_text(text) for text in sentences.footer(judged)],
         },
         styles=("log.css",),
     )

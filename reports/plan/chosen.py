@@ -6,15 +6,8 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, nearest
+from models.files import reading
 from models.files.inputs import names_in
-from models.files.reading import (
-    kinds,
-    load_scene,
-    names_of_scenes,
-    reference_alone,
-    run_where_named,
-    shipped,
-)
 from models.scene import Scene
 from reports.judge.tolerance import check_names
 from sim.registry import engine, usual
@@ -38,8 +31,8 @@ def chosen_scenes(
         ReachError of the reference, which names group or range.
     """
     scenes: dict[str, Scene] = {}
-    for name in names_of_scenes(names) or shipped():
-        scene = load_scene(name)
+    for name in reading.names_of_scenes(names) or reading.shipped():
+        scene = reading.load_scene(name)
         (check or refuse_unfollowed)(scene)
         if scenes.setdefault(scene.name, scene) != scene:
             raise CrankcheckError(
@@ -51,9 +44,9 @@ def chosen_scenes(
 def left_out_note(names: str | Sequence[str]) -> str:
     """Return the note on scenes of named kinds that are left out; "" where there are none."""
     asked = names_in(names, "scenes")
-    named = [name for name in asked if name in kinds()]
-    alone = _left_out(named, asked, reference_alone)
-    loose = [one for one in _left_out(named, asked, run_where_named) if one not in alone]
+    named = [name for name in asked if name in reading.kinds()]
+    alone = _left_out(named, asked, reading.reference_alone)
+    loose = [one for one in _left_out(named, asked, reading.run_where_named) if one not in alone]
     notes = []
     if alone:
         notes.append(

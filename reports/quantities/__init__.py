@@ -5,34 +5,25 @@ A new quantity is an entry here. Its columns, rows, limit, rule and diagrams fol
 
 from collections.abc import Collection
 
-from reports.quantities.by_kind import (
-    DEFLECTION,
-    ENERGY,
-    EXTENSION,
-    GEOMETRY,
-    MOMENTUM,
-    PHASE,
-    SEGMENTS,
-)
+from reports.quantities import by_kind, places
 from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
-from reports.quantities.places import (
-    ACCELERATION,
-    ANGLE,
-    DISPLACEMENT,
-    DRIVE,
-    GAP,
-    POSITION,
-    VELOCITY,
-)
 from reports.quantities.quantity import Quantity, Role
 
 QUANTITIES: dict[str, Quantity] = {
     entry.name: entry
     for entry in (
-        *(DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION),
+        *(
+            places.DRIVE,
+            places.ANGLE,
+            places.DISPLACEMENT,
+            places.POSITION,
+            places.GAP,
+            places.VELOCITY,
+            places.ACCELERATION,
+        ),
         *(REACTION, NORMAL, MOMENT, TORQUE),
-        *(PHASE, GEOMETRY, ENERGY, MOMENTUM),
-        *(DEFLECTION, SEGMENTS, EXTENSION),
+        *(by_kind.PHASE, by_kind.GEOMETRY, by_kind.ENERGY, by_kind.MOMENTUM),
+        *(by_kind.DEFLECTION, by_kind.SEGMENTS, by_kind.EXTENSION),
     )
 }
 

@@ -12,17 +12,7 @@ from reports.judge.tolerance import check_names
 from reports.output.write import provenance
 from reports.plan.chosen import refuse_unfollowed
 from reports.plan.requirements import given_of, refuse_giving_way
-from reports.requests.arguments import (
-    SceneLike,
-    engine_of,
-    is_true,
-    one_of,
-    parts_in_python,
-    scene_of,
-    settings_of,
-    told_at_the_call,
-    tolerances_of,
-)
+from reports.requests import arguments
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.verify.advised import advised
@@ -69,9 +59,9 @@ class CellVerdict(Shown, Checked):
         return drawn(self.scene)
 
 
-@told_at_the_call
+@arguments.told_at_the_call
 def check(
-    scene: SceneLike,
+    scene: arguments.SceneLike,
     engine: str = FIRST,
     profile: str = "tuned",
     *,
@@ -106,15 +96,15 @@ def check(
         An invalid argument; a scene that can not follow its driver, or that passes a position where
         its motion is not determined.
     """
-    scene = scene_of(scene)
+    scene = arguments.scene_of(scene)
     refuse_giving_way(scene, "`run` runs it, and `judge` judges that run")
-    name, profile = engine_of(engine, profile, settings)
-    driven = cast(Drive, one_of(drive, "--drive", DRIVES))
-    limits = tolerances_of(tolerance, "tolerance")
+    name, profile = arguments.engine_of(engine, profile, settings)
+    driven = cast(Drive, arguments.one_of(drive, "--drive", DRIVES))
+    limits = arguments.tolerances_of(tolerance, "tolerance")
     bent = given_of([scene], segments, springs)
     refuse_unfollowed(scene)
     length = Length(dt_s, steps_per_turn, turns)
-    dt_s, steps = laid_out(scene, length, bent, with_forces=is_true(forces, "forces"))
+    dt_s, steps = laid_out(scene, length, bent, with_forces=arguments.is_true(forces, "forces"))
     cell = Cell(
         scene=scene,
         engine=name,
@@ -123,8 +113,8 @@ def check(
         steps=steps,
         drive=driven,
         tolerance=limits,
-        converge=is_true(converge, "converge"),
-        settings=settings_of(settings),
+        converge=arguments.is_true(converge, "converge"),
+        settings=arguments.settings_of(settings),
         with_forces=forces,
         segments=bent.segments,
         springs=bent.springs,
@@ -156,4 +146,4 @@ def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> Ce
 def _with_facts(checked: Checked, tolerance: str = "tolerance") -> CellVerdict:
     """The verdict, with facts of now and of these versions; ``tolerance`` names the argument."""
     engines = {checked.cell.engine: checked.version} if checked.version else {}
-    return CellVerdict(**parts_in_python(checked, tolerance), facts=provenance(engines))
+    return CellVerdict(**arguments.parts_in_python(checked, tolerance), facts=provenance(engines))

@@ -14,11 +14,7 @@ from models.errors import CrankcheckError
 from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.judge.tolerance import (
-    check_names,
-    parse,
-    refuse_of_other_kinds,
-)
+from reports.judge import tolerance
 from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.write import Outputs, check_file, provenance
@@ -28,24 +24,9 @@ from reports.own_log.log_limits import EVERY, LogRequest
 from reports.own_log.table import markdown, show
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
+from reports.requests import arguments, compare
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
-from reports.requests.arguments import (
-    SceneLike,
-    in_python,
-    is_true,
-    one_of,
-    parts_in_python,
-    scene_of,
-    told_at_the_call,
-    tolerances_of,
-)
 from reports.requests.check import CellVerdict, verdict_of_run
-from reports.requests.compare import (
-    LOG_DRIVES,
-    refuse_options,
-    refuse_segments,
-    refuse_without_forces,
-)
 from reports.requests.judge_files import contents, write_log_map
 from reports.requests.options import (
     SceneName,
@@ -95,7 +76,7 @@ class LogVerdict(Shown, JudgedLog):
 
 @overload
 def judge(
-    scene: SceneLike,
+    scene: arguments.SceneLike,
     log: Run,
     *,
     target: Target = None,
@@ -110,7 +91,7 @@ def judge(
 
 @overload
 def judge(
-    scene: SceneLike,
+    scene: arguments.SceneLike,
     log: LogLike,
     *,
     target: Target = None,
@@ -125,9 +106,9 @@ def judge(
 ) -> LogVerdict: ...
 
 
-@told_at_the_call
+@arguments.told_at_the_call
 def judge(
-    scene: SceneLike,
+    scene: arguments.SceneLike,
     log: Run | LogLike,
     *,
     target: Target = None,
@@ -174,13 +155,16 @@ def judge(
         A log that can not be read, or has nothing of the scene; no target and no step.
     """
     options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
-    options |= {"forces": is_true(forces, "forces"), "free": is_true(free, "free")}
+    options |= {
+        "forces": arguments.is_true(forces, "forces"),
+        "free": arguments.is_true(free, "free"),
+    }
     options |= {"segments": segments, "springs": springs}
     return judged(scene, log, target_of(target), **options)
 
 
 def judged(
-    scene: SceneLike,
+    scene: arguments.SceneLike,
     log: Run | LogLike,
     limits: Mapping[str, float],
     *,
@@ -194,14 +178,14 @@ def judged(
     springs: str | None = None,
 ) -> CellVerdict | LogVerdict:
     """Judge a log or a run within limits by quantity; `EVERY` has the limit of all others."""
-    scene = scene_of(scene)
-    check_names(scene)
+    scene = arguments.scene_of(scene)
+    tolerance.check_names(scene)
     required = names_in(require, "--require")
     if isinstance(log, Run):
-        refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
-        refuse_segments(log, segments, springs)
+        compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
+        compare.refuse_segments(log, segments, springs)
         refuse_other_scene(scene, log)
-        refuse_without_forces(log, forces=forces)
+        compare.refuse_without_forces(log, forces=forces)
         every = limits.get(EVERY)
         scene = scene_of_run(scene, log)
         _refuse_other_targets(scene, limits)
@@ -216,21 +200,21 @@ def judged(
     request = LogRequest(
         target=limits,
         step_s=0.0 if step_s is None else positive("--step", step_s, "seconds"),
-        drive=chosen_drive(one_of(drive, "--drive", LOG_DRIVES)),
+        drive=chosen_drive(arguments.one_of(drive, "--drive", compare.LOG_DRIVES)),
         require=required,
         segments=given.segments,
         springs=given.springs,
     )
     refuse_geometry_alone(request.drive, forces=forces)
     found = judge_log(log_of(scene, log, map, forces=forces), request)
-    notes = tuple(in_python(note) for note in found.notes)
-    return LogVerdict(**parts_in_python(found) | {"notes": notes}, facts=provenance({}))
+    notes = tuple(arguments.in_python(note) for note in found.notes)
+    return LogVerdict(**arguments.parts_in_python(found) | {"notes": notes}, facts=provenance({}))
 
 
 def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
     """Refuse targets of quantities that the scene has not. Raises CrankcheckError."""
     of_some = [*target.keys() - {EVERY}]
-    refuse_of_other_kinds("--target", of_some, [way_of(scene).limits])
+    tolerance.refuse_of_other_kinds("--target", of_some, [way_of(scene).limits])
 
 
 def _refuse_few_steps(scene: Scene, run: Run) -> None:
@@ -245,7 +229,7 @@ def _refuse_few_steps(scene: Scene, run: Run) -> None:
 def target_of(target: Target) -> dict[str, float]:
     """The target by quantity; `EVERY` has the target of all. Raises CrankcheckError."""
     if target is None or isinstance(target, Mapping):
-        return tolerances_of(target, "--target")
+        return arguments.tolerances_of(target, "--target")
     return {EVERY: positive("--target", target, "pure numbers, such as 1e-3")}
 
 
@@ -292,7 +276,7 @@ class JudgeRequest:
             scene = loosened(scene)
         outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
         asked = _checked(self, scene, outputs)
-        check_names(scene)
+        tolerance.check_names(scene)
         _refuse_other_targets(scene, asked.target)
         if self.write_map is not None:
             map_ = read_map(self.map) if self.map else Map()
@@ -326,7 +310,7 @@ def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogReques
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
     given = given_of([scene], request.segments, request.springs)
     return LogRequest(
-        target=parse(request.target, "--target", EVERY),
+        target=tolerance.parse(request.target, "--target", EVERY),
         step_s=request.step_s or 0.0,
         drive=drive,
         require=request.require,

@@ -18,16 +18,7 @@ from reports.output.console import say, say_whole
 from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import check_file
 from reports.plan.requirements import given_of, under_control
-from reports.requests.arguments import (
-    SceneLike,
-    engine_of,
-    is_true,
-    one_of,
-    scene_of,
-    settings_of,
-    told_at_the_call,
-    whole_of,
-)
+from reports.requests import arguments
 from reports.requests.options import (
     Duration,
     Forces,
@@ -143,11 +134,11 @@ class RunRequest:
 
     def answer(self) -> Simulation:
         """The run, logged. Raises CrankcheckError for a faulty request, before the run."""
-        scene = under_control(scene_of(self.scene))
+        scene = under_control(arguments.scene_of(self.scene))
         engine = FIRST if self.engine is None else self.engine
-        name, profile = engine_of(engine, self.profile, self.settings)
+        name, profile = arguments.engine_of(engine, self.profile, self.settings)
         drive = _drive(scene, self.drive)
-        every = whole_of(self.every, "--every")
+        every = arguments.whole_of(self.every, "--every")
         _refuse_other_length(scene, drive, self)
         bent = given_of([scene], self.segments, self.springs)
         length = Length(self.dt_s, self.steps_per_turn, self.turns, self.duration_s, every, 1)
@@ -167,8 +158,8 @@ class RunRequest:
             steps=steps,
             every=every,
             drive=drive,
-            settings=settings_of(self.settings),
-            with_forces=is_true(self.forces, "forces"),
+            settings=arguments.settings_of(self.settings),
+            with_forces=arguments.is_true(self.forces, "forces"),
         )
         if truth is not None:
             done = truth.logged(done)
@@ -220,9 +211,9 @@ def _written(request: RunRequest, done: Simulation) -> str:
     return f"{told}\nnext: {shlex.join([*judge, *options])}"
 
 
-@told_at_the_call
+@arguments.told_at_the_call
 def run(
-    scene: SceneLike,
+    scene: arguments.SceneLike,
     engine: str = FIRST,
     profile: str = "tuned",
     *,
@@ -309,7 +300,7 @@ def _drive(scene: Scene, drive: str | None) -> Drive:
     chosen = way_of(scene)
     if drive is None:
         return chosen.drive
-    driven = cast(Drive, one_of(drive, "--drive", DRIVES))
+    driven = cast(Drive, arguments.one_of(drive, "--drive", DRIVES))
     if driven not in chosen.drives:
         raise CrankcheckError(
             f"--drive {driven}: {scene.name} is let go, and nothing drives it; leave --drive out"

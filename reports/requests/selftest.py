@@ -16,19 +16,9 @@ from reports.output.formats import csv
 from reports.output.write import Outputs, provenance
 from reports.plan.chosen import chosen_engines
 from reports.requests.options import Jobs, option, output_option
+from reports.selftest import trial
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.table import place_row, show
-from reports.selftest.trial import (
-    RUNS,
-    Passed,
-    Verdict,
-    chosen_faults,
-    healthy,
-    passed_by,
-    passes,
-    sites,
-    tried_all,
-)
 from sim.registry import engine, offering
 
 KINDS_ASKED: tuple[RunKind, ...] = ("forces", "free", "elastic")
@@ -58,7 +48,7 @@ class SelftestRequest:
         changes nothing, or where a fault that need not be seen changes nothing. Raises
         CrankcheckError for an unknown engine or fault, and an output that can not be written."""
         engines, kind = chosen_engines(self.engines), _kind(self)
-        faults = chosen_faults(self.faults, engines, kind)
+        faults = trial.chosen_faults(self.faults, engines, kind)
         outputs = Outputs({"--csv": self.csv, "--json": self.json}, self.folder, IN_FOLDER)
         outputs.check()
         for name in engines:
@@ -67,13 +57,13 @@ class SelftestRequest:
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("planting", total=len(faults))
             names = [fault.name for fault in faults]
-            verdicts = tried_all(names, engines, self.jobs, lambda _: bar.advance(task))
+            verdicts = trial.tried_all(names, engines, self.jobs, lambda _: bar.advance(task))
         sound = [
-            healthy(scene, name, kind=each)
+            trial.healthy(scene, name, kind=each)
             for each in dict.fromkeys(fault.kind for fault in faults)
-            for scene, name in sites([f for f in faults if f.kind == each], engines)
+            for scene, name in trial.sites([f for f in faults if f.kind == each], engines)
         ]
-        passed = [] if self.faults else passed_by(engines, kind)
+        passed = [] if self.faults else trial.passed_by(engines, kind)
         facts = provenance({name: engine(name).version() for name in engines})
         rows = [place_row(one, place) for one in verdicts for place in one.places]
         contents = {
@@ -97,17 +87,17 @@ def _kind(request: SelftestRequest) -> RunKind:
     return asked[0] if asked else "motion"
 
 
-def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:
+def _settings(verdicts: Sequence[trial.Verdict]) -> dict[str, object]:
     """Lengths and steps of the runs; free runs by their scene."""
     kinds = {one.fault.kind for one in verdicts}
-    own = (runs.settings.items() for kind, runs in RUNS.items() if kind in kinds)
+    own = (runs.settings.items() for kind, runs in trial.RUNS.items() if kind in kinds)
     return {"profile": PROFILE, **{name: value for items in own for name, value in items}}
 
 
 def _json(
-    verdicts: Sequence[Verdict],
+    verdicts: Sequence[trial.Verdict],
     sound: Sequence[Checked],
-    passed: Sequence[Passed],
+    passed: Sequence[trial.Passed],
     rows: Sequence[Mapping[str, object]],
     facts: Mapping[str, str],
 ) -> str:
@@ -118,7 +108,7 @@ def _json(
         "caught": sum(one.caught for one in verdicts),
         "escaped": [one.name for one in verdicts if not one.caught],
         "without_a_fault": [
-            {"scene": one.cell.scene.name, "engine": one.cell.engine, "passes": passes(one)}
+            {"scene": one.cell.scene.name, "engine": one.cell.engine, "passes": trial.passes(one)}
             for one in sound
         ],
         "places": list(rows),

@@ -26,13 +26,7 @@ from reports.plan.requirements import chosen_segments, chosen_springs
 from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
-from reports.requests.arguments import (
-    SceneLike,
-    each_of,
-    is_true,
-    path_of,
-    told_at_the_call,
-)
+from reports.requests import arguments, sweep_arguments
 from reports.requests.options import (
     Duration,
     Engines,
@@ -44,14 +38,6 @@ from reports.requests.options import (
     output_option,
 )
 from reports.requests.shown import Shown
-from reports.requests.sweep_arguments import (
-    command_of,
-    manner_of,
-    numbers_of,
-    overrides_of,
-    refuse_empty_lists,
-    scene_names,
-)
 from reports.way.way import way_of
 from reports.workers.isolated import checked_limits
 
@@ -91,9 +77,9 @@ class Sweep(Shown):
         show_sweep(console, self.folder, self.cells, self.done)
 
 
-@told_at_the_call
+@arguments.told_at_the_call
 def sweep(
-    scenes: SceneLike | Iterable[SceneLike],
+    scenes: arguments.SceneLike | Iterable[arguments.SceneLike],
     folder: str | PathLike[str],
     *,
     study: str | PathLike[str] | None = None,
@@ -167,33 +153,35 @@ def sweep(
     from reports.output.console import terminal
     from reports.sweep.running import swept
 
-    where = path_of(folder, "folder")
+    where = arguments.path_of(folder, "folder")
     chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
-    refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
-    manner = manner_of(
+    sweep_arguments.refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
+    manner = sweep_arguments.manner_of(
         limit_s, memory_gb, jobs, timing=timing, keep_trajectories=keep_trajectories, again=again
     )
     named = names_in(engines, "engines")
-    told = load_study(None if study is None else path_of(study, "study"))
+    told = load_study(None if study is None else arguments.path_of(study, "study"))
     with ExitStack() as kept:
         choice = StudyChoice(
-            scene_names(scenes, kept),
+            sweep_arguments.scene_names(scenes, kept),
             named,
             names_in(profiles, "profiles"),
-            numbers_of(steps_per_turn, "--steps-per-turn"),
+            sweep_arguments.numbers_of(steps_per_turn, "--steps-per-turn"),
             None if turns is None else positive("--turns", turns, "turns of the driver"),
-            overrides_of(settings, study_engines(told, named)),
-            is_true(forces, "forces"),
-            is_true(free, "free"),
-            numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
+            sweep_arguments.overrides_of(settings, study_engines(told, named)),
+            arguments.is_true(forces, "forces"),
+            arguments.is_true(free, "free"),
+            sweep_arguments.numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
             None if duration_s is None else positive("--duration", duration_s, "seconds"),
-            [chosen_segments(count) for count in each_of(segments)],
+            [chosen_segments(count) for count in arguments.each_of(segments)],
             [chosen_springs(text) for text in names_in(springs, "springs")],
         )
         asked = chosen_study(told, choice, is_shipped=study is None)
         console = terminal(stderr=True)
-        console.quiet = not is_true(progress, "progress")
-        laid, done = swept(asked, where, manner, command_of(choice, where, study), console)
+        console.quiet = not arguments.is_true(progress, "progress")
+        laid, done = swept(
+            asked, where, manner, sweep_arguments.command_of(choice, where, study), console
+        )
     return Sweep(where, len(laid.tasks), done)
 
 

@@ -12,11 +12,7 @@ from typing import TYPE_CHECKING
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from models.files.reading import every_shipped, load_scene
-from reports.plan.chosen_study import (
-    Overrides,
-    StudyChoice,
-    refuse_other_engine,
-)
+from reports.plan import chosen_study
 from reports.plan.steps import positive
 from reports.plan.study import StudyValue
 from reports.requests.arguments import (
@@ -111,7 +107,7 @@ def numbers_of(
     return [positive(option, value, unit) for value in each_of(values)]
 
 
-def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
+def overrides_of(settings: object, engines: Sequence[str]) -> chosen_study.Overrides:
     """Settings by engine. Raises CrankcheckError for names that are not engine.setting."""
     if settings is None:
         return {}
@@ -123,7 +119,7 @@ def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
         owner, dot, setting = str(name).partition(".")
         if not dot:
             raise CrankcheckError(f"--set {name!r}: no engine and setting; {cure}")
-        refuse_other_engine(owner, engines, f"--set {name!r}")
+        chosen_study.refuse_other_engine(owner, engines, f"--set {name!r}")
         plain: list[StudyValue] = [setting_of(name, value) for value in each_of(values)]
         if not plain:
             raise CrankcheckError(f"--set {name!r}: found no value; give one, or several")
@@ -131,7 +127,7 @@ def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
     return found
 
 
-def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
+def command_of(choice: chosen_study.StudyChoice, folder: Path, study: object) -> list[str]:
     """The equivalent command, which a store names to mend it."""
     several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
     options = [

@@ -27,20 +27,7 @@ from reports.output.console import say_whole, tell
 from reports.output.formats import csv, junit, parquet
 from reports.output.numbers import finite
 from reports.output.write import Outputs, check_outputs, provenance
-from reports.plan.chosen import (
-    chosen_engines,
-    chosen_profiles,
-    chosen_scenes,
-    left_out_note,
-    refuse_unfollowed,
-)
-from reports.plan.requirements import (
-    free_names,
-    given_of,
-    refuse_other_options,
-    scenes_of,
-    under_control,
-)
+from reports.plan import chosen, requirements
 from reports.plan.singular import gives_forces, silent_note
 from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.advised import check_all
@@ -62,7 +49,7 @@ class VerifyRequest(VerifyOptions):
     @property
     def names(self) -> Sequence[str]:
         """The scenes by name; with ``free`` the scenes of free motion where none is named."""
-        return free_names(self.scenes) if self.free else self.scenes
+        return requirements.free_names(self.scenes) if self.free else self.scenes
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 within, 1 out of tolerance or worse than the
@@ -79,8 +66,8 @@ class VerifyRequest(VerifyOptions):
         if self.baseline is not None:
             _spare_baseline(files, self.baseline)
         digests = _digests(self)
-        silent = silent_note(chosen_engines(())) if self.forces and not self.engines else ""
-        for note in filter(None, (*passages(cells), silent, left_out_note(self.names))):
+        silent = silent_note(chosen.chosen_engines(())) if self.forces and not self.engines else ""
+        for note in filter(None, (*passages(cells), silent, chosen.left_out_note(self.names))):
             say_whole(progress, note)
         base = _baseline(self, cells, digests)
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
@@ -120,9 +107,9 @@ def plan(request: VerifyOptions) -> list[Cell]:
     scenes = _scenes(request)
     _refuse_options(request, scenes)
     refuse_of_other_kinds("--tol", tolerance, (way_of(scene).limits for scene in scenes))
-    engines = chosen_engines(request.engines)
-    profiles = chosen_profiles(request.profiles, engines)
-    given = given_of(scenes, request.segments, request.springs)
+    engines = chosen.chosen_engines(request.engines)
+    profiles = chosen.chosen_profiles(request.profiles, engines)
+    given = requirements.given_of(scenes, request.segments, request.springs)
     length = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
     steps = {
         scene.name: laid_out(scene, length, given, with_forces=request.forces) for scene in scenes
@@ -152,14 +139,16 @@ def plan(request: VerifyOptions) -> list[Cell]:
 def _scenes(request: VerifyOptions) -> list[Scene]:
     """The scenes: with ``free`` in free motion; else under their controller, if any."""
     if request.free:
-        return scenes_of(request.scenes, free=True)
+        return requirements.scenes_of(request.scenes, free=True)
 
     def check(scene: Scene) -> None:
         check_names(scene)
         if not scene.is_free:
-            refuse_unfollowed(scene)
+            chosen.refuse_unfollowed(scene)
 
-    return [under_control(scene) for scene in chosen_scenes(request.scenes, check)]
+    return [
+        requirements.under_control(scene) for scene in chosen.chosen_scenes(request.scenes, check)
+    ]
 
 
 def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
@@ -176,7 +165,9 @@ def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
             "out, or the scene"
         )
     lengths = {"--duration": request.duration_s, "--turns": request.turns}
-    refuse_other_options(scenes, lengths | {"--steps-per-turn": request.steps_per_turn})
+    requirements.refuse_other_options(
+        scenes, lengths | {"--steps-per-turn": request.steps_per_turn}
+    )
 
 
 def passages(cells: Sequence[Cell]) -> list[str]:

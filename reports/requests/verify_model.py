@@ -24,14 +24,7 @@ from reports.own_model.judged import JudgedModel, run_lines
 from reports.own_model.sentences import is_diff, recommended_head
 from reports.own_model.table import document, show
 from reports.plan.steps import TURNS, positive
-from reports.requests.arguments import (
-    is_true,
-    kind_of,
-    path_of,
-    text_of,
-    told_at_the_call,
-    tolerances_of,
-)
+from reports.requests import arguments
 from reports.requests.options import PRESCRIBED, VerifyOptions, given
 from reports.requests.shown import Shown
 from reports.verify.table import suite
@@ -71,7 +64,7 @@ class ModelVerdict(Shown, JudgedModel):
         return svg(self.scene, most_s=self.account.dt_s * self.account.steps)
 
 
-@told_at_the_call
+@arguments.told_at_the_call
 def check_model(
     model: str | PathLike[str],
     drive: str,
@@ -119,17 +112,17 @@ def check_model(
         invalid argument.
     """
     request = ModelRequest(
-        path=path_of(model, "model"),
-        joint=text_of(drive, "--drive", "crank"),
+        path=arguments.path_of(model, "model"),
+        joint=arguments.text_of(drive, "--drive", "crank"),
         speed_rad_s=_number(speed_rad_s, "--speed", "rad/s, such as 10"),
-        key=None if key is None else text_of(key, "--key", "home"),
+        key=None if key is None else arguments.text_of(key, "--key", "home"),
         start_deg=None if start_rad is None else math.degrees(_number(start_rad, "--start", "rad")),
         branch=_branch(branch),
         dt_s=dt_s,
         steps_per_turn=steps_per_turn,
         turns=turns,
-        tolerance=tolerances_of(tolerance, "tolerance"),
-        converge=is_true(converge, "converge"),
+        tolerance=arguments.tolerances_of(tolerance, "tolerance"),
+        converge=arguments.is_true(converge, "converge"),
     )
     limits = checked_limits(
         positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
@@ -144,7 +137,7 @@ def _number(value: object, name: str, unit: str) -> float:
     """A number. Raises CrankcheckError that names its unit for anything else."""
     if isinstance(value, Real) and not isinstance(value, bool):
         return float(value)
-    raise CrankcheckError(f"{name}: found {kind_of(value)}; give a number, in {unit}")
+    raise CrankcheckError(f"{name}: found {arguments.kind_of(value)}; give a number, in {unit}")
 
 
 def _branch(branch: object) -> dict[str, int]:
@@ -153,10 +146,10 @@ def _branch(branch: object) -> dict[str, int]:
         return {}
     if not isinstance(branch, Mapping):
         raise CrankcheckError(
-            f"--branch: found {kind_of(branch)}; give a dict of names and 1 or -1, such as "
-            "{'C': -1}"
+            f"--branch: found {arguments.kind_of(branch)}; give a dict of names and 1 or -1, "
+            "such as {'C': -1}"
         )
-    return {text_of(name, "--branch", "C"): sign for name, sign in branch.items()}
+    return {arguments.text_of(name, "--branch", "C"): sign for name, sign in branch.items()}
 
 
 IN_FOLDER = {

@@ -17,20 +17,7 @@ import numpy as np
 from models.array import Array
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.numbers import count, short
-from reports.results.fit_forms import (
-    FLAT,
-    FLOOR,
-    LEVEL,
-    LOWEST,
-    POWER,
-    WILD,
-    floor_seen,
-    leaves,
-    longest,
-    opposed_seen,
-    slower,
-    uncertainty,
-)
+from reports.results import fit_forms
 from reports.results.floor_fit import ALIGNMENTS, ORDERS, ErrorCurve, reach, straight, within
 
 FitKind = Literal[
@@ -155,20 +142,22 @@ def fit_line(
 def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
     """Fit a form to the points ``fit`` (indices, finest first)."""
     dts, errors = np.array(line.dt_s)[list(fit)], np.array(line.error)[list(fit)]
-    if not slower(LOWEST, dts, errors):  # a floor would not be seen: do not look for one
+    if not fit_forms.slower(
+        fit_forms.LOWEST, dts, errors
+    ):  # a floor would not be seen: do not look for one
         return _without_floor(line, fit, dts, errors)
-    against = opposed_seen(dts, errors)
+    against = fit_forms.opposed_seen(dts, errors)
     if against is not None:
         return _with_floor(_on(line, fit, against), dts, errors, against)
-    bend = longest(FLOOR, dts, errors)
-    if bend is not None and floor_seen(bend, dts, errors):
+    bend = fit_forms.longest(fit_forms.FLOOR, dts, errors)
+    if bend is not None and fit_forms.floor_seen(bend, dts, errors):
         return _with_floor(_on(line, fit, bend), dts, errors, bend)
     return _without_floor(line, fit, dts, errors)
 
 
 def _with_floor(line: LineFit, dts: Array, errors: Array, curve: ErrorCurve) -> LineFit:
     """Return a floor, with the doubt of curves of any alignment; its order if points show it."""
-    dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
+    dts, errors, more = dts[: curve.points], errors[: curve.points], fit_forms.uncertainty(curve)
     (alone,) = within(dts, errors, curve, [more**2])
     ordered = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]
     near, far = within(dts, errors, curve, [more**2, (2.0 * more) ** 2], ALIGNMENTS)
@@ -185,9 +174,13 @@ def _with_floor(line: LineFit, dts: Array, errors: Array, curve: ErrorCurve) -> 
 
 def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Array) -> LineFit:
     """Fit a power of dt, where one goes through the points."""
-    curve = longest(POWER, dts, errors) or straight(dts, errors)
-    dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
-    if curve.scatter > WILD or abs(curve.order) < FLAT or leaves(dts, errors):
+    curve = fit_forms.longest(fit_forms.POWER, dts, errors) or straight(dts, errors)
+    dts, errors, more = dts[: curve.points], errors[: curve.points], fit_forms.uncertainty(curve)
+    if (
+        curve.scatter > fit_forms.WILD
+        or abs(curve.order) < fit_forms.FLAT
+        or fit_forms.leaves(dts, errors)
+    ):
         return replace(line, kind="irregular", scatter=curve.scatter)
     (far,) = within(dts, errors, curve, [(2.0 * more) ** 2])
     x, falls = np.log(dts), curve.order > 0.0
@@ -314,7 +307,7 @@ def _told(fit: LineFit, unit: str) -> str:
 
 def _order(fit: LineFit) -> str:
     """Return the words for an order without a floor."""
-    if fit.order + fit.order_error < LEVEL:
+    if fit.order + fit.order_error < fit_forms.LEVEL:
         return f"order {fit.order:.1f}: slower than any integrator, a floor may be near"
     vague = f" +- {fit.order_error:.1f}" if fit.order_error > VAGUE else ""
     return f"order {fit.order:.1f}{vague}, no floor seen"

@@ -11,16 +11,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Scene
 from reports.judge.cell import CellRunner
-from reports.selftest.fault import (
-    FOURBAR,
-    PROFILE,
-    SHAPER,
-    SLIDER,
-    Fault,
-    Plant,
-    integrates,
-    switched,
-)
+from reports.selftest import fault
 from reports.selftest.logs import moved
 from sim.engine import Run
 from sim.registry import available, engine, offering
@@ -43,7 +34,7 @@ def _wrong(name: str) -> list[WrongSetting]:
     return list(spoiler(name).wrong_settings) if name in offering("spoiler") else []
 
 
-def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> Plant:
+def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> fault.Plant:
     """Run another engine or profile; ``renamed``, under the requested names."""
 
     def plant(size: float) -> CellRunner:
@@ -67,7 +58,7 @@ def _profile_for(name: str, profile: str) -> tuple[str, str]:
     return name, next((other for other in engine(name).profiles if other != profile), profile)
 
 
-def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> Plant:
+def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> fault.Plant:
     """Change the options of a run, and let the run say so."""
 
     def plant(size: float) -> CellRunner:
@@ -88,7 +79,7 @@ def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str
 
 def _one_more(name: str) -> dict[str, Any]:
     """Return a setting that is a whole number, one above profile tuned; none without one."""
-    tuned = engine(name).profiles[PROFILE].settings
+    tuned = engine(name).profiles[fault.PROFILE].settings
     whole = (n for n, setting in tuned.items() if type(setting.value) is int)
     return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}
 
@@ -142,7 +133,9 @@ def _the_first_again(size: float) -> CellRunner:
     return runner
 
 
-_fault = partial(Fault, "request", rule="CC117", scenes=(FOURBAR, SLIDER, SHAPER))
+_fault = partial(
+    fault.Fault, "request", rule="CC117", scenes=(fault.FOURBAR, fault.SLIDER, fault.SHAPER)
+)
 FAULTS = (
     _fault(
         "engine-other",
@@ -186,7 +179,10 @@ FAULTS = (
         needs=lambda name: bool(_one_more(name)),
     ),
     _fault(
-        "version-other", "another version", plant=switched(_of_another_version), says=("version: ",)
+        "version-other",
+        "another version",
+        plant=fault.switched(_of_another_version),
+        says=("version: ",),
     ),
     _fault(
         "drive-other",
@@ -201,7 +197,7 @@ FAULTS = (
     _fault(
         "accelerations-kept",
         "accelerations that are kept back",
-        plant=switched(_silent),
+        plant=fault.switched(_silent),
         says=("reports_accelerations: asked for True",),
         needs=lambda name: engine(name).reports_accelerations,
     ),
@@ -211,6 +207,6 @@ FAULTS = (
         plant=_the_first_again,
         says=("the places are those of dt",),
         finer=True,
-        needs=integrates,
+        needs=fault.integrates,
     ),
 )

@@ -13,34 +13,23 @@ from models.motion import State
 from models.scene import Point, Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine.measure import across, arms
+from sim.exudyn import system
 from sim.exudyn.crank_drive import CrankCourse, CrankDrive, reactions, refuse_undriven
 from sim.exudyn.loads import Applied, Present, apply_loads, follows_rates
 from sim.exudyn.passive import Springs, apply_friction
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
-from sim.exudyn.system import (
-    VERSION,
-    PlaneSystem,
-    build,
-    exu,
-    held_beams,
-    items,
-    node_masses,
-    plain,
-    quiet,
-    rounding_n,
-)
 
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
 
 
-def widths(made: PlaneSystem) -> list[int]:
+def widths(made: system.PlaneSystem) -> list[int]:
     """Return the number of coordinates of each node: x, y, angle, or x, y and the tangent's."""
     return [4 if name in made.looked else 3 for name in made.node]
 
 
 def beam_angles(
-    made: PlaneSystem, looked: Mapping[str, float], levels: Sequence[Array]
+    made: system.PlaneSystem, looked: Mapping[str, float], levels: Sequence[Array]
 ) -> dict[str, Array]:
     """Return angles of the tangents of nodes of beams, the first within half a turn of its
     direction ``looked`` [rad] and each within half a turn of the one before: samples of every step
@@ -55,7 +44,7 @@ def beam_angles(
 
 
 def body_poses(
-    made: PlaneSystem, levels: Sequence[Array], angles: Mapping[str, Array]
+    made: system.PlaneSystem, levels: Sequence[Array], angles: Mapping[str, Array]
 ) -> dict[str, BodyPose]:
     """Return poses by body, from samples (T, width) of the three levels of each node in turn, and
     from the ``angles`` (T,) of nodes of beams."""
@@ -123,8 +112,8 @@ class ExudynSession:
         self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
         self._start_s, self._done = state.time_s, 0
         self._heard: list[str] = []
-        with quiet(self._heard):
-            self._model = build(scene, state, prescribed=drive == "prescribed")
+        with system.quiet(self._heard):
+            self._model = system.build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
             self._looked = dict(self._model.looked)
             self._applied = self._loaded(state, drive)
@@ -136,7 +125,7 @@ class ExudynSession:
                 settings,
                 dt_s,
                 of_rates=follows_rates(scene, drive),
-                rounding_n=rounding_n(scene, state),
+                rounding_n=system.rounding_n(scene, state),
             )
             self._solver = self._initialized()
             course = self._crank.course
@@ -165,11 +154,11 @@ class ExudynSession:
         """Add a sensor for each level of each body's coordinates."""
         return [
             self._system.AddSensor(
-                items.SensorNode(
+                system.items.SensorNode(
                     nodeNumber=node,
                     storeInternal=True,
                     writeToFile=False,
-                    outputVariableType=getattr(exu.OutputVariableType, level),
+                    outputVariableType=getattr(system.exu.OutputVariableType, level),
                 )
             )
             for node in self._model.node.values()
@@ -183,7 +172,7 @@ class ExudynSession:
         exudyn leaves the part of a driver's acceleration out of its initial ones, and the
         trapezoidal rule would alternate about the true ones ever after.
         """
-        own, rates = exu.ConfigurationType.Initial, self._system.systemData
+        own, rates = system.exu.ConfigurationType.Initial, self._system.systemData
         law = self._scene.driver.law
         _, omega, alpha = (float(x) for x in law.at(np.array(self._start_s)))
         ratio = per_drive(self._solver, self._system)
@@ -202,12 +191,12 @@ class ExudynSession:
     def facts(self) -> Facts:
         """Read the system as exudyn holds it now; its bodies have their centres at their nodes."""
         held_masses = self._model.masses()
-        nodes = node_masses(self._scene, self._model)
+        nodes = system.node_masses(self._scene, self._model)
         loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
         gravity = loads[0] if loads else (0.0, 0.0)
         settings = self._settings if self._scene.beams else of_rigid(self._settings)
         return Facts(
-            version=VERSION,
+            version=system.VERSION,
             mass_kg={name: mass for name, (mass, _) in held_masses.items()} | nodes,
             inertia_kg_m2={name: inertia for name, (_, inertia) in held_masses.items()},
             centre_m=dict(self._model.centre),
@@ -217,7 +206,7 @@ class ExudynSession:
             velocity_shift=0.0,
             acceleration_shift=0.0,
             springs=self._springs.held(),
-            beams=held_beams(self._scene, self._model),
+            beams=system.held_beams(self._scene, self._model),
         )
 
     def step(self, steps: int) -> None:
@@ -229,7 +218,7 @@ class ExudynSession:
         """Advance and log; exudyn's sensors keep all steps, and every ``every``-th is taken."""
         at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
         began = time.perf_counter()
-        with quiet(self._heard):
+        with system.quiet(self._heard):
             self._solver.InitializeSolverOutput(self._system, self._asked)  # empties the sensors
         stopped = self._advance(steps, log=True)
         wall = time.perf_counter() - began
@@ -287,7 +276,7 @@ class ExudynSession:
             self._crank.course.reach(self._done + steps)
         done, self._done = self._done, self._done + steps
         clock, length = self._solver.it, 1 if self._solver.it.adaptiveStep else steps
-        with quiet(self._heard):
+        with system.quiet(self._heard):
             try:
                 for start in range(done, self._done, length or 1):
                     # It would count steps from its start, and times up to a rounding of its own.
@@ -297,14 +286,14 @@ class ExudynSession:
                     if not self._solver.SolveSteps(self._system, self._asked):
                         return str(self._solver.GetErrorString())
             except (RuntimeError, ValueError) as error:  # all of exudyn's are
-                return self._applied.fault or plain(str(error))
+                return self._applied.fault or system.plain(str(error))
         return ""
 
 
 ENGINE = Engine(
     "exudyn",
     {"as-shipped": AS_SHIPPED, "tuned": TUNED},
-    version=lambda: VERSION,
+    version=lambda: system.VERSION,
     check=checked,
     open=ExudynSession,
     holds=lambda settings, dt_s, drive: of_rigid(of_drive(settings, drive)),

@@ -17,6 +17,7 @@ from models.scene import Scene
 from sim.engine import Drive, Engine, Poses, Session, Settings
 from sim.engine.measure import gaps
 from sim.engine.tree_poses import body_poses
+from sim.mujoco.own_model import variants
 from sim.mujoco.own_model.closures import ModelError, body_name, name_of, scene_name
 from sim.mujoco.own_model.component import component, loose_joints
 from sim.mujoco.own_model.disturbing import disturbances
@@ -25,17 +26,6 @@ from sim.mujoco.own_model.linkage import linkage, nearly
 from sim.mujoco.own_model.planar_model import PlanarModel, limbs_of
 from sim.mujoco.own_model.scene import scene_of
 from sim.mujoco.own_model.session import OwnModelSession, tour
-from sim.mujoco.own_model.variants import (
-    OFF,
-    RECOMMENDED,
-    advice,
-    applied,
-    checked,
-    diff,
-    held,
-    patched,
-    profiles,
-)
 from sim.mujoco.stepped import VERSION, compiled_file
 from sim.registry.own_models import MOST_TURNS, Advised, Disturbance, Reader, Tour
 
@@ -125,27 +115,29 @@ class ReadModel:
         ) -> Session:
             return OwnModelSession(self.planar, scene, state, settings, dt_s, drive)
 
-        present = dict.fromkeys(each.kind for each in self._present if each.kind in OFF)
-        lines = profiles(present, advised)
-        return Engine("mujoco", lines, version=lambda: VERSION, check=checked, open=opened)
+        present = dict.fromkeys(each.kind for each in self._present if each.kind in variants.OFF)
+        lines = variants.profiles(present, advised)
+        return Engine("mujoco", lines, version=lambda: VERSION, check=variants.checked, open=opened)
 
     def patch(self, dt_s: float, advised: Advised) -> str:
         """Return the recommended settings as a diff, applied and compiled; in words, where the file
         does not hold all that it would change."""
         planar = self.planar
-        told = advice(planar.model, dt_s, advised)
+        told = variants.advice(planar.model, dt_s, advised)
         try:
             raw = text_of(self.path)
-            new = patched(raw, planar.loops, int(planar.model.neq), told)
+            new = variants.patched(raw, planar.loops, int(planar.model.neq), told)
             found = compiled_file(self.path, new)
-            text = diff(self.path, raw, new)
+            text = variants.diff(self.path, raw, new)
         except EngineError as error:
             return f"{error}: {told.words()}\n"
-        line = profiles((), advised)[RECOMMENDED]
+        line = variants.profiles((), advised)[variants.RECOMMENDED]
         settings = {name: setting.value for name, setting in line.settings.items()}
         wanted = copy.copy(planar.model)
-        applied(wanted, planar.loops, settings, dt_s)
-        if held(found, planar.loops, settings) != held(wanted, planar.loops, settings):
+        variants.applied(wanted, planar.loops, settings, dt_s)
+        if variants.held(found, planar.loops, settings) != variants.held(
+            wanted, planar.loops, settings
+        ):
             return f"what it includes overrides the file itself: {told.words()}\n"
         return text
 

@@ -3,20 +3,12 @@
 from collections.abc import Callable, Iterator, Mapping
 
 from reports.causes.account import Account
+from reports.causes.hypotheses import other_world
 from reports.causes.hypotheses.clock import drift, stamps, time_unit
 from reports.causes.hypotheses.dimension import dimension
 from reports.causes.hypotheses.filtered import filtered, smoothed
 from reports.causes.hypotheses.late import late
 from reports.causes.hypotheses.misnamed import misnamed, swapped
-from reports.causes.hypotheses.other_world import (
-    assembly,
-    backwards,
-    mirrored,
-    moved,
-    sized,
-    start_angle,
-    turned,
-)
 from reports.causes.hypotheses.samples import rounded, samples
 from reports.causes.hypotheses.straight import straight, turns
 from reports.causes.hypotheses.two_faults import two_faults
@@ -36,15 +28,15 @@ OF_CHANNELS: Mapping[str, Hypothesis] = {
 }
 """Faults of some channels."""
 OF_LOGS: Mapping[str, Hypothesis] = {
-    "backwards": backwards,
-    "assembly": assembly,
-    "mirrored": mirrored,
+    "backwards": other_world.backwards,
+    "assembly": other_world.assembly,
+    "mirrored": other_world.mirrored,
     "time unit": time_unit,
     "stamps": stamps,
-    "moved": moved,
-    "turned": turned,
-    "sized": sized,
-    "start angle": start_angle,
+    "moved": other_world.moved,
+    "turned": other_world.turned,
+    "sized": other_world.sized,
+    "start angle": other_world.start_angle,
     "dimension": dimension,
     "drift": drift,
     "smoothed": smoothed,

@@ -3,35 +3,27 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from reports.judge.rules import log
 from reports.judge.rules.limits import LIMITS, StartWithin
-from reports.judge.rules.log import (
-    AsAsked,
-    LogComplete,
-    NothingContradicts,
-    PinsBalance,
-    Required,
-    StatusOk,
-    ValuesFinite,
-)
 from reports.judge.rules.reference import ReferenceCertain, TruthEnds, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.steps import ErrorShrinks, ErrorSmooth, ForcesShrink
 
 _ALL: tuple[Rule, ...] = (
-    StatusOk(),
+    log.StatusOk(),
     *LIMITS,
-    ValuesFinite(),
+    log.ValuesFinite(),
     ErrorShrinks(),
     TwoComputations(),
     ReferenceCertain(),
-    LogComplete(),
+    log.LogComplete(),
     StartWithin(),
-    AsAsked(),
+    log.AsAsked(),
     ErrorSmooth(),
-    Required(),
-    PinsBalance(),
+    log.Required(),
+    log.PinsBalance(),
     ForcesShrink(),
-    NothingContradicts(),
+    log.NothingContradicts(),
     TruthEnds(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}

@@ -12,17 +12,7 @@ import numpy as np
 from analytic.kinematics import solve_driven
 from analytic.lectures.circuits.arcs import SignedScene
 from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
-from analytic.lectures.synthesis.design import (
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    DrawnCurve,
-    Element,
-    Look,
-    PrecisionPosition,
-    Proposal,
-    Segment,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.examine import UNMET, Examined, examine
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
@@ -49,26 +39,28 @@ class Stroke:
     width: float
 
 
-LOOKS: dict[Look, Stroke] = {
+LOOKS: dict[design.Look, Stroke] = {
     "given": Stroke(GIVEN, 1.1),
     "auxiliary": Stroke(AUXILIARY, 0.6),
     "result": Stroke(INK, 1.5),
 }
 
 
-def look_of(element: Element, steps: Sequence[DrawingStep]) -> Stroke:
+def look_of(element: design.Element, steps: Sequence[design.DrawingStep]) -> Stroke:
     """The look of an element among all of them."""
-    if isinstance(element, DrawnCurve) and element.look == "auxiliary":
+    if isinstance(element, design.DrawnCurve) and element.look == "auxiliary":
         curves = curves_of(steps)
         number = next(k for k, curve in enumerate(curves) if curve is element)
         return Stroke(CURVES[number % len(CURVES)], 0.8)
     return LOOKS[element.look]
 
 
-def curves_of(steps: Sequence[DrawingStep]) -> list[DrawnCurve]:
+def curves_of(steps: Sequence[design.DrawingStep]) -> list[design.DrawnCurve]:
     """The auxiliary curves, in their order."""
     every = (element for step in steps for element in step.elements)
-    return [each for each in every if isinstance(each, DrawnCurve) and each.look == "auxiliary"]
+    return [
+        each for each in every if isinstance(each, design.DrawnCurve) and each.look == "auxiliary"
+    ]
 
 
 LEAST = 1e-9
@@ -80,29 +72,29 @@ def xy(place: complex) -> Array:
     return np.array([place.real, place.imag])
 
 
-def strokes(element: Element, low: Array, high: Array) -> list[Array]:
+def strokes(element: design.Element, low: Array, high: Array) -> list[Array]:
     """The lines of an element within a box [m], (n, 2) each; none for a dot."""
     return [part for line in _lines(element, low, high) for part in cut_line(line, low, high)]
 
 
-def _lines(element: Element, low: Array, high: Array) -> Iterator[Array]:
+def _lines(element: design.Element, low: Array, high: Array) -> Iterator[Array]:
     """The whole lines of an element, except parts of a circle far from the box."""
     match element:
-        case Dot():
+        case design.Dot():
             return
-        case Segment(start, end, _, beyond):
+        case design.Segment(start, end, _, beyond):
             more = beyond * (end - start)
             yield np.array([xy(start - more), xy(end + more)])
-        case DrawnCircle(centre, radius):
+        case design.DrawnCircle(centre, radius):
             for first, last in _arcs(element, low, high):
                 yield arc_places(xy(centre), radius, first, last)
-        case DrawnCurve(pieces):
+        case design.DrawnCurve(pieces):
             for piece in pieces:
                 if len(piece) > 1:
                     yield np.array([xy(place) for place in piece])
 
 
-def _arcs(circle: DrawnCircle, low: Array, high: Array) -> Iterator[tuple[float, float]]:
+def _arcs(circle: design.DrawnCircle, low: Array, high: Array) -> Iterator[tuple[float, float]]:
     """The parts of a circle or an arc that may be in a box, from angle to angle [rad]."""
     near = near_angles(xy(circle.centre), circle.radius, low, high)
     if circle.arc is None:
@@ -126,7 +118,7 @@ def placements_of(examined: Examined) -> tuple[PlacedMechanism | None, ...]:
     return tuple(_placed(examined.scene, position) for position in examined.positions)
 
 
-def _placed(scene: Scene, position: PrecisionPosition) -> PlacedMechanism | None:
+def _placed(scene: Scene, position: design.PrecisionPosition) -> PlacedMechanism | None:
     """Place the mechanism on the scene's own branches if they meet the position, else nearest."""
     signed = SignedScene.of(scene)
     every = (
@@ -142,7 +134,9 @@ def _placed(scene: Scene, position: PrecisionPosition) -> PlacedMechanism | None
     return best
 
 
-def _standing(scene: Scene, position: PrecisionPosition) -> tuple[float, PlacedMechanism | None]:
+def _standing(
+    scene: Scene, position: design.PrecisionPosition
+) -> tuple[float, PlacedMechanism | None]:
     """The distance of a scene from a position, and its placement there."""
     theta, one = np.array([position.driver_rad]), np.ones(1)
     try:
@@ -170,9 +164,9 @@ class ConstructionView:
     shown: Array
 
     @staticmethod
-    def of(proposed: Examined | Proposal) -> ConstructionView:
+    def of(proposed: Examined | design.Proposal) -> ConstructionView:
         """Build the view. Raises CrankcheckError where the first position can not be assembled."""
-        examined = examine(proposed) if isinstance(proposed, Proposal) else proposed
+        examined = examine(proposed) if isinstance(proposed, design.Proposal) else proposed
         placements = placements_of(examined)
         if placements[0] is None:
             name = examined.scene.name
@@ -180,7 +174,7 @@ class ConstructionView:
         return ConstructionView(examined, placements, _shown(examined, placements))
 
     @property
-    def steps(self) -> tuple[DrawingStep, ...]:
+    def steps(self) -> tuple[design.DrawingStep, ...]:
         return self.examined.proposal.steps
 
     @property
@@ -220,41 +214,41 @@ def _shown(examined: Examined, placements: Sequence[PlacedMechanism | None]) -> 
     return np.concatenate(there)
 
 
-def _extent(element: Element) -> Iterable[complex]:
+def _extent(element: design.Element) -> Iterable[complex]:
     """The places of an element that the figure must contain: none beyond a line's ends, and none of
     curves and circles that are not given."""
     match element:
-        case Dot(place):
+        case design.Dot(place):
             return [place]
-        case Segment(start, end):
+        case design.Segment(start, end):
             return [start, end]
-        case DrawnCircle(centre, radius, "given", arc):
+        case design.DrawnCircle(centre, radius, "given", arc):
             first, last = arc or (0.0, math.tau)
             angles = np.linspace(first, first + ((last - first) % math.tau or math.tau), FEW_PLACES)
             return [complex(place) for place in centre + radius * np.exp(1j * angles)]
-        case DrawnCurve(pieces, "given"):
+        case design.DrawnCurve(pieces, "given"):
             return [place for piece in pieces for place in piece]
     return []
 
 
-def _is_out(element: Element, low: Array, high: Array) -> bool:
+def _is_out(element: design.Element, low: Array, high: Array) -> bool:
     """True if no part of an element is in a box."""
-    if isinstance(element, Dot):
+    if isinstance(element, design.Dot):
         place = xy(element.place)
         return bool(np.any((place < low) | (place > high)))
     return not strokes(element, low, high)
 
 
-def _words_of(element: Element, number: int) -> tuple[complex, str]:
+def _words_of(element: design.Element, number: int) -> tuple[complex, str]:
     """A place of an element of a step, and its name."""
     match element:
-        case Dot(place, letter):
+        case design.Dot(place, letter):
             return place, letter or f"a point of step {number}"
-        case Segment(start, end):
+        case design.Segment(start, end):
             return 0.5 * (start + end), f"a line of step {number}"
-        case DrawnCircle(centre, radius):
+        case design.DrawnCircle(centre, radius):
             return centre, f"a circle of step {number} with the radius {readable(radius)} m"
-        case DrawnCurve(pieces):
+        case design.DrawnCurve(pieces):
             every = [place for piece in pieces for place in piece] or [0j]
             return every[len(every) // 2], f"a curve of step {number}"
 

@@ -7,30 +7,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.lectures.synthesis.design import (
-    AskedPlace,
-    Dot,
-    DrawnCircle,
-    DrawnCurve,
-    Element,
-    Proposal,
-    names_of,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
 from models.lectures.shipped_tables import TaskTable
 from reports.describe.facts import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.shape import turn_of
-from reports.lectures.design.construction_view import (
-    CURVES,
-    ConstructionView,
-    curves_of,
-    placements_of,
-    positions_on_way,
-    strokes,
-    xy,
-)
+from reports.lectures.design import construction_view
 from reports.lectures.design.design_tables import proof_rows, remarks
 from reports.lectures.design.proof import Met
 from reports.lectures.drawing.sheets.field_sheets import draw_assemblies
@@ -51,10 +35,10 @@ EVERY = 4
 MOVES = "The mechanism goes through its precision positions."
 
 
-def construction_page(proposed: Examined | Proposal) -> str:
+def construction_page(proposed: Examined | design.Proposal) -> str:
     """The page of a construction, one file that loads nothing. Raises CrankcheckError for a
     proposal that can not be assembled in its first position."""
-    view = ConstructionView.of(proposed)
+    view = construction_view.ConstructionView.of(proposed)
     scene = view.examined.scene
     section = Section(
         anchor="construction",
@@ -79,20 +63,22 @@ def construction_page(proposed: Examined | Proposal) -> str:
     return assembled(head, [section])
 
 
-def _doubts(view: ConstructionView) -> list[str]:
+def _doubts(view: construction_view.ConstructionView) -> list[str]:
     """Doubts and defects that keep the mechanism from its task."""
     doubt, defects = view.examined.proposal.doubt, view.examined.defects
     return [doubt] * bool(doubt) + [f"It has a fault: {listed(defects)}."] * bool(defects)
 
 
-def _embedded(view: ConstructionView) -> dict[str, object]:
+def _embedded(view: construction_view.ConstructionView) -> dict[str, object]:
     """The drawn parts of the page: places [m] as x, y after one another."""
     motion = turn_of(view.examined.scene, INSTANTS)
     moves = drawing(view.examined.scene, motion.time_s, motion)
     places = [view.shown, *(point.position for point in motion.points.values())]
     low, high = (end(np.concatenate(places), axis=0) for end in (np.min, np.max))
     spare = AROUND * float(np.max(high - low))
-    curves = {id(curve): number for number, curve in enumerate(curves_of(view.steps))}
+    curves = {
+        id(curve): number for number, curve in enumerate(construction_view.curves_of(view.steps))
+    }
     return {
         "drawing": moves | {"box": [*low, *high]},
         "steps": [
@@ -100,24 +86,26 @@ def _embedded(view: ConstructionView) -> dict[str, object]:
             for step in view.steps
         ],
         "poses": [_pose(view, k) for k in range(len(view.placements))],
-        "at": positions_on_way(view, motion),
+        "at": construction_view.positions_on_way(view, motion),
         "far": [{"at": list(at), "words": words} for at, words in view.far(low, high)],
         "lasts_ms": LASTS_MS,
     }
 
 
 def _element(
-    element: Element, low: Array, high: Array, curves: dict[int, int]
+    element: design.Element, low: Array, high: Array, curves: dict[int, int]
 ) -> dict[str, object]:
     """A dot, or lines as far as they are in a box; curves have one of several looks."""
-    if isinstance(element, Dot):
-        at = list(xy(element.place))
+    if isinstance(element, design.Dot):
+        at = list(construction_view.xy(element.place))
         return {"at": at, "letter": element.letter, "fixed": element.fixed, "look": element.look}
-    lines = strokes(element, low, high)
-    if isinstance(element, DrawnCircle):
+    lines = construction_view.strokes(element, low, high)
+    if isinstance(element, design.DrawnCircle):
         lines = [np.concatenate([line[:-1:EVERY], line[-1:]]) for line in lines]
-    is_curve = isinstance(element, DrawnCurve) and id(element) in curves
-    look = f"curve-{curves[id(element)] % len(CURVES)}" if is_curve else element.look
+    is_curve = isinstance(element, design.DrawnCurve) and id(element) in curves
+    look = (
+        f"curve-{curves[id(element)] % len(construction_view.CURVES)}" if is_curve else element.look
+    )
     return {"look": look, "lines": _flat(lines)}
 
 
@@ -125,18 +113,24 @@ def _flat(lines: list[Array]) -> list[list[float]]:
     return [[float(number) for number in line.ravel()] for line in lines]
 
 
-def _pose(view: ConstructionView, number: int) -> dict[str, object]:
+def _pose(view: construction_view.ConstructionView, number: int) -> dict[str, object]:
     """The requirements of a position: the links with required angles, or else with required points,
     as placed there, or all links; and the required places of points."""
     placed, position = view.placements[number], view.examined.positions[number]
-    places = [list(xy(each.place)) for each in position.asked if isinstance(each, AskedPlace)]
+    places = [
+        list(construction_view.xy(each.place))
+        for each in position.asked
+        if isinstance(each, design.AskedPlace)
+    ]
     return {"links": _flat(_asked_links(view, placed)), "places": places}
 
 
-def _asked_links(view: ConstructionView, placed: PlacedMechanism | None) -> list[Array]:
+def _asked_links(
+    view: construction_view.ConstructionView, placed: PlacedMechanism | None
+) -> list[Array]:
     if placed is None:
         return []
-    names, points, _ = names_of(view.examined.positions)
+    names, points, _ = design.names_of(view.examined.positions)
     every = placed.scene.links.values()
     asked = [link for link in every if link.name in names]
     some = asked or [link for link in every if set(link.points) & set(points)]
@@ -152,7 +146,7 @@ def solutions_sheet(every: Sequence[Examined], task: TaskTable, paper: Paper) ->
     Raises CrankcheckError for paper that is too small."""
     drawn = []
     for number, one in enumerate(every, 1):
-        placement = placements_of(one)[0]
+        placement = construction_view.placements_of(one)[0]
         if placement is not None:
             told = ", ".join(one.defects) or f"{_transmission(one)} deg"
             drawn.append((placement, f"{number}: {told}", not one.defects))

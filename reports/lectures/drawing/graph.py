@@ -12,26 +12,9 @@ from analytic.lectures.drawings.graphical import METHODS, Method
 from models.errors import CrankcheckError, shown
 from models.files.reading import find_scene, load_scene
 from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.graph_drawing import (
-    DrawnGraphs,
-    drawn_graphs,
-    graph_log,
-)
-from reports.lectures.drawing.sheets.graph_orders import (
-    GraphErrors,
-    draw_errors,
-    graph_errors,
-    show_errors,
-    told_floor,
-)
+from reports.lectures.drawing.sheets import graph_drawing, graph_orders, graph_words
 from reports.lectures.drawing.sheets.graph_page import draw_graphs, laid_out
 from reports.lectures.drawing.sheets.graph_span import OVERS, Over, over_period
-from reports.lectures.drawing.sheets.graph_words import (
-    show_graphs,
-    tell,
-    told_errors,
-    told_log,
-)
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic, sheet_note
 from reports.output.write import check_file
 from reports.requests.options import Duration, PaperSize, SceneName
@@ -85,46 +68,50 @@ class GraphRequest:
         of = over_period(scene, self.of, over, self.duration_s)
         log = None
         if self.log is not None:
-            log = graph_log(self.log, self.map, of)
+            log = graph_drawing.graph_log(self.log, self.map, of)
             of = log.span
         if len(divisions) > 1:
-            _tell_errors(self, console, graph_errors(of, by, divisions, log), paper)
+            _tell_errors(self, console, graph_orders.graph_errors(of, by, divisions, log), paper)
         else:
-            _tell_graphs(self, console, drawn_graphs(of, by, divisions[0], log), paper)
+            _tell_graphs(
+                self, console, graph_drawing.drawn_graphs(of, by, divisions[0], log), paper
+            )
         return 0
 
 
-def _tell_graphs(request: GraphRequest, console: Console, drawn: DrawnGraphs, paper: Paper) -> None:
+def _tell_graphs(
+    request: GraphRequest, console: Console, drawn: graph_drawing.DrawnGraphs, paper: Paper
+) -> None:
     """Draw the sheet, or show the table; then print the errors of graphs and log."""
     of = drawn.span
     told = (
         f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}"
         f"{of_elastic(of.scene, ', its elastic links taken as rigid')}; "
-        f"{told_errors(drawn, drawn.reference)}"
+        f"{graph_words.told_errors(drawn, drawn.reference)}"
     )
     if request.output is None:
-        show_graphs(console, drawn)
-        tell(console, told)
+        graph_words.show_graphs(console, drawn)
+        graph_words.tell(console, told)
     else:
         canvas = draw_graphs(laid_out(drawn, paper), sheet_note(of.scene))
         save_sheet(console, canvas, request.output, told)
     if drawn.logged is not None:
-        for line in told_log(drawn):
-            tell(console, line)
+        for line in graph_words.told_log(drawn):
+            graph_words.tell(console, line)
 
 
 def _tell_errors(
-    request: GraphRequest, console: Console, errors: GraphErrors, paper: Paper
+    request: GraphRequest, console: Console, errors: graph_orders.GraphErrors, paper: Paper
 ) -> None:
     """Show the errors, and draw them where a file is given."""
     of = errors.span
     if request.output is not None:
         told = f"errors of {of.quantity.name} of {of.scene.name} over divisions{_by(errors.by)}"
-        canvas = draw_errors(errors, paper, sheet_note(of.scene))
+        canvas = graph_orders.draw_errors(errors, paper, sheet_note(of.scene))
         save_sheet(console, canvas, request.output, told)
-    show_errors(console, errors)
+    graph_orders.show_errors(console, errors)
     if errors.log is not None:
-        tell(console, told_floor(errors))
+        graph_words.tell(console, graph_orders.told_floor(errors))
 
 
 def _by(method: Method) -> str:

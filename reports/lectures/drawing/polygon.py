@@ -10,12 +10,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from analytic.lectures.drawings.drawn_polygons import (
-    QUANTITIES,
-    DrawnPolygons,
-    link_rates,
-    polygons_of,
-)
+from analytic.lectures.drawings import drawn_polygons
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from analytic.lectures.drawings.polygon import UNITS
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
@@ -23,14 +18,8 @@ from models.array import Array
 from models.errors import CrankcheckError, harmless
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.lectures.drawing.sheets import polygon_instant, polygon_table
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic
-from reports.lectures.drawing.sheets.polygon_instant import (
-    AT_DEG,
-    LoggedInstant,
-    LogInstants,
-    placed_at_angle,
-    placed_at_time,
-)
 from reports.lectures.drawing.sheets.polygon_on_paper import DrawnPolygon
 from reports.lectures.drawing.sheets.polygon_page import (
     ANIMATED,
@@ -41,12 +30,6 @@ from reports.lectures.drawing.sheets.polygon_page import (
     turning_file,
 )
 from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
-from reports.lectures.drawing.sheets.polygon_table import (
-    at_rest,
-    doubts,
-    drawn_links,
-    image_words,
-)
 from reports.logs.map_file import Map, read_map
 from reports.output.console import plain_table
 from reports.output.numbers import readable
@@ -62,10 +45,10 @@ def show_polygons(console: Console, sheet: PolygonSheet) -> None:
         _say(console, f"\n{quantity} polygon, {readable(drawn.scale)} {unit} to the mm")
         console.print(_vectors(drawn))
         if drawn.polygon.largest == 0.0:
-            _say(console, at_rest(quantity))
+            _say(console, polygon_table.at_rest(quantity))
         _show_log(console, drawn, sheet)
     _show_links(console, sheet)
-    for told in doubts(sheet.drawn):
+    for told in polygon_table.doubts(sheet.drawn):
         _say(console, told)
 
 
@@ -132,14 +115,19 @@ def _show_links(console: Console, sheet: PolygonSheet) -> None:
     rates = plain_table(gap=2)
     for head in ("link", "omega rad/s", "alpha rad/s^2"):
         rates.add_column(head, justify="left" if head == "link" else "right")
-    for name in drawn_links(sheet.drawn):
-        rates.add_row(name, *(f"{rate:.7g}" for rate in link_rates(sheet.drawn, name)))
+    for name in polygon_table.drawn_links(sheet.drawn):
+        rates.add_row(
+            name, *(f"{rate:.7g}" for rate in drawn_polygons.link_rates(sheet.drawn, name))
+        )
     console.print("", rates, sep="\n")
     images = plain_table(gap=2)
     for head in ("image of", "in velocities", "in accelerations"):
         images.add_column(head)
-    for name in drawn_links(sheet.drawn):
-        words = (image_words(sheet.drawn, name, quantity) for quantity in QUANTITIES)
+    for name in polygon_table.drawn_links(sheet.drawn):
+        words = (
+            polygon_table.image_words(sheet.drawn, name, quantity)
+            for quantity in drawn_polygons.QUANTITIES
+        )
         images.add_row(name, *words)
     console.print("", images, sep="\n")
 
@@ -203,7 +191,7 @@ class PolygonRequest:
         log = _logged(scene, self)
         placement = log.placement if log is not None else _placed(scene, self)
         time_s = self.at_s if log is None else log.time_s
-        sheet = laid_out(polygons_of(placement), paper, self.k, log, time_s)
+        sheet = laid_out(drawn_polygons.polygons_of(placement), paper, self.k, log, time_s)
         if self.output is None:
             show_polygons(console, sheet)
             return 0
@@ -255,22 +243,22 @@ def _contradiction(request: PolygonRequest, ending: str) -> str:
     return ""
 
 
-def _logged(scene: Scene, request: PolygonRequest) -> LoggedInstant | None:
+def _logged(scene: Scene, request: PolygonRequest) -> polygon_instant.LoggedInstant | None:
     """The log at the instant, where one is given."""
     if request.log is None:
         return None
     map_ = read_map(request.map) if request.map else Map()
-    instants = LogInstants.of_file(scene, request.log, map_)
+    instants = polygon_instant.LogInstants.of_file(scene, request.log, map_)
     if request.at_s is not None:
         return instants.at_time(request.at_s)
-    return instants.at_angle(AT_DEG if request.at_deg is None else request.at_deg)
+    return instants.at_angle(polygon_instant.AT_DEG if request.at_deg is None else request.at_deg)
 
 
 def _placed(scene: Scene, request: PolygonRequest) -> PlacedMechanism:
     if request.at_s is not None:
-        return placed_at_time(scene, request.at_s)
-    at_deg = AT_DEG if request.at_deg is None else request.at_deg
-    return placed_at_angle(scene, at_deg, request.omega)
+        return polygon_instant.placed_at_time(scene, request.at_s)
+    at_deg = polygon_instant.AT_DEG if request.at_deg is None else request.at_deg
+    return polygon_instant.placed_at_angle(scene, at_deg, request.omega)
 
 
 def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
@@ -280,7 +268,7 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
     if request.turn or ending == PAGE:
         course = PolygonCourse.kind(sheet.drawn.placement.scene, steady=request.omega is not None)
         return f"velocities and accelerations of {name} over {course.words}"
-    at_deg = AT_DEG if request.at_deg is None else request.at_deg
+    at_deg = polygon_instant.AT_DEG if request.at_deg is None else request.at_deg
     of = f"at {at_deg:g} deg" if request.at_s is None else f"at {request.at_s:g} s"
     beside = f", {request.log} beside" if request.log is not None else ""
     return (
@@ -289,6 +277,6 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
     )
 
 
-def _tell_doubts(console: Console, drawn: DrawnPolygons) -> None:
-    for told in doubts(drawn):
+def _tell_doubts(console: Console, drawn: drawn_polygons.DrawnPolygons) -> None:
+    for told in polygon_table.doubts(drawn):
         console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)

@@ -18,13 +18,7 @@ from models.errors import CrankcheckError, harmless
 from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.lectures.machine.cycle_rows import (
-    cycle_document,
-    cycle_frame,
-    flywheel_document,
-    show_cycle,
-    show_flywheel,
-)
+from reports.lectures.machine import cycle_rows
 from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import check_file, check_folder, check_outputs, write
 from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
@@ -87,14 +81,12 @@ class MachineCycle(Shown):
 
     def frame(self) -> pd.DataFrame:
         """Table of the cycle, a row each half degree: speed, inertia, torques, work, energy."""
-        from reports.lectures.machine.cycle_rows import cycle_frame
 
-        return cycle_frame(self.details)
+        return cycle_rows.cycle_frame(self.details)
 
     def show(self, console: Console) -> None:
-        from reports.lectures.machine.cycle_rows import show_cycle
 
-        show_cycle(console, self.details)
+        cycle_rows.show_cycle(console, self.details)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -121,14 +113,12 @@ class MachineFlywheel(Shown):
 
     def frame(self) -> pd.DataFrame:
         """Table of the cycle, with the speed without the flywheel where there is one."""
-        from reports.lectures.machine.cycle_rows import cycle_frame
 
-        return cycle_frame(self.details.cycle, self.details.bare)
+        return cycle_rows.cycle_frame(self.details.cycle, self.details.bare)
 
     def show(self, console: Console) -> None:
-        from reports.lectures.machine.cycle_rows import show_flywheel
 
-        show_flywheel(console, self.details)
+        cycle_rows.show_flywheel(console, self.details)
 
 
 @told_at_the_call
@@ -203,7 +193,7 @@ class CycleRequest:
             _write_cycle(self.output, cycle)
             name = cycle.machine.scene.name
             tell_of(console, f"{self.output}: the steady cycle of {name}")
-        show_cycle(console, cycle)
+        cycle_rows.show_cycle(console, cycle)
         return 0
 
 
@@ -230,10 +220,10 @@ def _write_cycle(path: Path, cycle: SteadyCycle) -> None:
 
         write(path, page_of_cycle(cycle))
     elif ending == NUMBERS:
-        write(path, cycle_document(cycle))
+        write(path, cycle_rows.cycle_document(cycle))
     else:
         origin = {"scene": scene.name, "source": scene.source}
-        write_frame(path, cycle_frame(cycle), "cycle", origin)
+        write_frame(path, cycle_rows.cycle_frame(cycle), "cycle", origin)
 
 
 SCENE = ".toml"
@@ -291,7 +281,7 @@ class FlywheelRequest:
             write(self.written, _scene(found, free=self.free))
             told = ", let go in its steady cycle" * self.free
             tell_of(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
-        show_flywheel(console, found)
+        cycle_rows.show_flywheel(console, found)
         return 0
 
 
@@ -325,11 +315,11 @@ def _write_flywheel(path: Path, found: WantedFlywheel) -> None:
 
         write(path, page_of_flywheel(found))
     elif ending == NUMBERS:
-        write(path, flywheel_document(found))
+        write(path, cycle_rows.flywheel_document(found))
     else:
         origin = {
             "scene": scene.name,
             "source": scene.source,
             "flywheel_kg_m2": repr(found.inertia_kg_m2),
         }
-        write_frame(path, cycle_frame(found.cycle, found.bare), "cycle", origin)
+        write_frame(path, cycle_rows.cycle_frame(found.cycle, found.bare), "cycle", origin)

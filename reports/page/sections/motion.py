@@ -13,16 +13,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.describe.facts import describe_law, facts
-from reports.drawing.moving import (
-    displacements,
-    drawing,
-    drawn_links,
-    instants,
-    moving_points,
-    packed,
-    size_of,
-    told_places,
-)
+from reports.drawing import moving
 from reports.output.numbers import error_text
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.results.error_parts import CurveBody, ErrorParts, Split, split, worst_body
@@ -62,13 +53,13 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
 
 def _sizes(report: Report, scene: Scene) -> dict[str, int]:
     """Return the size of each traced cell of a scene in the page [characters], by key."""
-    rows = 2 * len(moving_points(scene)) + len(drawn_links(scene)) + CURVES
+    rows = 2 * len(moving.moving_points(scene)) + len(moving.drawn_links(scene)) + CURVES
     traces = {
         str(key): report.stored.trace(str(key))
         for line in report.lines_of(scene.name)
         for key in line.cells["key"]
     }
-    return {key: size_of(rows, len(one["time_s"])) for key, one in traces.items() if one}
+    return {key: moving.size_of(rows, len(one["time_s"])) for key, one in traces.items() if one}
 
 
 def scene_words(scene: Scene) -> dict[str, object]:
@@ -103,7 +94,7 @@ class _DrawnScene:
         body = worst_body(lines, self.report.stored.trace, self.scene.longest_m)
         drawn = [self._line(line, time_s, body) for line in lines]
         return {
-            "drawing": drawing(self.scene, time_s),
+            "drawing": moving.drawing(self.scene, time_s),
             "body": None if body is None else {"name": body.name, "turns": body.scale == 1.0},
             "lines": drawn,
             "axes": [json.loads(axis) for axis in self.axes],
@@ -118,7 +109,7 @@ class _DrawnScene:
             for key in line.cells["key"][line.cells["status"] == "ok"]
         ]
         longest = max(times, key=len, default=np.zeros(0))
-        return longest if len(longest) > 1 else instants(self.scene)
+        return longest if len(longest) > 1 else moving.instants(self.scene)
 
     def _line(self, line: Line, time_s: Array, body: CurveBody | None) -> dict[str, object]:
         """Return a line: its error in the drawing and over the crank angle, at some steps."""
@@ -132,7 +123,7 @@ class _DrawnScene:
             "cells": [
                 {
                     "steps": rows.loc[key]["steps_per_turn"],
-                    "off": displacements(scene, trace(key), time_s),
+                    "off": moving.displacements(scene, trace(key), time_s),
                     "parts": self._parts(parts.cells.get(key)) if parts else None,
                 }
                 for key in chosen(line, self.sizes, self.held)
@@ -146,7 +137,7 @@ class _DrawnScene:
         axis = json.dumps(self._axis(parts), default=float)
         return {
             "names": list(parts.curves),
-            "curves": packed(np.vstack(list(parts.curves.values()))),
+            "curves": moving.packed(np.vstack(list(parts.curves.values()))),
             "axis": self.axes.setdefault(axis, len(self.axes)),
         }
 
@@ -155,7 +146,7 @@ class _DrawnScene:
         [%]."""
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
         return {
-            "angle": [round(float(a), 6) for a in told_places(self.scene, parts.driver_rad)],
+            "angle": [round(float(a), 6) for a in moving.told_places(self.scene, parts.driver_rad)],
             "part": [round(100.0 * float(p), 3) for p in part],
         }
 

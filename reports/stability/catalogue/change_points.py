@@ -6,16 +6,7 @@ from functools import partial
 import numpy as np
 
 from analytic.free.exact_motions import ChainMotion
-from models.scene import Scene
-from models.scene.hard import (
-    SOURCE,
-    WindowChain,
-    double_parallelogram,
-    fourbar,
-    slider_crank,
-    slotted_lever,
-    triad_platform,
-)
+from models.scene import Scene, hard
 from reports.stability.case import Case, Trial
 
 GRASHOF = "Grashof's rule; the parallelogram and the kite are its limiting cases"
@@ -32,20 +23,20 @@ def four_turns(scene: Scene, steps: float) -> Trial:
 
 def _excess(margin_m: float) -> Trial:
     name = "nearly-parallelogram"
-    return Trial(fourbar(name, 0.1, 0.3, 0.1 + margin_m, 0.3, source=GRASHOF))
+    return Trial(hard.fourbar(name, 0.1, 0.3, 0.1 + margin_m, 0.3, source=GRASHOF))
 
 
 def _triad_excess(margin_m: float) -> Trial:
     name, source = "triad-nearly-singular", "scene triad-platform with a longer crank"
-    return Trial(triad_platform(name, TRIAD_CRANK_M - margin_m, source=source))
+    return Trial(hard.triad_platform(name, TRIAD_CRANK_M - margin_m, source=source))
 
 
 def _parallelogram(steps: float) -> Trial:
-    return four_turns(fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=GRASHOF), steps)
+    return four_turns(hard.fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=GRASHOF), steps)
 
 
 def _kite(steps: float) -> Trial:
-    return four_turns(fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=GRASHOF), steps)
+    return four_turns(hard.fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=GRASHOF), steps)
 
 
 CHANGE_POINTS = (
@@ -94,11 +85,11 @@ EXCEL = 'Paper "Phan tich dong hoc co cau tay quay con truot bang phan mem Excel
 
 
 def _short_rod(excess: float) -> Trial:
-    return Trial(slider_crank("short-rod", 0.1, 0.1 * (1.0 + excess), source="L/R runs to 1"))
+    return Trial(hard.slider_crank("short-rod", 0.1, 0.1 * (1.0 + excess), source="L/R runs to 1"))
 
 
 def _isosceles(steps: float) -> Trial:
-    return four_turns(slider_crank("isosceles", 0.1, 0.1, source="L = R"), steps)
+    return four_turns(hard.slider_crank("isosceles", 0.1, 0.1, source="L = R"), steps)
 
 
 SLIDER_CRANKS = (
@@ -129,17 +120,17 @@ CRANK_M = 0.1
 
 def _swinging(excess: float) -> Trial:
     ground_m = CRANK_M * (1.0 + excess)
-    return Trial(slotted_lever("swinging-lever", CRANK_M, ground_m, source="AB/AC to 1"))
+    return Trial(hard.slotted_lever("swinging-lever", CRANK_M, ground_m, source="AB/AC to 1"))
 
 
 def _turning(excess: float) -> Trial:
     crank_m = CRANK_M * (1.0 + excess)
-    return Trial(slotted_lever("turning-lever", crank_m, CRANK_M, source="AB/AC to 1"))
+    return Trial(hard.slotted_lever("turning-lever", crank_m, CRANK_M, source="AB/AC to 1"))
 
 
 def _lever_through(steps: float) -> Trial:
     return four_turns(
-        slotted_lever("lever-through-pivot", CRANK_M, CRANK_M, source="AB = AC"), steps
+        hard.slotted_lever("lever-through-pivot", CRANK_M, CRANK_M, source="AB = AC"), steps
     )
 
 
@@ -178,12 +169,14 @@ DT_S = 1e-3
 
 
 def _three_rockers(steps: float) -> Trial:
-    scene = double_parallelogram("double-parallelogram", source="mobility 0 by count, really 1")
+    scene = hard.double_parallelogram(
+        "double-parallelogram", source="mobility 0 by count, really 1"
+    )
     return four_turns(scene, steps)
 
 
 def _windows(number: float) -> Trial:
-    chain = WindowChain(round(number))
+    chain = hard.WindowChain(round(number))
     scene = chain.scene()
     period = scene.driver.law.period_s
     return Trial(
@@ -208,7 +201,7 @@ REDUNDANCY = (
     Case(
         name="n-fourbar",
         title="A chain of windows, falling freely through its flat positions",
-        source=SOURCE,
+        source=hard.SOURCE,
         truth="l theta'' [(N+1)/3 + N] = -g cos(theta) [(N+1)/2 + N], in elliptic functions",
         expected="keeps its energy, and all rods parallel",
         parameter="windows N",

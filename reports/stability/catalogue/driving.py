@@ -10,13 +10,7 @@ from functools import partial
 
 from analytic.mechanism.fourbar import FourBar
 from models.files.reading import load_scene
-from models.scene import Scene
-from models.scene.hard import (
-    fourbar,
-    fourbar_by_coupler,
-    slider_crank_by_piston,
-    swinging_triad_platform,
-)
+from models.scene import Scene, hard
 from models.scene.laws import ConstantSpeed, Law, SpeedChange
 from reports.stability.case import Case, Trial
 
@@ -188,7 +182,7 @@ def _towards(name: str, lengths: tuple[float, float, float, float], speed: float
     limit = FourBar(*lengths).driver_range_rad[1]
     start = math.degrees(limit - BEFORE_RAD)
     source = f"{name}, driven by a servo towards the end of its range"
-    scene = fourbar(name, *lengths, source=source, start_deg=start, speed_rad_s=speed)
+    scene = hard.fourbar(name, *lengths, source=source, start_deg=start, speed_rad_s=speed)
     steps = scene.driver.law.period_s / DT_S
     turns = 2.0 * BEFORE_RAD / math.tau
     return Trial(
@@ -234,7 +228,7 @@ FOURBAR_M = (0.2, 0.25, 0.3, 0.5)
 
 def _triad(off_deg: float) -> Trial:
     return Trial(
-        swinging_triad_platform(
+        hard.swinging_triad_platform(
             "triad-near-limit",
             TRIAD_CRANK_M,
             source="scene triad-platform with a crank that does not turn fully",
@@ -246,7 +240,7 @@ def _triad(off_deg: float) -> Trial:
 
 def _piston(left_percent: float) -> Trial:
     return Trial(
-        slider_crank_by_piston(
+        hard.slider_crank_by_piston(
             "piston-near-limit",
             CRANK_M,
             ROD_M,
@@ -266,7 +260,7 @@ def coupler_end_deg() -> float:
 
 def _coupler(off_deg: float) -> Trial:
     return Trial(
-        fourbar_by_coupler(
+        hard.fourbar_by_coupler(
             "coupler-near-limit",
             *FOURBAR_M,
             source="triple-rocker, driven at the pin of crank and coupler",

@@ -15,12 +15,7 @@ from models.scene import Same, Scene
 from models.scene.laws import MOST_TURNS
 from reports.compare.beside import Truth, truth_of
 from reports.compare.errors import DRIVEN
-from reports.plan.singular import (
-    passage_note,
-    refuse_forceless,
-    refuse_short_tables,
-    refuse_singular,
-)
+from reports.plan import singular
 from reports.plan.steps import TURNS, counted
 from reports.quantities import MOVES, named
 from reports.quantities.limits import DEFAULTS
@@ -67,16 +62,16 @@ class DrivenWay(Way):
         return [Length(None, each, study.turns) for each in study.steps_per_turn]
 
     def refuse(self, run: Planned) -> None:
-        refuse_singular(run.scene, run.duration_s)
+        singular.refuse_singular(run.scene, run.duration_s)
         if run.with_forces:
-            refuse_forceless(run.scene, run.duration_s)
-        refuse_short_tables(run.scene, run.duration_s)
+            singular.refuse_forceless(run.scene, run.duration_s)
+        singular.refuse_short_tables(run.scene, run.duration_s)
 
     def stored(self, row: Mapping[Any, Any]) -> bool:
         return True
 
     def note(self, scene: Scene, duration_s: float) -> str:
-        return passage_note(scene, duration_s)
+        return singular.passage_note(scene, duration_s)
 
     def truth(self, run: Planned) -> Truth:
         return truth_of(Same(run.scene))

@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING, Any
 from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.plan.requirements import (
-    LOOK,
-    counted_released,
-    logged_every,
-    refuse_unelastic,
-    shortened_note,
-)
+from reports.plan import requirements
 from reports.quantities.limits import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
@@ -42,7 +36,9 @@ class FreeElasticWay(Bending, FreeWay):
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
         step, bent = (length.dt_s, length.duration_s), (given.segments, given.springs)
-        return counted_released(scene, *step, *bent, every=length.every, least=length.least)
+        return requirements.counted_released(
+            scene, *step, *bent, every=length.every, least=length.least
+        )
 
     def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         if not study.times_held:
@@ -53,7 +49,7 @@ class FreeElasticWay(Bending, FreeWay):
 
     def refuse(self, run: Planned) -> None:
         super().refuse(run)
-        refuse_unelastic(self._start_truth, run.scene, run.given_as)
+        requirements.refuse_unelastic(self._start_truth, run.scene, run.given_as)
 
     def opened(self, scene: Scene) -> tuple[Scene, State]:
         truth = self._start_truth(scene, GivenAs())
@@ -68,17 +64,17 @@ class FreeElasticWay(Bending, FreeWay):
     def _start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
         from reports.compare.released_truth import released_elastic_truth  # slow to import
 
-        look_s = LOOK * scene.driver.law.period_s
+        look_s = requirements.LOOK * scene.driver.law.period_s
         return released_elastic_truth(scene, given.segments, given.springs, 1, look_s)
 
     def note(self, scene: Scene, duration_s: float) -> str:
-        return shortened_note(scene, duration_s)
+        return requirements.shortened_note(scene, duration_s)
 
     def shortened(self, scene: Scene, lasts_s: float) -> str:
-        return shortened_note(scene, lasts_s)
+        return requirements.shortened_note(scene, lasts_s)
 
     def every(self, steps: int, steps_per_turn: float) -> int:
-        return logged_every(min(steps_per_turn, float(steps)))
+        return requirements.logged_every(min(steps_per_turn, float(steps)))
 
     def truth(self, run: Planned) -> Truth:
         from reports.compare.released_truth import released_elastic_truth  # slow to import

@@ -9,18 +9,13 @@ from matplotlib.patches import Rectangle
 
 from analytic.lectures.drawings.graphical import Plotted, ThreeGraphs
 from reports.figures.style import INK, LARGE, QUIET, SMALL, TINY, cut, width_in
+from reports.lectures.drawing.sheets import graph_words
 from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.graph_sheet import (
     CAPTION_MM,
     GraphSheet,
     Panel,
     graph_sheet,
-)
-from reports.lectures.drawing.sheets.graph_words import (
-    draw_table,
-    own_rates_off,
-    share,
-    table_width_mm,
 )
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
@@ -192,7 +187,7 @@ NAME_IN = 1.3
 
 def laid_out(drawn: DrawnGraphs, paper: Paper) -> GraphSheet:
     """Graphs on paper, beside their table. Raises CrankcheckError for parts too narrow."""
-    return graph_sheet(drawn, paper, table_width_mm(drawn))
+    return graph_sheet(drawn, paper, graph_words.table_width_mm(drawn))
 
 
 def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
@@ -201,7 +196,7 @@ def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
     frame = canvas.layer("frame")
     write_head(frame, sheet.paper, _title(drawn), note)
     _write_legend(frame, sheet)
-    draw_table(frame, drawn, sheet.table)
+    graph_words.draw_table(frame, drawn, sheet.table)
     for panel in sheet.panels:
         draw_axes(frame, sheet, panel, caption(sheet, panel))
         draw_exact(frame, sheet, panel)
@@ -235,19 +230,19 @@ def caption(sheet: GraphSheet, panel: Panel) -> str:
     told = ", ".join(words)
     if order == READ[drawn.by]:
         if drawn.logged is not None:
-            told += f"; log off by up to {share(drawn.off(drawn.logged, order))}"
+            told += f"; log off by up to {graph_words.share(drawn.off(drawn.logged, order))}"
         return told
     if drawn.by == "integration":
         start = drawn.reference.graphs[order].y[0]
         told += f", from {start:.6g} {panel.unit} on (exact)"
-    told += f"; off by up to {share(drawn.off(drawn.reference, order))}"
+    told += f"; off by up to {graph_words.share(drawn.off(drawn.reference, order))}"
     if drawn.logged is not None:
         told += (
-            f"; log by up to {share(drawn.off(drawn.logged, order))}, its own part "
-            f"{share(drawn.own_part(order))}"
+            f"; log by up to {graph_words.share(drawn.off(drawn.logged, order))}, its own part "
+            f"{graph_words.share(drawn.own_part(order))}"
         )
-        own = own_rates_off(drawn, order)
-        told += f", as logged {share(own)}" if own is not None else ""
+        own = graph_words.own_rates_off(drawn, order)
+        told += f", as logged {graph_words.share(own)}" if own is not None else ""
     return told
 
 

@@ -10,23 +10,8 @@ from matplotlib.patches import Circle
 from analytic.lectures.drawings.polygon import SUPERSCRIPTS, Kind, Polygon, Quantity, Vector
 from models.array import Array
 from reports.figures.style import INK, QUIET, SIZE, SMALL, TINY, width_in
+from reports.lectures.drawing.sheets import paper, polygon_on_paper
 from reports.lectures.drawing.sheets.letters import Letter, together
-from reports.lectures.drawing.sheets.paper import (
-    MM_PER_IN,
-    Box,
-    Canvas,
-    arrow,
-    layer_words,
-    line,
-    text,
-)
-from reports.lectures.drawing.sheets.polygon_on_paper import (
-    STAR,
-    DrawnPolygon,
-    crossing_line,
-    draw_errors,
-    image_lines,
-)
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 
 COLOURS: dict[Kind, str] = {
@@ -48,44 +33,50 @@ WORDS: dict[Kind, str] = {
 IMAGE = "#8a94a0"
 
 
-def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
+def draw_polygon(
+    canvas: paper.Canvas, drawn: polygon_on_paper.DrawnPolygon, box: paper.Box
+) -> None:
     """Draw the polygon, a layer for each step of drawing, one for the images, one for letters,
     which holds the legend alone."""
     quantity = drawn.polygon.quantity
     for number, step in enumerate(drawn.polygon.steps, 1):
-        axes = canvas.layer(f"{quantity}-{number}-{layer_words(step.title)}")
+        axes = canvas.layer(f"{quantity}-{number}-{paper.layer_words(step.title)}")
         for vector in step.vectors:
             _draw_vector(drawn, vector, axes, quantity)
         for at in step.nodes.values():
             axes.add_patch(Circle(tuple(drawn.at(at)), 0.55, fc="white", ec=INK, lw=0.7, zorder=6))
-    if edges := [*image_lines(drawn)]:
+    if edges := [*polygon_on_paper.image_lines(drawn)]:
         axes = canvas.layer(f"{quantity}-images")
         for start, end in edges:
-            line(axes, start, end, color=IMAGE, linewidth=0.6)
+            paper.line(axes, start, end, color=IMAGE, linewidth=0.6)
     if drawn.logged is not None:
         axes = canvas.layer(f"{quantity}-log")
-        draw_errors(axes, drawn.logged, drawn.polygon.images.values(), f"{quantity}-error")
+        polygon_on_paper.draw_errors(
+            axes, drawn.logged, drawn.polygon.images.values(), f"{quantity}-error"
+        )
     axes = canvas.layer(f"{quantity}-letters")
     _legend(axes, drawn.polygon, box)
 
 
-def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:
+def _draw_vector(
+    drawn: polygon_on_paper.DrawnPolygon, vector: Vector, axes: Axes, quantity: str
+) -> None:
     start, end = drawn.at(vector.start), drawn.at(vector.end)
     colour = COLOURS[vector.kind]
-    if (dashes := crossing_line(drawn, vector)) is not None:
+    if (dashes := polygon_on_paper.crossing_line(drawn, vector)) is not None:
         dashed: dict[str, Any] = {"linewidth": 0.5, "linestyle": (0, (4, 2)), "zorder": 1}
-        line(axes, *dashes, color=colour, **dashed)
-    arrow(axes, start, end, f"{quantity}-{vector.name}", colour)
+        paper.line(axes, *dashes, color=colour, **dashed)
+    paper.arrow(axes, start, end, f"{quantity}-{vector.name}", colour)
 
 
-def _legend(axes: Axes, polygon: Polygon, box: Box) -> None:
+def _legend(axes: Axes, polygon: Polygon, box: paper.Box) -> None:
     """Write the key of the colours of the vectors that occur."""
     there = {vector.kind for vector in polygon.vectors}
     words = [(WORDS[kind], colour) for kind, colour in COLOURS.items() if kind in there]
     x = box.left + 1.5
     for told, colour in words:
-        text(axes, x, box.bottom + 1.8, told, TINY, color=colour)
-        x += MM_PER_IN * width_in(told, TINY) + 3.0
+        paper.text(axes, x, box.bottom + 1.8, told, TINY, color=colour)
+        x += paper.MM_PER_IN * width_in(told, TINY) + 3.0
 
 
 POLES: Mapping[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
@@ -96,18 +87,20 @@ NODE_MM = 0.6
 """Half the size of the circle about an image [mm]."""
 
 
-def polygon_letters(drawn: DrawnPolygon) -> list[Letter]:
+def polygon_letters(drawn: polygon_on_paper.DrawnPolygon) -> list[Letter]:
     """The letters of the images, of ends between them and of the pole."""
     images = _images(drawn)
     between = _between(drawn, [*images.values()])
     letters = [
-        Letter(name, at[None], NODE_MM, SIZE, LOGGED if name.endswith(STAR) else INK)
+        Letter(
+            name, at[None], NODE_MM, SIZE, LOGGED if name.endswith(polygon_on_paper.STAR) else INK
+        )
         for name, at in images.items()
     ]
     return letters + [Letter(name, at[None], 0.0, SMALL, QUIET) for name, at in between.items()]
 
 
-def _images(drawn: DrawnPolygon) -> dict[str, Array]:
+def _images(drawn: polygon_on_paper.DrawnPolygon) -> dict[str, Array]:
     """The places of the pole, the images, and a log's images [mm], by letters."""
     polygon = drawn.polygon
     prime = "'" if polygon.quantity == "acceleration" else ""
@@ -119,11 +112,14 @@ def _images(drawn: DrawnPolygon) -> dict[str, Array]:
         if np.any(end) or name in nodes  # the ground's points are the pole
     }
     if drawn.logged is not None:
-        at |= {lower_case(n) + prime + STAR: tip for n, tip in drawn.logged.tips.items()}
+        at |= {
+            lower_case(n) + prime + polygon_on_paper.STAR: tip
+            for n, tip in drawn.logged.tips.items()
+        }
     return together(at, NEAR_MM)
 
 
-def _between(drawn: DrawnPolygon, images: Sequence[Array]) -> dict[str, Array]:
+def _between(drawn: polygon_on_paper.DrawnPolygon, images: Sequence[Array]) -> dict[str, Array]:
     """The ends of normal and Coriolis components that are no images: n' and k' as in the lecture,
     with the rest of the vector's name where there are several."""
     ends = [

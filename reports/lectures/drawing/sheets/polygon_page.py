@@ -12,12 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from analytic.lectures.drawings.drawn_polygons import (
-    QUANTITIES,
-    DrawnPolygons,
-    link_rates,
-    polygons_of,
-)
+from analytic.lectures.drawings import drawn_polygons
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from analytic.lectures.drawings.polygon import UNITS, Polygon, Quantity
 from models.array import Array
@@ -29,13 +24,9 @@ from reports.describe.facts import describe_law
 from reports.describe.free_motion import instants
 from reports.drawing.moving import drawing, packed
 from reports.drawing.shape import turn_of
+from reports.lectures.drawing.sheets import polygon_sheet
 from reports.lectures.drawing.sheets.paper import sheet_note
 from reports.lectures.drawing.sheets.polygon_drawing import POLES, lower_case
-from reports.lectures.drawing.sheets.polygon_sheet import (
-    PolygonSheet,
-    draw_sheet,
-    over_positions,
-)
 from reports.lectures.drawing.sheets.polygon_table import drawn_links
 from reports.output.numbers import count
 from reports.output.write import crankcheck_version
@@ -50,7 +41,7 @@ class PolygonCourse:
 
     scene: Scene
     motion: Motion
-    drawn: tuple[DrawnPolygons, ...]
+    drawn: tuple[drawn_polygons.DrawnPolygons, ...]
     nearest: int
     title = "Polygons over a turn"
     words = "a turn"
@@ -75,7 +66,8 @@ class PolygonCourse:
         samples = course.instants(scene, samples, most)
         motion = turn_of(scene, samples)
         drawn = tuple(
-            polygons_of(PlacedMechanism.standing(scene, motion, sample=at)) for at in range(samples)
+            drawn_polygons.polygons_of(PlacedMechanism.standing(scene, motion, sample=at))
+            for at in range(samples)
         )
         return course(scene, motion, drawn, _nearest(motion, placement))
 
@@ -85,7 +77,7 @@ class PolygonCourse:
         return samples
 
     @property
-    def frames(self) -> tuple[DrawnPolygons, ...]:
+    def frames(self) -> tuple[drawn_polygons.DrawnPolygons, ...]:
         """The polygons of an animation that repeats: the last equals the first."""
         return self.drawn[:-1]
 
@@ -112,7 +104,7 @@ class FreeMotionCourse(PolygonCourse):
         return min(instants(kept_motion(scene, scene.driver.law.period_s)), most)
 
     @property
-    def frames(self) -> tuple[DrawnPolygons, ...]:
+    def frames(self) -> tuple[drawn_polygons.DrawnPolygons, ...]:
         return self.drawn
 
     @property
@@ -137,9 +129,9 @@ FRAME_S, STEP_S, LAST_S = 0.15, 1.2, 3.0
 DPI = 100
 
 
-def polygon_file(sheet: PolygonSheet, ending: str) -> bytes:
+def polygon_file(sheet: polygon_sheet.PolygonSheet, ending: str) -> bytes:
     """The sheet as a file with an ending of `ENDINGS`, animated step by step."""
-    canvas = draw_sheet(sheet, sheet_note(sheet.drawn.placement.scene))
+    canvas = polygon_sheet.draw_sheet(sheet, sheet_note(sheet.drawn.placement.scene))
     name = sheet.drawn.placement.scene.name
     if ending != ANIMATED:
         return canvas.saved(ending[1:], f"Vector polygons of {name}")
@@ -155,15 +147,15 @@ def polygon_file(sheet: PolygonSheet, ending: str) -> bytes:
     return _animated(frames, [STEP_S] * (len(frames) - 1) + [LAST_S])
 
 
-def turning_file(sheet: PolygonSheet, *, steady: bool = False) -> bytes:
+def turning_file(sheet: polygon_sheet.PolygonSheet, *, steady: bool = False) -> bytes:
     """The sheet over a turn of the driver's law, or over its free motion, as an animation at one
     scale; with a ``steady`` driver at the speed of the sheet. Raises CrankcheckError where the
     driver goes through no turn."""
     placement = sheet.drawn.placement
     course = PolygonCourse.of(placement, FRAMES + 1, MOST_FRAMES, steady=steady)
     frames = [
-        _picture(draw_sheet(each, sheet_note(course.scene)).figure)
-        for each in over_positions(course.frames, sheet.paper)
+        _picture(polygon_sheet.draw_sheet(each, sheet_note(course.scene)).figure)
+        for each in polygon_sheet.over_positions(course.frames, sheet.paper)
     ]
     return _animated(frames, [FRAME_S] * len(frames))
 
@@ -217,7 +209,7 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
             "drawing": drawing(scene, motion.time_s, motion) | course.until,
             "home": course.nearest,
             "lasts_ms": LASTS_MS,
-            "polygons": [_embedded(drawn, quantity) for quantity in QUANTITIES],
+            "polygons": [_embedded(drawn, quantity) for quantity in drawn_polygons.QUANTITIES],
             "links": _links(drawn),
         },
         scripts=("arrows.js", "mechanism.js", "stage.js", "polygon_figure.js", "polygons.js"),
@@ -228,13 +220,15 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
     return assembled(head, [section])
 
 
-def _missing(drawn: Sequence[DrawnPolygons]) -> str:
+def _missing(drawn: Sequence[drawn_polygons.DrawnPolygons]) -> str:
     """The number of instants at which polygons are not determined, in words."""
     some = sum(bool(each.undetermined) for each in drawn)
     return f"At {count(some, 'instant')} of {len(drawn)} not all is determined." if some else ""
 
 
-def _embedded(drawn: Sequence[DrawnPolygons], quantity: Quantity) -> dict[str, object]:
+def _embedded(
+    drawn: Sequence[drawn_polygons.DrawnPolygons], quantity: Quantity
+) -> dict[str, object]:
     """A polygon at all instants: its vectors from x, y to x, y, and its images at x, y."""
     every = [each.velocity if quantity == "velocity" else each.acceleration for each in drawn]
     whole = max(every, key=lambda each: (len(each.steps), len(each.vectors)))
@@ -293,7 +287,7 @@ def _box(rows: Array, places: Array) -> list[float]:
     return [np.nanmin(xs), np.nanmin(ys), np.nanmax(xs), np.nanmax(ys)]
 
 
-def _links(drawn: Sequence[DrawnPolygons]) -> dict[str, object]:
+def _links(drawn: Sequence[drawn_polygons.DrawnPolygons]) -> dict[str, object]:
     """The rates of links; exactly 0 where their image is one point."""
     names = list(dict.fromkeys(name for each in drawn for name in drawn_links(each)))
     rows = np.full((2 * len(names), len(drawn)), np.nan)
@@ -301,5 +295,5 @@ def _links(drawn: Sequence[DrawnPolygons]) -> dict[str, object]:
         for number, name in enumerate(names):
             if name not in each.rates:
                 continue
-            rows[2 * number : 2 * number + 2, at] = link_rates(each, name)
+            rows[2 * number : 2 * number + 2, at] = drawn_polygons.link_rates(each, name)
     return {"names": names, "rows": packed(rows)}

@@ -23,6 +23,7 @@ from analytic.lectures.drawings.drawn_polygons import DrawnPolygons
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SMALL, TINY, cut
+from reports.lectures.drawing.sheets import polygon_on_paper, polygon_table
 from reports.lectures.drawing.sheets.letters import Letter, ink_of, write_letters
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
@@ -38,21 +39,6 @@ from reports.lectures.drawing.sheets.paper import (
 )
 from reports.lectures.drawing.sheets.polygon_drawing import draw_polygon, polygon_letters
 from reports.lectures.drawing.sheets.polygon_instant import LoggedInstant
-from reports.lectures.drawing.sheets.polygon_on_paper import (
-    STAR,
-    DrawnPolygon,
-    MagnifiedErrors,
-    draw_errors,
-    fitted,
-    frame_of,
-)
-from reports.lectures.drawing.sheets.polygon_table import (
-    at_rest,
-    doubts,
-    draw_table,
-    link_rows,
-    vector_rows,
-)
 from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.numbers import readable
@@ -69,8 +55,8 @@ class PolygonSheet:
     and the middle of the scheme [m]; the log beside it, if any; the time [s], where known."""
 
     drawn: DrawnPolygons
-    velocity: DrawnPolygon
-    acceleration: DrawnPolygon
+    velocity: polygon_on_paper.DrawnPolygon
+    acceleration: polygon_on_paper.DrawnPolygon
     length_scale: float
     middle: Array
     boxes: dict[str, Box]
@@ -83,13 +69,13 @@ class PolygonSheet:
         return np.asarray(self.boxes["scheme"].middle + (at - self.middle) / self.length_scale)
 
     @property
-    def misplaced(self) -> MagnifiedErrors | None:
+    def misplaced(self) -> polygon_on_paper.MagnifiedErrors | None:
         """The errors of the log in the scheme."""
         if self.log is None:
             return None
         exact = {name: self.place(at) for name, at in self.drawn.placement.points.items()}
         errors = {name: error / self.length_scale for name, error in self.log.places.items()}
-        return MagnifiedErrors.of(exact, errors)
+        return polygon_on_paper.MagnifiedErrors.of(exact, errors)
 
 
 def laid_out(
@@ -107,7 +93,7 @@ def laid_out(
     length_scale, middle = boxes["scheme"].fitted(places, SCHEME_PADDING)
     if log is not None:  # which may have come apart: it is to be seen
         off = {name: error / length_scale for name, error in log.places.items()}
-        if MagnifiedErrors.of(drawn.placement.points, off).is_large:
+        if polygon_on_paper.MagnifiedErrors.of(drawn.placement.points, off).is_large:
             own = [drawn.placement.points[n] + error for n, error in log.places.items()]
             length_scale, middle = boxes["scheme"].fitted(np.array([*places, *own]), SCHEME_PADDING)
     scales: tuple[float | None, float | None] = (None, None)
@@ -116,9 +102,9 @@ def laid_out(
             raise CrankcheckError("--k: the book's scales are those of a crank at constant speed")
         scales = book_scales(length_scale, drawn.placement.driver.omega, k)
     velocity, acceleration = (
-        fitted(polygon, boxes[polygon.quantity], scale)
+        polygon_on_paper.fitted(polygon, boxes[polygon.quantity], scale)
         if log is None
-        else fitted(polygon, boxes[polygon.quantity], scale).beside(
+        else polygon_on_paper.fitted(polygon, boxes[polygon.quantity], scale).beside(
             log.rates[polygon.quantity], log.ways[polygon.quantity], boxes[polygon.quantity], scale
         )
         for polygon, scale in zip((drawn.velocity, drawn.acceleration), scales, strict=True)
@@ -133,13 +119,15 @@ def over_positions(drawn: Sequence[DrawnPolygons], paper: Paper) -> list[Polygon
     boxes = _boxes(paper)
     places = np.concatenate([extent_of(each.placement) for each in drawn])
     scheme = boxes["scheme"].fitted(places, SCHEME_PADDING)
-    velocity = frame_of([each.velocity for each in drawn], boxes["velocity"])
-    acceleration = frame_of([each.acceleration for each in drawn], boxes["acceleration"])
+    velocity = polygon_on_paper.frame_of([each.velocity for each in drawn], boxes["velocity"])
+    acceleration = polygon_on_paper.frame_of(
+        [each.acceleration for each in drawn], boxes["acceleration"]
+    )
     return [
         PolygonSheet(
             each,
-            DrawnPolygon(each.velocity, *velocity),
-            DrawnPolygon(each.acceleration, *acceleration),
+            polygon_on_paper.DrawnPolygon(each.velocity, *velocity),
+            polygon_on_paper.DrawnPolygon(each.acceleration, *acceleration),
             *scheme,
             boxes,
             paper,
@@ -173,9 +161,11 @@ def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
         layer = name if name == "scheme" else f"{name}-letters"
         write_letters(canvas, canvas.named(layer), letters, sheet.boxes[name], ink)
     rows = [
-        *vector_rows(sheet.velocity), *vector_rows(sheet.acceleration), *link_rows(sheet.drawn)
-    ]  # fmt: skip
-    draw_table(canvas.named("table"), rows, sheet.boxes["table"], sheet.paper)
+        *polygon_table.vector_rows(sheet.velocity),
+        *polygon_table.vector_rows(sheet.acceleration),
+        *polygon_table.link_rows(sheet.drawn),
+    ]
+    polygon_table.draw_table(canvas.named("table"), rows, sheet.boxes["table"], sheet.paper)
     return canvas
 
 
@@ -225,9 +215,9 @@ def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
     """Write the parts not drawn above the legend of each polygon; also that it is one point."""
     for drawn in (sheet.velocity, sheet.acceleration):
         box = sheet.boxes[drawn.polygon.quantity]
-        told = doubts(sheet.drawn)
+        told = polygon_table.doubts(sheet.drawn)
         if drawn.polygon.largest == 0.0:
-            told.append(at_rest(drawn.polygon.quantity))
+            told.append(polygon_table.at_rest(drawn.polygon.quantity))
         for number, words in enumerate(reversed(told), 1):
             room = (box.width - 3.0) / MM_PER_IN
             at = box.bottom + 1.8 + 2.8 * number
@@ -254,7 +244,9 @@ def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
     scene = sheet.drawn.placement.scene
     draw_scheme(axes, sheet.drawn.placement, sheet.place)
     if (log := sheet.misplaced) is not None:
-        draw_errors(axes, log, (x.points for x in scene.links.values()), "scheme-error")
+        polygon_on_paper.draw_errors(
+            axes, log, (x.points for x in scene.links.values()), "scheme-error"
+        )
 
 
 def _letters(sheet: PolygonSheet) -> dict[str, list[Letter]]:
@@ -264,7 +256,7 @@ def _letters(sheet: PolygonSheet) -> dict[str, list[Letter]]:
     of_scheme = point_letters(placement, places)
     if (log := sheet.misplaced) is not None:
         of_scheme += [
-            Letter(f"{name}{STAR}", tip[None], 0.0, SMALL, LOGGED)
+            Letter(f"{name}{polygon_on_paper.STAR}", tip[None], 0.0, SMALL, LOGGED)
             for name, tip in log.tips.items()
             if np.any(log.errors[name])
         ]

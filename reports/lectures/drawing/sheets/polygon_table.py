@@ -7,12 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from analytic.lectures.drawings.drawn_polygons import (
-    QUANTITIES,
-    DrawnPolygons,
-    link_rates,
-    similarity,
-)
+from analytic.lectures.drawings import drawn_polygons
 from analytic.lectures.drawings.polygon import SYMBOLS, UNITS, Quantity
 from models.errors import CrankcheckError
 from models.scene import GROUND
@@ -27,9 +22,9 @@ RATES = {"velocity": "1/s", "acceleration": "1/s^2"}
 REASONS = {"velocity": "as omega is 0", "acceleration": "as omega and alpha are 0"}
 
 
-def image_words(drawn: DrawnPolygons, link: str, quantity: Quantity) -> str:
+def image_words(drawn: drawn_polygons.DrawnPolygons, link: str, quantity: Quantity) -> str:
     """The similarity of a link's image in words: its scale and turn; or that it is one point."""
-    image = similarity(drawn, link, quantity)
+    image = drawn_polygons.similarity(drawn, link, quantity)
     if image.is_point:
         return f"one point, {REASONS[quantity]}"
     turned = f"turned by {math.degrees(image.turn_rad):.4g} deg"
@@ -41,13 +36,13 @@ def at_rest(quantity: Quantity) -> str:
     return f"at rest: every {quantity} is 0"
 
 
-def doubts(drawn: DrawnPolygons) -> list[str]:
+def doubts(drawn: drawn_polygons.DrawnPolygons) -> list[str]:
     """The parts that could not be drawn, and those that can hardly be drawn by hand."""
     lost = [f"not drawn: {told}" for told in drawn.undetermined]
     return lost + [f"flat: {told}" for told in drawn.flat]
 
 
-def drawn_links(drawn: DrawnPolygons) -> list[str]:
+def drawn_links(drawn: drawn_polygons.DrawnPolygons) -> list[str]:
     """The moving links that could be drawn."""
     return [name for name in drawn.rates if name != GROUND and name in drawn.placement.scene.links]
 
@@ -98,13 +93,13 @@ def vector_rows(drawn: DrawnPolygon) -> Iterator[Row]:
         )  # fmt: skip
 
 
-def link_rows(drawn: DrawnPolygons) -> Iterator[Row]:
+def link_rows(drawn: drawn_polygons.DrawnPolygons) -> Iterator[Row]:
     """The rates of the links, and their images."""
     yield Row("links, and their images", kept=3)
     for name in drawn_links(drawn):
-        omega, alpha = link_rates(drawn, name)
+        omega, alpha = drawn_polygons.link_rates(drawn, name)
         yield Row(f"{name}:", "", f"{readable(omega)} rad/s, {readable(alpha)} rad/s²", kept=2)
-        for quantity in QUANTITIES:
+        for quantity in drawn_polygons.QUANTITIES:
             words = image_words(drawn, name, quantity).replace("^2", "²").replace(" deg", "°")
             yield Row(f"{SYMBOLS[quantity]}:", "", words, indent_mm=2.0)
 

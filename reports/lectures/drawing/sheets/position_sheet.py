@@ -19,6 +19,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.figures.style import INK, QUIET
+from reports.lectures.drawing.sheets import scheme
 from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
 from reports.lectures.drawing.sheets.paper import (
     Box,
@@ -27,15 +28,6 @@ from reports.lectures.drawing.sheets.paper import (
     draw_border,
     inner_box,
     write_head,
-)
-from reports.lectures.drawing.sheets.scheme import (
-    draw_outline,
-    draw_scheme,
-    extent_of,
-    point_letters,
-    range_of_law,
-    sense_of_law,
-    symbol_radius,
 )
 
 PADDING = 12.0
@@ -81,8 +73,8 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     Raises CrankcheckError where the parts are too small to be distinguished on the paper.
     """
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
-    low, high = range_of_law(scene)
-    sense = sense_of_law(scene)
+    low, high = scheme.range_of_law(scene)
+    sense = scheme.sense_of_law(scene)
     whole = scene.driver.slider is None and high - low >= math.tau - 1e-9
     if whole:
         angles = start + sense * math.tau * np.arange(divisions) / divisions
@@ -92,7 +84,7 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
         angles, dense = np.linspace(first, last, divisions), np.linspace(first, last, LOCUS)
     points, loci = (_points(scene, each) for each in (angles, dense))
     placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), sense))
-    places = np.concatenate([*loci.values(), extent_of(placement)])
+    places = np.concatenate([*loci.values(), scheme.extent_of(placement)])
     fitted = inner_box(paper).fitted(places, PADDING)
     sheet = PositionSheet(scene, placement, angles, points, loci, *fitted, paper)
     _check_apart(sheet, divisions)
@@ -136,7 +128,7 @@ def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
     _loci(canvas.layer("loci"), sheet)
     _positions(canvas.layer("positions"), sheet)
     _construction(canvas.layer("construction"), sheet)
-    draw_scheme(canvas.layer("mechanism"), sheet.placement, sheet.at)
+    scheme.draw_scheme(canvas.layer("mechanism"), sheet.placement, sheet.at)
     write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
     return canvas
 
@@ -166,7 +158,7 @@ def _positions(axes: Axes, sheet: PositionSheet) -> None:
     """Draw all positions of all links, faint."""
     for k in range(len(sheet.angles)):
         places = {name: sheet.at(at[k]) for name, at in sheet.points.items()}
-        draw_outline(axes, sheet.scene.links.values(), places, FAINT, 0.5)
+        scheme.draw_outline(axes, sheet.scene.links.values(), places, FAINT, 0.5)
     for name in _driven(sheet.scene):
         for at in sheet.at(sheet.points[name]):
             axes.add_patch(Circle(tuple(at), DOT_MM, fc=FAINT, ec="none"))
@@ -197,13 +189,13 @@ def _arc(axes: Axes, centre: Array, through: Array) -> None:
 def _letters(sheet: PositionSheet) -> list[Letter]:
     """Letters of points in the first position, numbers on the driver's path, names of loci."""
     spots = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
-    letters = point_letters(sheet.placement, spots)
+    letters = scheme.point_letters(sheet.placement, spots)
     pivot = sheet.scene.driver_pivot if sheet.scene.driver.is_crank else ""
     pin, *others = _driven(sheet.scene)
     if pivot:
         pin = max((pin, *others), key=lambda name: float(np.hypot(*(spots[name] - spots[pivot]))))
     for k, at in enumerate(sheet.at(sheet.points[pin])):
-        radius = symbol_radius(sheet.placement, pin) if k == 0 else DOT_MM
+        radius = scheme.symbol_radius(sheet.placement, pin) if k == 0 else DOT_MM
         letters.append(Letter(str(k), at, radius, NUMBER, QUIET))
     for name, places in _ways(sheet):
         few = places[:: max(1, len(places) // LOCUS_PLACES)]

@@ -26,13 +26,7 @@ from openpyxl.worksheet.properties import (  # type: ignore[import-untyped]  # a
 from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]  # as above
 
 from models.array import Array
-from reports.lectures.drawing.workbook.formula_table import (
-    ASSEMBLED,
-    NAME,
-    FormulaTable,
-    Input,
-    evaluated,
-)
+from reports.lectures.drawing.workbook import formula_table
 
 INPUTS, TABLE = "inputs", "live"
 TAKEN = re.compile(r"[rc]|[a-z]{1,3}\d+", re.IGNORECASE)
@@ -53,7 +47,7 @@ def cell_name(name: str) -> str:
     return f"{name}_" if TAKEN.fullmatch(name) else name
 
 
-def write_inputs(book: Workbook, table: FormulaTable) -> None:
+def write_inputs(book: Workbook, table: formula_table.FormulaTable) -> None:
     """Write the sheet of inputs, one a row: name, value, unit, meaning, and its name in formulas;
     below them the outcome of the table of columns."""
     sheet = book.create_sheet(INPUTS)
@@ -71,7 +65,7 @@ def write_inputs(book: Workbook, table: FormulaTable) -> None:
     _finish(sheet, "A2", len(WIDTHS))
 
 
-def _open(sheet: Worksheet, row: int, each: Input) -> None:
+def _open(sheet: Worksheet, row: int, each: formula_table.Input) -> None:
     """Let the value of an input be changed, within its range."""
     cell = sheet.cell(row, 2)
     cell.fill, cell.protection = OPEN, Protection(locked=False)
@@ -89,7 +83,7 @@ def _open(sheet: Worksheet, row: int, each: Input) -> None:
     sheet.add_data_validation(validation)
 
 
-def _append_outcome(sheet: Worksheet, table: FormulaTable) -> None:
+def _append_outcome(sheet: Worksheet, table: formula_table.FormulaTable) -> None:
     """Write the outcome of the inputs: the range of the rows, and whether all can be assembled."""
     first, last = 2, table.count + 1
 
@@ -102,15 +96,17 @@ def _append_outcome(sheet: Worksheet, table: FormulaTable) -> None:
     for name in table.states:
         row = sheet.max_row + 1
         member = name.partition("_")[2]
-        head = f"rows {ASSEMBLED}" + (f", member {member}" if member else "")
-        sheet.append([head, f'=COUNTIF({column(name)},"{ASSEMBLED}")', f"of {table.count}"])
+        head = f"rows {formula_table.ASSEMBLED}" + (f", member {member}" if member else "")
+        sheet.append(
+            [head, f'=COUNTIF({column(name)},"{formula_table.ASSEMBLED}")', f"of {table.count}"]
+        )
         told = f'=IF(B{row}={table.count},"all","#N/A: no position, or no rates, with this crank")'
         sheet.cell(row, 4, told)
         rule = FormulaRule([f"$B${row}<{table.count}"], font=RED)
         sheet.conditional_formatting.add(f"A{row}:D{row}", rule)
 
 
-def write_columns(book: Workbook, table: FormulaTable) -> None:
+def write_columns(book: Workbook, table: formula_table.FormulaTable) -> None:
     """Write the sheet of columns; rows not assembled have #N/A, which charts leave out."""
     sheet = book.create_sheet(TABLE)
     sheet.append([_head(each.head, table) for each in table.columns])
@@ -120,7 +116,7 @@ def write_columns(book: Workbook, table: FormulaTable) -> None:
             plain = column.first if row == 2 and column.first is not None else column.formula
             cells.append("=" + _placed(plain, table, row))
         sheet.append(cells)
-    values = evaluated(table)
+    values = formula_table.evaluated(table)
     for place, column in enumerate(table.columns, 1):
         shape = _number_format(values[column.name])
         letter = table.letter(column.name)
@@ -134,7 +130,7 @@ def write_columns(book: Workbook, table: FormulaTable) -> None:
     sheet.conditional_formatting.add(whole, FormulaRule(["ISNA(A2)"], font=SOFT))
     for name in table.states:
         letter = table.letter(name)
-        rule = FormulaRule([f'{letter}2<>"{ASSEMBLED}"'], font=RED)
+        rule = FormulaRule([f'{letter}2<>"{formula_table.ASSEMBLED}"'], font=RED)
         sheet.conditional_formatting.add(f"{letter}2:{letter}{table.count + 1}", rule)
     _finish(sheet, "D2", len(table.columns))
 
@@ -166,12 +162,12 @@ def _number_format(values: Array) -> str:
     return "0." + "0" * (DIGITS - 1 - math.floor(math.log10(largest)))
 
 
-def _head(head: str, table: FormulaTable) -> str:
+def _head(head: str, table: formula_table.FormulaTable) -> str:
     """A head; a head with an input in it shows its present value."""
     return _placed(head, table, 0) if head.startswith("=") else head
 
 
-def _placed(formula: str, table: FormulaTable, row: int) -> str:
+def _placed(formula: str, table: formula_table.FormulaTable, row: int) -> str:
     """The formula with cells in place of columns, and the names of cells in place of inputs."""
 
     def cell(match: re.Match[str]) -> str:
@@ -180,4 +176,4 @@ def _placed(formula: str, table: FormulaTable, row: int) -> str:
             return cell_name(given)
         return f"{table.letter(column)}{row - 1 if before else row}"
 
-    return NAME.sub(cell, formula)
+    return formula_table.NAME.sub(cell, formula)

@@ -28,14 +28,10 @@ from models.errors import StructureError
 from models.scene import GROUND, Scene
 from models.scene.laws import ConstantSpeed
 from reports.describe.motion_tables import motion_frame
+from reports.lectures.drawing.workbook import formulas
 from reports.lectures.drawing.workbook.family import SceneFamily
 from reports.lectures.drawing.workbook.formula_cells import TABLE, write_columns, write_inputs
 from reports.lectures.drawing.workbook.formula_table import FormulaTable
-from reports.lectures.drawing.workbook.formulas import (
-    four_bar_table,
-    slider_crank_table,
-    slotted_lever_table,
-)
 from reports.output.formats import workbook
 from reports.output.write import clean, crankcheck_version
 
@@ -132,11 +128,11 @@ def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | Non
     if not isinstance(group, Group):
         return None
     if group.kind == "RRR" and _is_four_bar(scene):
-        return four_bar_table(scene, group, count, step_deg)
+        return formulas.four_bar_table(scene, group, count, step_deg)
     if group.kind == "RRP" and _is_slider_crank(scene, group):
-        return slider_crank_table(scene, group, count, step_deg)
+        return formulas.slider_crank_table(scene, group, count, step_deg)
     if group.kind == "RPR" and _is_slotted_lever(scene, group):
-        return slotted_lever_table(scene, group, count, step_deg)
+        return formulas.slotted_lever_table(scene, group, count, step_deg)
     return None
 
 

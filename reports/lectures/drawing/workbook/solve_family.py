@@ -38,15 +38,8 @@ from reports.output.numbers import count
 from reports.output.write import crankcheck_version, write
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
+from reports.requests import solving
 from reports.requests.options import SolveOptions, given
-from reports.requests.solving import (
-    FAMILY_ENDINGS,
-    PAGE,
-    WORKBOOK,
-    elastic_choice,
-    instants_of,
-    refuse_times,
-)
 from reports.way.way import way_of
 
 LARGEST = 1e9
@@ -60,16 +53,17 @@ def run_family(scene: Scene, request: SolveOptions, console: Console) -> None:
     name, values = _values(request.family)
     if request.output is None:
         raise CrankcheckError(
-            f"--family {request.family}: give a file for it, -o FILE{', FILE'.join(FAMILY_ENDINGS)}"
+            f"--family {request.family}: give a file for it, -o FILE"
+            f"{', FILE'.join(solving.FAMILY_ENDINGS)}"
         )
-    time_s = instants_of(scene, request)
+    time_s = solving.instants_of(scene, request)
     if time_s.size * len(values) > MOST_LIVE:
         raise CrankcheckError(
             f"--family {request.family}: {time_s.size} rows of {len(values)} members; at most "
             f"{MOST_LIVE} of all together: take fewer turns, or fewer steps in a turn"
         )
     origin = {"scene": scene.name, "source": scene.source, "family": request.family}
-    is_workbook = request.output.suffix.lower() == WORKBOOK
+    is_workbook = request.output.suffix.lower() == solving.WORKBOOK
     step_deg = math.degrees(float(time_s[1]) * scene.pace_rad_s)
     table = formulas_of(scene, time_s.size, step_deg)
     if table is not None and is_workbook:
@@ -92,7 +86,7 @@ def _drawn(scene: Scene, path: Path, curves: FamilyCurves) -> bytes | str:
     """The page or the drawing of a family."""
 
     ending = path.suffix.lower()
-    if ending == PAGE:
+    if ending == solving.PAGE:
         return family_page_of(scene, curves)
     return family_drawing(scene, curves, ending[1:])
 
@@ -113,8 +107,8 @@ def _check(scene: Scene, request: SolveOptions) -> None:
             f"--family with {option}: a family is position, velocity and acceleration over "
             f"whole turns; leave {option} out"
         )
-    refuse_times(scene, request)
-    elastic_choice(request).refuse_of_rigid(scene)
+    solving.refuse_times(scene, request)
+    solving.elastic_choice(request).refuse_of_rigid(scene)
 
 
 def _values(text: str) -> tuple[str, list[float]]:
