@@ -13,10 +13,19 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.elastic import periodic
 from analytic.elastic.discretisation import Discretisation, Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.natural import NaturalModes, natural_modes
+from analytic.elastic.periodic import (
+    FIRST,
+    LinearForm,
+    PeriodicMotion,
+    check_periodic,
+    instants,
+    linear_motion,
+    linearise,
+    periodic_motion,
+)
 from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.floquet import Stability, stability_of
 from models.array import Array
@@ -65,7 +74,7 @@ class AnySpeed:
         scene = at_speed(self.scene, speed_rad_s)
         return DrivenElasticMotion(scene, 1.0, self.by, "periodic", self.stiffened).form
 
-    def linear(self, speed_rad_s: float) -> periodic.LinearForm:
+    def linear(self, speed_rad_s: float) -> LinearForm:
         """The linearised equations at a speed."""
         if self._series is None:
             return self._direct(speed_rad_s)
@@ -97,19 +106,19 @@ class AnySpeed:
         off = apart(self._summed(series, between), self._direct(between))
         return None if off > SAME else series
 
-    def _direct(self, speed: float) -> periodic.LinearForm:
+    def _direct(self, speed: float) -> LinearForm:
         form = self.form(speed)
-        periodic.check_periodic(form)
-        time_s = periodic.instants(INSTANTS, form.period_s)
-        return periodic.linearise(form, time_s, periodic.FIRST * self.scene.longest_m)
+        check_periodic(form)
+        time_s = instants(INSTANTS, form.period_s)
+        return linearise(form, time_s, FIRST * self.scene.longest_m)
 
-    def _summed(self, series: Mapping[str, Array], speed: float) -> periodic.LinearForm:
+    def _summed(self, series: Mapping[str, Array], speed: float) -> LinearForm:
         powers = speed ** np.arange(3.0)
         parts = {part: np.tensordot(powers, series[part], 1) for part in PARTS}
-        return periodic.LinearForm(periodic.instants(INSTANTS, math.tau / speed), **parts)
+        return LinearForm(instants(INSTANTS, math.tau / speed), **parts)
 
 
-def apart(one: periodic.LinearForm, other: periodic.LinearForm) -> float:
+def apart(one: LinearForm, other: LinearForm) -> float:
     """What linearised equations differ by, each part over its largest entry; damping over what
     would be critical where it is but rounding."""
     largest = {part: float(np.abs(vars(other)[part]).max()) for part in PARTS}
@@ -206,9 +215,9 @@ class SteadyVibration:
         return self.scene.driver.law.peak_speed_rad_s
 
     @cached_property
-    def motion(self) -> periodic.PeriodicMotion:
+    def motion(self) -> PeriodicMotion:
         """The periodic motion, unlinearised."""
-        return periodic.periodic_motion(self.form)
+        return periodic_motion(self.form)
 
     @cached_property
     def stability(self) -> Stability:
@@ -226,10 +235,8 @@ class SteadyVibration:
         found = {}
         for name, stiffened in (("linear", True), ("linear, not stiffened", False)):
             form = self._form(stiffened=stiffened)
-            scale = periodic.FIRST * self.scene.longest_m
-            motion = periodic.linear_motion(
-                form, periodic.linearise(form, self.motion.time_s, scale)
-            )
+            scale = FIRST * self.scene.longest_m
+            motion = linear_motion(form, linearise(form, self.motion.time_s, scale))
             found[name] = swings(form, motion.z)
         return found
 

@@ -22,7 +22,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.function import generator
+from analytic.lectures.synthesis.function.generator import (
+    Generator,
+    one_vector,
+    opposite,
+    toggled,
+    vectors_of,
+)
 from models.array import Array
 
 NOTHING = 1e-14
@@ -33,7 +39,7 @@ Found = tuple[Numbers, float, float]
 
 
 @dataclass(frozen=True)
-class FourBarGenerator(generator.Generator):
+class FourBarGenerator(Generator):
     """A four-bar in units of its ground d."""
 
     @property
@@ -42,9 +48,9 @@ class FourBarGenerator(generator.Generator):
         k1, k2, k3 = self.k
         return FourBarGenerator(
             (abs(k1), abs(k2), k3 if k1 * k2 > 0.0 else -k3),
-            generator.opposite(self.input_start) if k1 < 0.0 else self.input_start,
-            generator.opposite(self.output_start) if k2 < 0.0 else self.output_start,
-            generator.toggled(self.turned, ("input",) * (k1 < 0.0) + ("output",) * (k2 < 0.0)),
+            opposite(self.input_start) if k1 < 0.0 else self.input_start,
+            opposite(self.output_start) if k2 < 0.0 else self.output_start,
+            toggled(self.turned, ("input",) * (k1 < 0.0) + ("output",) * (k2 < 0.0)),
         )
 
     @property
@@ -85,7 +91,7 @@ class FourBarGenerator(generator.Generator):
 
 def fourbars(
     turns: Array, ways: Array, input_start: float | None = None, output_start: float | None = None
-) -> list[generator.Generator]:
+) -> list[Generator]:
     """All four-bars whose input and output go through precision points.
 
     Parameters
@@ -121,7 +127,7 @@ def _of_both(turns: Array, ways: Array, phi0: float, psi0: float) -> Found:
     """Linear in k1, k2, k3."""
     phi, psi = phi0 + turns, psi0 + ways
     rows = np.stack([np.cos(psi), -np.cos(phi), np.ones_like(phi), -np.cos(phi - psi)], axis=1)
-    x = generator.one_vector(rows)
+    x = one_vector(rows)
     return over((x[0], x[1], x[2]), x[3]), phi0, psi0
 
 
@@ -130,7 +136,7 @@ def _of_input(turns: Array, ways: Array, phi0: float) -> list[Found]:
     phi = phi0 + turns
     left = [np.cos(ways), -np.sin(ways), -np.cos(phi), np.ones_like(phi)]
     rows = np.stack([*left, -np.cos(phi - ways), -np.sin(phi - ways)], axis=1)
-    every = generator.vectors_of(rows, lambda x: float(x[0] * x[5] - x[1] * x[4]), 2)
+    every = vectors_of(rows, lambda x: float(x[0] * x[5] - x[1] * x[4]), 2)
     found = []
     for x in every:
         psi0, size = math.atan2(x[5], x[4]), math.hypot(x[5], x[4])
@@ -142,8 +148,8 @@ def _of_input(turns: Array, ways: Array, phi0: float) -> list[Found]:
 def _of_output(turns: Array, ways: Array, psi0: float) -> list[Found]:
     """Seen from the other side, the output half a turn on is the input of the same equation, and
     k1 and k2 change their places."""
-    changed = _of_input(ways, turns, generator.opposite(psi0))
-    return [((k2, k1, k3), generator.opposite(phi0), psi0) for (k1, k2, k3), _, phi0 in changed]
+    changed = _of_input(ways, turns, opposite(psi0))
+    return [((k2, k1, k3), opposite(phi0), psi0) for (k1, k2, k3), _, phi0 in changed]
 
 
 def _of_none(turns: Array, ways: Array) -> list[Found]:
@@ -152,7 +158,7 @@ def _of_none(turns: Array, ways: Array) -> list[Found]:
     left = [np.cos(ways), -np.sin(ways), -np.cos(turns), np.sin(turns), np.ones_like(turns)]
     rows = np.stack([*left, -np.cos(turns - ways), np.sin(turns - ways)], axis=1)
     found = []
-    for x in generator.vectors_of(rows, _belonging, 3):
+    for x in vectors_of(rows, _belonging, 3):
         of_psi, of_phi, between = _ends(x)
         # Of the two signs of the vector, that with which both lengths are positive.
         sign = math.copysign(1.0, (of_phi * (of_psi * between).conjugate()).real)
