@@ -132,8 +132,7 @@ class Chunk:
         return self.points[name]
 
     def assembly(self, key: str) -> tuple[Real, bool]:
-        """Return the branch of a dyad at every sample, and True if it is stretched where it is
-        open.
+        """Return the branch of a dyad at every sample, and True if stretched where open.
 
         In a change point it may be open by rounding, which `keep` mends.
         """

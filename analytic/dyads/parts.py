@@ -78,14 +78,12 @@ class MovingLine:
         return self.along.perp(self.omega * s) + self.point.v
 
     def acceleration(self, s: Real, speed: Real) -> Vec:
-        """Return the acceleration there of a slide at ``speed``, with Coriolis', without its
-        own."""
+        """Return the acceleration there at sliding ``speed``, Coriolis in, without its own."""
         across = self.alpha * s + 2.0 * self.omega * speed
         return (self.point.a + self.along.perp(across)).less(self.along, self.omega**2 * s)
 
     def errors(self, s: Real, speed: Real, es: Real, ev: Real) -> tuple[Real, Real, Real]:
-        """Return error bounds of `at`, `velocity`, `acceleration` where s, speed have errors es,
-        ev."""
+        """Return error bounds of `at`, `velocity`, `acceleration` for errors es, ev of s, speed."""
         assert self.point.error is not None
         assert self.error is not None
         e, p = self.error, self.point.error

@@ -108,8 +108,7 @@ STEADY = 0.0
 
 
 def direction(angle_rad: float) -> Vec:
-    """Return the unit vector of an angle; `UNTURNED` itself for 0, which makes turning by it
-    free."""
+    """Return the unit vector of an angle; `UNTURNED` for 0, which makes turning by it free."""
     if angle_rad == 0.0:
         return UNTURNED
     return Vec(math.cos(angle_rad), math.sin(angle_rad))

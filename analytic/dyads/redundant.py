@@ -147,8 +147,7 @@ class BridgeStep:
 
 
 def _smallest(chunk: Chunk) -> Real:
-    """Return the smallest sine of the dyads so far at every sample, at least rounding; 0/0 is
-    that."""
+    """Return the smallest sine of the dyads so far at every sample, rounding at least (0/0)."""
     smallest: Real = 1.0
     for sine in chunk.sines.values():
         smallest = np.minimum(smallest, np.nan_to_num(np.abs(sine), nan=0.0))

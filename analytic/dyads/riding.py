@@ -146,8 +146,7 @@ class RidingLine:
         return RidingLine(body, pin, -angle, -1, -line - angle, both, slider.through_m)
 
     def through(self, local: Point) -> tuple[RidingLine, float]:
-        """Return the parallel line of another point of the unknown body, and that point's lead on
-        it."""
+        """Return the parallel line of another point of the unknown body, and its lead on it."""
         away = less(local, self.rider)
         lead, aside = turned(away, self.follow - self.angle)
         base = total(self.base, turned((0.0, aside), self.angle))

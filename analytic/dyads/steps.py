@@ -56,8 +56,7 @@ class FollowedStep(ABC):
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
-        """Return the change points of the group that a driver passes between two angles, each
-        once."""
+        """Return the group's change points that a driver passes between two angles, each once."""
         ...
 
     @abstractmethod
