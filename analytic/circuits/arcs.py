@@ -211,7 +211,7 @@ def _later(end: ArcEnd) -> ArcEnd:
     return ArcEnd(end.angle_rad + math.tau, end.dyad)
 
 
-"""Looks at a turn of the driver."""
+"""Samples of a turn of the driver."""
 
 
 def own_arc(scene: Scene) -> Arc:

@@ -32,7 +32,7 @@ class Modes:
 
     @property
     def finer(self) -> Polynomials:
-        """Polynomials: modes converge too slowly to show the size of what they leave out."""
+        """Polynomials: modes converge too slowly to show the size of their truncation."""
         return Polynomials(max(REFERENCE.across, self.across + 2), self.along + 2)
 
 
@@ -263,7 +263,7 @@ class SegmentChain:
             self._parts[k, 0] += self._start
 
     def _directions(self, q: Array) -> Complexes:
-        """exp(i theta) of all segments, (T, n)."""
+        """Return exp(i theta) of all segments, (T, n)."""
         return np.asarray(np.exp(1j * (q @ self._turns.T + self._lean)))
 
     def mark(self, q: Array, rates: Array) -> Markers:

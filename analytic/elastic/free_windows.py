@@ -223,7 +223,7 @@ class _Going:
 
 @lru_cache(maxsize=8)
 def radau(count: int) -> Gauss:
-    """The rule of ``count`` nodes, with everything that `gauss` has.
+    """Return the rule of ``count`` nodes, with everything that `gauss` has.
 
     It is more stable than with Gauss' nodes: vibration far faster than a window is gone after a few
     windows, where Gauss' nodes keep it for ever. Of order 2 n - 1. Source: E. Hairer, G. Wanner,

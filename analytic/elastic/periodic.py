@@ -256,7 +256,7 @@ def _met(form: ReducedForm, start: Array) -> tuple[Array, Array]:
 
 
 def instants(count: int, period_s: float) -> Array:
-    """So many instants of a period from time 0 on [s]."""
+    """Return so many instants of a period from time 0 on [s]."""
     return np.asarray(period_s * np.arange(count) / count)
 
 

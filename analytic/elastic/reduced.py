@@ -56,7 +56,7 @@ class Instant:
         return np.asarray(np.linalg.solve(self.mass, self.force[:, :, None])[:, :, 0])
 
     def all_seconds(self, seconds: Array) -> Array:
-        """q'' (T, n) with z'' (T, m)."""
+        """Return q'' (T, n) with z'' (T, m)."""
         return np.asarray((self.by @ seconds[:, :, None])[:, :, 0] + self.gained)
 
 

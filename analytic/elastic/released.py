@@ -110,8 +110,8 @@ class ReleasedElasticMotion:
         return integrate(self.form, *self.start, self.until_s, self.tolerance)
 
     def at(self, time_s: Array) -> Motion:
-        """Return the motion at times [s], (T,) in ascending order, with its reactions. Raises
-        CrankcheckError for times beyond it."""
+        """Return the motion at times [s], (T,) in ascending order, with its reactions and shapes.
+        Raises CrankcheckError for times beyond it."""
         return self._motion(self._instants(time_s))
 
     def outside(self, time_s: Array) -> Motion:

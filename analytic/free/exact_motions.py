@@ -44,7 +44,7 @@ class Amplitude:
         return math.pi / (2.0 * self._means()[0][-1])
 
     def at(self, u: Array) -> Array:
-        """am(u), shape of u."""
+        """Return am(u), shape of u."""
         a, c = self._means()
         halves = np.round(u / (2.0 * self.quarter))
         angle = 2.0 ** (len(a) - 1) * a[-1] * (u - 2.0 * self.quarter * halves)

@@ -214,7 +214,7 @@ class MachineMotion:
         return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """As `FreeMotion.outside`; the third rate of the driver is taken as constant."""
+        """Return as `FreeMotion.outside`, with a constant third rate of the driver."""
         end_s, t, h = from_end(time_s, self.until_s)
         theta, omega, alpha = self._driver(end_s + np.array([0.0, h, 2.0 * h]))
         jerk = (4.0 * alpha[1] - 3.0 * alpha[0] - alpha[2]) / (2.0 * h)

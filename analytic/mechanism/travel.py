@@ -135,7 +135,7 @@ def extreme_speeds(
 ) -> dict[Output, tuple[ExtremeSpeed, ...]]:
     """Return by output its extreme speeds in the order of the phase, under a driver of constant
     speed or one that swings: where its acceleration changes sign, found on the closed form to
-    rounding. None for a constant speed. Raises as `analytic.mechanism.cycle.zeros`."""
+    rounding. A constant speed has none. Raises as `analytic.mechanism.cycle.zeros`."""
     cycle = Cycle.of(scene)
     found = {}
     for output, at in zeros(cycle, outputs, 2).items():

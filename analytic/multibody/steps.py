@@ -39,12 +39,12 @@ OFF = 1e-9
 
 @dataclass(frozen=True)
 class SingularPassage:
-    """From ``begin_s`` to ``end_s`` through a change point at ``at_s`` [s].
+    """Passage from ``begin_s`` to ``end_s`` through a change point at ``at_s`` [s].
 
     In a change point the rows of the Jacobian depend on each other, and next to it the
     accelerations are lost in rounding, by eps over the square of the smallest singular value. The
     motion itself is smooth there: polynomials through its accelerations of a while before carry
-    them over the gap, where they are integrated from the state at its begin. On the other side the
+    them over the gap, where they are integrated from the state at its start. On the other side the
     motion has to be on the constraints again, to rounding, as only a motion through the change
     point itself is: one that misses it by a little turns off, however shortly, into the other
     branch.
@@ -200,7 +200,7 @@ class FixedSteps:
     def _step(
         self, at_s: float, h: float, last: float, state: Array, held: Strokes
     ) -> tuple[Array, Array]:
-        """Return the slope at the begin of a step, and the state at its end."""
+        """Return the slope at the start of a step, and the state at its end."""
         rates = self.dynamics.rates
         with np.errstate(all="ignore"):
             k1 = rates(at_s, state, held)

@@ -40,7 +40,7 @@ class NodeMotion:
 
 @dataclass(frozen=True)
 class Origin:
-    """Begin of a way: the point ``name`` of a known body, at a ``place`` [m]."""
+    """Start of a way: the point ``name`` of a known body, at a ``place`` [m]."""
 
     name: str
     place: Array

@@ -65,7 +65,7 @@ class EquationSide:
 
     @property
     def before(self) -> Array:
-        """Begin of the unknown vector (2,)."""
+        """Start of the unknown vector (2,)."""
         return np.asarray(self.start + sum((term.value for term in self.known), np.zeros(2)))
 
     def with_length(self, length: float) -> tuple[Term, ...]:

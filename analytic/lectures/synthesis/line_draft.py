@@ -141,7 +141,7 @@ def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 
     length_m
         Length of the way [m], over which the crank swings by twice 64 degrees.
     start, direction_rad
-        Begin of the way [m], and its direction [rad].
+        Start of the way [m], and its direction [rad].
 
     Raises
     ------

@@ -105,7 +105,7 @@ def straight_line(
         The largest distance from the line, over the length, to either side: the longest part that
         keeps it is taken. None takes that of `TEXTBOOK`.
     start, direction_rad
-        Begin of the line [m], and its direction [rad].
+        Start of the line [m], and its direction [rad].
 
     Raises
     ------
@@ -151,7 +151,7 @@ def hoeken(
     even
         Aim: the best line or the most even speed.
     start, direction_rad
-        Begin of the line [m], and its direction [rad].
+        Start of the line [m], and its direction [rad].
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""From a task of function generation to mechanisms: all that meet its precision points."""
+"""Mechanisms for a task of function generation: all that meet its precision points."""
 
 import cmath
 import itertools
