@@ -1,8 +1,8 @@
 """The reference: position, velocity and acceleration of a whole mechanism, in closed form.
 
 `solve` runs the driver's law through the mechanism's Assur groups in solving order, in chunks that
-stay in cache, and writes what was asked for. With ``bound`` every number carries a bound of its own
-error, propagated from group to group (`analytic.dyads.parts`).
+stay in cache, and writes the requested series. With ``bound`` every number carries a bound of its
+own error, propagated from group to group (`analytic.dyads.parts`).
 """
 
 import itertools
@@ -36,7 +36,7 @@ def solve(
     sliders: str | Iterable[str] | None = None,
     bound: bool = True,
 ) -> Motion:
-    """The motion of a scene at the given times.
+    """Return the motion of a scene at the given times.
 
     Parameters
     ----------
@@ -45,18 +45,18 @@ def solve(
     time_s : Array
         Times [s], shape (T,).
     links, points, sliders : str, Iterable[str] or None
-        What to return, by one name or several; None is all, () is none.
+        Names to return, one or several; None is all, () is none.
     bound : bool
         Carry error bounds (about three times the work).
 
     Returns
     -------
     Motion
-        Angles of links go on continuously with the driver's angle, the same whatever samples
-        are asked for: in (-pi, pi] at time 0, and counted on from there; a link that keeps an angle
-        to the ground or to the driver is that much ahead of it. Sliders count from ``through_m``.
-        In chains of more than some six dyads whole turns are counted to the nearest angle, which
-        bounds of angles take as right (`analytic.change_points.turns.MOST`).
+        Angles of links are continuous with the driver's angle, whichever samples are requested: in
+        (-pi, pi] at time 0, and counted on from there; a link that keeps an angle to the ground or
+        to the driver is that much ahead of it. Sliders count from ``through_m``. In chains of more
+        than some six dyads whole turns are counted to the nearest angle, which bounds of angles
+        take as right (`analytic.change_points.turns.MOST`).
 
     Raises
     ------
@@ -66,7 +66,7 @@ def solve(
         The law leads to a driver angle in which the mechanism cannot be assembled; the message
         names the reachable range.
     CrankcheckError
-        Times that are no numbers, a name that the scene has not.
+        Times that are no numbers, a name that is not in the scene.
     """
     time_s = samples(time_s, "time_s")
     driver = _driver_of(scene, time_s, bound=bound)
@@ -86,13 +86,13 @@ def solve_driven(
     sliders: str | Iterable[str] | None = None,
     bound: bool = True,
 ) -> Motion:
-    """The motion of a scene whose driver has the given angles, rates and accelerations.
+    """Return the motion of a scene whose driver has the given angles, rates and accelerations.
 
     As `solve`, but for driver angles [rad], rates [rad/s] and accelerations [rad/s^2], shape (T,),
-    (of a slider that is driven its displacements, speeds and accelerations in m) that are taken as
-    exact: the geometry at the angle that an engine logged, say. One rate, or one
-    acceleration, counts for all samples. Whole turns are counted from the angle that the scene's
-    law has at time 0. ``time_s`` only labels the samples.
+    (for a driven slider its displacements, speeds and accelerations in m), taken as exact: the
+    geometry at the angle that an engine logged, say. One rate, or one acceleration, counts for all
+    samples. Whole turns are counted from the angle that the scene's law has at time 0. ``time_s``
+    only labels the samples.
     """
     theta = samples(theta, "theta")
     omega, alpha = beside(omega, theta, "omega", "theta"), beside(alpha, theta, "alpha", "theta")
@@ -108,27 +108,27 @@ def solve_driven(
 
 
 def chunks(scene: Scene, time_s: Array, *, bound: bool) -> Iterator[tuple[slice, Chunk]]:
-    """The solved mechanism at the given times (T,), a chunk of samples at a time, for what builds
-    on more than its motion. Raises as `solve`."""
+    """Yield the solved mechanism at the given times (T,), a chunk of samples at a time, for
+    computations beyond its motion. Raises as `solve`."""
     driver, ready = _driver_of(scene, time_s, bound=bound), prepared(scene)
     for span in spans(len(time_s)):
         yield span, ready.chunk(*driver(span))
 
 
 def unit_chunk(scene: Scene, theta: Array, *, bound: bool) -> Chunk:
-    """The mechanism at driver angles [rad] taken as exact, the driver at 1 rad/s and steady: rates
-    are derivatives by its angle then, accelerations second ones. Raises as `solve`."""
+    """Return the mechanism at driver angles [rad] taken as exact, the driver at 1 rad/s and steady:
+    rates are derivatives by its angle then, accelerations second ones. Raises as `solve`."""
     return prepared(scene).chunk(theta, 1.0, STEADY, EXACT_ANGLE if bound else None)
 
 
 def driven_chunk(scene: Scene, theta: Array, omega: Array) -> Chunk:
-    """The mechanism at driver angles [rad] with rates [rad/s] (T,), steady, without bounds. Raises
-    as `solve`."""
+    """Return the mechanism at driver angles [rad] with rates [rad/s] (T,), steady, without bounds.
+    Raises as `solve`."""
     return prepared(scene).chunk(theta, omega, STEADY, None)
 
 
 def counted_angle(chunk: Chunk, link: str) -> Array:
-    """The angle of a link of a solved chunk [rad], (T,), its whole turns counted as in a motion."""
+    """Return the angle of a solved chunk's link [rad], (T,), whole turns counted as in a motion."""
     body = chunk.bodies[link]
     if body.theta is not None:
         return np.broadcast_to(body.theta, chunk.theta.shape)
@@ -138,15 +138,15 @@ def counted_angle(chunk: Chunk, link: str) -> Array:
 
 
 def reach(scene: Scene) -> list[Range]:
-    """The driver angles [rad], within a turn, in which the scene can be assembled
-    (`analytic.prepared`); of a slider that is driven, its displacements [m]."""
+    """Return the driver angles [rad], within a turn, in which the scene can be assembled
+    (`analytic.prepared`); for a driven slider, its displacements [m]."""
     scale, ready = driver_scale(scene), prepared(scene)
     found = ranges(ready.stretched, ready.looked_turns)
     return [(low * scale, high * scale) for low, high in found]
 
 
 def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:
-    """The driver under its law, by spans of the times."""
+    """Return the driver under its law, by spans of the times."""
     law = scene.driver.law
     if scene.is_free and np.any(time_s != 0.0):
         raise CrankcheckError(
@@ -163,7 +163,7 @@ def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice],
 
 
 def _scaled(scene: Scene, driver: Callable[[slice], Driven]) -> Callable[[slice], Driven]:
-    """The driver's coordinate as the reference's driver angle (`analytic.dyads.chunk`)."""
+    """Return the driver's coordinate as the reference's driver angle (`analytic.dyads.chunk`)."""
     scale = driver_scale(scene)
     if scale == 1.0:
         return driver
@@ -178,17 +178,17 @@ def _scaled(scene: Scene, driver: Callable[[slice], Driven]) -> Callable[[slice]
 
 
 def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
-    """The law at times ``t``; what is constant as one number, which costs no arithmetic."""
+    """Return the law at times ``t``; constants as one number, which costs no arithmetic."""
     if isinstance(law, ConstantSpeed):
         return law.angle(t), law.speed_rad_s, STEADY
     return law.at(t)
 
 
 def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
-    """What rounding does to a law at times ``t``, where it has the angles ``theta``."""
+    """Return the rounding of a law at times ``t``, where it has the angles ``theta``."""
     peak = law.peak_speed_rad_s
     if isinstance(law, ConstantSpeed):
-        # A product, a sum, and the degrees of the start; its speed is what it was told to be.
+        # A product, a sum, and the degrees of the start; its speed is exact.
         angle = 0.5 * (np.abs(theta) + peak * np.abs(t)) + law.offset_rad
         return AngleError(EPS * angle, 0.0, 0.0)
     age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
@@ -200,20 +200,20 @@ def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
 
 
 def repeats_after(scene: Scene) -> float:
-    """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
-    mechanism goes through an odd number of change points in one; infinite of a slider."""
+    """Return the driver angle [rad] after which the positions repeat: a turn, or more of them where
+    the mechanism goes through an odd number of change points in one; infinite for a slider."""
     return math.inf if scene.driver.slider is not None else prepared(scene).period
 
 
 SAME = 1e-9
-"""Of the longest length: two places that are one."""
+"""Distance of coincident places, over the longest length."""
 MOST_SIDES = 8
-"""Assemblies of dyads that are tried in every combination."""
+"""Most dyads whose assemblies are tried in every combination."""
 
 
 def in_assembly(scene: Scene, motion: Motion) -> Scene | None:
-    """The scene with the branch by which its points at time 0 are where those of a motion are at
-    its first sample; None where there is none, or no solution of the scene."""
+    """Return the scene with the branch that puts its points at time 0 where a motion has them at
+    its first sample; None if there is none, or no solution of the scene."""
     try:
         structure = analyse(replace(scene, branch={}))
     except StructureError:
@@ -233,7 +233,7 @@ def in_assembly(scene: Scene, motion: Motion) -> Scene | None:
 
 
 def chosen_groups(structure: Structure) -> list[Group | Triad]:
-    """The groups that have more than one assembly, in solving order."""
+    """Return the groups that have more than one assembly, in solving order."""
     return [
         part
         for part in structure.order
@@ -242,8 +242,8 @@ def chosen_groups(structure: Structure) -> list[Group | Triad]:
 
 
 def choices(scene: Scene, group: Group | Triad) -> tuple[int, ...]:
-    """What the branch of a group may be, first that of the scene; of class III also numbers that
-    there may not be."""
+    """Return the possible branches of a group, first that of the scene; of class III also numbers
+    that may not exist."""
     own = scene.branch.get(group.branch_key, 1)
     if isinstance(group, Group):
         return own, -own
@@ -251,7 +251,7 @@ def choices(scene: Scene, group: Group | Triad) -> tuple[int, ...]:
 
 
 def branches(structure: Structure) -> Iterator[dict[str, int]]:
-    """Every choice of assemblies; of class III groups also numbers that there may not be."""
+    """Yield every choice of assemblies; of class III groups also numbers that may not exist."""
     sides = [group.branch_key for group in structure.groups if group.assemblies == 2][:MOST_SIDES]
     numbers = [triad.branch_key for triad in structure.triads]
     choices = [*([1, -1] for _ in sides), *(range(1, MOST_ASSEMBLIES + 1) for _ in numbers)]
@@ -260,16 +260,16 @@ def branches(structure: Structure) -> Iterator[dict[str, int]]:
 
 
 def nearness(scene: Scene, motion: Motion) -> dict[str, Array]:
-    """The distance of every dyad from its nearest singular position at the samples, (T,) by name.
+    """Return the distance of dyads from their nearest singular position at samples, (T,) by name.
 
-    As ``motion.conditioning`` (1 best, 0 singular); of an RPR dyad times the distance of its two
-    pins over the largest in the motion. The motion is one by `analytic.kinematics`, of ``scene``,
-    with all its points.
+    It is ``motion.conditioning`` (1 best, 0 singular); for an RPR dyad times the distance of its
+    two pins over the largest in the motion. The motion is one by `analytic.kinematics`, of
+    ``scene``, with all its points.
 
     The conditioning of a dyad is the sine of its transmission angle or its like, a pure number for
     the direction in which its parts lie. That of an RPR dyad whose line goes through the pin of its
-    link is always 1, though nothing says where the link points when the block stands on that pin:
-    what counts there is their distance.
+    link is always 1, though the link has no direction when the block is on that pin: their distance
+    counts there.
     """
     distances = dict(motion.conditioning)
     for group in analyse(scene).groups:

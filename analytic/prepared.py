@@ -1,7 +1,7 @@
-"""A scene made ready to be solved: what does not depend on the samples.
+"""Scene prepared for solving: everything that does not depend on the samples.
 
-Structure, constants of the groups and change points are worked out once for a scene: a pure
-function of it, whose results for the last `KEPT` scenes are kept.
+Structure, constants of the groups and change points are a pure function of a scene, computed once;
+the results for the last `KEPT` scenes are kept.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ from models.scene import GROUND, KEPT, Same, Scene
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
 Driven = tuple[Array, Real, Real, AngleError | None]
-"""Angles, rates and accelerations of the driver, and what they may be wrong by."""
+"""Angles, rates and accelerations of the driver, and their errors."""
 
 
 def spans(count: int) -> Iterator[slice]:
-    """So many samples, a chunk at a time."""
+    """Yield so many samples, a chunk at a time."""
     for first in range(0, count, CHUNK):
         yield slice(first, first + CHUNK)
 
 
 def prepared(scene: Scene) -> Prepared:
-    """The scene made ready to be solved. Raises StructureError."""
+    """Return the scene prepared for solving. Raises StructureError."""
     return _prepared(Same(scene))
 
 
@@ -57,7 +57,7 @@ def _prepared(same: Same) -> Prepared:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A scene made ready to be solved; ``start`` is the driver's angle at time 0."""
+    """Scene prepared for solving; ``start`` is the driver's angle at time 0."""
 
     scene: Scene
     steps: Sequence[Step]
@@ -66,7 +66,7 @@ class Prepared:
 
     @cached_property
     def turns(self) -> Turns:
-        """The whole turns of the links, worked out when they are first asked for."""
+        """The whole turns of the links, computed on first use."""
         look = CellSolver(self.scene, self.steps, self.passages)
         return Turns.of(look, self.start, self.period)
 
@@ -77,13 +77,13 @@ class Prepared:
 
     @property
     def looked_turns(self) -> int:
-        """Turns of the driver over which its range is looked for (`ranges`): what
-        is followed is back after as many as it has assemblies, or ends."""
+        """Turns of the driver over which its range is looked for (`ranges`): a followed group is
+        back after as many as it has assemblies, or ends."""
         return MOST_ASSEMBLIES if self.followed and self.scene.driver.slider is None else 1
 
     @property
     def period(self) -> float:
-        """The driver angle [rad] after which the positions repeat."""
+        """Driver angle [rad] after which the positions repeat."""
         periods = [passage.period for passage in self.passages.values()]
         periods += [step.period(self.passages) or math.tau for step in self.followed]
         return max(periods, default=math.tau)
@@ -94,7 +94,7 @@ class Prepared:
     def motion(
         self, wanted: Selection, time_s: Array, driver: Callable[[slice], Driven], *, bound: bool
     ) -> Motion:
-        """The motion, chunk by chunk, with the change points on the way from time 0 through it."""
+        """Return the motion, chunk by chunk, with the change points from time 0 through it."""
         result = MotionArrays(wanted, time_s, self.steps, bound=bound)
         low = high = self.start
         for span in spans(len(time_s)):
@@ -107,7 +107,7 @@ class Prepared:
         return replace(result.motion(), crossings=self._passed(low, high))
 
     def _passed(self, low: float, high: float) -> tuple[Crossing, ...]:
-        """The change points that a driver passes between two angles [rad]."""
+        """Return the change points that a driver passes between two angles [rad]."""
         crossings = passed(self.passages, low, high)
         for step in self.followed:
             crossings += step.passed(self.passages, low, high)
@@ -123,8 +123,8 @@ class Prepared:
         passing: Mapping[str, Passage] | None = None,
         roots: Mapping[str, Real] | None = None,
     ) -> Chunk:
-        """One chunk through all steps; dyads that go through a limit of the driver as ``passing``
-        has it, with ``roots`` that are known better than by the driver. Raises ReachError."""
+        """Solve one chunk through all steps; ``passing`` has the dyads that go through a limit of
+        the driver, ``roots`` those known better than by the driver. Raises ReachError."""
         passages = self.passages if passing is None else {**self.passages, **passing}
         chunk = Chunk.begin(self.scene, theta, omega, alpha, error, passages=passages, roots=roots)
         for step in self.steps:
@@ -135,7 +135,7 @@ class Prepared:
         return chunk
 
     def _open(self, step: Step, theta: Array, short_m: Array) -> str:
-        """Where the loop cannot close, by how much, and where it can."""
+        """Return the text of an open loop: its place, its gap, and the reachable range."""
         scene, index = self.scene, int(np.argmax(short_m))
         if isinstance(step, FollowedStep):
             index = int(np.argmax(short_m > 0.0))  # the first, beside the end
@@ -152,19 +152,19 @@ class Prepared:
 
 
 SCAN = 1440
-"""Angles of the first look at a turn; where it is nearest to closing, or to opening, between two of
-them, it is looked at closer."""
+"""Angles of the first scan of a turn; between two of them, it is refined where the mechanism is
+nearest to closing, or to opening."""
 NARROW = 20 * math.tau / SCAN
-"""A range of fewer looks [rad] is looked at anew."""
+"""Width of a range [rad] below which it is scanned anew."""
 ZOOMS, FINER = 5, 33
-"""How often the smallest shortage between looks is looked for closer, and in how many places."""
+"""Number of refinements of the smallest shortage between samples, and of places in each."""
 
 Range = tuple[float, float]
 Stretched = Callable[[Array], Chunk]
 
 
 def shortage(stretched: Stretched, theta: Array) -> Array:
-    """By how much the mechanism fails to close at driver angles ``theta`` (T,) [m]; <= 0 closes."""
+    """Return the shortage of closure at driver angles ``theta`` (T,) [m]; <= 0 closes."""
     chunk = stretched(theta)
     short = np.full(theta.shape, -np.inf)
     for value in chunk.shortage.values():
@@ -173,17 +173,17 @@ def shortage(stretched: Stretched, theta: Array) -> Array:
 
 
 def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
-    """The reachable driver angles within a turn, as (from, to) [rad] in increasing order.
+    """Return the reachable driver angles within a turn, as (from, to) [rad] in increasing order.
 
-    [(-pi, pi)] where the driver turns fully; [] where the mechanism cannot be assembled at all.
-    A range may run beyond pi where it holds that angle. What is followed along the driver may go
-    on for more than a turn and end all the same: it is looked at over so many ``turns`` both ways,
-    and told as it is where it is not alike in each.
+    [(-pi, pi)] where the driver turns fully; [] where the mechanism cannot be assembled at all. A
+    range may run beyond pi where it holds that angle. A group followed along the driver may go on
+    for more than a turn and end all the same: it is scanned over so many ``turns`` both ways, and
+    returned as it is where they differ.
 
-    Found by the shortage of closure over a turn of the driver, its sign changes refined by
-    bisection. Source: rotatability of a driver, e.g. Norton, Design of Machinery, section 4.10
-    (limit positions); for the four-bar `analytic.mechanism.fourbar` has the closed form, and a test
-    holds this one to it.
+    The sign changes of the shortage of closure over a turn of the driver are refined by bisection.
+    Source: rotatability of a driver, e.g. Norton, Design of Machinery, section 4.10 (limit
+    positions); for the four-bar `analytic.mechanism.fourbar` has the closed form, and a test
+    compares both.
     """
     if turns > 1 and (found := _over_turns(stretched, turns)) is not None:
         return found
@@ -205,7 +205,7 @@ def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
 
 
 def _closer(stretched: Stretched, whole: Range) -> list[Range]:
-    """A range that is so narrow that few looks fell into it, looked at anew: it may have gaps."""
+    """Scan a range anew that is so narrow that few samples fell into it: it may have gaps."""
     low, high = whole
     if high - low > NARROW:
         return [whole]
@@ -219,8 +219,8 @@ def _closer(stretched: Stretched, whole: Range) -> list[Range]:
 
 
 def with_valleys(shortage_at: Callable[[Array], Array], theta: Array) -> Array:
-    """The looks, and closer ones where a mechanism is nearest to closing, or to opening, between
-    two of them, so that no narrow part is passed over, nor one of two beside a look."""
+    """Return the samples, and closer ones where a mechanism is nearest to closing, or to opening,
+    between two of them, so that no narrow part is missed, nor one of two beside a sample."""
     short = shortage_at(theta)
     size = np.abs(short[1:-1])
     near = (size <= np.abs(short[:-2])) & (size <= np.abs(short[2:]))
@@ -240,7 +240,7 @@ def with_valleys(shortage_at: Callable[[Array], Array], theta: Array) -> Array:
 
 
 def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:
-    """The ranges over several turns both ways; None where each turn is like the next."""
+    """Return the ranges over several turns both ways; None where all turns are alike."""
     grid = np.linspace(-turns * math.tau, turns * math.tau, 2 * turns * SCAN + 1)
     closes = shortage(stretched, grid) <= 0.0
     unlike = np.count_nonzero(closes[SCAN:] != closes[:-SCAN])
@@ -253,7 +253,7 @@ def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:
 
 
 def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> Array:
-    """The angles at which closing begins or ends, each on the side that closes."""
+    """Return the angles at which closing begins or ends, each on the side that closes."""
     for _ in range(60):
         middle = 0.5 * (low + high)
         same = (shortage(stretched, middle) <= 0.0) == closes_low
@@ -262,7 +262,7 @@ def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> 
 
 
 def describe_reach(scene: Scene, stretched: Stretched, turns: int = 1) -> str:
-    """The reachable range in words, for a message; ``turns`` as of `ranges`."""
+    """Return the reachable range in words, for a message; ``turns`` as of `ranges`."""
     reachable, driver = ranges(stretched, turns), scene.driver
     if not reachable:
         grid = np.linspace(-math.pi, math.pi, SCAN + 1)
@@ -282,7 +282,7 @@ def describe_reach(scene: Scene, stretched: Stretched, turns: int = 1) -> str:
 
 
 def prepare(scene: Scene, structure: Structure) -> list[Step]:
-    """The steps of all groups, in solving order."""
+    """Return the steps of all groups, in solving order."""
     driver, compound = scene.driver, structure.compound
     known = {GROUND} if compound is not None else {GROUND, driver.link}
     steps: list[Step] = []
@@ -301,7 +301,7 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
 
 
 def _step_of_class_three(placed: PlacedBodies, part: Group | Triad, before: Sequence[Step]) -> Step:
-    """The step of a triad, or of a dyad with a compound: most scenes have none, nor load it."""
+    """Return the step of a triad, or of a dyad with a compound: few scenes need it."""
     from analytic.assur.mounting import Mounting
     from analytic.assur.step import AssurStep
 

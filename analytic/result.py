@@ -1,4 +1,4 @@
-"""The arrays of a motion: what was asked for, filled chunk by chunk."""
+"""Arrays of a motion: the requested series, filled chunk by chunk."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from models.scene import Scene
 
 
 class Counting(Protocol):
-    """What counts the whole turns of links over the samples that are written."""
+    """Counter of the whole turns of links over the written samples."""
 
     def count(self, name: str, angle: Array) -> None:
-        """Add to the angles of a link [rad], (T,), the whole turns that they are short of."""
+        """Add the missing whole turns to the angles of a link [rad], (T,)."""
         ...
 
 
 @dataclass(frozen=True)
 class Selection:
-    """The names that a caller asked for; a point goes with the body that carries it."""
+    """Requested names; each point with the body that carries it."""
 
     links: tuple[str, ...]
     points: Mapping[str, str]
@@ -43,7 +43,7 @@ class Selection:
         points: str | Iterable[str] | None,
         sliders: str | Iterable[str] | None,
     ) -> Selection:
-        """The chosen names, all of a kind for None. Raises CrankcheckError for an unknown one."""
+        """Choose the names, all of a kind for None. Raises CrankcheckError for an unknown one."""
         carriers = {point: bodies[0] for point, bodies in scene.pins.items()}
         for slider in scene.sliders.values():
             carriers.setdefault(slider.point, f"block {slider.name}")
@@ -67,7 +67,7 @@ def _chosen(
 
 @dataclass(frozen=True)
 class Derivatives:
-    """A quantity with its first and second derivative, each (T,) or (T, 2)."""
+    """Quantity with its first and second derivative, each (T,) or (T, 2)."""
 
     value: Array
     rate: Array
@@ -77,7 +77,7 @@ class Derivatives:
         self.value[span], self.rate[span], self.second[span] = value, rate, second
 
     def put_bounds(self, span: slice, *bounds: Real) -> None:
-        """Bounds, infinite where they come out of what is not certain (0 times infinity)."""
+        """Store bounds, infinite where they are undefined (0 times infinity)."""
         for array, bound in zip(self.arrays, bounds, strict=True):
             np.copyto(array[span], np.where(np.isnan(bound), np.inf, bound))
 
@@ -99,7 +99,7 @@ class _Block:
         return row
 
     def pair(self) -> Array:
-        """Shape (T, 2), each component contiguous in time."""
+        """Return an array of shape (T, 2), each component contiguous in time."""
         self._next += 2
         return self._rows[self._next - 2 : self._next].T
 
@@ -111,7 +111,7 @@ class _Block:
 
 
 class MotionArrays:
-    """The arrays of a motion while they are filled."""
+    """Arrays of a motion while they are filled."""
 
     def __init__(
         self, wanted: Selection, time_s: Array, steps: Sequence[Step], *, bound: bool
@@ -131,7 +131,7 @@ class MotionArrays:
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
     def write(self, span: slice, chunk: Chunk, counter: Counting | None) -> None:
-        """Store what was asked for of a solved chunk; None where no turns are to be counted."""
+        """Store the requested series of a solved chunk; without a counter no turns are counted."""
         for key, row in self.sines.items():
             row[span] = chunk.sines[key]
         for name in self.links:
@@ -159,7 +159,7 @@ class MotionArrays:
         if self.certified and body.error is not None:
             e = body.error
             limit = e.theta + 2 * EPS * (np.abs(track.value[span]) + 2.0)
-            # Where little is sure of the angle the count of its turns is not sure either.
+            # Where the angle is uncertain, the count of its turns is uncertain too.
             limit = np.where(e.theta > SURE, math.tau, limit)
             self.link_bounds[name].put_bounds(span, limit, e.omega, e.alpha)
 
@@ -172,7 +172,7 @@ class MotionArrays:
             self.point_bounds[name].put_bounds(span, e.position, e.velocity, e.acceleration)
 
     def motion(self) -> Motion:
-        """The filled arrays as a motion."""
+        """Return the filled arrays as a motion."""
         bound = None
         if self.certified:
             bound = Bound(

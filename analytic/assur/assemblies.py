@@ -1,7 +1,7 @@
 """All assemblies of a triad, with certainty: none is lost, none is counted twice.
 
 The eliminant is exact, and its real roots are isolated by balls that are proven to hold one each
-(Arb, by python-flint). The numbers of the rows are taken as they are.
+(Arb, by python-flint). The numbers of the rows count as exact.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from models.errors import CrankcheckError
 from models.scene import Point
 
 BITS = (320, 1280, 5120)
-"""Of the balls, until all places are known to ``SHARP``: the first is what products of ten 53-bit
-numbers leave; numbers of very different sizes take more."""
+"""Precisions of the balls, raised until all places are known to ``SHARP``: the first is enough for
+products of ten 53-bit numbers; numbers of very different sizes take more."""
 SHARP = 2.0**-60
 TURNS: tuple[Turn, ...] = tuple(
     (fmpq(c, r), fmpq(s, r))
@@ -41,14 +41,14 @@ TURNS: tuple[Turn, ...] = tuple(
         *((12, 35, 37), (-9, 40, 41), (28, -45, 53)),
     )
 )
-"""By which the frame may be turned, so that no assembly is at phi = pi, where t is infinite: more
-turns than there are assemblies."""
+"""Turns of the frame, so that no assembly is at phi = pi, where t is infinite: more turns than
+there are assemblies."""
 
 
 @dataclass(frozen=True)
 class TriadAssembly:
-    """One of them: the angle of the central link in (-pi, pi] [rad] and the place of its origin
-    [m]; ``count`` is 2 or more where so many fall together (a limit position or a change point)."""
+    """Assembly of a triad: the angle of the central link in (-pi, pi] [rad] and the place of its
+    origin [m]; ``count`` is above 1 where so many coincide (limit position, change point)."""
 
     angle_rad: float
     place: Point
@@ -57,39 +57,39 @@ class TriadAssembly:
 
 @dataclass(frozen=True)
 class _Solution:
-    """One in balls: angle ahead of the turn of the frame, place, and how many fall together."""
+    """Assembly in balls: angle ahead of the frame's turn, place, and number of coincident ones."""
 
     t: arb
     place: Place
     count: int
 
     def falls_on(self, other: _Solution) -> bool:
-        """Whether the balls of the two have something in common."""
+        """True if the balls of the two overlap."""
         pairs = zip((self.t, *self.place), (other.t, *other.place), strict=True)
         return all(one.overlaps(two) for one, two in pairs)
 
     def is_sharp(self, size: float) -> bool:
-        """Whether the place is known to a small part of itself, or is 0 beside a length."""
+        """True if the place is known to a small part of itself, or is 0 beside a length."""
         wide = max(float(one.rad()) for one in self.place)
         far = max(abs(float(one.mid())) for one in self.place)
         return wide <= max(SHARP * far, SHARP**3 * size)
 
 
 class _BluntError(ArithmeticError):
-    """Balls that are too wide."""
+    """Balls are too wide."""
 
 
 def assemblies(rows: LegRows) -> tuple[TriadAssembly, ...]:
-    """All real assemblies, by increasing angle.
+    """Return all real assemblies, by increasing angle.
 
     Each is right to rounding: the balls of angle and place are far below the last digit.
 
     Raises
     ------
     ContinuumError
-        The link can move while all that it hangs on stands still.
+        The link can move while its supports stand still.
     CrankcheckError
-        Two rows are of an angle.
+        Two rows give an angle.
     """
     angles = [row for row in rows if isinstance(row, AngleRow)]
     if len(angles) > 1:
@@ -106,7 +106,7 @@ def assemblies(rows: LegRows) -> tuple[TriadAssembly, ...]:
 
 
 def _at_roots(rows: LegRows, size: float) -> list[TriadAssembly]:
-    """Those at the roots of the eliminant, in a frame in which none is at half a turn."""
+    """Return the assemblies at the roots of the eliminant, in a frame with none at half a turn."""
     for turn in TURNS:
         own = eliminant(rows, turn)
         if is_zero(own.polynomial):
@@ -120,14 +120,14 @@ def _at_roots(rows: LegRows, size: float) -> list[TriadAssembly]:
 
 
 def _alone(own: Eliminant, t: arb, count: int) -> _Solution:
-    """What two rows that are not parallel leave."""
+    """Return the solution of two rows that are not parallel."""
     over = value(own.over, t)
     x, y = (value(n, t) / over for n in own.place)
     return _Solution(t, (x, y), count)
 
 
 def _joined(own: Eliminant, alone: list[_Solution]) -> list[_Solution]:
-    """These and the solutions where the two rows say the same."""
+    """Join these with the solutions where the two rows coincide."""
     every, (one, other, last) = list(alone), own.rows
     factors = own.parallel.factor()[1] if own.parallel.degree() > 0 else []
     for factor, power in factors:
@@ -144,8 +144,8 @@ def _joined(own: Eliminant, alone: list[_Solution]) -> list[_Solution]:
 
 
 def _real_roots(polynomial: fmpq_poly) -> Iterator[tuple[arb, int]]:
-    """The real roots with their multiplicity."""
-    # Of what its stubs say of roots, python-flint keeps nothing: they are pairs.
+    """Yield the real roots with their multiplicity."""
+    # python-flint's stubs are wrong: roots are pairs.
     roots: list[tuple[acb, int]] = polynomial.complex_roots()  # type: ignore[assignment]
     for root, count in roots if polynomial.degree() > 0 else ():
         if acb(root).imag == 0:
@@ -153,7 +153,7 @@ def _real_roots(polynomial: fmpq_poly) -> Iterator[tuple[arb, int]]:
 
 
 def _may_be_at_half_a_turn(own: Eliminant) -> bool:
-    """Whether the rows agree at t = infinity, or may: the leading coefficients are theirs there."""
+    """True if the rows agree, or may agree, at t = infinity: their leading coefficients decide."""
     (a, b, k1), (c, d, k2), (u, v, k) = ([p[2] for p in (*row.u, row.k)] for row in own.rows)
     over, x, y = a * d - b * c, b * k2 - k1 * d, k1 * c - a * k2
     if over == 0:
@@ -163,7 +163,7 @@ def _may_be_at_half_a_turn(own: Eliminant) -> bool:
 
 
 def _at_angle(angle: AngleRow, rows: LegRows, size: float) -> list[TriadAssembly]:
-    """Those of a link whose angle is given: two rows at one t, or at half a turn."""
+    """Return the assemblies of a link with a given angle: two rows at one t, or at half a turn."""
     c, s = angle.along
     half = c < 0.0  # in a frame that is turned by half a turn t is small
     turn = (fmpq(-1), fmpq(0)) if half else (fmpq(1), fmpq(0))
@@ -180,7 +180,7 @@ def _at_angle(angle: AngleRow, rows: LegRows, size: float) -> list[TriadAssembly
 
 
 def _assembly(one: _Solution, turn: Turn, size: float) -> TriadAssembly:
-    """A solution in floats, its angle in (-pi, pi]."""
+    """Return a solution in floats, its angle in (-pi, pi]."""
     if not one.is_sharp(size):
         raise _BluntError
     ahead = arb.atan2(arb(turn[1]), arb(turn[0]))
@@ -191,5 +191,5 @@ def _assembly(one: _Solution, turn: Turn, size: float) -> TriadAssembly:
 
 
 def _size(rows: LegRows) -> float:
-    """The smallest length in the rows but 0 [m]."""
+    """Return the smallest length in the rows but 0 [m]."""
     return min((abs(length) for row in rows for length in row.lengths if length), default=1.0)

@@ -1,7 +1,7 @@
 """The frame of a triad's central link, which may be two bodies that the driver moves.
 
-Of a `Compound` the frame is that of its base. Points and directions of the other body go as the
-driver's coordinate q has them: turned by q about the driven pin, or shifted by it along the line.
+The frame of a `Compound` is that of its base. Points and directions of the other body follow the
+driver's coordinate q: turned by q about the driven pin, or shifted by it along the line.
 """
 
 import math
@@ -29,7 +29,7 @@ from models.scene.joints import less, local_point, sliding_angle
 
 @dataclass(frozen=True, slots=True)
 class Leaning:
-    """A direction in the frame: a unit vector, how fast it turns there, and bounds."""
+    """Direction in the frame: a unit vector, its rotation there, and bounds."""
 
     along: Vec
     omega: Real = 0.0
@@ -39,7 +39,7 @@ class Leaning:
 
 @dataclass(frozen=True)
 class CentralFrame:
-    """The frame of ``body``, with its anchor at ``origin`` [m] in it."""
+    """Frame of ``body``, with its anchor at ``origin`` [m] in it."""
 
     scene: Scene
     body: str
@@ -48,11 +48,11 @@ class CentralFrame:
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """The bodies that are one link here."""
+        """Bodies of the one link."""
         return (self.body,) if self.compound is None else (self.compound.base, self.compound.link)
 
     def leaning(self, chunk: Chunk, part: str, angle_rad: float) -> Leaning:
-        """A direction at a constant angle in the frame of one of the bodies."""
+        """Return a direction at a constant angle in the frame of one of the bodies."""
         along, rounding = direction(angle_rad), rounding_of_angles(angle_rad)
         error = replace(EXACT_ANGLE, theta=rounding)
         if part == self.body:
@@ -62,7 +62,7 @@ class CentralFrame:
         return Leaning(along.turned(by.along), by.omega, by.alpha, total)
 
     def _between(self, chunk: Chunk) -> Leaning:
-        """The x-axis of the other body."""
+        """Return the x-axis of the other body."""
         assert self.compound is not None
         if self.compound.slider is not None:
             slider = self.scene.sliders[self.compound.slider]
@@ -74,7 +74,7 @@ class CentralFrame:
         return Leaning(along, q.omega, q.alpha, q.error or EXACT_ANGLE)
 
     def local(self, chunk: Chunk, part: str, place: Point) -> LocalPoint:
-        """A point of one of the bodies, given in its own frame, from the anchor."""
+        """Return a point of one of the bodies, given in its own frame, from the anchor."""
         if part == self.body:
             return LocalPoint.at(less(place, self.origin))
         assert self.compound is not None

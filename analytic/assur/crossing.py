@@ -1,7 +1,7 @@
-"""The central link in and beside a change point of its group, where the rows say 0/0.
+"""The central link in and beside a change point of its group, where the rows give 0/0.
 
-As through the change points of dyads: what goes on smoothly is an analytic function of the driver's
-angle, and interpolated from both sides (`analytic.change_points.sign`).
+As at the change points of dyads, the smooth motion is an analytic function of the driver's angle,
+and interpolated from both sides (`analytic.change_points.sign`).
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from analytic.dyads.plane import (
 from models.array import Array, Mask
 
 Solved = Callable[[Array], BodyKinematics]
-"""The central link at driver angles [rad], per unit speed of the driver, with bounds."""
+"""Central link at driver angles [rad], per unit speed of the driver, with bounds."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ class CrossingPiece:
 
     @staticmethod
     def about(solved: Solved, centre: float, room: float, size_m: float) -> CrossingPiece | None:
-        """The widest that is about as certain as any, within ``room`` [rad]; None where the motion
-        is not smooth for sure."""
+        """Return the widest that is about as certain as any, within ``room`` [rad]; None where the
+        motion is not certainly smooth."""
         best: CrossingPiece | None = None
         for half in HALVES:
             if half > room:
@@ -65,13 +65,13 @@ class CrossingPiece:
         return best if best is not None and best.doubt < LEAST_CERTAIN else None
 
     def near(self, from_centre: Array) -> Mask:
-        """Whether driver angles, from the centre, are where it is used."""
+        """Return the mask of driver angles, from the centre, at which it is used."""
         return np.asarray(np.abs(from_centre) < self.half * WINDOW)
 
     def put(
         self, body: BodyKinematics, from_centre: Array, driver: DrivenCoordinate
     ) -> BodyKinematics:
-        """The link with what is lost about the change point."""
+        """Return the link with its lost values about the change point restored."""
         index = np.flatnonzero(self.near(from_centre))
         if not index.size:
             return body
@@ -121,7 +121,7 @@ def _piece(solved: Solved, centre: float, half: float, size_m: float) -> Crossin
 
 
 def _levels(body: BodyKinematics, theta: Array) -> list[tuple[Array, Array]]:
-    """Place and angle at the nodes, with two derivatives, and their bounds, each (3, n)."""
+    """Return place and angle at the nodes, with two derivatives, and their bounds, each (3, n)."""
     assert body.error is not None
     assert body.anchor.error is not None
     at, e, own = body.anchor, body.anchor.error, body.error

@@ -1,4 +1,4 @@
-"""The equation of a triad in one unknown, exactly: t = tan(phi/2) of the central link's angle."""
+"""Exact equation of a triad in one unknown: t = tan(phi/2) of the central link's angle."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class CircleRow:
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """What of it is in metres."""
+        """Its values in metres."""
         return (*self.a, *self.pin, self.length)
 
 
@@ -35,7 +35,7 @@ class LineRow:
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """What of it is in metres."""
+        """Its values in metres."""
         return (*self.a, *self.through)
 
 
@@ -50,7 +50,7 @@ class ThroughRow:
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """What of it is in metres."""
+        """Its values in metres."""
         return (*self.b, *self.pin)
 
 
@@ -62,7 +62,7 @@ class AngleRow:
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """What of it is in metres."""
+        """Its values in metres."""
         return ()
 
 
@@ -72,29 +72,29 @@ LegRows = tuple[LegRow, LegRow, LegRow]
 
 W = fmpq_poly([1, 0, 1])
 Turn = tuple[fmpq, fmpq]
-"""Cosine and sine of an angle that has both rational."""
+"""Cosine and sine of an angle, both rational."""
 
 
 @dataclass(frozen=True)
 class RowPolynomial:
-    """A row as (w P.P) + u.P + k: whether it has the first term, u and k."""
+    """Row as (w P.P) + u.P + k: ``is_circle`` if it has the first term, u and k."""
 
     is_circle: bool
     u: tuple[fmpq_poly, fmpq_poly]
     k: fmpq_poly
 
     def less(self, other: RowPolynomial) -> RowPolynomial:
-        """The difference of two circles."""
+        """Return the difference of two circles."""
         u = (self.u[0] - other.u[0], self.u[1] - other.u[1])
         return RowPolynomial(False, u, self.k - other.k)
 
 
 @dataclass(frozen=True)
 class Eliminant:
-    """The polynomial of all assemblies but those in which the two rows that give the place are
-    parallel; these are at roots of ``parallel``.
+    """Polynomial of all assemblies except where the two rows that give the place are parallel;
+    these are at roots of ``parallel``.
 
-    ``place`` is N, and ``over`` D; ``rows`` the two that give it and, last, the third.
+    ``place`` is N, and ``over`` D; ``rows`` are the two that give it and, last, the third.
     """
 
     polynomial: fmpq_poly
@@ -105,12 +105,12 @@ class Eliminant:
 
 
 def rational(value: float) -> fmpq:
-    """A float as the rational number that it is."""
+    """Return the exact rational value of a float."""
     return fmpq(*float(value).as_integer_ratio())
 
 
 def row_polynomial(row: LegRow, turn: Turn) -> RowPolynomial:
-    """A row whose link frame is first turned by a constant angle."""
+    """Return a row whose link frame is first turned by a constant angle."""
     if isinstance(row, CircleRow):
         reach, pin = _turning(row.a, turn), _pair(row.pin)
         square = sum((c * c for c in (*_pair(row.a), *pin)), fmpq(0)) - rational(row.length) ** 2
@@ -129,7 +129,7 @@ def row_polynomial(row: LegRow, turn: Turn) -> RowPolynomial:
 
 
 def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
-    """The eliminant of three rows of which none is of an angle."""
+    """Return the eliminant of three rows, none of which gives an angle."""
     assert not any(isinstance(row, AngleRow) for row in rows)
     own = sorted((row_polynomial(row, turn) for row in rows), key=lambda row: row.is_circle)
     last = own[2]
@@ -153,17 +153,17 @@ def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
 
 
 def is_zero(polynomial: fmpq_poly) -> bool:
-    """Whether all its coefficients are 0."""
+    """True if all its coefficients are 0."""
     return polynomial.degree() < 0
 
 
 def _without_w(polynomial: fmpq_poly) -> fmpq_poly:
-    """A polynomial without its factors 1 + t^2."""
+    """Return a polynomial without its factors 1 + t^2."""
     return polynomial if is_zero(polynomial) else _without(polynomial, W)
 
 
 def _without(polynomial: fmpq_poly, factor: fmpq_poly) -> fmpq_poly:
-    """A polynomial without all that it has in common with another."""
+    """Return a polynomial without its common factors with another."""
     while not is_zero(polynomial) and (common := polynomial.gcd(factor)).degree() > 0:
         polynomial = polynomial / common
     return polynomial
@@ -174,7 +174,7 @@ def _pair(vector: Point) -> tuple[fmpq, fmpq]:
 
 
 def _turning(vector: Point, turn: Turn) -> tuple[fmpq_poly, fmpq_poly]:
-    """w R a, a vector of the link's frame in the plane, as polynomials in t."""
+    """Return w R a, a vector of the link's frame in the plane, as polynomials in t."""
     (x, y), (c, s) = _pair(vector), turn
     x, y = c * x - s * y, s * x + c * y
     return fmpq_poly([x, -2 * y, -x]), fmpq_poly([y, 2 * x, -y])
@@ -184,7 +184,7 @@ Place = tuple[arb, arb]
 
 
 class ContinuumError(CrankcheckError):
-    """The rows leave the link a motion of its own: it has assemblies without end."""
+    """The rows leave the link a motion of its own: it has infinitely many assemblies."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -194,27 +194,27 @@ class ContinuumError(CrankcheckError):
 
 @dataclass(frozen=True)
 class Root:
-    """A real root in a ball, and the polynomial without rational factors that is 0 there."""
+    """Real root in a ball, and the polynomial without rational factors that is 0 there."""
 
     ball: arb
     of: fmpq_poly
 
     @classmethod
     def rational(cls, t: fmpq) -> Root:
-        """A rational number, the root of a polynomial of degree 1."""
+        """Return a rational number as the root of a polynomial of degree 1."""
         return cls(arb(t), fmpq_poly([-t, 1]))
 
     def zero(self, *polynomials: fmpq_poly) -> bool:
-        """Whether all of them are exactly 0 there."""
+        """True if all of them are exactly 0 there."""
         return all((each % self.of).degree() < 0 for each in polynomials)
 
     def at(self, polynomial: fmpq_poly) -> arb:
-        """The value of a polynomial there."""
+        """Return the value of a polynomial there."""
         return value(polynomial % self.of, self.ball)
 
 
 def value(polynomial: fmpq_poly, t: arb) -> arb:
-    """The value of a polynomial in a ball."""
+    """Return the value of a polynomial in a ball."""
     total = arb(0)
     for coefficient in reversed(polynomial.coeffs()):
         total = total * t + arb(coefficient)
@@ -224,9 +224,9 @@ def value(polynomial: fmpq_poly, t: arb) -> arb:
 def places_on_line(
     rows: Sequence[RowPolynomial], last: RowPolynomial, root: Root
 ) -> list[tuple[Place, int]]:
-    """The places at an angle, t = ``root``, that are in rows of one line and in the ``last`` row.
+    """Return the places at an angle, t = ``root``, on rows of one line and on the ``last`` row.
 
-    With each how often it is one: 2 where the line touches a circle.
+    Each comes with its multiplicity: 2 where the line touches a circle.
 
     Raises
     ------
@@ -237,8 +237,8 @@ def places_on_line(
 
         P = (-k u + q n) / g,      n = (-u_y, u_x),  g = u.u,  q any number,
 
-    and the third row is at most quadratic in q. What is 0 at a root is told from what is only small
-    by exact division by the polynomial of which it is the root, never by a ball.
+    and the third row is at most quadratic in q. Exact division by the polynomial of the root, never
+    a ball, tells zero from small values at a root.
     """
     lines = [row for row in rows if not root.zero(*row.u)]
     if not root.zero(*(row.k for row in rows if root.zero(*row.u))):
@@ -261,7 +261,7 @@ def places_on_line(
 
 
 def _quadratic(a: fmpq_poly, b: fmpq_poly, c: fmpq_poly, root: Root) -> list[tuple[arb, int]]:
-    """The real solutions of a q^2 + b q + c = 0 at a root, and how often each is one."""
+    """Return the real solutions of a q^2 + b q + c = 0 at a root, with multiplicities."""
     under, middle, twice = b * b - 4 * a * c, -root.at(b), 2 * root.at(a)
     if root.zero(under):
         return [(middle / twice, 2)]

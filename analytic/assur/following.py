@@ -1,4 +1,4 @@
-"""The next cells of an assembly, and the next, until it ends or is where it was asked for."""
+"""Cells of an assembly, one after the other, until it ends or is at the requested angle."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from analytic.dyads.plane import (
 from models.array import Array, Mask
 
 SHARE = 0.5
-"""Of the box, what its own size may add to it: then nothing else is in it."""
+"""Largest growth of a box by its own size, over the box: then it holds no other assembly."""
 
 
 @dataclass(frozen=True)
 class CellsAlong:
-    """Cells one after the other: the driver angles of their middles and far borders [rad], the
-    central link there, and how many of them, from the first on, are handed over without a doubt."""
+    """Successive cells: the driver angles of their middles and far borders [rad], the central link
+    there, and the number of them, from the first on, that are certainly handed over."""
 
     theta: Array
     far: Array
@@ -56,8 +56,8 @@ class CellsAlong:
 def along(
     rows: RowsAt, last: CentralPose, halves: Array, to: float | None, size_m: float
 ) -> CellsAlong:
-    """Cells of half-widths ``halves`` [rad] (below 0: to lower angles), one after the other from a
-    pose on, the last up to driver angle ``to`` where that is given."""
+    """Return cells of half-widths ``halves`` [rad] (below 0: to lower angles), one after the other
+    from a pose on, the last up to driver angle ``to`` where that is given."""
     far = last.theta + 2.0 * np.cumsum(halves)
     if to is not None:
         far[-1] = to
@@ -78,7 +78,7 @@ def along(
 def _solved(
     rows: RowsAt, last: CentralPose, theta: Array, size_m: float
 ) -> tuple[SolvedPlatform, Sequence[SampledRow]]:
-    """The assembly that a pose leads to, at driver angles known to rounding."""
+    """Return the assembly that a pose leads to, at driver angles known to rounding."""
     place, turn = ahead(last, theta)
     own = rows(theta, 8 * EPS * np.abs(theta))
     return solve_platform(own, place, turn, size_m, certified=True), own
@@ -91,8 +91,8 @@ def _boxes(
     half: Array,
     size_m: float,
 ) -> tuple[Array, Array, Mask]:
-    """How far the assembly may be from the straight way of the middle, anywhere in a cell, and
-    whether it is the only one so near; ``over`` are the rows of the whole cell."""
+    """Return the largest distance of the assembly from the straight way of the middle, in a cell,
+    and the mask where it is the only one so near; ``over`` are the whole cell's rows."""
     wrenches = Wrenches.of(rows, body, size_m)
     still = PointKinematics(body.anchor.p, body.anchor.v, ZERO, EXACT_POINT)
     straight = replace(body, anchor=still, alpha=0.0, error=EXACT_ANGLE)
@@ -122,7 +122,7 @@ def _widened(body: BodyKinematics, e: Real, t: Real) -> BodyKinematics:
 
 
 def _shifted(last: CentralPose, border: BodyKinematics) -> BodyKinematics:
-    """The near borders: the last pose, and then each far border but one."""
+    """Return the near borders: the last pose, and then each far border but one."""
 
     def after(first: float, rest: Real) -> Array:
         return np.concatenate([[first], np.asarray(rest)[:-1]])
@@ -139,7 +139,7 @@ def _shifted(last: CentralPose, border: BodyKinematics) -> BodyKinematics:
 
 
 def _inside(middle: BodyKinematics, border: BodyKinematics, by: Array, e: Array, t: Array) -> Mask:
-    """Whether the assembly at a border, with its doubt, is in the box of a cell."""
+    """Return the mask where the assembly at a border, with its doubt, is in the box of a cell."""
     assert border.error is not None
     assert border.anchor.error is not None
     off = border.anchor.p - (middle.anchor.p + middle.anchor.v * by)
@@ -151,17 +151,17 @@ def _inside(middle: BodyKinematics, border: BodyKinematics, by: Array, e: Array,
 
 
 FAR, SOON = 100.0, 5e-3
-"""Times its size that a link is away when it runs to infinity, and a driver angle [rad]."""
+"""Distance of a link that runs to infinity, over its size, and a driver angle [rad]."""
 EndKind = Literal["limit position", "change point", "run to infinity", "doubtful position"]
 
 
 @dataclass(frozen=True)
 class TrackEnd:
-    """Where a track ends or crosses another one: driver angle [rad], and as what.
+    """End of a track, or crossing with another: driver angle [rad] and kind.
 
-    In a limit position two assemblies meet, and are no more beyond; in a change point two meet, and
-    both go on. A run to infinity has a link whose lines become parallel. A doubtful position is
-    none of these for sure: where what the group hangs on ends, say.
+    In a limit position two assemblies meet, and end; in a change point two meet, and both go on. A
+    run to infinity has a link whose lines become parallel. A doubtful position is none of these for
+    sure: the end of a supporting group, say.
     """
 
     theta: float
@@ -169,8 +169,8 @@ class TrackEnd:
 
 
 def end_beside(poses: list[CentralPose], way: float) -> TrackEnd:
-    """Where the determinant goes to zero, and how: like the root of the way that is left, or like
-    the way itself."""
+    """Return the end where the determinant goes to zero, and its kind: like the root of the
+    remaining way, or like the way itself."""
     last = poses[-1]
     theta = np.array([pose.theta for pose in poses[:-1]])
     det = np.abs([pose.det for pose in poses[:-1]])
@@ -197,15 +197,15 @@ def end_beside(poses: list[CentralPose], way: float) -> TrackEnd:
 
 
 def runs_away(start: CentralPose, last: CentralPose, size_m: float) -> bool:
-    """Whether a link is far away, and grows twice as far before the driver has moved on by
+    """True if a link is far away, and doubles its distance before the driver has moved on by
     `SOON`: it runs to infinity."""
     away, rate = _away(start, last), math.hypot(*last.rate)
     return away > FAR * (size_m + math.hypot(*start.rate)) and away < SOON * rate
 
 
 def end_at_infinity(poses: list[CentralPose]) -> TrackEnd:
-    """Where a link that runs away will be at infinity: the driver angle is a smooth function of
-    the inverse of its distance, here a polynomial through five of its poses."""
+    """Return the driver angle at which a link is at infinity: it is a smooth function of the
+    inverse of its distance, here a polynomial through five of its poses."""
     start, last = poses[0], poses[-1]
     inverse, theta = [1.0 / _away(start, last)], [last.theta]
     for pose in reversed(poses[1:]):
@@ -218,26 +218,26 @@ def end_at_infinity(poses: list[CentralPose]) -> TrackEnd:
 
 
 def _away(start: CentralPose, pose: CentralPose) -> float:
-    """How far a pose is from that at the start [m]."""
+    """Return the distance of a pose from that at the start [m]."""
     return math.hypot(pose.place[0] - start.place[0], pose.place[1] - start.place[1])
 
 
 BLOCK = 16
-"""Cells that are looked at together."""
+"""Number of cells that are computed together."""
 WIDEST = 0.1
-"""A cell [rad]."""
+"""Largest width of a cell [rad]."""
 NARROWEST = 1e-10
-"""A cell [rad] that no assembly is followed through."""
+"""Width of a cell [rad] below which no assembly is followed."""
 MOST = 20_000
-"""Poses of a track."""
+"""Most poses of a track."""
 SIDE = 1e-4
-"""How far beyond a crossing the other side is looked for [rad]."""
+"""Distance beyond a crossing at which the other side is looked for [rad]."""
 
 
 @dataclass(frozen=True)
 class TrackPiece:
     """Part of a track, the poses at the borders and in the middle of its cells, in its own order of
-    driver angles; ``end`` where it ends, None where it was not asked for more."""
+    driver angles; ``end`` where it ends, None where it reached the requested angle."""
 
     poses: list[CentralPose]
     end: TrackEnd | None
@@ -245,7 +245,7 @@ class TrackPiece:
 
 
 def follow(rows: RowsAt, start: CentralPose, to: float, size_m: float) -> TrackPiece:
-    """The assembly of ``start`` followed to the driver angle ``to`` [rad], as far as that goes."""
+    """Follow the assembly of ``start`` to the driver angle ``to`` [rad], as far as it goes."""
     way = 1.0 if to >= start.theta else -1.0
     poses, crossings, last = [start], list[TrackEnd](), start
     stride = Stride(0.25 * WIDEST, 0.04)
@@ -273,15 +273,15 @@ def follow(rows: RowsAt, start: CentralPose, to: float, size_m: float) -> TrackP
 
 @dataclass
 class Stride:
-    """How wide the next cells are made: half of them at most ``half`` [rad], and a ``share`` of the
-    room before an end."""
+    """Width of the next cells: their halves are at most ``half`` [rad], and a ``share`` of the room
+    before an end."""
 
     half: float
     share: float
     arrives: bool = False
 
     def halves(self, left: float, room: float) -> Array:
-        """The half-widths [rad] of cells over what is ``left`` of the way, ``room`` to an end."""
+        """Return the half-widths [rad] of cells over the ``left`` way, ``room`` to an end."""
         found: list[float] = []
         self.arrives = False
         for _ in range(BLOCK):
@@ -295,7 +295,7 @@ class Stride:
         return np.array(found)
 
     def after(self, good: int, halves: Array) -> Stride:
-        """The stride after so many cells were good."""
+        """Return the stride after so many cells were good."""
         if good == len(halves):
             return Stride(min(1.6 * self.half, 0.5 * WIDEST), min(1.3 * self.share, 0.2))
         less = 0.75 if good else 0.5
@@ -303,7 +303,7 @@ class Stride:
 
 
 def _room(poses: list[CentralPose]) -> float:
-    """How far it is to where the square of the determinant, which goes down, would be 0 [rad]."""
+    """Return the distance to the predicted zero of the determinant's falling square [rad]."""
     if len(poses) < 3:
         return math.inf
     a, b = poses[-3], poses[-1]
@@ -312,8 +312,8 @@ def _room(poses: list[CentralPose]) -> float:
 
 
 def _handed_over(cells: CellsAlong, last: CentralPose) -> list[CentralPose]:
-    """The middles and the far borders of the cells up to the first that is not sure, the angles
-    counted on from that of the ``last`` pose."""
+    """Return the middles and the far borders of the cells up to the first that is not sure, the
+    angles counted on from that of the ``last`` pose."""
     found: list[CentralPose] = []
     angle = last.angle
     for j in range(cells.good):
@@ -330,7 +330,7 @@ def _handed_over(cells: CellsAlong, last: CentralPose) -> list[CentralPose]:
 def _beyond(
     rows: RowsAt, poses: list[CentralPose], end: TrackEnd, way: float, size_m: float
 ) -> CentralPose | None:
-    """The assembly on the other side of a crossing: straight on, its determinant of other sign."""
+    """Return the assembly beyond a crossing: straight on, its determinant of other sign."""
     before = next((p for p in reversed(poses) if abs(p.theta - end.theta) > SIDE), poses[0])
     theta = end.theta + way * SIDE
     place, turn = ahead(before, np.array([theta]))

@@ -1,4 +1,4 @@
-"""The legs of a triad and the joints of a link to known bodies: their rows, and where they stand.
+"""Legs of a triad and joints of a link to known bodies: their rows and positions.
 
 Each makes its rows at the samples of a chunk, and, when the central link is placed, adds its own
 link and sliders to the chunk.
@@ -28,10 +28,10 @@ from models.scene import Point
 
 
 class TriadLeg(Protocol):
-    """What holds the central link by one row or two."""
+    """Leg or joint that holds the central link by one row or two."""
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
-        """Its rows while the central link is looked for."""
+        """Return its rows while the central link is unknown."""
         ...
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
@@ -39,7 +39,7 @@ class TriadLeg(Protocol):
         ...
 
     def locals(self) -> list[tuple[str, Point]]:
-        """The points of the central link that it holds, by body."""
+        """Return the points of the central link that it holds, by body."""
         ...
 
 
@@ -73,7 +73,7 @@ class BarLeg:
 
 
 def spanning(near: PointKinematics, far: PointKinematics, length: float) -> Turning:
-    """A vector of constant length between two points, as a rotation."""
+    """Return a vector of constant length between two points, as a rotation."""
     span, drift, pull = far.p - near.p, far.v - near.v, far.a - near.a
     square = 1.0 / (length * length)
     omega, alpha = span.cross(drift) * square, span.cross(pull) * square
@@ -132,7 +132,7 @@ class SlidingLeg:
 
 
 def sliding(line: MovingLine, point: PointKinematics) -> Sliding:
-    """The displacement of a point that runs on a moving line."""
+    """Return the displacement of a point that runs on a moving line."""
     s = line.along.dot(point.p - line.point.p)
     drift = point.v - line.velocity(s)
     speed = line.along.dot(drift)
@@ -215,7 +215,7 @@ class PinnedThere:
         ]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
-        """Nothing is added."""
+        """Add nothing."""
 
 
 @dataclass(frozen=True)
@@ -249,8 +249,8 @@ class SlidingThere:
 def kept_angle(
     frame: CentralFrame, chunk: Chunk, part: str, riding: RidingLine, back: float, size_m: float
 ) -> KeptAngle:
-    """The central link where one of its bodies follows a known one by what ``riding`` says, less
-    the angle ``back``."""
+    """Return the row of a central link that keeps its angle to a known body: one of its bodies
+    follows by ``riding``, less the angle ``back``."""
     known = chunk.bodies[riding.known]
     along = known.unit(riding.follow - back)
     own = frame.leaning(chunk, part, 0.0)
@@ -276,7 +276,7 @@ class DoublySlidingLeg:
     size_m: float
 
     def _ridings(self) -> tuple[RidingLine, RidingLine]:
-        """The leg on the known body, and the central link on the leg."""
+        """Return the leg on the known body, and the central link on the leg."""
         leg = replace(self.placed, known=frozenset({self.link}))
         return RidingLine.of(self.placed, self.outer), RidingLine.of(leg, self.inner)
 
@@ -292,13 +292,13 @@ class DoublySlidingLeg:
         return [kept]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
-        """The leg stands where its line meets the one through the rider of the central link."""
+        """Place the leg where its line meets the one through the rider of the central link."""
         outer, inner = self._ridings()
         rider = self.frame.local(chunk, self.part, inner.rider).on(body)
         known = chunk.bodies[outer.known]
         line = outer.line(chunk)
-        # The line of a leg at displacement 0, which the known body carries, goes through the rider
-        # when it is shifted along the known line.
+        # The line of a leg at displacement 0, on the known body, goes through the rider when it is
+        # shifted along the known line.
         chunk.bodies[self.link] = following_body(
             known, outer.follow, outer.rounding, outer.rider, line.point
         )

@@ -1,4 +1,4 @@
-"""How the central link of a group is mounted: its frame, and the legs or joints that hold it."""
+"""Mounting of the central link of a group: its frame, and the legs or joints that hold it."""
 
 import math
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ from models.scene.joints import local_point
 
 
 class Mounting:
-    """The central link of a triad, or of a dyad with a compound, and what holds it."""
+    """Central link of a triad, or of a dyad with a compound, with its legs and joints."""
 
     def __init__(self, placed: PlacedBodies, group: Triad | Group) -> None:
         self.placed, self.group = placed, group
@@ -60,21 +60,21 @@ class Mounting:
         return legs if joint is None else [*legs, self._joint(joint)]
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
-        """The three rows of the central link."""
+        """Return the three rows of the central link."""
         return [row for leg in self.legs for row in leg.rows(chunk)]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
-        """Add the central link and all that its legs are."""
+        """Add the central link and its legs."""
         self.frame.place(chunk, body)
         for leg in self.legs:
             leg.place(chunk, body)
 
     def holder(self, chunk: Chunk, pin: str) -> str:
-        """A body that carries a pin, of those that stand."""
+        """Return a placed body that carries a pin."""
         return next(body for body in self.placed.structure.pins[pin] if body in chunk.bodies)
 
     def _part(self, joint: JointKey) -> str:
-        """The body of the central link that has a joint."""
+        """Return the body of the central link that has a joint."""
         kind, name = joint
         for body in self.frame.bodies:
             if kind == "R" and body in self.placed.structure.pins[name]:
@@ -98,7 +98,7 @@ class Mounting:
         return DoublySlidingLeg(*given, self.size_m)
 
     def _driven(self, leg: LegOfGroup, part: str, compound: Compound) -> TriadLeg:
-        """A leg that the driver moves. Raises StructureError where it slides."""
+        """Return a leg that the driver moves. Raises StructureError where it slides."""
         scene = self.placed.scene
         if leg.kind != "RR":
             raise StructureError(
@@ -125,7 +125,7 @@ def _middle(points: list[Point]) -> Point:
 
 
 def _size(scene: Scene, frame: CentralFrame, points: Sequence[Point]) -> float:
-    """A length of the central link, or of the longest where it has none [m]."""
+    """Return a length of the central link, or of the longest where it has none [m]."""
     spans = [span(scene.links[body].points) for body in frame.bodies if body in scene.links]
     spans += [2.0 * math.dist(frame.origin, point) for point in points]
     return max(spans, default=0.0) or scene.longest_m
@@ -151,16 +151,16 @@ class DrivenBarLeg:
         return [(self.part, self.placed.local(self.part, self.inner))]
 
     def _end(self, chunk: Chunk, pin: str) -> LocalPoint:
-        """A pin in the frame of the leg."""
+        """Return a pin in the frame of the leg."""
         body = self.body_of(pin)
         return self.own.local(chunk, body, local_point(self.placed.scene, body, pin))
 
     def body_of(self, pin: str) -> str:
-        """The body of the leg that carries a pin."""
+        """Return the body of the leg that carries a pin."""
         return next(b for b in self.own.bodies if b in self.placed.structure.pins[pin])
 
     def span(self, chunk: Chunk) -> LocalPoint:
-        """From the outer pin to the inner one, in the frame of the leg."""
+        """Return the vector from the outer pin to the inner one, in the frame of the leg."""
         near, far = self._end(chunk, self.outer), self._end(chunk, self.inner)
         e, f = near.error, far.error
         error = PointError(
@@ -200,7 +200,7 @@ class DrivenBarLeg:
 def _turned(
     near: PointKinematics, far: PointKinematics, d: LocalPoint
 ) -> tuple[Vec, Real, Real, AngleError | None]:
-    """The rotation of a frame in which the way between two points is ``d``."""
+    """Return the rotation of a frame in which the way between two points is ``d``."""
     span, drift, pull = far.p - near.p, far.v - near.v, far.a - near.a
     square = 1.0 / d.p.square()
     turn = span.turned(Vec(d.p.x, -d.p.y)) * square
@@ -233,7 +233,7 @@ def _beside(
     alpha: Real,
     error: AngleError | None,
 ) -> PointKinematics:
-    """The origin of a frame one of whose points, which may move in it, is at a known place."""
+    """Return the origin of a frame from the known place of a point that may move in it."""
     still = PointKinematics(Vec(0.0, 0.0), Vec(0.0, 0.0), Vec(0.0, 0.0), PointError(0.0, 0.0, 0.0))
     frame = BodyKinematics((0.0, 0.0), still, turn, omega, alpha, error)
     way = replace(local, moves=True).on(frame)

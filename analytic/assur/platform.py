@@ -1,11 +1,11 @@
 """The central link of a triad over a chunk of samples, from a guess: place, rates, bounds.
 
 Three rows, linear in each level of motion by one and the same matrix of wrenches: place by Newton's
-method, rates and second rates directly. The certificate is that of `analytic.dyads.parts` in
-three unknowns: residuals and errors of what is known, through the inverse of the matrix, bound the
+method, rates and second rates directly. The certificate is that of `analytic.dyads.parts` in three
+unknowns: residuals and errors of known values, through the inverse of the matrix, bound the
 unknowns to first order, and up to twice that bounds them fully where the matrix changes little over
-that distance (Newton-Kantorovich). Then the assembly there is the only one nearby. Where that fails
-no angle is certain, nor any rate.
+that distance (Newton-Kantorovich). Then the assembly is the only one nearby. Elsewhere no angle is
+certain, nor any rate.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ from models.motion import Order
 from models.scene import Point
 
 STEPS = 12
-"""Of Newton's method, at most; a good guess takes two or three."""
+"""Most steps of Newton's method; a good guess takes two or three."""
 TURN = 0.5
-"""The largest turn of one step [rad]."""
+"""Largest turn of one step [rad]."""
 Three = tuple[Real, Real, Real]
 
 
 @dataclass(frozen=True)
 class Wrenches:
-    """The inverse of the matrix whose rows are n and r x n over a length: by column three numbers,
-    the last over that length; ``det`` over the product of the lengths of the rows is in [-1, 1]."""
+    """Inverse of the matrix whose rows are n and r x n over a length: by column three numbers, the
+    last over that length; ``det`` over the product of the lengths of the rows is in [-1, 1]."""
 
     columns: tuple[Three, Three, Three]
     size_m: float
@@ -66,7 +66,7 @@ class Wrenches:
         return Wrenches((columns[0], columns[1], columns[2]), size_m, sine)
 
     def solve(self, gaps: Three) -> tuple[Vec, Real]:
-        """The shift [m] and the turn [rad] that lower the rows by so much."""
+        """Return the shift [m] and the turn [rad] that lower the rows by these gaps."""
         x, y, z = (
             sum(column[i] * gap for column, gap in zip(self.columns, gaps, strict=True))
             for i in range(3)
@@ -74,7 +74,7 @@ class Wrenches:
         return Vec(x, y), z / self.size_m
 
     def bound(self, gaps: Three) -> tuple[Real, Real]:
-        """The largest shift and turn for rows that are wrong by no more."""
+        """Return the largest shift and turn for rows with these errors."""
         x, y, z = (
             sum(np.abs(column[i]) * gap for column, gap in zip(self.columns, gaps, strict=True))
             for i in range(3)
@@ -84,9 +84,9 @@ class Wrenches:
 
 @dataclass(frozen=True)
 class SolvedPlatform:
-    """The central link, with bounds if asked for; ``det`` in [-1, 1] is singular at 0, and of one
-    sign from one singular position to the next. ``closed`` says where Newton's method came to an
-    end at an assembly, and ``sure`` where that is the only one within the bounds."""
+    """Solved central link, with bounds if required; ``det`` in [-1, 1] is singular at 0, and of one
+    sign from one singular position to the next. ``closed`` marks convergence of Newton's method to
+    an assembly, and ``sure`` the only one within the bounds."""
 
     body: BodyKinematics
     det: Array
@@ -103,7 +103,7 @@ def solve_platform(
     *,
     certified: bool,
 ) -> SolvedPlatform:
-    """The central link near a guess.
+    """Solve for the central link near a guess.
 
     Parameters
     ----------
@@ -111,9 +111,9 @@ def solve_platform(
     place, turn : Vec
         The guess: the anchor [m] and the direction of the link's frame, shape (T,).
     size_m : float
-        A length of the link, by which angles are weighed against distances.
+        A length of the link, which weighs angles against distances.
     certified : bool
-        Give bounds; what the rows are made of must then carry its own.
+        Give bounds; the parts of the rows must then carry theirs.
     """
     body, closed = _placed(rows, place, turn, size_m)
     wrenches = Wrenches.of(rows, body, size_m)
@@ -128,7 +128,7 @@ def solve_platform(
 def _placed(
     rows: Sequence[SampledRow], place: Vec, turn: Vec, size_m: float
 ) -> tuple[BodyKinematics, Mask]:
-    """Newton's method, and where it came to an end."""
+    """Iterate by Newton's method; return the link and the mask of convergence."""
     body = _still(place, turn)
     last = np.full(np.shape(place.x), np.inf)
     for _ in range(STEPS):
@@ -157,7 +157,7 @@ def _still(place: Vec, turn: Vec) -> BodyKinematics:
 
 
 def _moving(rows: Sequence[SampledRow], body: BodyKinematics, wrenches: Wrenches) -> BodyKinematics:
-    """The rates, from those of the rows of a link at rest, and the second ones likewise."""
+    """Add the rates, from those of the rows of a link at rest, and the second ones likewise."""
     velocity, omega = wrenches.solve(_gaps(rows, 1, body))
     anchor = PointKinematics(body.anchor.p, -velocity, ZERO, None)
     body = replace(body, anchor=anchor, omega=-omega)
@@ -173,7 +173,7 @@ def _gaps(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> Thr
 def _bounded(
     rows: Sequence[SampledRow], body: BodyKinematics, wrenches: Wrenches
 ) -> tuple[BodyKinematics, Mask]:
-    """The link with bounds of all levels, and where they are certain."""
+    """Return the link with bounds of all levels, and the mask where they are certain."""
     size = wrenches.size_m
     exact = replace(body, anchor=replace(body.anchor, error=EXACT_POINT), error=EXACT_ANGLE)
     shift, by = wrenches.bound(_loose(rows, 0, exact))
@@ -200,7 +200,7 @@ def _bounded(
 
 
 def _weighed(bound: tuple[Real, Real], lost: Real, size_m: float) -> tuple[Real, Real]:
-    """Bounds through an inverse that is known but for a share, in the larger of both measures."""
+    """Return bounds through an inverse with a relative error, in the larger of both measures."""
     shift, by = bound
     most = np.maximum(shift, size_m * by) * (lost - 1.0)
     return shift + most, by + most / size_m
@@ -215,7 +215,7 @@ def _within(body: BodyKinematics, point: PointError, angle: AngleError) -> BodyK
 
 
 def _loose(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> Three:
-    """What the rows may be open by."""
+    """Return the largest possible gaps of the rows."""
 
     def whole(gap: Gap) -> Real:
         return np.abs(gap[0]) + gap[1]
@@ -237,19 +237,19 @@ def _dot(a: Three, b: Three) -> Real:
 
 
 def place_of(local: Point) -> Vec:
-    """A point of a link's frame as a vector."""
+    """Return a point of a link's frame as a vector."""
     return Vec(*local)
 
 
 class RowsAt(Protocol):
-    """The rows at driver angles [rad], (T,), each uncertain by ``half``; the driver at 1 rad/s."""
+    """Function of driver angles [rad], (T,), each uncertain by ``half``: the rows, at 1 rad/s."""
 
     def __call__(self, theta: Array, half: Array) -> Sequence[SampledRow]: ...
 
 
 @dataclass(frozen=True)
 class CentralPose:
-    """The central link at a driver angle: place of its anchor [m], angle [rad], rates by it."""
+    """Central link at a driver angle: place of its anchor [m], angle [rad], rates by it."""
 
     theta: float
     place: tuple[float, float]
@@ -262,7 +262,7 @@ class CentralPose:
 
 
 def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) -> CentralPose | None:
-    """The assembly nearest to a guess, one sample; None where there is none that is certain."""
+    """Return the assembly nearest to a guess, one sample; None where none is certain."""
     at = np.array([theta])
     own = rows(at, 8 * EPS * np.abs(at))
     solved = solve_platform(own, place, turn, size_m, certified=True)
@@ -272,7 +272,7 @@ def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) ->
 
 
 def pose_of(body: BodyKinematics, det: Array, theta: float, k: int, near: float) -> CentralPose:
-    """One sample as a pose, the angle that which is nearest to another."""
+    """Return one sample as a pose, its angle nearest to a given one."""
 
     def one(value: object) -> float:
         flat = np.ravel(np.asarray(value))
@@ -288,7 +288,7 @@ def pose_of(body: BodyKinematics, det: Array, theta: float, k: int, near: float)
 
 
 def ahead(pose: CentralPose, theta: Array) -> tuple[Vec, Vec]:
-    """Where a pose leads to at driver angles, to the second order."""
+    """Return the prediction of a pose at driver angles, to the second order."""
     d = theta - pose.theta
     half = 0.5 * d * d
     place = Vec(

@@ -1,9 +1,9 @@
-"""The rows of a triad over a chunk of samples, while all that its legs hang on moves.
+"""Rows of a triad over a chunk of samples, on moving supports of its legs.
 
 Each row is a distance g that is 0 where the leg closes, and so are its rate and second rate. All of
 them are linear in the place, the rate or the second rate of the central link, by the same force n
 through a point: n . V + (r x n) omega = ..., r from the link's anchor. Bounds are a posteriori: of
-g, as it comes out for the motion that was found, given what that and all else may be wrong by.
+g at the motion found, from its errors and those of the inputs.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from models.motion import Order
 from models.scene import Point
 
 Gap = tuple[Real, Real]
-"""A distance [m], or its rate, and a bound of its error."""
+"""Distance [m], or its rate, and a bound of its error."""
 Sway = tuple[Real, Real]
-"""How much n, and r x n [m], may be others within the bounds of a pose."""
+"""Largest change of n, and of r x n [m], within the bounds of a pose."""
 
 
 @dataclass(frozen=True, slots=True)
 class LocalPoint:
-    """A point in the frame of the central link: at a constant place, or moving in it."""
+    """Point in the frame of the central link: at a constant place, or moving in it."""
 
     p: Vec
     v: Vec = ZERO
@@ -51,7 +51,7 @@ class LocalPoint:
         return LocalPoint(Vec(*place))
 
     def on(self, body: BodyKinematics) -> PointKinematics:
-        """Its motion, carried by the link."""
+        """Return its motion, carried by the link."""
         if not self.moves:
             return body.point((self.p.x, self.p.y))
         arm, drift, pull = (each.turned(body.turn) for each in (self.p, self.v, self.a))
@@ -94,33 +94,33 @@ class LocalPoint:
 
 
 class SampledRow(Protocol):
-    """One row at a pose of the central link, with its rates: ``body``."""
+    """Row at a pose of the central link, with its rates: ``body``."""
 
     def wrench(self, body: BodyKinematics) -> tuple[Vec, Real]:
-        """n, and r x n [m]; for an angle 0, and a length."""
+        """Return n, and r x n [m]; for an angle 0, and a length."""
         ...
 
     def gap(self, order: Order, body: BodyKinematics) -> Gap:
-        """g, its rate or its second rate."""
+        """Return g, its rate or its second rate."""
         ...
 
     def sway(self, body: BodyKinematics) -> Sway:
-        """How much the wrench may be another within the bounds of the pose."""
+        """Return the largest change of the wrench within the bounds of the pose."""
         ...
 
     def at(self, index: int) -> LegRow:
-        """The row at one sample, in the link's frame."""
+        """Return the row at one sample, in the link's frame."""
         ...
 
 
 def moment(body: BodyKinematics, place: Vec, force: Vec) -> Real:
-    """That of a force at a place about the anchor of the link."""
+    """Return the moment of a force at a place about the anchor of the link."""
     return (place - body.anchor.p).cross(force)
 
 
 @dataclass(frozen=True, slots=True)
 class RowCircle:
-    """A point of the link at a distance (T,) from a known pin: constant, or with rates."""
+    """Point of the link at a distance (T,) from a known pin: constant, or with rates."""
 
     point: LocalPoint
     pin: PointKinematics
@@ -184,7 +184,7 @@ class RowCircle:
 
 @dataclass(frozen=True, slots=True)
 class OnLine:
-    """A point of the link on a known line."""
+    """Point of the link on a known line."""
 
     point: LocalPoint
     line: MovingLine
@@ -210,7 +210,7 @@ class OnLine:
 
 @dataclass(frozen=True, slots=True)
 class Through:
-    """A line of the link, at a direction in its frame (which may turn), through a known pin."""
+    """Line of the link, at a direction in its frame (which may turn), through a known pin."""
 
     point: LocalPoint
     along: Vec
@@ -219,7 +219,7 @@ class Through:
     leaning: AngleError = EXACT_ANGLE
 
     def line(self, body: BodyKinematics) -> MovingLine:
-        """The line in motion."""
+        """Return the line in motion."""
         error = None
         if body.error is not None:
             e, own = body.error, self.leaning
@@ -251,7 +251,7 @@ class Through:
 
 @dataclass(frozen=True, slots=True)
 class KeptAngle:
-    """The link keeps to a direction that turns; ``length`` makes the angle a distance [m]."""
+    """Direction, which may turn, that the link keeps; ``length`` makes the angle a distance [m]."""
 
     along: Vec
     omega: Real
@@ -282,7 +282,7 @@ class KeptAngle:
 
 
 def gap_of_line(order: Order, line: MovingLine, point: PointKinematics) -> Gap:
-    """The distance of a point from a line along its normal, its rate or its second rate."""
+    """Return the distance of a point from a line along its normal, its rate or its second rate."""
     n, away = line.along.perp(), point.p - line.point.p
     s = line.along.dot(away)
     if order == 0:

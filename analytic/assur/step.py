@@ -26,9 +26,9 @@ from models.motion import Crossing
 from models.scene import Scene
 
 SIDE = HALVES[0]
-"""How near a change point may make itself felt [rad]."""
+"""Range of influence of a change point [rad]."""
 TINY = 1e-15
-"""By which a driver angle beside an end is on one side of it [rad]."""
+"""Offset that puts a driver angle beside an end on one side of it [rad]."""
 
 
 if TYPE_CHECKING:
@@ -36,13 +36,13 @@ if TYPE_CHECKING:
 
 
 class Before:
-    """What a step hangs on: the steps before it."""
+    """Steps before a step, which it depends on."""
 
     def __init__(self, scene: Scene, steps: Sequence[Step]) -> None:
         self.scene, self.steps = scene, tuple(steps)
 
     def chunk(self, theta: Array, half: Array | float, passages: Mapping[str, Passage]) -> Chunk:
-        """All that stands before it at driver angles that are uncertain by so much [rad]."""
+        """Solve the earlier steps at driver angles with this uncertainty [rad]."""
         error = AngleError(np.broadcast_to(half, theta.shape), 0.0, 0.0)
         chunk = Chunk.begin(self.scene, theta, 1.0, STEADY, error, stretch=True, passages=passages)
         for step in self.steps:
@@ -51,7 +51,7 @@ class Before:
 
 
 class AssurStep(FollowedStep):
-    """The central link of a group on its legs, followed from its assembly at time 0."""
+    """Central link of a group on its legs, followed from its assembly at time 0."""
 
     def __init__(self, mounting: Mounting, before: Sequence[Step]) -> None:
         self.mounting, self.key = mounting, mounting.group.branch_key
@@ -69,7 +69,7 @@ class AssurStep(FollowedStep):
         closes = solved.closed & track.on_side(theta, solved.det) & (beyond <= 0.0)
         if track.crossings:
             solved, closes = self._crossed(chunk, track, theta, solved, closes)
-        # The end is known to rounding; beside it an assembly may be told open, or closed.
+        # The end is known to rounding; beside it an assembly may count as open, or closed.
         short = self.mounting.size_m * np.where(
             closes, np.minimum(beyond, -1e-15), np.maximum(beyond, 1e-15)
         )
@@ -86,9 +86,9 @@ class AssurStep(FollowedStep):
     def _crossed(
         self, chunk: Chunk, track: AssemblyTrack, theta: Array, solved: SolvedPlatform, closes: Mask
     ) -> tuple[SolvedPlatform, Mask]:
-        """What is lost in and beside the change points of the group.
+        """Restore the values lost in and beside the change points of the group.
 
-        Raises CrankcheckError where the motion through one of them can not be told.
+        Raises CrankcheckError where the motion through one of them is not clear.
         """
         body = solved.body
         for k in range(len(track.crossings)):
@@ -111,7 +111,7 @@ class AssurStep(FollowedStep):
         return replace(solved, body=body), closes
 
     def _piece(self, track: AssemblyTrack, k: int) -> CrossingPiece | None:
-        """The motion through a change point, worked out once."""
+        """Return the motion through a change point, computed once."""
         if (track, k) not in self._pieces:
 
             def solved(theta: Array) -> BodyKinematics:
@@ -127,7 +127,7 @@ class AssurStep(FollowedStep):
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
-        """The change points of the group, each once, that a driver passes between two angles."""
+        """Return the group's change points that a driver passes between two angles, each once."""
         track = self.track(passages)
         period = track.period
         found = set()
@@ -143,12 +143,12 @@ class AssurStep(FollowedStep):
         return solve_platform(rows, place, turn, self.mounting.size_m, certified=chunk.certified)
 
     def track(self, passages: Mapping[str, Passage]) -> AssemblyTrack:
-        """The way of the assembly that the scene names, with such change points before it.
+        """Return the track of the assembly that the scene names, with these earlier change points.
 
         Raises
         ------
         ReachError
-            It has none at the start, or none of that number.
+            The group has no assembly at the start, or none of that number.
         """
         own = frozenset(passages) & {step.key for step in self.before.steps}
         if own not in self._tracks:
@@ -181,11 +181,11 @@ class AssurStep(FollowedStep):
         return AssemblyTrack(rows, pose, self.mounting.size_m, repeats)
 
     def period(self, passages: Mapping[str, Passage]) -> float | None:
-        """The driver angle after which the assembly comes back [rad]; None where it ends."""
+        """Return the driver angle after which the assembly comes back [rad]; None where it ends."""
         return self.track(passages).period
 
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
-        """What ends it beside a driver angle [rad]."""
+        """Return the text of the end beside a driver angle [rad]."""
         track = self.track(passages)
         at = float(track.home(np.array([theta]))[0])
         ends = [end for end in (track.low, track.high) if end is not None]
@@ -196,20 +196,20 @@ class AssurStep(FollowedStep):
         return f"the group about {self.key} ends in a {end.kind} at {place}"
 
     def rows_at(self, theta: float, passages: Mapping[str, Passage]) -> list[SampledRow]:
-        """The rows at one driver angle."""
+        """Return the rows at one driver angle."""
         return self.mounting.rows(self.before.chunk(np.array([theta]), 0.0, passages))
 
     def assemblies(
         self, theta: float, passages: Mapping[str, Passage]
     ) -> tuple[TriadAssembly, ...]:
-        """All at one driver angle, in the order of their numbers."""
+        """Return all assemblies at one driver angle, in the order of their numbers."""
         from analytic.assur.assemblies import assemblies  # with python-flint, for these alone
 
         one, two, three = (row.at(0) for row in self.rows_at(theta, passages))
         return assemblies((one, two, three))
 
     def _side(self, start: float, one: TriadAssembly, passages: Mapping[str, Passage]) -> float:
-        """By what the two assemblies of a dyad are told apart: above 0, or more, on side +1."""
+        """Return a value that orders the two assemblies of a dyad: the larger one is side +1."""
         group = self.mounting.group
         assert isinstance(group, Group)
         chunk = self.before.chunk(np.array([start]), 0.0, passages)
@@ -223,7 +223,7 @@ class AssurStep(FollowedStep):
         return float((second - first).cross(inner - first)[0])
 
     def _chosen(self, start: float, passages: Mapping[str, Passage]) -> TriadAssembly:
-        """The assembly at the start that the scene's branch names."""
+        """Return the assembly at the start that the scene's branch names."""
         every = self.assemblies(start, passages)
         scene = self.scene
         at = f"at {scene.driver.joint} {told(scene, start)}"
@@ -254,7 +254,7 @@ class AssurStep(FollowedStep):
 
 
 def _pose(one: TriadAssembly) -> tuple[Vec, Vec]:
-    """An assembly as one sample."""
+    """Return an assembly as one sample."""
     place = Vec(np.array([one.place[0]]), np.array([one.place[1]]))
     turn = Vec(np.array([math.cos(one.angle_rad)]), np.array([math.sin(one.angle_rad)]))
     return place, turn

@@ -8,9 +8,9 @@
         |   +-  |   |  |        in both boxes, one box hands over to the next: no step can jump.
         +---+---+---+--+----- driver
 
-The proof is that of `analytic.assur.platform`, with what the rows open along the straight way of
+The proof is that of `analytic.assur.platform`, with the gaps of the rows along the straight way of
 the box: half of their second rate, at most, times the square of the way. A track ends where no cell
-is narrow enough: there two assemblies meet. After a whole turn of the driver, or some, it may be
+is narrow enough: there two assemblies meet. After one or more whole turns of the driver it may be
 back.
 
 Source: R. E. Moore, R. B. Kearfott and M. J. Cloud, Introduction to Interval Analysis, 2009,
@@ -30,14 +30,14 @@ from analytic.dyads.plane import Vec
 from models.array import Array, Mask
 
 TURNS = 6
-"""A triad has no more assemblies, and so is back after as many periods of what it hangs on."""
+"""Most assemblies of a triad, which is thus back after as many periods of its supports."""
 
 
 @dataclass(frozen=True, eq=False)
 class AssemblyTrack:
     """One assembly of a group along the driver, from the ``start`` on to both sides.
 
-    ``period`` [rad] is that of what the group hangs on; None where the driver does not turn.
+    ``base_period`` [rad] is that of the group's supports; None where the driver does not turn.
     """
 
     rows: RowsAt
@@ -47,7 +47,7 @@ class AssemblyTrack:
 
     @cached_property
     def _up(self) -> tuple[TrackPiece, float | None]:
-        """From the start on, until it is back or at an end; and after which driver angle it is."""
+        """The track from the start on, until it is back or at an end; and its period."""
         if self.base_period is None:
             return follow(self.rows, self.start, math.pi, self.size_m), None
         poses, crossings, last = [self.start], list[TrackEnd](), self.start
@@ -63,8 +63,8 @@ class AssemblyTrack:
         return TrackPiece(poses, TrackEnd(last.theta, "doubtful position"), crossings), None
 
     def _is_start(self, pose: CentralPose) -> bool:
-        """Whether a pose is that of the start, but for whole turns: two that are not are as far
-        apart as the boxes of cells are wide, and rounding is much less."""
+        """True if a pose is that of the start, but for whole turns: different ones are as far apart
+        as the boxes of cells are wide, and rounding is much less."""
         off = math.hypot(pose.place[0] - self.start.place[0], pose.place[1] - self.start.place[1])
         turned = math.remainder(pose.angle - self.start.angle, math.tau)
         slack = 1e-13 * (1.0 + abs(pose.theta)) / max(min(abs(self.start.det), 1.0), 1e-6)
@@ -75,7 +75,7 @@ class AssemblyTrack:
 
     @cached_property
     def _down(self) -> TrackPiece:
-        """From the start back, where it does not repeat."""
+        """The track from the start back, where it does not repeat."""
         if self.period is not None:
             return TrackPiece([self.start], None, [])
         lowest = (
@@ -85,27 +85,27 @@ class AssemblyTrack:
 
     @property
     def period(self) -> float | None:
-        """The driver angle after which the assembly is back [rad]; None where it never is."""
+        """Driver angle after which the assembly is back [rad]; None where it never is."""
         return self._up[1]
 
     @property
     def ends(self) -> tuple[TrackEnd | None, TrackEnd | None]:
-        """The lower and the upper end, None where there is none."""
+        """Lower and upper end, None where there is none."""
         return self._down.end, self._up[0].end
 
     @property
     def low(self) -> TrackEnd | None:
-        """The end at the lowest driver angle."""
+        """End at the lowest driver angle."""
         return self.ends[0]
 
     @property
     def high(self) -> TrackEnd | None:
-        """The end at the highest driver angle."""
+        """End at the highest driver angle."""
         return self.ends[1]
 
     @property
     def range(self) -> tuple[float, float]:
-        """The driver angles between the ends [rad]; of one that is back, a period."""
+        """Driver angles between the ends [rad]; a period where the assembly is back."""
         low, high = self.ends
         return (
             self._down.poses[-1].theta if low is None else low.theta,
@@ -114,18 +114,18 @@ class AssemblyTrack:
 
     @cached_property
     def crossings(self) -> list[TrackEnd]:
-        """The change points within the range, in increasing order."""
+        """Change points within the range, in increasing order."""
         return sorted(self._down.crossings + self._up[0].crossings, key=lambda end: end.theta)
 
     def from_crossing(self, k: int, theta: Array) -> Array:
-        """Driver angles, brought home, from the k-th of the crossings [rad]."""
+        """Return driver angles, brought home, from the k-th of the crossings [rad]."""
         off = theta - self.crossings[k].theta
         if self.period is None:
             return np.asarray(off)
         return np.asarray(np.remainder(off + 0.5 * self.period, self.period) - 0.5 * self.period)
 
     def room_about(self, k: int) -> float:
-        """How far it is from the k-th crossing to the next one or to an end [rad]."""
+        """Return the distance from the k-th crossing to the next one or to an end [rad]."""
         at = self.crossings[k].theta
         places = [end.theta for end in (*self.crossings, *self.ends) if end is not None]
         if self.period is not None:
@@ -134,12 +134,12 @@ class AssemblyTrack:
 
     @cached_property
     def _nodes(self) -> Array:
-        """Driver angle, place, angle and their rates at the poses, (7, n), and increasing."""
+        """Driver angle, place, angle and their rates at the poses, (7, n), increasing."""
         poses = self._down.poses[:0:-1] + self._up[0].poses
         return np.array([(p.theta, *p.place, p.angle, *p.rate, p.omega) for p in poses]).T.copy()
 
     def home(self, theta: Array) -> Array:
-        """Driver angles [rad], (T,), by whole periods, or turns, to where the track is."""
+        """Move driver angles [rad], (T,), by whole periods, or turns, into the track's range."""
         low, high = self.range
         if self.period is not None:
             return np.asarray(low + np.remainder(theta - low, self.period))
@@ -149,15 +149,15 @@ class AssemblyTrack:
         return np.asarray(theta - turns * self.base_period)
 
     def beyond(self, theta: Array) -> Array:
-        """How far driver angles, brought home, are beyond the ends [rad]; below 0 within."""
+        """Return how far driver angles, brought home, are beyond the ends [rad]; below 0 within."""
         if self.period is not None:
             return np.full(theta.shape, -math.pi)
         low, high = self.range
         return np.asarray(np.clip(np.maximum(low - theta, theta - high), -math.pi, math.pi))
 
     def on_side(self, theta: Array, det: Array) -> Mask:
-        """Whether an assembly at driver angles, brought home, with such determinants is this one,
-        and not the one that it meets at an end or in a crossing."""
+        """Return the mask where an assembly at driver angles, brought home, with such determinants
+        is this one, and not the one that it meets at an end or in a crossing."""
         start = self.start
         sign = np.full(np.shape(theta), math.copysign(1.0, start.det))
         for end in self.crossings:
@@ -166,7 +166,7 @@ class AssemblyTrack:
         return np.asarray(det * sign > 0.0)
 
     def guess(self, theta: Array) -> tuple[Vec, Vec]:
-        """Place of the anchor [m] and direction of the link near driver angles [rad], (T,),
+        """Return place of the anchor [m] and direction of the link near driver angles [rad], (T,),
         that were brought home; beyond an end those at the end."""
         nodes = self._nodes
         at = nodes[0]
@@ -189,7 +189,7 @@ class AssemblyTrack:
         return Vec(x, y), Vec(np.cos(angle), np.sin(angle))
 
     def _far(self, end: TrackEnd, theta: Array, x: Array, y: Array) -> tuple[Array, Array]:
-        """The place between the last pose and infinity: its distance as the inverse of the way."""
+        """Return the place between the last pose and infinity: distance as 1 over the way."""
         nodes = self._nodes
         k = 0 if end is self.low else -1
         left, way = end.theta - theta, end.theta - nodes[0, k]
@@ -201,7 +201,7 @@ class AssemblyTrack:
 
 
 def _hermite(u: Array, width: Array, a: Array, b: Array, da: Array, db: Array) -> Array:
-    """The cubic between two values with their slopes."""
+    """Return the cubic between two values with their slopes."""
     rise = b - a
     p, q = width * da - rise, rise - width * db
     return np.asarray(a + u * (rise + (1.0 - u) * (p * (1.0 - u) + q * u)))

@@ -1,1 +1,1 @@
-"""Where assemblies meet: found, signed, and gone through smoothly."""
+"""Change points, where assemblies meet: their places, signs, and the smooth motion through them."""

@@ -34,22 +34,22 @@ from models.motion import Crossing
 from models.scene import Scene
 
 SCAN = 360
-"""Angles of the first look at a turn: a touch is seen as a valley between its neighbours."""
+"""Angles of the first scan of a turn: a touch is seen as a valley between its neighbours."""
 WIDTHS = (4e-3, 4e-4, 4e-5, 1e-6)
-"""Half-widths [rad] over which a valley, taken as a V, is followed to its tip; the last tells the
-place to about 1e-10 rad where rounding is taken a root of."""
+"""Half-widths [rad] over which a valley, taken as a V, is followed to its tip; the last finds it to
+about 1e-10 rad where a root is taken of rounding."""
 TIP = 1e-8
-"""Half-width of one more look [rad]: the tip that two pins make that meet is found to rounding."""
+"""Half-width of one more scan [rad]: the tip of two pins that meet is found to rounding."""
 CLOSER = 3
-"""Looks at where a driver begins to move, each `SCAN` times as close as the one before it."""
+"""Scans of the place where a driver begins to move, each `SCAN` times as close as the last."""
 LONGEST_REST = 1e9
 """Periods after which a law counts as one that never moves."""
 UNSURE = 64.0
-"""How much more than by itself a dyad may be open in a change point of one before it."""
+"""Ratio of a dyad's allowed gap in a change point of an earlier one to that of its own."""
 
 
 def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
-    """The dyads that go through change points, in solving order; none in most scenes.
+    """Find the dyads that go through change points, in solving order; none in most scenes.
 
     Raises
     ------
@@ -83,14 +83,14 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
         passing[step.key] = ChangePoints(
             scene, steps[: k + 1], dict(passing), start, period, angles
         )
-        # What hangs on this dyad stands differently where the sign is another.
+        # Later groups have other positions where the sign is another.
         theta = _grid(start, period)
         chunk = stretched(scene, steps, theta, passing)
     return passing
 
 
 def passed(passing: Mapping[str, ChangePoints], low: float, high: float) -> tuple[Crossing, ...]:
-    """The change points, each once, that a driver passes from angle ``low`` to ``high``."""
+    """Return the change points that a driver passes from angle ``low`` to ``high``, each once."""
     crossings = []
     for key, passage in passing.items():
         first = np.ceil((low - AT_START - passage.angles) / passage.period)
@@ -106,14 +106,14 @@ def passed(passing: Mapping[str, ChangePoints], low: float, high: float) -> tupl
 
 @dataclass(frozen=True)
 class _ValleySearch:
-    """Looks at one dyad, the last of ``steps``, beside the angles where its root has a valley."""
+    """Search of one dyad, the last of ``steps``, beside the angles where its root has a valley."""
 
     scene: Scene
     steps: Sequence[Step]
     found: Mapping[str, ChangePoints]
 
     def touches(self, theta: Array) -> Array:
-        """The angles in which the root touches zero, of those near which it might."""
+        """Return the angles in which the root touches zero, among those near which it might."""
         theta = self._tip(theta, math.tau / SCAN)
         sides = self._closure(theta + np.array([[-1.0], [1.0]]) * WIDTHS[0])[1]
         theta = theta[(sides < 0.0).all(axis=0)]  # limit positions are most of what is left here
@@ -126,7 +126,7 @@ class _ValleySearch:
         return np.asarray(theta[keep])
 
     def _closure(self, theta: Array) -> tuple[Array, Array, Array]:
-        """Root, shortage and rounding at driver angles; open before this dyad is open."""
+        """Return root, shortage (infinite behind an open dyad) and rounding at driver angles."""
         chunk = stretched(self.scene, self.steps, theta.ravel(), self.found)
         closure = chunk.closures[self.steps[-1].key]
         assert closure.short_m is not None
@@ -139,23 +139,23 @@ class _ValleySearch:
         return root, short, rounding
 
     def _tip(self, theta: Array, width: float) -> Array:
-        """Where the two sides of a V would meet."""
+        """Return the place where the two sides of a V would meet."""
         left, right = self._closure(theta + np.array([[-width], [width]]))[0]
         with np.errstate(invalid="ignore"):
             shift = np.nan_to_num(width * (left - right) / (left + right))
         return np.asarray(theta + shift)
 
     def _is_touched(self, theta: Array) -> Mask:
-        """Whether the root is zero there but for rounding.
+        """Return the mask where the root is zero but for rounding.
 
         Raises
         ------
         CrankcheckError
-            The dyads before this one are not known well enough to say.
+            The dyads before this one are not known well enough.
         """
         _, short, rounding = self._closure(theta)
         short = np.abs(short + 0.5 * rounding)
-        # Where two pins meet, their places may be smaller than what they are the difference of.
+        # Where two pins meet, their places may be smaller than the terms of their difference.
         rounding = np.maximum(rounding, CLOSED * self.scene.longest_m)
         near = np.zeros(theta.shape, dtype=bool)
         for passage in self.found.values():
@@ -173,7 +173,7 @@ class _ValleySearch:
         return touched
 
     def _is_crossed(self, theta: Array) -> Mask:
-        """Whether the dyad closes on both sides, and its root grows there like the angle."""
+        """Return the mask where both sides close, and the root grows there like the angle."""
         sides = np.array([[-2.0], [-1.0], [1.0], [2.0]]) * SIDE
         root, short, _ = self._closure(theta + sides)
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -182,10 +182,10 @@ class _ValleySearch:
 
 
 def _start(scene: Scene) -> float:
-    """The driver's angle just after the time at which the branch is stated.
+    """Return the driver's angle just after the time at which the branch is stated.
 
-    A law may rest for longer than its period: it is looked at over twice the time until it moves,
-    and there ever closer, as it may turn back between two looks.
+    A law may rest for longer than its period: the scanned time is doubled until it moves, and
+    scanned ever closer there, as it may turn back between two samples.
     """
     law, scale = scene.driver.law, driver_scale(scene)
     low, high = 0.0, law.period_s
@@ -205,15 +205,15 @@ def _start(scene: Scene) -> float:
 
 
 def _grid(start: float, period: float) -> Array:
-    """Angles over a period, the first not in a place that anybody would choose."""
+    """Return angles over a period, the first at a place that nobody would choose."""
     count = SCAN * round(period / math.tau)
     return np.asarray(start + (np.arange(count) + 0.382) * (math.tau / SCAN))
 
 
 def _valleys(root: Array) -> Mask:
-    """Where a root that repeats is so much smaller than beside it that it may touch zero.
+    """Return the mask where a periodic root is so small beside others that it may touch zero.
 
-    A V with its tip between two samples is at the nearer one at most a third of what it is at the
+    A V with its tip between two samples is at the nearer one at most a third of its value at the
     farther neighbour.
     """
     around = np.concatenate([root[-1:], root, root[:1]])

@@ -1,4 +1,4 @@
-"""The way of one dyad through its change points: the sign of its root, and the motion in them.
+"""Motion of one dyad through its change points: the sign of its root, and the unknowns there.
 
 ::
 
@@ -25,7 +25,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 
 COUNT, FEWER = 24, 20
-"""Nodes of an interpolation, and of the one that it is compared with; even, so none is central."""
+"""Nodes of an interpolation, and of the compared one; even, so that none is central."""
 PROBES = np.linspace(-1.0, 1.0, 32)
 SAFETY = 2.0
 
@@ -33,11 +33,11 @@ Index = NDArray[np.intp]
 Unknown = Turning | Sliding
 Series = tuple[Array, ...]
 Solved = Callable[[Array], tuple[Unknown, Unknown]]
-"""The two unknowns of a dyad at driver angles, per unit speed of the driver, with bounds."""
+"""Two unknowns of a dyad at driver angles, per unit speed of the driver, with bounds."""
 
 
 def nodes(count: int) -> Array:
-    """Chebyshev nodes of the first kind in (-1, 1), increasing."""
+    """Return Chebyshev nodes of the first kind in (-1, 1), increasing."""
     return np.asarray(-np.cos((2 * np.arange(count) + 1) * (np.pi / (2 * count))))
 
 
@@ -46,7 +46,7 @@ WINDOW = 0.99 * float(nodes(COUNT)[COUNT // 2])
 
 
 def weights(count: int, x: Array) -> Array:
-    """The value at places ``x``, none of them a node, as weights of the values at the nodes."""
+    """Return weights of the nodes' values for the value at places ``x``, none of them a node."""
     places = np.arange(count)
     one = (-1.0) ** places * np.sin((2 * places + 1) * (np.pi / (2 * count)))
     terms = one / (x[:, None] - nodes(count))
@@ -55,10 +55,10 @@ def weights(count: int, x: Array) -> Array:
 
 @dataclass(frozen=True)
 class Interpolant:
-    """An unknown with its first two derivatives by the driver's angle.
+    """Unknown with its first two derivatives by the driver's angle.
 
-    ``values`` and ``bounds`` are those at the nodes, (3, n); ``doubt`` is what interpolation may
-    add, (3,), and ``third`` bounds the third derivative in the window.
+    ``values`` and ``bounds`` belong to the nodes, (3, n); ``doubt`` is the error of interpolation,
+    (3,), and ``third`` bounds the third derivative in the window.
     """
 
     values: Array
@@ -70,7 +70,7 @@ class Interpolant:
     def of(
         fine: tuple[Array, Array], coarse: tuple[Array, Array], half: float, *, turning: bool
     ) -> Interpolant:
-        """The series of one set of nodes, held to that of another; angles but for whole turns."""
+        """Make the series of some nodes, compared with others; angles but for whole turns."""
         values, bounds = fine
         at = PROBES * WINDOW
         seen = values @ weights(COUNT, at).T
@@ -85,12 +85,12 @@ class Interpolant:
         )
 
     def worst(self) -> Array:
-        """The largest bounds in the window, (3,)."""
+        """Return the largest bounds in the window, (3,)."""
         share = np.abs(weights(COUNT, PROBES * WINDOW))
         return np.asarray((self.bounds @ share.T).max(axis=1) + self.doubt)
 
     def at(self, x: Array, speed: Rates) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-        """The unknown, its rate and acceleration, and their bounds, at places in (-1, 1)."""
+        """Return the unknown, its rate and acceleration, and their bounds, at places in (-1, 1)."""
         share = weights(COUNT, x)
         q, q1, q2 = self.values @ share.T
         b, b1, b2 = self.bounds @ np.abs(share).T + self.doubt[:, None]
@@ -109,7 +109,7 @@ class Interpolant:
 
 @dataclass(frozen=True)
 class Rates:
-    """The driver's rate and acceleration at some samples, with the bounds of all three levels."""
+    """Driver's rate and acceleration at some samples, with the bounds of all three levels."""
 
     omega: Array
     alpha: Array
@@ -118,14 +118,14 @@ class Rates:
 
 @dataclass(frozen=True)
 class SignPiece:
-    """The two unknowns of a dyad around a change point.
+    """Two unknowns of a dyad around a change point.
 
     ``half`` is half the range of the nodes; ``doubt`` is the largest bound of a derivative by the
     driver's angle over that derivative, or over 1 and the longest length of the scene.
 
     On that branch the unknowns are analytic functions of the driver's angle, also where the
-    formulas of the dyad say 0/0. Source of the interpolation and of its stability: J.-P. Berrut and
-    L. N. Trefethen, Barycentric Lagrange interpolation, SIAM Review 46 (2004), section 5 and 7.
+    formulas of the dyad give 0/0. Source of the interpolation and of its stability: J.-P. Berrut
+    and L. N. Trefethen, Barycentric Lagrange interpolation, SIAM Review 46 (2004), section 5 and 7.
     """
 
     half: float
@@ -135,12 +135,12 @@ class SignPiece:
 
     @property
     def window(self) -> float:
-        """How far from the change point it is used [rad]."""
+        """Distance from the change point up to which it is used [rad]."""
         return self.half * WINDOW
 
     @staticmethod
     def of(solved: Solved, centre: float, half: float, longest_m: float) -> SignPiece:
-        """The piece around the driver angle ``centre``. Raises OpenError at nodes out of reach."""
+        """Make the piece around driver angle ``centre``. Raises OpenError at nodes out of reach."""
         wide, narrow = centre + half * nodes(COUNT), centre + half * nodes(FEWER)
         series: list[Interpolant] = []
         doubt = 0.0
@@ -156,14 +156,14 @@ class SignPiece:
 
 
 def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
-    """Values and bounds of an unknown at the nodes, each (3, n); angles without jumps."""
+    """Return values and bounds of an unknown at the nodes, each (3, n); angles without jumps."""
     assert found.error is not None
     if isinstance(found, Sliding):
         e = found.error
         rows = [found.s, found.speed, found.acceleration, e.displacement, e.speed, e.acceleration]
     else:
         angle = np.arctan2(found.turn.y, found.turn.x)
-        # Whole turns that the rate at both ends of a step does not account for are jumps.
+        # Whole turns beyond the rate at both ends of a step are jumps.
         step = np.diff(angle) - 0.5 * np.diff(theta) * (found.omega[1:] + found.omega[:-1])
         angle[1:] -= np.cumsum(np.round(step / (2.0 * np.pi))) * (2.0 * np.pi)
         turn = found.error.theta + 2 * EPS * (np.abs(angle) + np.pi)
@@ -175,7 +175,7 @@ def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
 def put(
     unknown: First, shape: tuple[int, ...], index: Index, values: Series, bounds: Series
 ) -> First:
-    """An unknown over all samples, its values and bounds at those of ``index`` replaced."""
+    """Return an unknown over all samples, with new values and bounds at those of ``index``."""
 
     def into(old: Real, new: Array) -> Array:
         array = np.array(np.broadcast_to(old, shape))
@@ -198,21 +198,21 @@ def put(
 
 
 SIDE = 1e-3
-"""Where a touch must be closed on both sides, and its root be a V [rad]."""
+"""Distance from a touch [rad] where the dyad must close on both sides, and its root be a V."""
 AT_START = 1e-7
-"""A run that starts nearer to a change point than this [rad] is on the branch that it goes to."""
+"""Distance [rad] of a start from a change point, below which it is on the branch ahead."""
 HALVES = tuple(2.0 ** (-0.5 * k) for k in range(21))
-"""Half-widths [rad] that are tried for the interpolation through a change point."""
+"""Half-widths [rad] tried for the interpolation through a change point."""
 LEAST_CERTAIN = 1e-3
-"""The largest bound of a derivative, over its size, with which motion counts as continued."""
+"""Largest bound of a derivative, over its size, of a motion that counts as continued."""
 
 
 @dataclass
 class ChangePoints:
-    """The change points of one dyad, and the way through them.
+    """Change points of one dyad, and the motion through them.
 
-    ``angles`` are those of a ``period`` from ``start`` on, an even number: after a period all
-    signs are as before. ``steps`` end with the dyad's own; ``before`` are the passages of others.
+    ``angles`` cover a ``period`` from ``start`` on, an even number: after a period all signs are as
+    before. ``steps`` end with the dyad's own; ``before`` are the passages of others.
     """
 
     scene: Scene
@@ -251,14 +251,14 @@ class ChangePoints:
         return Dyad(first, second, sine, replace(closure, short_m=short))
 
     def is_near(self, theta: Array) -> Mask:
-        """Whether driver angles are close to a change point."""
+        """Return the mask of driver angles that are close to a change point."""
         near = np.zeros(theta.shape, dtype=bool)
         for centre in self.angles:
             near |= np.abs(self._from(float(centre), theta)) < HALVES[0] * WINDOW
         return near
 
     def _from(self, centre: float, theta: Array) -> Array:
-        """Driver angles from one of the change points, within half a period."""
+        """Return driver angles from one of the change points, within half a period."""
         half = 0.5 * self.period
         return np.asarray(np.remainder(theta - centre + half, self.period) - half)
 
@@ -268,7 +268,7 @@ class ChangePoints:
         Raises
         ------
         CrankcheckError
-            Scene, driver angle and dyad; not where a chunk is only looked at.
+            Scene, driver angle and dyad; not for a stretched chunk.
         """
         inside = np.abs(x) < SIDE
         if not chunk.stretch and inside.any():
@@ -282,14 +282,14 @@ class ChangePoints:
             )
 
     def piece(self, i: int) -> SignPiece | None:
-        """The motion through change point ``i``, worked out once; None where it is not smooth."""
+        """Return the motion through change point ``i``, computed once; None if not smooth."""
         if i not in self.pieces:
             self.pieces[i] = self._piece(float(self.angles[i]))
         return self.pieces[i]
 
     @np.errstate(all="ignore")
     def _piece(self, centre: float) -> SignPiece | None:
-        """The widest piece that is about as certain as any; narrower ones lose digits."""
+        """Return the widest piece that is about as certain as any; narrower ones lose digits."""
         best, least = None, math.inf
         for half in HALVES:
             try:
@@ -307,7 +307,7 @@ class ChangePoints:
         return self.steps[-1].key
 
     def _solved(self, theta: Array) -> tuple[Unknown, Unknown]:
-        """The dyad's unknowns as it stands, for a driver of unit speed."""
+        """Return the dyad's unknowns in its branch, for a driver of unit speed."""
         own = _Own(self)
         chunk = Chunk.begin(
             self.scene, theta, 1.0, STEADY, EXACT_ANGLE, passages={**self.before, self.key: own}
@@ -318,7 +318,7 @@ class ChangePoints:
 
 
 class _Own:
-    """In place of a passage while its own pieces are made: the dyad as its formulas have it."""
+    """Substitute of a passage while its own pieces are made: the dyad from its formulas."""
 
     def __init__(self, passage: ChangePoints) -> None:
         self.sign = passage.sign
@@ -334,7 +334,7 @@ class _Own:
 
 
 def _rates(chunk: Chunk, index: Index) -> Rates:
-    """The driver's rates at the samples ``index``; those of a chunk without bounds are exact."""
+    """Return the driver's rates at the samples ``index``; exact for a chunk without bounds."""
     theta, error = chunk.theta, chunk.driver.error or EXACT_ANGLE
     each = (chunk.driver.omega, chunk.driver.alpha, error.theta, error.omega, error.alpha)
     omega, alpha, *bounds = (np.broadcast_to(one, theta.shape)[index] for one in each)
@@ -344,6 +344,6 @@ def _rates(chunk: Chunk, index: Index) -> Rates:
 
 
 def whole_turns_off(angle: float) -> float:
-    """A driver angle in [0, 2 pi), 0 where it is that but for rounding."""
+    """Return a driver angle in [0, 2 pi), 0 where it is that but for rounding."""
     turned = angle % math.tau
     return 0.0 if min(turned, math.tau - turned) < AT_START else turned

@@ -1,8 +1,8 @@
 """The count of whole turns: the angle of a link as a function of the driver's angle.
 
-At time 0 it is the one in (-pi, pi]; from there on it goes with the driver, whoever asks, for one
-sample or for a million, in any order. Over what the mechanism takes to repeat, a turn of the driver
-or some of them, a link gains a whole number of turns.
+At time 0 it is in (-pi, pi]; from there on it follows the driver, for one sample or for a million,
+in any order. In a period of the mechanism, one or more turns of the driver, a link gains a whole
+number of turns.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from models.scene import Scene
 
 @dataclass(frozen=True)
 class Turns:
-    """The whole turns of the links of a scene.
+    """Whole turns of the links of a scene.
 
     ``borders`` are the driver angles [rad] between cells, increasing over a period; ``angles`` are
     those of each link in the middle of the cells, (cells,), and ``gains`` the whole turns that it
-    makes in a period. What an angle may be off by within a cell is its ``spread`` [rad], (cells,).
-    Driver angles that are no more than ``step_rad`` apart leave less than half a turn between the
-    angles of any link.
+    makes in a period. The largest deviation of an angle within a cell is its ``spread`` [rad],
+    (cells,). Driver angles that are no more than ``step_rad`` apart leave less than half a turn
+    between the angles of any link.
     """
 
     borders: Array
@@ -41,7 +41,7 @@ class Turns:
 
     @staticmethod
     def of(look: CellSolver, start: float, period: float) -> Turns:
-        """The turns of a mechanism that repeats after a ``period`` of its driver, which stands at
+        """Count the turns of a mechanism that repeats after a ``period`` of its driver, which is at
         ``start`` at time 0 [rad]."""
         turns = _joined(look.divided(start, period), period)
         at_start = np.array([start])
@@ -52,7 +52,7 @@ class Turns:
 
     @cached_property
     def counted(self) -> frozenset[str]:
-        """The links that ever leave (-pi, pi): there is nothing to count of others."""
+        """Links that ever leave (-pi, pi): others need no count."""
         swings = {
             n: bool(np.all(np.abs(a) + self.spread < math.pi - 1e-3))
             for n, a in self.angles.items()
@@ -60,34 +60,34 @@ class Turns:
         return frozenset(n for n, gain in self.gains.items() if gain or not swings[n])
 
     def places(self, theta: Array) -> tuple[NDArray[np.intp], Array]:
-        """The cells in which driver angles [rad], (T,), are, and after how many periods."""
+        """Return the cells of driver angles [rad], (T,), and the number of periods before them."""
         low, period = self.borders[0], self.borders[-1] - self.borders[0]
         periods = np.floor((theta - low) / period)
         cells = np.searchsorted(self.borders[1:-1], theta - periods * period, side="right")
         return cells, np.asarray(periods)
 
     def short(self, name: str, angle: Array, cells: NDArray[np.intp], periods: Array) -> Array:
-        """The whole turns that angles [rad], (T,), of a link at such places are short of."""
+        """Return the whole turns that angles [rad], (T,), of a link at such places are short of."""
         turns = np.round((self.angles[name][cells] - angle) / math.tau)
         return np.asarray(turns + self.gains[name] * periods)
 
 
 @dataclass(frozen=True)
 class Counter:
-    """Counts the turns of links at driver angles ``theta`` [rad], (T,)."""
+    """Counter of the turns of links at driver angles ``theta`` [rad], (T,)."""
 
     turns: Turns
     theta: Array
 
     def count(self, name: str, angle: Array) -> None:
-        """Add to the angles of a link [rad], (T,), the whole turns that they are short of."""
+        """Add the missing whole turns to the angles of a link [rad], (T,)."""
         if name in self.turns.counted and not self._follow(name, angle):
             places = self.turns.places(self.theta)
             angle += math.tau * self.turns.short(name, angle, *places)
 
     def _follow(self, name: str, angle: Array) -> bool:
-        """Count from the first angle on, where each follows from the one before it; False, and the
-        angles as they were, where they do not, or one that is not sure leads astray."""
+        """Count from the first angle on, where each follows from the one before it; False, with
+        unchanged angles, where they do not, or an uncertain one leads astray."""
         if self._ends is None:
             return False
         first, last = self.turns.short(name, angle[[0, -1]], *self._ends).tolist()
@@ -104,14 +104,14 @@ class Counter:
 
     @cached_property
     def _ends(self) -> tuple[NDArray[np.intp], Array] | None:
-        """The places of the first and the last angle of the driver, if it goes in small steps."""
+        """Places of the first and the last angle of the driver, if it goes in small steps."""
         step, most = self.theta[1:] - self.theta[:-1], self.turns.step_rad
         small = not step.size or (step.max() <= most and step.min() >= -most)
         return self.turns.places(self.theta[[0, -1]]) if small else None
 
 
 def _joined(cells: Cells, period: float) -> Turns:
-    """The cells of a period, the angles of each joined to the nearest of the one before it."""
+    """Join the angles of each cell of a period to the nearest of the one before it."""
     angles, gains = {}, {}
     for name, angle in cells.angles.items():
         jumps = np.round((np.roll(angle, -1) - angle) / math.tau)  # the last into the next period
@@ -127,22 +127,22 @@ def _joined(cells: Cells, period: float) -> Turns:
 
 
 SURE = 0.78
-"""A bound [rad] that says enough: two angles in one cell, or in neighbours, are at most four times
-as far apart, which is less than half a turn."""
+"""Sufficient bound [rad]: two angles in one cell, or in neighbours, are at most four times as far
+apart, which is less than half a turn."""
 CELLS = 64
 """Cells of a turn of the driver, before any is divided."""
 PARTS = 4
-"""A cell is divided into so many."""
+"""Number of parts of a divided cell."""
 MOST = 1 << 18
 """No more cells than this over the number of links: a chain of six dyads takes up to 20,000 cells.
-Beyond, some may not be sure, and their angles are joined to the nearest, unproven.
-Bounds of angles do not say so: a whole turn for all that comes after would say nothing of them."""
+Beyond, some may not be sure, and their angles are joined to the nearest, unproven. Bounds of angles
+leave this out: a whole turn for all later ones would make them useless."""
 NARROWEST = 1e-11
-"""Half of a cell [rad] that is not divided, though a mechanism that runs through infinity there
-leaves it unsure."""
+"""Half-width [rad] of a cell that is not divided, even if a mechanism that runs through infinity
+there leaves it unsure."""
 OPEN = 4e-3
-"""The same where the mechanism can be assembled nowhere in the cell, so that nobody asks: open in
-the middle is not enough, as all of a narrow reachable range may lie beside it."""
+"""The same for a cell in which the mechanism is open everywhere, so that its angle is not needed:
+open in the middle is not enough, as all of a narrow reachable range may lie beside it."""
 
 
 @dataclass(frozen=True)
@@ -150,8 +150,8 @@ class Cells:
     """Cells in the order of their driver angles.
 
     By cell: its middle and half its width [rad], the angle of each link in the middle (stretched
-    where the mechanism is open) but for whole turns, how far from there any link may be wherever in
-    the cell the mechanism closes, and whether it is open all over the cell.
+    where the mechanism is open) but for whole turns, the largest deviation of any link from there
+    wherever in the cell the mechanism closes, and True if it is open all over the cell.
 
     ::
 
@@ -165,7 +165,7 @@ class Cells:
 
     That bound is no guess from samples: it is the bound of the link's angle
     (`analytic.dyads.parts`) for a driver whose own angle is uncertain by half of the cell. A cell
-    in which it says too little is divided.
+    with too wide a bound is divided.
     """
 
     middle: Array
@@ -179,7 +179,7 @@ class Cells:
         return np.asarray(self.spread > SURE)
 
     def these(self, index: NDArray[np.intp] | Mask) -> Cells:
-        """Some of the cells, or all in another order."""
+        """Return some of the cells, or all in another order."""
         angles = {name: angle[index] for name, angle in self.angles.items()}
         middle, half = self.middle[index], self.half[index]
         return Cells(middle, half, angles, self.spread[index], self.is_open[index])
@@ -197,14 +197,14 @@ class Cells:
 
 @dataclass(frozen=True)
 class CellSolver:
-    """Looks at a scene at driver angles that are uncertain."""
+    """Solver of a scene at driver angles that are uncertain."""
 
     scene: Scene
     steps: Sequence[Step]
     passages: Mapping[str, Passage]
 
     def at(self, middle: Array, half: Array | float = 0.0) -> Cells:
-        """The cells about driver angles [rad], (n,), of half-widths [rad]."""
+        """Return the cells about driver angles [rad], (n,), of half-widths [rad]."""
         half = np.broadcast_to(half, middle.shape)
         error = AngleError(half * (1.0 + 1e-6) + 8 * EPS * np.abs(middle), 0.0, 0.0)
         chunk = Chunk.begin(
@@ -227,7 +227,7 @@ class CellSolver:
         return Cells(middle, half, angles, spread, is_open)
 
     def divided(self, start: float, period: float) -> Cells:
-        """Cells over a ``period`` from ``start`` on [rad], all sure as far as that goes."""
+        """Return cells over a ``period`` from ``start`` on [rad], all sure as far as possible."""
         count = CELLS * round(period / math.tau)
         half = 0.5 * period / count
         cells = self.at(np.asarray(start + half * (2.0 * np.arange(count) + 1.0)), half)

@@ -31,21 +31,21 @@ from models.scene.joints import local_point, sliding_angle
 
 
 class Passage(Protocol):
-    """The change points that a dyad goes through (`analytic.change_points.sign`)."""
+    """Change points that a dyad goes through (`analytic.change_points.sign`)."""
 
     def sign(self, theta: Array) -> Array:
-        """What the branch of the scene is multiplied by at driver angles [rad], (T,)."""
+        """Return the factor of the scene's branch at driver angles [rad], (T,)."""
         ...
 
     def mend(self, chunk: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
-        """The dyad without what is lost in and beside its change points. Raises OpenError."""
+        """Restore the lost values of a dyad in and beside its change points. Raises OpenError."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class DrivenCoordinate:
-    """The driver's angle, rate and acceleration as the reference has them (`driver_scale`), and
-    their bounds if asked for."""
+    """Driver's angle, rate and acceleration in the units of the reference (`driver_scale`), and
+    their bounds if required."""
 
     theta: Array
     omega: Real
@@ -53,7 +53,7 @@ class DrivenCoordinate:
     error: AngleError | None
 
     def sliding(self, scale_m: float) -> Sliding:
-        """The displacement of a slider that is driven."""
+        """Return the displacement of a driven slider."""
         e, error = self.error, None
         if e is not None:
             error = SlideError(e.theta * scale_m, e.omega * scale_m, e.alpha * scale_m)
@@ -62,8 +62,8 @@ class DrivenCoordinate:
 
 @dataclass(slots=True)
 class Chunk:
-    """What is known so far of a chunk of samples; ``passages`` by the key of the dyad, and
-    ``roots`` where these are known beforehand."""
+    """Known part of a chunk of samples; ``passages`` by the key of the dyad, and ``roots`` where
+    these are known beforehand."""
 
     scene: Scene
     certified: bool
@@ -90,8 +90,8 @@ class Chunk:
         passages: Mapping[str, Passage] | None = None,
         roots: Mapping[str, Real] | None = None,
     ) -> Chunk:
-        """A chunk in which the ground and what the driver moves against it are known; certified
-        where ``error`` is."""
+        """Return a chunk with the ground and the body driven against it; certified where ``error``
+        is given."""
         certified = error is not None
         if error is not None and scene.driver.slider is None:
             error = replace(error, theta=error.theta + SINES)
@@ -103,7 +103,7 @@ class Chunk:
 
     def _place_driver(self) -> None:
         """Add the body that is driven against the ground; two that are driven against each other
-        wait for the group that they are in."""
+        wait for their group."""
         driver, link, own = self.scene.driver, self.scene.driver.link, self.driver
         if driver.is_inner:
             return
@@ -119,11 +119,11 @@ class Chunk:
 
     @property
     def theta(self) -> Array:
-        """The driver's angles [rad], (T,)."""
+        """Driver's angles [rad], (T,)."""
         return self.driver.theta
 
     def point(self, body: str, name: str) -> PointKinematics:
-        """A named point by way of ``body``, worked out once."""
+        """Return a named point by way of ``body``, computed once."""
         if name not in self.points:
             local = local_point(self.scene, body, name)
             self.points[name] = (
@@ -132,9 +132,9 @@ class Chunk:
         return self.points[name]
 
     def assembly(self, key: str) -> tuple[Real, bool]:
-        """The branch of a dyad at every sample, and whether it is stretched where it is open.
+        """Return the branch of a dyad at every sample, and True if stretched where open.
 
-        In a change point it may be open by rounding, which is mended afterwards.
+        In a change point it may be open by rounding, which `keep` mends.
         """
         branch, passage = self.scene.branch.get(key, 1), self.passages.get(key)
         if passage is None:
@@ -142,7 +142,7 @@ class Chunk:
         return branch * passage.sign(self.theta), True
 
     def keep(self, key: str, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
-        """The solved dyad, mended in its change points, after noting how it is conditioned."""
+        """Return the solved dyad, mended in its change points, and note its conditioning."""
         passage = self.passages.get(key)
         if passage is not None:
             dyad = passage.mend(self, dyad)
@@ -153,18 +153,18 @@ class Chunk:
 
 
 SINES = 2 * EPS
-"""What the driver's direction is off by for the rounding of sine and cosine [rad]."""
+"""Error of the driver's direction by rounding of sine and cosine [rad]."""
 
 
 def driver_scale(scene: Scene) -> float:
-    """The driver's coordinate over the reference's driver angle: 1 of a pin; of a slider a power
-    of two [m], more than a third of all lengths of the scene together.
+    """Return the driver's coordinate over the reference's driver angle: 1 for a pin; for a slider a
+    power of two [m], more than a third of all lengths of the scene together.
 
-    The reference has one driver's angle psi [rad] throughout. Of a pin that is the coordinate
-    itself. Of a slider it is the displacement over a scale, s = scale psi, so large that the
+    The reference has one driver's angle psi [rad] throughout. For a pin it is the coordinate
+    itself. For a slider it is the displacement over a scale, s = scale psi, so large that the
     mechanism closes only within half a turn of 0, and a power of two, so that nothing is rounded:
-    what is looked for over a turn of a crank (limit positions, change points, whole turns) is
-    looked for over all places of a slider.
+    the search over a turn of a crank (limit positions, change points, whole turns) covers all
+    places of a slider.
     """
     if scene.driver.slider is None:
         return 1.0
@@ -176,7 +176,7 @@ def driver_scale(scene: Scene) -> float:
 
 
 def told(scene: Scene, theta: float) -> str:
-    """A driver angle of the reference in words: degrees, or metres of a slider that is driven."""
+    """Return a driver angle of the reference in words: degrees, or metres of a driven slider."""
     if scene.driver.slider is not None:
         return f"{theta * driver_scale(scene):.6g} m"
     return f"{math.degrees(theta):.6g} deg"
@@ -185,7 +185,7 @@ def told(scene: Scene, theta: float) -> str:
 def turning_driver(
     scene: Scene, pivot: str, theta: Array, omega: Real, alpha: Real, error: AngleError | None
 ) -> BodyKinematics:
-    """A link at an angle about its pin to the ground."""
+    """Return a link at an angle about its pin to the ground."""
     turn = Vec(np.cos(theta), np.sin(theta))
     anchor = fixed_point(scene.ground[pivot])
     local = scene.links[scene.driver.link].points[pivot]
@@ -193,7 +193,7 @@ def turning_driver(
 
 
 def sliding_driver(scene: Scene, found: Sliding) -> BodyKinematics:
-    """A body at a displacement along a line of the ground."""
+    """Return a body at a displacement along a line of the ground."""
     driver = scene.driver
     assert driver.slider is not None
     slider = scene.sliders[driver.slider]
@@ -215,7 +215,7 @@ def sliding_driver(scene: Scene, found: Sliding) -> BodyKinematics:
 
 
 def _along_line(base: Point, found: Sliding, leaning: float) -> PointError:
-    """Bounds of a point on a line of the ground whose direction is known but for ``leaning``."""
+    """Return bounds of a point on a ground line with a direction error of ``leaning``."""
     assert found.error is not None
     e, way = found.error, np.abs(found.s)
     return PointError(

@@ -1,4 +1,4 @@
-"""What every dyad solver takes and gives: turning and sliding unknowns, moving lines, closure.
+"""Input and output of the dyad solvers: turning and sliding unknowns, moving lines, closure.
 
 Every class II dyad closes one vector equation f(q1, q2) = 0 with df = c1 dq1 + c2 dq2. Rates and
 accelerations follow from the same two columns::
@@ -20,13 +20,13 @@ from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, Vec
 from models.array import Array
 
 CLOSED = 16 * EPS
-"""A dyad open by no more than this, over the lengths in its closure, is closed but for rounding."""
+"""Gap of a closed dyad by rounding, over the lengths in its closure."""
 
 
 @dataclass(frozen=True, slots=True)
 class Turning:
-    """An unknown rotation: a vector of constant ``length`` at its angle, its rate [rad/s] and
-    acceleration [rad/s^2], bounds if asked for."""
+    """Unknown rotation: a vector of constant ``length`` at its angle, its rate [rad/s] and
+    acceleration [rad/s^2], bounds if required."""
 
     turn: Vec
     omega: Real
@@ -46,7 +46,7 @@ class SlideError:
 
 @dataclass(frozen=True, slots=True)
 class Sliding:
-    """An unknown displacement [m], its rate [m/s] and acceleration [m/s^2], bounds if asked."""
+    """Unknown displacement [m], its rate [m/s] and acceleration [m/s^2], bounds if required."""
 
     s: Real
     speed: Real
@@ -60,7 +60,7 @@ Second = TypeVar("Second", Turning, Sliding)
 
 @dataclass(frozen=True, slots=True)
 class MovingLine:
-    """A line of a known body: a point of it, its direction, and the rotation of the body."""
+    """Line of a known body: a point of it, its direction, and the rotation of the body."""
 
     point: PointKinematics
     along: Vec
@@ -69,21 +69,21 @@ class MovingLine:
     error: AngleError | None
 
     def at(self, s: Real) -> Vec:
-        """The place at displacement ``s`` from the point."""
+        """Return the place at displacement ``s`` from the point."""
         ahead: Vec = self.along * s
         return self.point.p + ahead
 
     def velocity(self, s: Real) -> Vec:
-        """The velocity of the body's own point there."""
+        """Return the velocity of the body's own point there."""
         return self.along.perp(self.omega * s) + self.point.v
 
     def acceleration(self, s: Real, speed: Real) -> Vec:
-        """The acceleration of what slides there at ``speed``, Coriolis in, without its own."""
+        """Return the acceleration there at sliding ``speed``, Coriolis in, without its own."""
         across = self.alpha * s + 2.0 * self.omega * speed
         return (self.point.a + self.along.perp(across)).less(self.along, self.omega**2 * s)
 
     def errors(self, s: Real, speed: Real, es: Real, ev: Real) -> tuple[Real, Real, Real]:
-        """Bounds on the errors of `at`, `velocity`, `acceleration` where s, speed have es, ev."""
+        """Return error bounds of `at`, `velocity`, `acceleration` for errors es, ev of s, speed."""
         assert self.point.error is not None
         assert self.error is not None
         e, p = self.error, self.point.error
@@ -97,7 +97,7 @@ class MovingLine:
         return position, velocity, acceleration
 
     def sizes(self, s: Real, speed: Real) -> tuple[Real, Real, Real]:
-        """The sums of the lengths of the terms of `at`, `velocity`, `acceleration`."""
+        """Return the sums of the lengths of the terms of `at`, `velocity`, `acceleration`."""
         w, d = abs(self.omega), np.abs(s)
         return (
             self.point.p.norm() + d,
@@ -108,13 +108,13 @@ class MovingLine:
 
 @dataclass(frozen=True, slots=True)
 class Closure:
-    """How a dyad closes.
+    """Closure of a dyad.
 
-    ``root`` is what its branch is the sign of, None for a dyad of one assembly; 0 where it is
-    singular. ``short_m``, given for a stretched solution only, is by how much the dyad is short of
-    closing [m] (negative: it closes), less half of ``rounding_m``, what rounding may open it by.
-    Short by more than ``slack_m`` it closes nowhere within the bounds of its inputs. ``square``,
-    given for such a solution too, is that of the root, below 0 where the dyad is open.
+    ``root`` has the branch as its sign, None for a dyad of one assembly; 0 where it is singular.
+    ``short_m``, given for a stretched solution only, is the shortage of closure [m] (negative: it
+    closes), less half of ``rounding_m``, the possible gap by rounding. With a shortage above
+    ``slack_m`` it closes nowhere within the bounds of its inputs. ``square``, also for a stretched
+    solution only, is that of the root, below 0 where the dyad is open.
     """
 
     root: Real | None
@@ -126,7 +126,7 @@ class Closure:
 
 @dataclass(frozen=True, slots=True)
 class Dyad(Generic[First, Second]):
-    """The solved dyad; ``sine`` is its conditioning (1 best, 0 singular)."""
+    """Solved dyad; ``sine`` is its conditioning (1 best, 0 singular)."""
 
     first: First
     second: Second
@@ -134,13 +134,13 @@ class Dyad(Generic[First, Second]):
     closure: Closure
 
     def bounded(self, first: Any, second: Any) -> Dyad[First, Second]:
-        """The dyad with the bounds of its two unknowns, of the kind that each of them has."""
+        """Return the dyad with the bounds of its two unknowns, each of its own kind."""
         one, other = replace(self.first, error=first), replace(self.second, error=second)
         return replace(self, first=one, second=other)
 
 
 def uncertain(one: PointKinematics, other: PointKinematics) -> Real:
-    """What the distance of two points may be wrong by [m]; 0 where they carry no bounds."""
+    """Return the error of the distance of two points [m]; 0 where they carry no bounds."""
     if one.error is None or other.error is None:
         return 0.0
     return one.error.position + other.error.position
@@ -149,7 +149,7 @@ def uncertain(one: PointKinematics, other: PointKinematics) -> Real:
 class OpenError(Exception):
     """The dyad cannot be assembled at some samples.
 
-    ``short_m`` says by how much the closure fails at each sample (positive where it does) [m].
+    ``short_m`` is the shortage of closure at each sample (positive where open) [m].
     """
 
     def __init__(self, short_m: Array) -> None:
@@ -163,25 +163,24 @@ def closing_root(
     stretch: bool,
     root: Real | None = None,
 ) -> tuple[Real, Closure]:
-    """The square root of what closure leaves, 0 where rounding has taken it below 0.
+    """Return the square root in a closure, 0 where rounding has taken its argument below 0.
 
     Parameters
     ----------
     square : Array or float
         Positive where the dyad closes.
     shortage : Callable
-        By how much the dyad is short of closing [m] (negative: it closes), the sum of the lengths
-        and coordinates that this is the difference of, and what the errors of its inputs may change
-        it by; asked for only where it matters.
+        Shortage of closure [m] (negative: it closes), the sum of the lengths and coordinates that
+        it is the difference of, and its error by the inputs; called only where it matters.
     stretch : bool
         Solve the dyad as if stretched where it is open, instead of raising.
     root : Array or None
-        The root, where it is known better than the difference that ``square`` is.
+        The root, where it is known better than by the difference ``square``.
 
     Returns
     -------
     tuple
-        The root, and how the dyad closes.
+        The root, and the closure of the dyad.
 
     Raises
     ------
@@ -189,7 +188,7 @@ def closing_root(
         Where the dyad is open by more than rounding.
     """
     if stretch:
-        # A little less is let pass than when solving, so that the ends of a range can be solved.
+        # A little less is allowed than when solving, so that the ends of a range can be solved.
         short, scale, slack = shortage()
         rounding = CLOSED * scale
         if root is None:
@@ -212,14 +211,14 @@ cross product takes 1, the quotient and the terms on its right side another 2.""
 
 @dataclass(frozen=True, slots=True)
 class Jacobian:
-    """The columns c1, c2 of a dyad's loop equation, and their determinant c1 x c2."""
+    """Columns c1, c2 of a dyad's loop equation, and their determinant c1 x c2."""
 
     c1: Vec
     c2: Vec
     det: Real
 
     def solve(self, b: Vec) -> tuple[Real, Real]:
-        """The q1, q2 with c1 q1 + c2 q2 = b, by Cramer's rule."""
+        """Return the q1, q2 with c1 q1 + c2 q2 = b, by Cramer's rule."""
         return b.cross(self.c2) / self.det, self.c1.cross(b) / self.det
 
 
@@ -232,17 +231,17 @@ class Curvature:
     m22: Real
 
     def remainder(self, e1: Real, e2: Real) -> Real:
-        """The largest second-order term over a box of half-widths e1, e2."""
+        """Return the largest second-order term over a box of half-widths e1, e2."""
         return 0.5 * self.m11 * e1 * e1 + self.m12 * e1 * e2 + 0.5 * self.m22 * e2 * e2
 
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """Error bounds of a dyad's unknowns at position level, and the way to those above it.
+    """Error bounds of a dyad's unknowns at position level, and the method for those above it.
 
     ``e1``, ``e2`` bound the unknowns; ``d1``, ``d2`` bound the columns of the Jacobian. ``skew`` is
-    what rounding may put between the determinant that rates are divided by and that of the columns,
-    where it is more than `ROUNDING` of their lengths.
+    the rounding between the determinant that rates are divided by and that of the columns, where it
+    is more than `ROUNDING` of their lengths.
     """
 
     jacobian: Jacobian
@@ -253,7 +252,7 @@ class Certificate:
     skew: Real = 0.0
 
     def above(self, q1: Real, q2: Real, error_of_b: Real, size_of_b: Real) -> tuple[Real, Real]:
-        """Bounds on rates (or accelerations) q1, q2 that solve the loop with right side b.
+        """Return bounds on rates (or accelerations) q1, q2 that solve the loop with right side b.
 
         ``error_of_b`` bounds the error of b from its inputs; ``size_of_b`` is the sum of the
         lengths of its terms, of which rounding takes its share.
@@ -265,7 +264,7 @@ class Certificate:
         )
         lost = self.d1 * n2 + n1 * self.d2 + self.d1 * self.d2 + 4 * EPS * n1 * n2 + self.skew
         left = np.abs(self.jacobian.det) - lost
-        # What comes from a singular dyad before this one may be 0 times infinity: not certain.
+        # A singular dyad before this one may give 0 times infinity: not certain.
         sure = (left > 0.0) & (residual < np.inf)
         e1 = np.where(sure, ((n2 + self.d2) * residual + a1 * self.skew) / left, np.inf)
         e2 = np.where(sure, ((n1 + self.d1) * residual + a2 * self.skew) / left, np.inf)
@@ -279,15 +278,15 @@ def certify(
     folds: Callable[[], tuple[Real, Real]],
     lost: Real = 0.0,
 ) -> tuple[Real, Real]:
-    """Bounds on the errors of a dyad's two unknowns at position level.
+    """Return bounds on the errors of a dyad's two unknowns at position level.
 
     The certificate is a posteriori. The residual of the computed position, plus the rounding of its
     evaluation, plus the errors of the inputs, is a bound on f at the exact inputs; multiplied by
     the inverse of the Jacobian it bounds the error of the unknowns to first order, and up to twice
     that bounds it fully as long as the curvature of f over that distance spends no more than the
-    residual itself (Newton-Kantorovich). Where that fails the dyad is within about the square root
-    of rounding of its toggle: each dyad then gives the width of its fold, and rates are not certain
-    at all (infinite).
+    residual itself (Newton-Kantorovich). Elsewhere the dyad is within about the square root of
+    rounding of its toggle: each dyad then gives the width of its fold, and rates are not certain at
+    all (infinite).
 
     Parameters
     ----------
@@ -298,10 +297,10 @@ def certify(
     curvature : Curvature
         Bounds on the second derivatives of f nearby.
     folds : Callable
-        What the errors of the unknowns are at most beside the toggle, where the first order
-        no longer says anything; asked for only where it matters.
+        Largest errors of the unknowns beside the toggle, where the first order fails; called only
+        where it matters.
     lost : Array or float
-        What the errors of the inputs may take off the determinant, where its columns hold any.
+        Change of the determinant by the errors of the inputs, where its columns hold any.
     """
     n1, n2 = jacobian.c1.norm(), jacobian.c2.norm()
     inverse = 1.0 / np.maximum(np.abs(jacobian.det) - lost, 0.0)

@@ -1,7 +1,7 @@
 """Vectors of the plane, and the motion of points and bodies in it, over a chunk of samples.
 
 Components are arrays of one chunk, or plain floats where the quantity is constant (the ground), so
-that constants cost nothing. Unit vectors stand for angles: no tangent runs to infinity, and the
+that constants cost nothing. Unit vectors represent angles: no tangent runs to infinity, and the
 angle is taken once, at the end, by arctan2.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from models.scene import Point
 
 Real = Any
-"""An array of one chunk, or a float: the type checker cannot do arithmetic with that union."""
+"""Array of one chunk, or a float: the type checker cannot do arithmetic with that union."""
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -49,18 +49,18 @@ class Vec:
         return Vec(self.x * factor, self.y * factor)
 
     def less(self, other: Vec, factor: Real) -> Vec:
-        """The vector less ``factor`` times another."""
+        """Return the vector less ``factor`` times another."""
         return Vec(_less(self.x, other.x * factor), _less(self.y, other.y * factor))
 
     def more(self, other: Vec, factor: Real) -> Vec:
-        """The vector and ``factor`` times another."""
+        """Return the vector plus ``factor`` times another."""
         x, y = other.x * factor, other.y * factor
         x += self.x
         y += self.y
         return Vec(x, y)
 
     # The sums below are taken in place, in the array of their first product: half the memory
-    # traffic of a new array each, which is what the time of a chunk goes to.
+    # traffic of a new array each, which takes most of the time of a chunk.
 
     def dot(self, other: Vec) -> Real:
         sum_ = self.x * other.x
@@ -68,7 +68,7 @@ class Vec:
         return sum_
 
     def cross(self, other: Vec) -> Real:
-        """The component of the cross product out of the plane."""
+        """Return the component of the cross product out of the plane."""
         difference = self.x * other.y
         difference -= self.y * other.x
         return difference
@@ -80,11 +80,11 @@ class Vec:
         return np.hypot(self.x, self.y)
 
     def perp(self, factor: Real = 1.0) -> Vec:
-        """The vector turned by +90 deg, times ``factor``."""
+        """Return the vector turned by +90 deg, times ``factor``."""
         return Vec(self.y * -factor, self.x * factor)
 
     def turned(self, by: Vec) -> Vec:
-        """The vector turned by the angle of the unit vector ``by`` (product of complex numbers)."""
+        """Return the vector turned by the angle of the unit vector ``by`` (complex product)."""
         if by is UNTURNED:
             return self
         x, y = self.x * by.x, self.x * by.y
@@ -94,7 +94,7 @@ class Vec:
 
 
 def _less(a: Real, fresh: Real) -> Real:
-    """a - fresh, in the array of ``fresh`` if it is one."""
+    """Return a - fresh, in the array of ``fresh`` if it is one."""
     if isinstance(fresh, np.ndarray):
         return np.subtract(a, fresh, out=fresh)
     return a - fresh
@@ -102,13 +102,13 @@ def _less(a: Real, fresh: Real) -> Real:
 
 UNTURNED = Vec(1.0, 0.0)
 ZERO = Vec(0.0, 0.0)
-"""The vector that costs nothing to add; compare by identity."""
+"""Vector that costs nothing to add; compare by identity."""
 STEADY = 0.0
-"""The angular acceleration of what turns at constant speed; compare by identity."""
+"""Angular acceleration of a body at constant speed; compare by identity."""
 
 
 def direction(angle_rad: float) -> Vec:
-    """The unit vector of an angle; `UNTURNED` itself for 0, which makes turning by it free."""
+    """Return the unit vector of an angle; `UNTURNED` for 0, which makes turning by it free."""
     if angle_rad == 0.0:
         return UNTURNED
     return Vec(math.cos(angle_rad), math.sin(angle_rad))
@@ -138,7 +138,7 @@ EXACT_ANGLE = AngleError(0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class PointKinematics:
-    """Position [m], velocity [m/s], acceleration [m/s^2] of a point, with bounds if asked for."""
+    """Position [m], velocity [m/s], acceleration [m/s^2] of a point, with bounds if required."""
 
     p: Vec
     v: Vec
@@ -148,11 +148,11 @@ class PointKinematics:
 
 @dataclass(frozen=True, slots=True)
 class BodyKinematics:
-    """A body by one of its points (``anchor``, at ``local`` in its frame) and its rotation.
+    """Body by one of its points (``anchor``, at ``local`` in its frame) and its rotation.
 
     ``turn`` is along the frame's x-axis, of constant length ``length``: a vector between two pins
-    need not be made a unit vector before something asks for it. ``theta`` is kept where the angle
-    is known without an arctan2 (driver, ground).
+    becomes a unit vector only where one is needed. ``theta`` is kept where the angle is known
+    without an arctan2 (driver, ground).
     """
 
     local: Point
@@ -165,12 +165,12 @@ class BodyKinematics:
     length: float = 1.0
 
     def unit(self, angle_rad: float) -> Vec:
-        """The unit vector at a constant angle to the body's frame."""
+        """Return the unit vector at a constant angle to the body's frame."""
         turned = self.turn.turned(direction(angle_rad))
         return turned if self.length == 1.0 else turned * (1.0 / self.length)
 
     def point(self, local: Point) -> PointKinematics:
-        """The motion of the point at ``local`` [m] in the body's frame."""
+        """Return the motion of the point at ``local`` [m] in the body's frame."""
         if local == self.local:
             return self.anchor
         x, y = local[0] - self.local[0], local[1] - self.local[1]
@@ -188,8 +188,8 @@ class BodyKinematics:
         return PointKinematics(motion.p, motion.v, motion.a, error)
 
     def _point_error(self, motion: PointKinematics, r: float) -> PointError:
-        """The anchor's errors, those of the rotation over the arm, and the rounding: half a unit of
-        the sum, and of the arm that of its coordinates, of turning it, and of its rates."""
+        """Return the anchor's errors, those of the rotation over the arm, and the rounding: half a
+        unit of the sum, and that of the arm's coordinates, its turn and its rates."""
         assert self.error is not None
         assert self.anchor.error is not None
         e, at = self.error, self.anchor.error
@@ -208,22 +208,22 @@ class BodyKinematics:
 
 
 def fixed_point(place: Point) -> PointKinematics:
-    """A point that rests and is known exactly."""
+    """Return a point that rests and is known exactly."""
     p = Vec(*place) if any(place) else ZERO
     return PointKinematics(p, ZERO, ZERO, EXACT_POINT)
 
 
 def fixed_body(*, certified: bool) -> BodyKinematics:
-    """The ground."""
+    """Return the ground."""
     error = EXACT_ANGLE if certified else None
     return BodyKinematics((0.0, 0.0), fixed_point((0.0, 0.0)), UNTURNED, 0.0, STEADY, error, 0.0)
 
 
 def rounding_of_angles(*angles: float) -> float:
-    """Rounding of the direction of a sum of constant angles [rad]; 0 where all are.
+    """Return the rounding of the direction of a sum of constant angles [rad]; 0 where all are.
 
-    Within a turn they may come from degrees, which are rounded to radians; larger ones are as they
-    were given. The sum may be small where they are large: what is lost is that of the large ones.
+    Within a turn they may come from degrees, which are rounded to radians; larger ones are exact. A
+    small sum of large angles has the rounding of the large ones.
     """
     sizes = [abs(angle) for angle in angles if angle]
     if not sizes:

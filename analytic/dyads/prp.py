@@ -68,7 +68,7 @@ def solve(
         s1, s2 = jacobian.solve(line2.point.p - line1.point.p)
         v1, v2 = jacobian.solve(line2.velocity(s2) - line1.velocity(s1))
         a1, a2 = jacobian.solve(line2.acceleration(s2, v2) - line1.acceleration(s1, v1))
-    # Lines that are parallel at one angle cross on both sides of it.
+    # Parallel lines at one angle cross on both sides of it.
     closure = Closure(None, -np.abs(det) if stretch else None)
     dyad = Dyad(Sliding(s1, v1, a1), Sliding(s2, v2, a2), np.abs(det), closure)
     return dyad.bounded(*_errors(line1, line2, jacobian, dyad)) if certified else dyad
@@ -78,7 +78,7 @@ def solve(
 def _errors(
     line1: MovingLine, line2: MovingLine, jacobian: Jacobian, dyad: Dyad[Sliding, Sliding]
 ) -> tuple[SlideError, SlideError]:
-    """Bounds of the two displacements with their derivatives."""
+    """Return bounds of the two displacements with their derivatives."""
     assert line1.error is not None
     assert line2.error is not None
     first, second = dyad.first, dyad.second

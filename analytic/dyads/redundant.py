@@ -1,4 +1,4 @@
-"""A redundant link: its pins move without it, so its motion follows from two of them.
+"""Redundant link: its pins move without it, so its motion follows from two of them.
 
 ::
 
@@ -7,9 +7,9 @@
 
 v and a are the velocity and the acceleration of P2 against P1. Unless |d| = l at every angle of the
 driver, and every further pin of the link lies where its other bodies have it, the mechanism is
-rigid. A sample shows that in the places of the pins and in what their distance changes at,
-d . v = 0 and d . a + v . v = 0, all to within what is known of them and `FIT`: lengths are written
-with some ten digits. A misfit within `FIT` is part of the bounds of the link.
+rigid. A sample shows it in the places of the pins and in the rates of their distance, d . v = 0 and
+d . a + v . v = 0, all to within their bounds and `FIT`: lengths are written with some ten digits. A
+misfit within `FIT` is part of the bounds of the link.
 """
 
 import itertools
@@ -27,19 +27,18 @@ from models.array import Array
 from models.errors import StructureError
 
 FIT = 1e-9
-"""What a redundant link may be off by, over its length, and its rates over those of its pins."""
+"""Allowed misfit of a redundant link, over its length, and of its rates over those of its pins."""
 ROUNDING = 16 * EPS
-"""What a misfit may come to by rounding, over the lengths and coordinates that go into it."""
+"""Misfit by rounding, over the lengths and coordinates that go into it."""
 ROUGH = 1e-7
-"""The most of it where places carry no bounds: in a singular position half of their digits are
-lost."""
+"""Largest misfit by rounding without bounds: a singular position loses half of the digits."""
 
 Levels = tuple[Real, Real, Real]
-"""Of the place [m], the velocity [m/s] and the acceleration [m/s^2]."""
+"""Values of place [m], velocity [m/s] and acceleration [m/s^2]."""
 
 
 class BridgeStep:
-    """A link between two known pins, and further ones that have to agree."""
+    """Link between two known pins, and further ones that have to agree."""
 
     def __init__(self, placed: PlacedBodies, bridge: Bridge) -> None:
         self.link, self.key = bridge.link, f"link {bridge.link}"
@@ -75,7 +74,7 @@ class BridgeStep:
             self._check(chunk, pin, apart, self._rooms(chunk, own, seen)[3:])
 
     def _check(self, chunk: Chunk, pin: str, off: Levels, room: Sequence[Real]) -> None:
-        """Refuse a pin that is off by more than it may be; note by how much where stretching."""
+        """Refuse a pin with too large a misfit; note the misfit where stretching."""
         if chunk.stretch:
             over = off[0] - room[0]
             before = chunk.shortage.get(self.key, over)
@@ -89,7 +88,7 @@ class BridgeStep:
                 raise StructureError(self._misfit(chunk, pin, level, misfit, index))
 
     def _placed(self, p1: PointKinematics, p2: PointKinematics) -> BodyKinematics:
-        """The link from the motion of its two pins."""
+        """Return the link from the motion of its two pins."""
         d, v, a = p2.p - p1.p, p2.v - p1.v, p2.a - p1.a
         square = d.square()
         omega, alpha = d.cross(v) / square, d.cross(a) / square
@@ -99,10 +98,10 @@ class BridgeStep:
     def _rooms(
         self, chunk: Chunk, one: PointKinematics, other: PointKinematics
     ) -> tuple[Real, Real, Real, Real, Real, Real]:
-        """What is not known of the difference of two points, and what that may be at a fit.
+        """Return the errors of the difference of two points, and the allowed misfits.
 
-        Each for place, velocity and acceleration. Without bounds the digits that go are those over
-        the smallest sine of the dyads so far, and over its powers in the rates.
+        Each is for place, velocity and acceleration. Without bounds, rounding grows with the
+        inverse of the smallest sine of the dyads so far, and with its powers in the rates.
         """
         w, g = np.abs(chunk.driver.omega), np.abs(chunk.driver.alpha)
         size = one.p.norm() + other.p.norm() + self.length
@@ -120,7 +119,7 @@ class BridgeStep:
         return e0, ev, ea, e0 + FIT * self.length, ev + FIT * fast, ea + FIT * push
 
     def _misfit(self, chunk: Chunk, pin: str, level: int, off: float, index: int) -> str:
-        """By how much the link does not fit, where, and what would work."""
+        """Return the text of a misfit: its size, its place, and a cure."""
         how = f"has {pin} {off:.3g} m away from where {self.holds[pin]} has it"
         if pin == self.pin2:
             apart = np.hypot(*(places[index] for places in self._apart(chunk)))
@@ -141,14 +140,14 @@ class BridgeStep:
         )
 
     def _apart(self, chunk: Chunk) -> tuple[Array, Array]:
-        """From the first pin to the second [m], (T,) each."""
+        """Return the vector from the first pin to the second [m], (T,) each."""
         p1, p2 = (chunk.point(self.holds[pin], pin).p for pin in (self.pin1, self.pin2))
         x, y = (np.broadcast_to(one, chunk.theta.shape) for one in ((p2 - p1).x, (p2 - p1).y))
         return x, y
 
 
 def _smallest(chunk: Chunk) -> Real:
-    """The smallest sine of the dyads so far at every sample, at least rounding; 0/0 is that."""
+    """Return the smallest sine of the dyads so far at every sample, rounding at least (0/0)."""
     smallest: Real = 1.0
     for sine in chunk.sines.values():
         smallest = np.minimum(smallest, np.nan_to_num(np.abs(sine), nan=0.0))
@@ -158,7 +157,7 @@ def _smallest(chunk: Chunk) -> Real:
 def _error(
     p1: PointKinematics, p2: PointKinematics, d: Vec, length: float, rates: tuple[Real, Real]
 ) -> AngleError | None:
-    """Bounds of the angle, the rate and the acceleration, if the pins carry theirs.
+    """Return bounds of the angle, the rate and the acceleration, if the pins carry theirs.
 
     With the errors e of d, the misfit in it, and ev of v: e / l, doubled, is more than the angle
     (half a turn is the most); d / d^2 differs by e over both its lengths, and d x a likewise.

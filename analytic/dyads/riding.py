@@ -1,4 +1,4 @@
-"""Prismatic pairs as lines that a body rides on, and the bodies that hang on what was found.
+"""Prismatic pairs as lines that a body rides on, and the bodies of the solved unknowns.
 
 A prismatic pair joins a guide (the body that carries the line) and a slider body (block or link).
 Either of the two may be the known one, so the pair is first written as a line of the *known* body
@@ -33,9 +33,9 @@ def total(*points: Point) -> Point:
 
 
 def rounding_of(angles: tuple[float, ...], *vectors: Point, onto: Point = (0.0, 0.0)) -> float:
-    """Rounding of a place worked out by turning constant vectors by sums of the angles [m].
+    """Return the rounding of a place from constant vectors, turned by sums of the angles [m].
 
-    ``onto`` is what they were added to; 0 where there was nothing to add.
+    ``onto`` is the vector that they were added to; 0 where there was nothing to add.
     """
     length = sum(math.hypot(*v) for v in vectors)
     turning = rounding_of_angles(*angles) + 2 * EPS
@@ -43,7 +43,7 @@ def rounding_of(angles: tuple[float, ...], *vectors: Point, onto: Point = (0.0, 
 
 
 def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointError:
-    """The error of a point whose place on its body is uncertain by ``slack`` [m]."""
+    """Return the error of a point whose place on its body is uncertain by ``slack`` [m]."""
     assert body.error is not None
     rate = np.abs(body.omega) + body.error.omega
     gain = np.abs(body.alpha) + body.error.alpha + rate * rate
@@ -54,23 +54,23 @@ def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointErr
 
 @dataclass(frozen=True)
 class PlacedBodies:
-    """What a group hangs on: the bodies ``known`` of a scene, placed before it."""
+    """Supports of a group: the bodies ``known`` of a scene, placed before it."""
 
     scene: Scene
     structure: Structure
     known: frozenset[str]
 
     def holder(self, pin: str) -> str:
-        """A known body that carries the pin."""
+        """Return a known body that carries the pin."""
         return next(body for body in self.structure.pins[pin] if body in self.known)
 
     def local(self, body: str, point: str) -> Point:
-        """A point in the frame of a body that carries it [m]."""
+        """Return a point in the frame of a body that carries it [m]."""
         return local_point(self.scene, body, point)
 
 
 class Bar:
-    """A link from a known pin that it hangs on, ``outer``, to another of its pins, ``inner``."""
+    """Link from a known pin that holds it, ``outer``, to another of its pins, ``inner``."""
 
     def __init__(self, placed: PlacedBodies, link: str, outer: str, inner: str) -> None:
         self.link, self.outer, self.holder = link, outer, placed.holder(outer)
@@ -80,18 +80,18 @@ class Bar:
         self.back = Vec(span[0] / self.length, span[1] / self.length)
 
     def anchor(self, chunk: Chunk) -> PointKinematics:
-        """The motion of the known pin."""
+        """Return the motion of the known pin."""
         return chunk.point(self.holder, self.outer)
 
     def body(self, turning: Turning, anchor: PointKinematics) -> BodyKinematics:
-        """The link, by its rotation and the motion of the known pin."""
+        """Return the link, by its rotation and the motion of the known pin."""
         return turning_body(turning, self.back, self.local, anchor)
 
 
 def turning_body(
     found: Turning, back: Vec, local: Point, anchor: PointKinematics, rounding: float = 0.0
 ) -> BodyKinematics:
-    """The body whose frame stands at the angle of ``found`` less that of ``back``, which is known
+    """Return the body whose frame has the angle of ``found`` less that of ``back``, which is known
     but for ``rounding`` [rad]."""
     aligned = back.x == 1.0 and back.y == 0.0
     turn = found.turn if aligned else found.turn.turned(Vec(back.x, -back.y))
@@ -104,7 +104,7 @@ def turning_body(
 def following_body(
     known: BodyKinematics, by: float, rounding: float, local: Point, anchor: PointKinematics
 ) -> BodyKinematics:
-    """The body that keeps the angle ``by``, known but for ``rounding`` [rad], to a known body."""
+    """Return the body at the angle ``by``, known but for ``rounding`` [rad], to a known body."""
     theta = None if known.theta is None else known.theta + by
     error = known.error
     if error is not None:
@@ -115,12 +115,12 @@ def following_body(
 
 @dataclass(frozen=True)
 class RidingLine:
-    """A prismatic pair as a line of its known body.
+    """Prismatic pair as a line of its known body.
 
-    The line goes through ``base`` at ``angle`` in the known body's frame; the slider's
-    displacement is ``sign`` times the coordinate on this line. The unknown body keeps the angle
-    ``follow`` to the known one, the sum of ``angles``, and its point ``rider`` (in its own frame)
-    is the one on the line. ``slack`` bounds the rounding of ``base`` where that was worked out [m].
+    The line goes through ``base`` at ``angle`` in the known body's frame; the slider's displacement
+    is ``sign`` times the coordinate on this line. The unknown body keeps the angle ``follow`` to
+    the known one, the sum of ``angles``, and its point ``rider`` (in its own frame) is on the line.
+    ``slack`` bounds the rounding of a computed ``base`` [m].
     """
 
     known: str
@@ -134,7 +134,7 @@ class RidingLine:
 
     @staticmethod
     def of(placed: PlacedBodies, name: str) -> RidingLine:
-        """The pair of slider ``name``, of which one body is known."""
+        """Return the pair of slider ``name``, of which one body is known."""
         slider = placed.scene.sliders[name]
         body = sliding_body(slider)
         pin = placed.local(body, slider.point)
@@ -146,7 +146,7 @@ class RidingLine:
         return RidingLine(body, pin, -angle, -1, -line - angle, both, slider.through_m)
 
     def through(self, local: Point) -> tuple[RidingLine, float]:
-        """The parallel line of another point of the unknown body, and that point's lead on it."""
+        """Return the parallel line of another point of the unknown body, and its lead on it."""
         away = less(local, self.rider)
         lead, aside = turned(away, self.follow - self.angle)
         base = total(self.base, turned((0.0, aside), self.angle))
@@ -159,7 +159,7 @@ class RidingLine:
         return rounding_of_angles(*self.angles)
 
     def line(self, chunk: Chunk) -> MovingLine:
-        """The line in motion."""
+        """Return the line in motion."""
         body = chunk.bodies[self.known]
         along = body.unit(self.angle)
         error = body.error
@@ -172,7 +172,7 @@ class RidingLine:
         return MovingLine(point, along, body.omega, body.alpha, error)
 
     def displacement(self, found: Sliding, lead: float) -> Sliding:
-        """The slider's own displacement from the coordinate of a point that leads it."""
+        """Return the slider's own displacement from the coordinate of a point that leads it."""
         own = without_lead(found, lead, self.slack)
         if self.sign > 0:
             return own
@@ -180,7 +180,7 @@ class RidingLine:
 
 
 def without_lead(found: Sliding, lead: float, slack: float) -> Sliding:
-    """The displacement behind a point that leads it; ``slack`` bounds the rounding of the lead."""
+    """Return the displacement behind a leading point; ``slack`` bounds the rounding of the lead."""
     error = found.error
     if error is not None and slack:
         rounding = EPS * (abs(lead) + np.abs(found.s)) + slack
@@ -189,7 +189,7 @@ def without_lead(found: Sliding, lead: float, slack: float) -> Sliding:
 
 
 def riding_point(line: MovingLine, found: Sliding) -> PointKinematics:
-    """The motion of the point that slides on a moving line."""
+    """Return the motion of the point that slides on a moving line."""
     s, speed = found.s, found.speed
     p = line.at(s)
     v = line.velocity(s) + line.along * speed

@@ -40,7 +40,7 @@ def solve(
     inner : Vec
         Unit vector of the block's line k against e: the constant angle from e to k.
     rounding : float
-        What that angle may be off by [rad].
+        Error of that angle [rad].
     certified, stretch
         As for `analytic.dyads.prp.solve`.
 

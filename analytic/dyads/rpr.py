@@ -100,7 +100,7 @@ def _errors(
     jacobian: Jacobian,
     dyad: Dyad[Turning, Sliding],
 ) -> tuple[AngleError, SlideError]:
-    """Bounds of the angle and the displacement with their derivatives."""
+    """Return bounds of the angle and the displacement with their derivatives."""
     assert p1.error is not None
     assert p2.error is not None
     turning, sliding = dyad.first, dyad.second
@@ -108,7 +108,7 @@ def _errors(
     w, v = np.abs(turning.omega), np.abs(sliding.speed)
     arm = np.hypot(s, offset)
     gap = (p1.p - p2.p - along * s - along.perp() * offset).norm()
-    # Half a unit of the distance of the pins, and what the line's direction is longer than 1 by.
+    # Half a unit of the distance of the pins, and the excess of the line's direction over 1.
     residual = gap + p1.error.position + p2.error.position + 5 * EPS * (np.abs(s) + abs(offset))
 
     def folds() -> tuple[Real, Real]:

@@ -101,7 +101,7 @@ def _errors(
     jacobian: Jacobian,
     dyad: Dyad[Turning, Sliding],
 ) -> tuple[AngleError, SlideError]:
-    """Bounds of the angle and the displacement with their derivatives."""
+    """Return bounds of the angle and the displacement with their derivatives."""
     assert p1.error is not None
     assert line.error is not None
     turning, sliding = dyad.first, dyad.second
@@ -110,7 +110,7 @@ def _errors(
     place, _, _ = line.errors(s, speed, 0.0, 0.0)
     size = p1.p.norm() + 5.0 * length + 1.5 * line.sizes(s, speed)[0]
     residual = gap + p1.error.position + place + EPS * size
-    # The line turns with the error of its body: about the pin itself this opens nothing, yet it
+    # The line turns with the error of its body: about the pin itself this opens no gap, yet it
     # moves the toggle.
     turn = line.error.theta + 2 * EPS
     slack = residual + turn * (np.abs(jacobian.det) + turn * length)

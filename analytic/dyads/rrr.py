@@ -100,7 +100,7 @@ def solve(
         w1, w2 = relative.dot(r2), relative.dot(r1)
         w1 *= inverse
         w2 *= inverse
-        # What the centripetal parts, omega^2 r towards the outer pins, leave to alpha.
+        # The rest for alpha after the centripetal parts, omega^2 r towards the outer pins.
         relative = (p1.a - p2.a).less(r1, w1 * w1).more(r2, w2 * w2)
         g1, g2 = relative.dot(r2), relative.dot(r1)
         g1 *= inverse
@@ -122,7 +122,7 @@ def _errors(
     dyad: Dyad[Turning, Turning],
     apart: Real,
 ) -> tuple[AngleError, AngleError]:
-    """Bounds of the two angles, rates and accelerations."""
+    """Return bounds of the two angles, rates and accelerations."""
     assert p1.error is not None
     assert p2.error is not None
     first, second = dyad.first, dyad.second
@@ -156,7 +156,7 @@ def _errors(
 def _folds(
     jacobian: Jacobian, residual: Real, apart: Real, dyad: Dyad[Turning, Turning]
 ) -> tuple[Real, Real]:
-    """Bounds of the angles where the first order says nothing: of the line between the outer pins,
+    """Return bounds of the angles where the first order fails: of the line between the outer pins,
     and of the links against it.
 
     By a residual e the foot of C on the line, x1 from P1 and x2 from P2, moves along it by up to
@@ -176,6 +176,6 @@ def _folds(
         shift = 2.0 * share * (far + (far + near) * share)
         small = (share <= 0.25) & (4.0 * one.length * shift <= height * height)
         swing = np.where(small, 2.0 * shift / height, fold / one.length)
-        # No angle is wrong by more than half a turn; nor is one that was not found at all (NaN).
+        # No angle is wrong by more than half a turn, not even one without a solution (NaN).
         found.append(np.fmin(np.fmin(swing, fold / one.length) + line, np.pi))
     return found[0], found[1]

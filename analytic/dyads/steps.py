@@ -1,4 +1,4 @@
-"""From a structural group to its closed-form step: geometry prepared once, solved per chunk."""
+"""Closed-form steps of structural groups: geometry prepared once, solved per chunk."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -29,7 +29,7 @@ from models.scene.joints import less, sliding_body, turned
 
 
 class Step(Protocol):
-    """A prepared group; ``key`` names its dyad in the motion's conditioning."""
+    """Prepared group; ``key`` names its dyad in the motion's conditioning."""
 
     @property
     def key(self) -> str: ...
@@ -40,7 +40,7 @@ class Step(Protocol):
 
 
 class FollowedStep(ABC):
-    """A step of a group that has no closed form: its assembly is followed along the driver."""
+    """Step of a group that has no closed form: its assembly is followed along the driver."""
 
     key: str
 
@@ -49,19 +49,19 @@ class FollowedStep(ABC):
 
     @abstractmethod
     def period(self, passages: Mapping[str, Passage]) -> float | None:
-        """The driver angle after which the assembly comes back [rad]; None where it ends."""
+        """Return the driver angle after which the assembly comes back [rad]; None where it ends."""
         ...
 
     @abstractmethod
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
-        """The change points of the group, each once, that a driver passes between two angles."""
+        """Return the group's change points that a driver passes between two angles, each once."""
         ...
 
     @abstractmethod
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
-        """What ends it beside a driver angle [rad]."""
+        """Return the text of the end beside a driver angle [rad]."""
         ...
 
 
@@ -71,7 +71,7 @@ def stretched(
     theta: Array,
     passages: Mapping[str, Passage] | None = None,
 ) -> Chunk:
-    """The mechanism at driver angles that may be out of reach, its open dyads stretched in line."""
+    """Return the mechanism at driver angles that may be out of reach, with open dyads in line."""
     zero = np.zeros_like(theta)
     chunk = Chunk.begin(scene, theta, zero, zero, stretch=True, passages=passages)
     with np.errstate(all="ignore"):  # parallel lines cross at infinity

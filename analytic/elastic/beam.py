@@ -7,10 +7,10 @@
       A ---------- B -> e         u = extension - (1/2) int_0^x w'^2 dx: a bent link is shorter
 
 Its coordinates are those of a rigid body, then the coefficients of shapes across and along. All
-inertia is kept (that of Coriolis, centrifugal, Euler's, and gyroscopic between u and w), by
-quadrature over the link. Without the shortening, as in the thesis, the stiffness that a link gains
-by being pulled is lost. Source: Thesis on vibration of planar mechanisms with elastic links (2018),
-chapter 2; A. A. Shabana, Dynamics of Multibody Systems, chapter 5.
+inertia is kept (Coriolis, centrifugal, Euler's, and gyroscopic between u and w), by quadrature over
+the link. Without the shortening, as in the thesis, the stiffness that a pulled link gains is lost.
+Source: Thesis on vibration of planar mechanisms with elastic links (2018), chapter 2; A. A.
+Shabana, Dynamics of Multibody Systems, chapter 5.
 """
 
 from __future__ import annotations
@@ -31,10 +31,8 @@ from models.scene.joints import turned
 
 @dataclass(frozen=True)
 class ElasticBody:
-    """What makes the body of an elastic link (`Flexible`): its line, and the shapes it may take.
-
-    ``stiffened`` keeps the shortening of the bent link.
-    """
+    """Maker of the body of an elastic link (`Flexible`): its line and its shapes. ``stiffened``
+    keeps the shortening of the bent link."""
 
     link: ElasticLink
     line: LinkLine
@@ -48,7 +46,7 @@ class ElasticBody:
 @dataclass(frozen=True)
 class _Places:
     """K places of the link: x and y [m] (K,), values and slopes of shapes across (K, m), values of
-    those along (K, n), the shortening S (K, m, m)."""
+    shapes along (K, n), the shortening S (K, m, m)."""
 
     x: Array
     y: Array
@@ -60,8 +58,8 @@ class _Places:
 
 @dataclass(frozen=True)
 class _Spread:
-    """The places of a link at coordinates, in the directions of its frame: ``along`` and ``across``
-    (T, K), and their derivatives by the coefficients, (T, K, m + n) and (K, m + n)."""
+    """Places of a link at coordinates, in the directions of its frame: ``along`` and ``across`` (T,
+    K), and their derivatives by the coefficients, (T, K, m + n) and (K, m + n)."""
 
     along: Array
     across: Array
@@ -103,7 +101,7 @@ class BeamBody:
         )  # fmt: skip
 
     def _stiffness(self, x: Array, weights: Array) -> Array:
-        """EI int f_i'' f_j'' and EA int g_i' g_j', (m + n, m + n)."""
+        """Return EI int f_i'' f_j'' and EA int g_i' g_j', (m + n, m + n)."""
         shapes = self.shapes
         m = shapes.across
         whole = np.zeros((self.size - 3, self.size - 3))
@@ -116,13 +114,13 @@ class BeamBody:
         return whole
 
     def _shortened(self, at: _Places, bent: Array) -> Array:
-        """S q at all places, (T, K, m)."""
+        """Return S q at all places, (T, K, m)."""
         count, m = len(at.x), self.shapes.across
         flat = at.shortening.reshape(count * m, m)
         return np.asarray((bent @ flat.T).reshape(len(bent), count, m))
 
     def _spread(self, at: _Places, q: Array) -> _Spread:
-        """The places at coordinates (T, n)."""
+        """Return the places at coordinates (T, n)."""
         bent, drawn = q[:, self._bent], q[:, self._drawn]
         count, m = len(q), self.shapes.across
         along_by = np.empty((count, len(at.x), self.size - 3))
@@ -139,7 +137,7 @@ class BeamBody:
         return _Spread(along, across, along_by, across_by)
 
     def _drift(self, at: _Places, spread: _Spread, rates: Array) -> tuple[Array, Array]:
-        """Accelerations along and across (T, K) where the q'' are 0."""
+        """Return the accelerations along and across (T, K) for q'' = 0."""
         omega, own, bending = rates[:, 2:3], rates[:, 3:], rates[:, self._bent]
         along = (spread.along_by @ own[:, :, None])[:, :, 0]
         across = own @ spread.across_by.T
@@ -149,7 +147,7 @@ class BeamBody:
         return gained, 2.0 * omega * along - omega**2 * spread.across
 
     def _turned(self, q: Array) -> tuple[Array, Array]:
-        """Cosine and sine of the line's angle, (T, 1)."""
+        """Return cosine and sine of the line's angle, (T, 1)."""
         angle = q[:, 2:3] + self._lean
         return np.cos(angle), np.sin(angle)
 
@@ -178,7 +176,7 @@ class BeamBody:
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
         at, (c, s) = self._within, self._turned(q)
         spread = self._spread(at, q)
-        # What every bit of mass moves by, along and across the line, for each coordinate.
+        # Motion of every bit of mass, along and across the line, for each coordinate.
         moved = np.empty((len(q), 2, len(at.x), self.size))
         moved[:, 0, :, 0], moved[:, 0, :, 1] = c, s
         moved[:, 1, :, 0], moved[:, 1, :, 1] = -s, c
@@ -202,7 +200,7 @@ class BeamBody:
         return np.asarray(strain - (x * self._gravity[0] + y * self._gravity[1]) @ self._mass)
 
     def lost(self, rates: Array) -> Array:
-        """The power that its damping takes [W], (T,)."""
+        """Return the power that its damping takes [W], (T,)."""
         own = rates[:, 3:]
         return np.asarray(np.einsum("ti,ij,tj->t", own, self.damping, own))
 
@@ -210,7 +208,7 @@ class BeamBody:
         return np.asarray(q[:, self._bent] @ self.shapes.deflections(x, 0).T)
 
     def strains(self, q: Array, x: Array) -> Array:
-        """By which share it is longer at places x (X,) [m], (T, X)."""
+        """Return its strain at places x (X,) [m], (T, X)."""
         return np.asarray(q[:, self._drawn] @ self.shapes.extensions(x, 1).T)
 
     def extension(self, q: Array) -> Array:

@@ -1,7 +1,7 @@
 """Elastic links of a mechanism whose driver is controlled (`models.scene.driver`).
 
-Nothing tells the driver's angle: it is one of the freedoms, as in what is let go, with the torque
-of the controller on it. What the rigid mechanism needs comes from its kinetostatics.
+The driver's angle is one of the freedoms, as in free motion, with the torque of the controller on
+it. The torque that the rigid mechanism needs comes from its kinetostatics.
 """
 
 from dataclasses import replace
@@ -34,10 +34,10 @@ def elastic_history(
     stiffened: bool = True,
     tolerance: float | None = None,
 ) -> ElasticHistory:
-    """The motion from time 0 to ``until_s`` [s], which starts with a shape.
+    """Return the motion from time 0 to ``until_s`` [s], which starts with a shape.
 
-    ``tolerance`` is that of `release_elastic`, for what gives way. Raises CrankcheckError as that,
-    and as `DrivenElasticMotion` where it is asked for anything.
+    ``tolerance`` is that of `release_elastic`, for free and controlled drivers. Raises
+    CrankcheckError as `release_elastic`, and as `DrivenElasticMotion` where it is evaluated.
     """
     match scene.driver.law:
         case Controlled():
@@ -51,14 +51,14 @@ def elastic_history(
 
 
 TURN_SAMPLES = (64, 128, 256, 512, 1024)
-"""Of the torque that the rigid mechanism needs, tried one after the other."""
+"""Numbers of samples of the rigid mechanism's torque, tried one after the other."""
 SMOOTH, REPEATED = 1e-13, 1e-9
-"""Of its largest: what the shortest waves of a smooth one come to, and what it may be off by a turn
-later."""
+"""Largest amplitude of the shortest waves of a smooth torque, and largest change of the torque a
+turn later, both over its largest value."""
 
 
 class ControlledForces(GeneralisedForces):
-    """What acts on an assembly whose driver is controlled."""
+    """Forces on an assembly whose driver is controlled."""
 
     def __init__(self, assembly: Assembly, start: Array) -> None:
         super().__init__(assembly, start)
@@ -81,7 +81,7 @@ class ControlledForces(GeneralisedForces):
 
 @lru_cache(maxsize=16)  # every round of Newton's method asks for the same instants
 def _needed(rigid: Same, time_s: tuple[float, ...]) -> Array:
-    """The driving torque of a rigid mechanism that keeps to its law [N m], (T,)."""
+    """Return the driving torque of a rigid mechanism that follows its law exactly [N m], (T,)."""
     instants, place = np.unique(np.array(time_s), return_inverse=True)
     return forces(rigid.scene, instants, bound=False).torque[place]
 
@@ -95,9 +95,9 @@ def control_elastic(
     method: Method = "collocation",
     tolerance: float | None = None,
 ) -> ReleasedElasticMotion:
-    """The motion of a scene with elastic links whose driver is controlled.
+    """Prepare the motion of a scene with elastic links whose driver is controlled.
 
-    Parameters and errors otherwise as those of `analytic.elastic.released.release_elastic`.
+    Parameters and errors otherwise as in `analytic.elastic.released.release_elastic`.
 
     Raises
     ------
@@ -110,10 +110,10 @@ def control_elastic(
 
 
 def released_under_control(scene: Scene) -> Scene:
-    """A scene whose driver is controlled as one that is let go, with the torque of the controller
-    as loads: what engines are given.
+    """Return a scene whose driver is controlled as a free one, with the torque of the controller as
+    loads: the scene for engines.
 
-    What the rigid mechanism needs is a sum of Fourier's, to rounding.
+    The torque that the rigid mechanism needs is a Fourier sum, to rounding.
 
     Raises
     ------
@@ -131,13 +131,13 @@ def released_under_control(scene: Scene) -> Scene:
 
 
 def _needed_sum(scene: Scene, law: Controlled) -> FourierSum:
-    """The driving torque of the rigid mechanism over a turn. Raises CrankcheckError."""
+    """Return the driving torque of the rigid mechanism over a turn. Raises CrankcheckError."""
     rigid, period_s = Same(with_rigid_links(scene)), law.period_s
     for count in TURN_SAMPLES:
         turn_s = period_s / count * np.arange(count)
         torque = _needed(rigid, tuple(turn_s))
         size = float(np.abs(torque).max()) or 1.0
-        # Of as many samples the shortest wave is of two; the last half says what is left out.
+        # The shortest wave has two samples; the last half of the waves shows the truncation.
         waves = np.fft.rfft(torque)[: count // 2] / count
         if np.abs(waves[count // 4 :]).max() <= SMOOTH * size:
             later = _needed(rigid, tuple(turn_s[:: count // 8] + period_s))
@@ -155,7 +155,7 @@ def _needed_sum(scene: Scene, law: Controlled) -> FourierSum:
 
 
 def _controlled(scene: Scene) -> Controlled:
-    """The law of a driver that is controlled. Raises CrankcheckError for another."""
+    """Return the law of a controlled driver. Raises CrankcheckError for another."""
     law = scene.driver.law
     if not isinstance(law, Controlled):
         raise CrankcheckError(

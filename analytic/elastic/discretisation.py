@@ -1,4 +1,4 @@
-"""By how many shapes, and of which kind, elastic links are described."""
+"""Descriptions of elastic links: the kind and the number of their shapes."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ from models.scene.joints import turned
 
 @dataclass(frozen=True)
 class Modes:
-    """Ritz and Galerkin's method with so many sines across, and along, each elastic link; those of
-    a kind that it has none of are left out."""
+    """Ritz and Galerkin's method with so many sines across, and along, each elastic link that
+    bends, or stretches."""
 
     across: int = 5
     along: int = 2
 
     @property
     def finer(self) -> Polynomials:
-        """Polynomials: modes come to what they leave out too slowly to tell how much it is."""
+        """Polynomials: modes converge too slowly to show the size of their truncation."""
         return Polynomials(max(REFERENCE.across, self.across + 2), self.along + 2)
 
 
 @dataclass(frozen=True)
 class Polynomials:
-    """So many polynomials across, and along, each elastic link: what the reference takes."""
+    """So many polynomials across, and along, each elastic link: the shapes of the reference."""
 
     across: int = 8
     along: int = 3
@@ -61,28 +61,28 @@ class Elements:
 
 @dataclass(frozen=True)
 class Segments:
-    """So many rigid segments with springs between them: not the beam, but what engines are given
-    for it. ``corrected`` springs give the chain the sag of the beam."""
+    """So many rigid segments with springs between them: the chain that engines get for the beam.
+    ``corrected`` springs give the chain the sag of the beam."""
 
     count: int = 16
     corrected: bool = False
 
     @property
     def finer(self) -> Segments:
-        """As many: a chain is what it is."""
+        """The same segments: a chain has no finer description."""
         return self
 
 
 Discretisation = Polynomials | Modes | Elements | Segments
 REFERENCE = Polynomials()
-"""Where none is asked for: good to 1e-9 of the largest deflection, and with its resonances where
-those of the beam are."""
+"""The default: good to 1e-9 of the largest deflection, with its resonances where the beam has
+them."""
 
 
 def flexible_links(
     scene: Scene, by: Discretisation, *, stiffened: bool = True
 ) -> dict[str, ElasticBody | SegmentedBody]:
-    """The elastic links of a scene as what makes their bodies, by name.
+    """Return the makers of the bodies of a scene's elastic links, by name.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def flexible_links(
 
 
 def _check(scene: Scene, by: Discretisation) -> None:
-    """Raises CrankcheckError for a description that no elastic link can have."""
+    """Refuse a description that no elastic link can have. Raises CrankcheckError."""
     for name, link in scene.elastic.items():
         if isinstance(by, Modes | Polynomials):
             counts = [by.across] * link.bends + [by.along] * link.stretches
@@ -134,9 +134,9 @@ def _flexible(
 
 @dataclass(frozen=True)
 class ElasticDoubt:
-    """The largest distances from any of the others, (T,) each: ``middle_m`` and ``extension_m`` of
-    each elastic link [m], ``theta_rad`` of each link [rad], and ``torque_n_m`` of the driver [N m],
-    0 where nothing drives it.
+    """Largest distances of a motion from any of the others, (T,) each: ``middle_m`` and
+    ``extension_m`` of each elastic link [m], ``theta_rad`` of each link [rad], and ``torque_n_m``
+    of the driver [N m], 0 where nothing drives it.
 
     Where the error at least halves from a description to the next finer one, it is at most twice
     that change.
@@ -149,7 +149,7 @@ class ElasticDoubt:
 
     @staticmethod
     def between(motion: Motion, *others: Motion) -> ElasticDoubt:
-        """Of a motion from others at the same instants."""
+        """Return the distances of a motion from others at the same instants."""
         shapes, links = motion.elastic, motion.links
         return ElasticDoubt(
             {
@@ -166,7 +166,7 @@ class ElasticDoubt:
 
     @property
     def so_far(self) -> ElasticDoubt:
-        """The largest up to each instant: what has gone astray does not come back by itself."""
+        """The largest up to each instant: a motion that has gone astray does not come back."""
         return ElasticDoubt(
             _running(self.middle_m),
             _running(self.extension_m),
@@ -192,16 +192,16 @@ Complexes = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class SegmentedBody:
-    """What makes the chain of a link (`Flexible`): ``count`` segments; ``corrected`` springs make
-    the sag of the chain that of the beam.
+    """Maker of the chain of a link (`Flexible`): ``count`` segments; ``corrected`` springs make the
+    sag of the chain that of the beam.
 
     ::
 
         A o--1--@--2--@--3--@ ... --n--o B        @ a pin with a spring, n - 1 of them
 
-    The chain that `models.scene.cut_scenes` makes of an elastic link, as a body of the multibody
-    form: so an engine's chain has an exact one beside it. Its coordinates are those of the first
-    segment, then the angle of each segment against the one before it.
+    The body is the chain that `models.scene.cut_scenes` makes of an elastic link, so that an
+    engine's chain has an exact one to compare with. Its coordinates are those of the first segment,
+    then the angle of each segment against the one before it.
     """
 
     link: ElasticLink
@@ -221,8 +221,8 @@ class SegmentedBody:
 class SegmentChain:
     """One chain (`Body`).
 
-    A place of it is a sum over the segments, each of which turns a part of the way: as complex
-    numbers o + sum_j P_j exp(i theta_j), with theta_j the angles of the segments.
+    A place on it, as a complex number, is o + sum_j P_j exp(i theta_j), with theta_j the angles of
+    the segments, each of which turns a part P_j of the way.
     """
 
     def __init__(self, own: SegmentedBody, markers: Sequence[Marker], gravity: Point) -> None:
@@ -247,8 +247,8 @@ class SegmentChain:
         self.damping = own.link.damping_s * self.stiffness
 
     def _mark(self, markers: Sequence[Marker]) -> None:
-        """P of each marker (K, n), the segment that it is on, and its angle ahead of that; the
-        frame itself has none."""
+        """Set P of each marker (K, n), its segment, and its angle ahead of that; the frame itself
+        has no P."""
         n = self.own.count
         self._ahead = np.array([angle for _, angle in markers])
         self._parts = np.zeros((len(markers), n), dtype=np.complex128)
@@ -263,7 +263,7 @@ class SegmentChain:
             self._parts[k, 0] += self._start
 
     def _directions(self, q: Array) -> Complexes:
-        """exp(i theta) of all segments, (T, n)."""
+        """Return exp(i theta) of all segments, (T, n)."""
         return np.asarray(np.exp(1j * (q @ self._turns.T + self._lean)))
 
     def mark(self, q: Array, rates: Array) -> Markers:
@@ -317,7 +317,7 @@ class SegmentChain:
         return np.asarray(np.einsum("ti,ij,tj->t", own, self.damping, own))
 
     def deflections(self, q: Array, x: Array) -> Array:
-        """As those of `Beam`, with straight segments."""
+        """Deflections as `Beam` has them, with straight segments."""
         nodes = self._from_start(q)
         line = nodes[:, -1:]
         away = (nodes * line.conj()).imag / np.abs(line)
@@ -329,12 +329,12 @@ class SegmentChain:
         return np.asarray(np.abs(self._from_start(q)[:, -1]) - self.own.line.length_m)
 
     def _from_start(self, q: Array) -> Complexes:
-        """From A to the ends of all segments, (T, n + 1)."""
+        """Return the vectors from A to the ends of all segments, (T, n + 1)."""
         nodes = np.zeros((len(q), self.own.count + 1), dtype=np.complex128)
         nodes[:, 1:] = np.cumsum(self._piece * self._directions(q), axis=1)
         return nodes
 
     def segment_angles(self, q: Array) -> Array:
-        """Of coordinates (size,) the angles of all segments in the frame of the ground, or of rates
-        their angular velocities, (n,)."""
+        """Return the angles of all segments in the frame of the ground, (n,), from coordinates
+        (size,), or their angular velocities from rates."""
         return np.asarray(self._turns @ q)

@@ -1,8 +1,8 @@
-"""The motion of a driven mechanism with elastic links: the reference of what engines are held to.
+"""Motion of a driven mechanism with elastic links: the reference for engines.
 
-The links are described by shapes (`Modes`, `Elements`, or the `Segments` that engines have), the
-joints are solved for, and what is left is integrated, or found as the periodic motion. How far the
-result is to be trusted is seen from the next finer description.
+The links are described by shapes (`Modes`, `Elements`, or the `Segments` of engines), the joints
+are eliminated, and the remaining equations are integrated, or solved for the periodic motion. The
+next finer description shows the error of the result.
 """
 
 from __future__ import annotations
@@ -37,19 +37,19 @@ from models.scene.elastic import Shape
 
 PER_TURN, PER_CYCLE = 24, 6
 """Windows of the integration in a turn of the driver, and in a cycle of the first mode across: 10
-nodes follow the third to 9 digits, and those above as far as their part in the motion needs."""
+nodes follow the third to 9 digits, and higher ones as far as their part in the motion needs."""
 
 MOST_PER_TURN = 600
-"""What rings faster is so stiff that it hardly bends; the method stands it, and the doubt tells."""
+"""Faster modes are so stiff that they hardly bend; the method stands it, the doubt shows it."""
 MOST_WINDOWS = 50_000
 """Minutes of work."""
 MOST_BENT = 0.1
-"""Of the length of a link: bent further, its slopes are not small."""
+"""Largest deflection over the length of a link: beyond it, slopes are not small."""
 
 
 @dataclass(frozen=True)
 class DrivenElasticMotion:
-    """A scene with elastic links, driven by its law from time 0 to ``until_s``; the windows of the
+    """Scene with elastic links, driven by its law from time 0 to ``until_s``; the windows of the
     integration are ``halved`` so many times, and a periodic motion is taken at other instants.
     ``bare`` is the same mechanism with fewer named points, whose motion is sooner found."""
 
@@ -63,8 +63,8 @@ class DrivenElasticMotion:
 
     @cached_property
     def form(self) -> ReducedForm:
-        """The equations of motion. Raises CrankcheckError for a scene without elastic links, or a
-        drive that they can not follow."""
+        """Equations of motion. Raises CrankcheckError for a scene without elastic links, or a drive
+        that they can not follow."""
         turn = self.scene.driver.law.period_s if self.start == "periodic" else 0.0
         check_drive(self.scene, max(turn, self.until_s))
         flexible = flexible_links(self.scene, self.by, stiffened=self.stiffened)
@@ -74,7 +74,7 @@ class DrivenElasticMotion:
 
     @cached_property
     def _start(self) -> tuple[Array, Array]:
-        """The coefficients and their rates at time 0, (m,)."""
+        """Return the coefficients and their rates at time 0, (m,)."""
         if self.bare is not None:
             return self.bare._start
         still = np.zeros(self.form.size)
@@ -103,7 +103,7 @@ class DrivenElasticMotion:
         return replace(self, by=self.by.finer, halved=self.halved + 1, bare=bare)
 
     def doubt(self, time_s: Array) -> ElasticDoubt:
-        """How far the motion at times [s] is to be trusted."""
+        """Return the error estimate of the motion at times [s]."""
         return ElasticDoubt.between(self.at(time_s), self.finer.at(time_s))
 
     @property
@@ -129,7 +129,7 @@ class DrivenElasticMotion:
         return kinks
 
     def _windows(self) -> int:
-        """Of the integration, before they are halved."""
+        """Return the number of windows of the integration."""
         first = (e.frequency_rad_s for e in link_modes(self.scene, 1) if e.kind == "across")
         turns = self.until_s / self.scene.driver.law.period_s
         cycles = self.until_s * max(first, default=0.0) / math.tau
@@ -144,7 +144,7 @@ class DrivenElasticMotion:
         return int(windows * 2**self.halved)
 
     def instant(self, time_s: Array) -> tuple[Instant, Array]:
-        """The equations at times [s] (T,), and the second derivatives of the coefficients there."""
+        """Return the equations at times [s] (T,), and the coefficients' second derivatives."""
         z, rates, seconds = self.history.at(time_s)
         return self.form.at(time_s, z, rates, self.form.near(time_s)), seconds
 
@@ -154,11 +154,11 @@ class DrivenElasticMotion:
         return self.form.assembly
 
     def coordinates_at(self, time_s: Array) -> Array:
-        """Those of the assembly at times [s], (T, n)."""
+        """Return the coordinates of the assembly at times [s], (T, n)."""
         return self.instant(time_s)[0].now.q
 
     def at(self, time_s: Array) -> Motion:
-        """The motion at times [s], (T,), with its reactions and the driving torque. Raises
+        """Return the motion at times [s], (T,), with its reactions and the driving torque. Raises
         CrankcheckError for times after ``until_s``, unless it is periodic."""
         instants = samples(time_s, "time_s")
         last = float(instants.max(initial=0.0))
@@ -177,8 +177,8 @@ class DrivenElasticMotion:
         return replace(motion, forces=forces, elastic=self._shapes(now.now.q))
 
     def _shapes(self, q: Array) -> dict[str, LinkShape]:
-        """How the links are bent and stretched at coordinates (T, n). Raises CrankcheckError where
-        that is too far for the theory."""
+        """Return the deflection and extension of the links at coordinates (T, n). Raises
+        CrankcheckError where they are too large for the theory."""
         found = {
             name: LinkShape(
                 body.deflections(q[:, own], np.array([0.5 * body.length_m]))[:, 0],
@@ -199,11 +199,11 @@ class DrivenElasticMotion:
 
 
 JUMP = 1e-6
-"""Of the peak speed: what more it changes by at once is a jump."""
+"""Change of the speed over its peak, from which on it is a jump."""
 
 
 def check_drive(scene: Scene, until_s: float) -> None:
-    """Refuse what elastic links can not be followed through from time 0 to ``until_s``.
+    """Refuse a drive that elastic links can not follow from time 0 to ``until_s``.
 
     Raises
     ------
@@ -234,13 +234,13 @@ def check_drive(scene: Scene, until_s: float) -> None:
 
 
 ElasticHistory = DrivenElasticMotion | ReleasedElasticMotion
-"""What follows a law, and what is let go."""
+"""Driven and free motions."""
 TOGETHER = 2000
-"""Instants: some 100 MB."""
+"""Instants computed at once: some 100 MB."""
 
 
 def sampled(motion: ElasticHistory, time_s: Array) -> Motion:
-    """The motion at times [s], (T,), in any order."""
+    """Return the motion at times [s], (T,), in any order."""
     order = np.argsort(time_s, kind="stable")
     whole = Motion.joined([motion.at(time_s[part]) for part in _parts(order)])
     if np.array_equal(order, np.arange(order.size)):
@@ -251,8 +251,8 @@ def sampled(motion: ElasticHistory, time_s: Array) -> Motion:
 
 
 def bent(motion: ElasticHistory, time_s: Array, shares: Array) -> dict[str, Array]:
-    """How far elastic links are from the line between their pins, by name [m], (T, K), at times [s]
-    (T,) in ascending order, and at shares (K,) of the length from the first pin to the second."""
+    """Return the deflections of elastic links from the line between their pins, by name [m], (T,
+    K), at times [s] (T,) in ascending order, and at shares (K,) of the length between them."""
     found: dict[str, list[Array]] = {}
     for part in _parts(np.arange(time_s.size)):
         q = motion.coordinates_at(time_s[part])
@@ -263,7 +263,7 @@ def bent(motion: ElasticHistory, time_s: Array, shares: Array) -> dict[str, Arra
 
 
 def energies(motion: ReleasedElasticMotion, time_s: Array) -> EnergyBalance:
-    """Of what is let go, at times [s], (T,) in ascending order."""
+    """Return the energies of a free motion at times [s], (T,) in ascending order."""
     parts = [motion.energy(time_s[part]) for part in _parts(np.arange(time_s.size))]
     return EnergyBalance.joined(parts)
 
@@ -273,8 +273,8 @@ def _parts(order: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
 
 
 def fastest_rad_s(scene: Scene, by: Discretisation) -> float:
-    """The highest angular frequency of the links in the position of the start, unloaded, or what
-    dies off the fastest where damping_s makes that faster still."""
+    """Return the highest angular frequency of the links in the position of the start, unloaded, or
+    the fastest decay rate where damping_s makes that larger still."""
     by_place, by_rate = _of_released(scene, by) if scene.is_free else _of_driven(scene, by)
     highest = math.sqrt(float(np.linalg.eigvals(-by_place).real.max()))
     links = scene.elastic.values()
@@ -286,14 +286,14 @@ def fastest_rad_s(scene: Scene, by: Discretisation) -> float:
 
 
 def _of_driven(scene: Scene, by: Discretisation) -> tuple[Array, Array]:
-    """What accelerations of the coefficients are by these and by their rates, (m, m) each."""
+    """Return the derivatives of the coefficients' accelerations by these and their rates."""
     motion = DrivenElasticMotion(scene, 1.0, by, "straight", stiffened=True)
     form, mass = motion.form, motion.first.mass[0]
     return -np.linalg.solve(mass, form.stiffness), -np.linalg.solve(mass, form.damping)
 
 
 def _of_released(scene: Scene, by: Discretisation) -> tuple[Array, Array]:
-    """The same where nothing holds the driver, of its angle too."""
+    """Return the same for a free motion, by the driver's angle too."""
     straight = replace(scene, start=replace(scene.start, shape="straight"))
     motion = release_elastic(straight, 1.0, by)
     form, tangent = motion.form, motion.form.tangent(motion.start[0])

@@ -1,4 +1,4 @@
-"""Where segments and nodes of elastic links start: the state that engines are given."""
+"""Start of the segments and nodes of elastic links: the initial state for engines."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from models.scene.elastic import Shape
 
 
 def chain_motion(own: SegmentedScene, start: Shape, until_s: float = 1.0) -> ElasticHistory:
-    """The exact motion of the chains of a scene until then [s], their nodes as named points."""
+    """Return the exact motion of a scene's chains until then [s], their nodes as named points."""
     by = Segments(own.count, own.corrected)
     motion = elastic_history(own.with_nodes, until_s, by, start, tolerance=ENOUGH)
     if not isinstance(motion, DrivenElasticMotion):
@@ -30,9 +30,9 @@ def chain_motion(own: SegmentedScene, start: Shape, until_s: float = 1.0) -> Ela
 
 
 def segment_start(own: SegmentedScene, start: Shape, motion: ElasticHistory | None = None) -> State:
-    """The state at time 0 of `SegmentedScene.rigid`, as the exact chain has it: its joints are
-    closed, and its accelerations are those of the equations of motion. ``motion`` is that of
-    `chain_motion`, where it is there already."""
+    """Return the state at time 0 of `SegmentedScene.rigid` from the exact chain: its joints are
+    closed, and its accelerations solve the equations of motion. ``motion`` is that of
+    `chain_motion`, if it exists already."""
     motion = motion or chain_motion(own, start)
     (now, seconds), assembly = motion.begun, motion.assembly
     state = as_motion(assembly, np.zeros(1), now, seconds).state()
@@ -49,10 +49,10 @@ def segment_start(own: SegmentedScene, start: Shape, motion: ElasticHistory | No
 
 
 def node_start(own: BeamedScene, start: Shape) -> State:
-    """The state at time 0 of `BeamedScene.given`, as beams of small slopes have it that are as
+    """Return the state at time 0 of `BeamedScene.given`, from beams of small slopes that are as
     stiff along their line.
 
-    The way x along a bent link is that along the bow, so the sine of the tangent's angle is w'.
+    The way x along a bent link runs along the bow, so the sine of the tangent's angle is w'.
     """
     motion = DrivenElasticMotion(own.stretching, 1.0, REFERENCE, start, stiffened=True)
     instant, assembly = motion.first, motion.form.assembly
@@ -87,7 +87,7 @@ def node_start(own: BeamedScene, start: Shape) -> State:
 def _nodes(
     own: BeamedScene, body: BeamBody, q: Array, rates: Array, push: Array
 ) -> tuple[CubicNodes, Array]:
-    """The nodes of a link at coordinates, rates and second derivatives (1, n), and their
+    """Return the nodes of a link at coordinates, rates and second derivatives (1, n), and their
     accelerations (n + 1, 3)."""
     line = line_of(own.scene, body.link.link)
     x = np.linspace(0.0, line.length_m, own.count + 1)
@@ -110,16 +110,16 @@ POINTS = 5
 
 
 def strain_places(element_m: float, count: int) -> Array:
-    """Where along the link strains are compared, (count, POINTS) [m]: the nodes of Gauss' rule."""
+    """Places along the link where strains are compared, (count, POINTS) [m]: Gauss' nodes."""
     share = 0.5 * (legendre.leggauss(POINTS)[0] + 1.0)
     return element_m * (np.arange(count)[:, None] + share)
 
 
 @dataclass(frozen=True)
 class CubicNodes:
-    """``place`` and ``drift`` (n + 1, 3) are x, y [m] and the tangent's angle of each node, and
-    their rates; ``strain`` and ``strain_rate`` (n + 1,) by how much longer than 1 the tangents
-    are."""
+    """Nodes of cubic elements: ``place`` and ``drift`` (n + 1, 3) are x, y [m] and the tangent's
+    angle of each, and their rates; ``strain`` and ``strain_rate`` (n + 1,) are the tangents'
+    lengths less 1."""
 
     place: Array
     drift: Array
@@ -130,14 +130,14 @@ class CubicNodes:
 def cubic_nodes(
     place: Array, drift: Array, wanted: Array, wanted_rate: Array, element_m: float
 ) -> CubicNodes:
-    """The nodes nearest to ``place`` and ``drift`` whose elements have strains and rates that are
-    wanted at `strain_places`; the two at the pins stay where they are.
+    """Return the nodes nearest to ``place`` and ``drift`` whose elements have the wanted strains
+    and rates at `strain_places`; the two at the pins stay where they are.
 
     A cubic through places and unit tangents of a curve is longer than it in one half of an element
     and shorter in the other, by about h^3 k k', k the curvature. Elements that hardly stretch
-    answer that with forces of about EA (w/l)^2/n^3 on their pins. How long the tangents are, and
-    where along the curve the nodes within lie, is free: they are taken so that the strain is
-    nearest to what is asked.
+    answer with forces of about EA (w/l)^2/n^3 on their pins. The lengths of the tangents, and the
+    places of inner nodes along the curve, are free: they are chosen so that the strain is nearest
+    to the wanted one.
     """
     c, s = np.cos(place[:, 2:]), np.sin(place[:, 2:])
     tangent, turning = np.hstack([c, s]), drift[:, 2:] * np.hstack([-s, c])
@@ -150,7 +150,7 @@ def cubic_nodes(
     )
 
     def derivative(places: Array, tangents: Array) -> Array:
-        """By the length along an element, (n, POINTS, 2)."""
+        """Return the derivative by the length along an element, (n, POINTS, 2)."""
         ways = np.diff(places, axis=0)[:, None] / element_m * chord[:, None]
         return ways + tangents[:-1, None] * near[:, None] + tangents[1:, None] * far[:, None]
 
@@ -167,7 +167,7 @@ def cubic_nodes(
     root = np.sqrt(weight)[None, :, None]
 
     def solved(left: Array) -> tuple[Array, Array]:
-        """Lengths of tangents, and how far the nodes within go along them [m]."""
+        """Return lengths of tangents, and shifts of inner nodes along them [m]."""
         found = np.linalg.lstsq(
             (root * by).reshape(count * POINTS, -1), (root[..., 0] * left).ravel(), rcond=None
         )[0]

@@ -1,10 +1,10 @@
-"""Elastic links of what is let go, over time: collocation in windows of a length of their own.
+"""Free motion with elastic links over time: collocation in windows of adaptive length.
 
 As `analytic.elastic.vibration`, in the tangent of the position with which each window begins. A
-window is short enough where the series of its motion has come to an end. Gauss' nodes keep what
-rings, and its energy. Where links stretch, these ring along themselves a thousand times faster than
+window is short enough where the series of its motion has converged. Gauss' nodes keep all
+vibration, and its energy. Links that stretch ring along themselves a thousand times faster than
 across, and too little to be seen: Radau's nodes let that die out, so that windows may be as long as
-for what bends. Loads over time are smooth within each window.
+for bending. Loads over time are smooth within each window.
 """
 
 import itertools
@@ -29,13 +29,13 @@ NODES = 10
 LIFT = gauss(NODES)
 """Its integrals of Legendre's polynomials are those of every rule."""
 TAIL = 3
-"""Of the last coefficients of a series, whose largest counts."""
+"""Number of last coefficients of a series, whose largest counts."""
 MOST_ROUNDS, CLOSE = 30, 1e-15
-"""What a round of Newton's method may change y by."""
+"""Most rounds of Newton's method, and the change of y that ends them."""
 MOST_WINDOWS, FIRST = 200_000, 1e-3
-"""How many there may be; and how long the first one is tried to be, over all."""
+"""Most windows; and the first trial length of the first one, over the whole time."""
 SHORTEST = 1e-9
-"""A window over all of the time, below which the motion can not go on."""
+"""Window over the whole time, below which the motion can not go on."""
 
 
 class FreePiece(Protocol):
@@ -51,13 +51,13 @@ class FreePiece(Protocol):
     def tangent(self) -> Tangent: ...
 
     def course(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """y and its rates (T, f), and the work that has been done until then, (T,)."""
+        """Return y and its rates (T, f), and the work done until then, (T,)."""
 
 
 @dataclass(frozen=True)
 class FreeWindow:
     """A piece by collocation: ``rates`` y' (f,) at its start, where y is 0; ``series`` (NODES, f)
-    that of y'' in Legendre's polynomials, ``power`` (NODES,) that of the work's derivative."""
+    of y'' in Legendre's polynomials, ``power`` (NODES,) of the work's derivative."""
 
     start_s: float
     end_s: float
@@ -83,12 +83,12 @@ class FreeWindow:
 def by_collocation(
     form: TangentForm, q: Array, rates: Array, until_s: float, tolerance: float
 ) -> tuple[FreeWindow, ...]:
-    """The motion from a closed position and rates (n,) on.
+    """Integrate the motion from a closed position and rates (n,).
 
     Parameters
     ----------
     tolerance : float
-        What the last coefficients of y may be in each window.
+        Largest allowed last coefficients of y in each window.
 
     Raises
     ------
@@ -108,8 +108,8 @@ def by_collocation(
 
 
 def check_smooth(form: TangentForm) -> None:
-    """Raises CrankcheckError for loads with kinks over the state, which collocation does not
-    take."""
+    """Refuse loads with kinks over the state, which collocation does not take. Raises
+    CrankcheckError."""
     if own := switches(form.dynamics.forces):
         raise CrankcheckError(
             f"{form.dynamics.assembly.scene.name}: loads.{own[0].load.name} is not smooth over the "
@@ -120,7 +120,7 @@ def check_smooth(form: TangentForm) -> None:
 
 @dataclass
 class _Going:
-    """Where an integration is: the state and work at its last window's end, the next length."""
+    """State of an integration: state and work at its last window's end, and the next length."""
 
     form: TangentForm
     rule: Gauss
@@ -132,7 +132,7 @@ class _Going:
     made: int = 0
 
     def through(self, begin_s: float, end_s: float, shortest_s: float) -> Iterator[FreeWindow]:
-        """The windows between two edges."""
+        """Yield the windows between two edges."""
         now_s = begin_s
         while now_s < end_s:
             tangent = self.form.tangent(self.q)
@@ -169,7 +169,7 @@ class _Going:
     def _window(
         self, tangent: Tangent, start_s: float, end_s: float
     ) -> tuple[FreeWindow | None, float]:
-        """A window, and the end of its series; none where it is too long."""
+        """Return a window and the end of its series; no window where it is too long."""
         h = end_s - start_s
         rates = self.form.coordinates(tangent, self.rates)
         # Radau's last node is the end, where loads still have the value before it.
@@ -194,13 +194,13 @@ class _Going:
     def _met(
         self, tangent: Tangent, times: Array, h: float, rates: Array
     ) -> tuple[Array, FreeInstant] | None:
-        """y'' at the nodes (NODES, f), with the equations there."""
+        """Return y'' at the nodes (NODES, f), with the equations there."""
         form, rule, f = self.form, self.rule, len(rates)
         # Rates are integrated as accelerations are: else the method would not be stable.
         twice = h * h * rule.once @ rule.once
         drift = h * rule.places[:, None] * rates
         start = form.at(times[:1], tangent, drift[:1], rates[None])
-        # Inertia changes within a window; what is stiff by far less.
+        # Inertia changes within a window; stiffness changes by far less.
         slopes = start.inertia[0] @ form.derivatives(float(times[0]), tangent, drift[0], rates)
         stiff = np.kron(twice, slopes[:, :f]) + np.kron(h * rule.once, slopes[:, f:])
         seconds, inverse, last = np.repeat(start.seconds, NODES, axis=0), None, np.inf
@@ -223,11 +223,11 @@ class _Going:
 
 @lru_cache(maxsize=8)
 def radau(count: int) -> Gauss:
-    """The rule of ``count`` nodes, with everything that `gauss` has.
+    """Return the rule of ``count`` nodes, with everything that `gauss` has.
 
-    As stable as with Gauss' nodes, and more: what rings far faster than windows are long is gone
-    after a few of them, where Gauss' nodes keep it for ever. Of order 2 n - 1. Source: E. Hairer,
-    G. Wanner, Solving Ordinary Differential Equations II, sections IV.3 and IV.5.
+    It is more stable than with Gauss' nodes: vibration far faster than a window is gone after a few
+    windows, where Gauss' nodes keep it for ever. Of order 2 n - 1. Source: E. Hairer, G. Wanner,
+    Solving Ordinary Differential Equations II, sections IV.3 and IV.5.
     """
     own = gauss(count)
     # P_n - P_(n-1) is 0 there.
@@ -248,7 +248,7 @@ def radau(count: int) -> Gauss:
 
 
 FAR = 0.2
-"""What y may come to until the tangent is taken anew."""
+"""Largest y until the tangent is taken anew."""
 
 
 @dataclass(frozen=True)
@@ -269,8 +269,8 @@ class _Stretch:
 def by_library(
     form: TangentForm, q: Array, rates: Array, until_s: float, tolerance: float
 ) -> tuple[_Stretch, ...]:
-    """The motion from a closed position and rates (n,) on; ``tolerance`` is that of y and y' per
-    step. Raises CrankcheckError for a motion that can not go on.
+    """Integrate the motion from a closed position and rates (n,); ``tolerance`` holds for y and y'
+    per step. Raises CrankcheckError for a motion that can not go on.
 
     It shares the equations with `by_collocation`, and nothing of the integration.
     Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8.
@@ -301,7 +301,7 @@ def _stretch(
     tolerance: float,
     first_s: float | None,
 ) -> tuple[_Stretch, float]:
-    """The motion in one tangent, and how long its last step was."""
+    """Return the motion in one tangent, and the length of its last step."""
     f, (begin, end) = len(state) // 2, between
     last_s = math.nextafter(end, begin)
 
@@ -314,7 +314,7 @@ def _stretch(
         return np.asarray(whole.T.reshape(states.shape))
 
     def slopes(time_s: float, state: Array) -> Array:
-        # What the work comes to changes nothing, and it is as good a step without its derivatives.
+        # The work changes nothing else, and the step is as good without its derivatives.
         whole = np.zeros((2 * f + 1, 2 * f + 1))
         whole[:f, f : 2 * f] = np.eye(f)
         own = form.derivatives(min(time_s, last_s), tangent, state[:f], state[f : 2 * f])

@@ -1,8 +1,8 @@
 """Natural frequencies: of a mechanism whose driver is held still, and of its links alone.
 
-Held at an angle the mechanism vibrates with K y = w^2 M y. M goes with the angle, as the coupler
-moves the rocker more or less, and w with it; the means over a turn are what the frequencies of the
-moving mechanism are near to.
+Held at an angle the mechanism vibrates with K y = w^2 M y. M varies with the angle, as the coupler
+moves the rocker more or less, and w with it; the frequencies of the moving mechanism are near to
+the means over a turn.
 """
 
 import math
@@ -19,7 +19,7 @@ from models.scene.elastic import ElasticLink
 from models.scene.laws import ConstantSpeed
 
 SHOWN = 3
-"""Modes of a link, of each kind, that are told."""
+"""Number of modes of a link, of each kind, that are shown."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class LinkMode:
 
 
 def link_modes(scene: Scene, number: int = SHOWN) -> list[LinkMode]:
-    """The first modes of all elastic links, of each kind that they have."""
+    """Return the first modes of all elastic links, of each kind that they have."""
     found = []
     for name, own in scene.elastic.items():
         line = line_of(scene, name)
@@ -50,14 +50,14 @@ def link_modes(scene: Scene, number: int = SHOWN) -> list[LinkMode]:
 
 
 def lowest_rad_s(scene: Scene) -> float:
-    """The lowest natural frequency of the elastic links alone: what frequency ratios are of."""
+    """Lowest natural frequency of the elastic links alone: the unit of frequency ratios."""
     return min(mode.frequency_rad_s for mode in link_modes(scene, 1))
 
 
 @dataclass(frozen=True)
 class NaturalModes:
-    """``frequency_rad_s`` (N, m) at N angles of the driver, the lowest first, and coefficients of
-    the shapes of each, (N, m, m), one a column, of modal mass 1."""
+    """Natural frequencies ``frequency_rad_s`` (N, m) at N angles of the driver, the lowest first,
+    and coefficients of the shapes of each, (N, m, m), one a column, of modal mass 1."""
 
     frequency_rad_s: Array
     shape: Array
@@ -69,7 +69,7 @@ class NaturalModes:
 
 
 def natural_modes(mass: Array, stiffness: Array) -> NaturalModes:
-    """Of matrices (N, m, m). Where a mode has lost its stiffness its frequency is 0."""
+    """Return the modes of matrices (N, m, m). A mode without stiffness left has frequency 0."""
     # With M = L L', symmetric for v = L' y.
     inverse = np.linalg.inv(np.linalg.cholesky(0.5 * (mass + np.swapaxes(mass, 1, 2))))
     onto = np.swapaxes(inverse, 1, 2)
@@ -79,16 +79,16 @@ def natural_modes(mass: Array, stiffness: Array) -> NaturalModes:
 
 
 MOST = 30.0
-"""A sensitivity from which on there is no motion to be told: a modulus that is off by one percent
-changes it by a third."""
+"""Sensitivity from which on no motion is shown: an error of one percent in a modulus changes it by
+a third."""
 MODES = 20
-"""Modes of a link among which one is looked for that an order resonates with."""
+"""Number of modes of a link among which the resonating one is looked for."""
 
 
 @dataclass(frozen=True)
 class FrequencySensitivity:
-    """``size`` is the share of the largest deflection that changes, over the share by which all
-    links are stiffer; most of it is at an ``order`` of the driver's turns, in a ``link``."""
+    """Share of the largest deflection that changes, over the share by which all links are stiffer
+    (``size``); most of it is at an ``order`` of the driver's turns, in a ``link``."""
 
     size: float
     order: int
@@ -100,13 +100,13 @@ class FrequencySensitivity:
 
 
 def sensitivity(form: ReducedForm, z: Array, change: Array) -> FrequencySensitivity:
-    """Of coefficients at N instants of a period, (N, m), that change so for a stiffness of twice
-    its size.
+    """Return the sensitivity of coefficients at N instants of a period, (N, m), from their
+    ``change`` for twice the stiffness.
 
-    A whole frequency ratio alone says little: next to 10 the driver hardly excites what would
-    resonate, next to 5 it does. So the motion itself is asked: all links stiffer by a small share,
-    what share of its deflection changes? Far below the first natural frequency that is 1; where a
-    natural frequency is a whole multiple of the driver's, and not damped, there is no end to it.
+    A whole frequency ratio alone says little: next to 10 the driver hardly excites the mode that
+    would resonate, next to 5 it does. So the motion itself decides, by the share of its deflection
+    that changes, over the small share by which all links are stiffer: 1 far below the first natural
+    frequency, unbounded where an undamped natural frequency is a whole multiple of the driver's.
     """
     whole, largest = float(np.abs(change).max(initial=0.0)), float(np.abs(z).max(initial=0.0))
     size = whole / largest if largest else 0.0
@@ -116,13 +116,13 @@ def sensitivity(form: ReducedForm, z: Array, change: Array) -> FrequencySensitiv
 
 
 def links_of(form: ReducedForm) -> list[str]:
-    """The link of every coefficient, (m,)."""
+    """Return the link of every coefficient, (m,)."""
     every = form.assembly.elastic.items()
     return [name for name, (_, own) in every for _ in range(own.start + 3, own.stop)]
 
 
 def resonance_text(form: ReducedForm, found: FrequencySensitivity) -> str:
-    """What resonates, and what would work."""
+    """Return the text of a resonance: its mode and its cures."""
     scene = form.assembly.scene
     turning = math.tau / form.period_s
     mode = nearest_mode(form, found.link, found.order * turning)
@@ -141,8 +141,8 @@ def resonance_text(form: ReducedForm, found: FrequencySensitivity) -> str:
 
 
 def nearest_mode(form: ReducedForm, link: str, rad_s: float) -> tuple[str, int, float] | None:
-    """The mode of a link, between its pins alone, whose frequency is the nearest: across or along,
-    its number and its frequency [rad/s]. None for an order of 0."""
+    """Return the mode of a link, between its pins alone, with the nearest frequency: across or
+    along, its number and its frequency [rad/s]. None for an order of 0."""
     if not rad_s:
         return None
     own, line = form.assembly.scene.elastic[link], line_of(form.assembly.scene, link)
@@ -162,7 +162,7 @@ def _percent(size: float) -> str:
 def _speed(
     form: ReducedForm, found: FrequencySensitivity, mode: tuple[str, int, float] | None
 ) -> str:
-    """A speed half-way to the next resonance of the same mode."""
+    """Return a speed half-way to the next resonance of the same mode."""
     if mode is None or not isinstance(form.law, ConstantSpeed):
         return ""
     return f" ({mode[2] / (found.order + 0.5):.4g} rad/s is half-way to the next)"

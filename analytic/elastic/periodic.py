@@ -1,11 +1,11 @@
-"""The periodic motion of elastic links: the one that comes back after a turn of the driver.
+"""Periodic motion of elastic links: it repeats after a turn of the driver.
 
     M(t) y'' + C(t) y' + K(t) y = h(t)
 
 y are the coefficients of the shapes; all four are periodic where the driver's speed is constant.
-The derivatives are taken of the whole equations, by differences of a step at which truncation and
-rounding are alike, once extrapolated. Source: Thesis on vibration of planar mechanisms with elastic
-links (2018), chapter 4.
+The derivatives of the whole equations are differences with a step at which truncation and rounding
+are alike, once extrapolated. Source: Thesis on vibration of planar mechanisms with elastic links
+(2018), chapter 4.
 """
 
 from collections.abc import Callable
@@ -38,10 +38,10 @@ def linearise(
     scale_m: float,
     about: tuple[Array, Array, Array] | None = None,
 ) -> LinearForm:
-    """The equations next to the rigid mechanism at times (T,), or next to coefficients with their
-    rates and second derivatives ``about``, (T, m) each.
+    """Linearise the equations about the rigid mechanism at times (T,), or about coefficients with
+    their rates and second derivatives ``about``, (T, m) each.
 
-    Derivatives are differences over ``scale_m`` [m], and over that at the driver's speed.
+    Derivatives are differences over ``scale_m`` [m], and over ``scale_m`` times the driver's speed.
     """
     count, m = len(time_s), form.size
     z, rates, seconds = about or (np.zeros((count, m)),) * 3
@@ -62,44 +62,43 @@ def linearise(
 
 
 def _slope(left: Callable[[Array], Array], by: Array) -> Array:
-    """The derivative along a change of the coefficients at 0, by central differences of two
+    """Return the derivative along a change of the coefficients at 0, by central differences of two
     steps."""
     far, near = ((left(h * by) - left(-h * by)) / (2.0 * h) for h in (1.0, 0.5))
     return np.asarray((4.0 * near - far) / 3.0)
 
 
 FEWEST, OTHERS, MOST = 65, 91, 1025
-"""Instants of a turn; twice as many are taken as long as the series has not come to an end. What
-starts from others ends with others as well: under loads with kinks or jumps there is no end, and
-what so many instants leave out two motions with the same would have in common."""
+"""Instants of a turn; twice as many are taken as long as the series has not converged. Different
+first numbers end with different last ones: loads with kinks or jumps prevent convergence, and two
+motions with the same instants would have their truncation in common."""
 MOST_UNKNOWNS = 6000
-"""Coefficients at all instants, beyond which the equations take too much room and time."""
+"""Most coefficients at all instants: more equations take too much room and time."""
 ENDED = 1e-13
-"""A last coefficient of the series, over the largest, at which it has."""
+"""Last coefficient of a converged series, over the largest."""
 CLOSE = 1e-13
-"""A step of Newton's method, over the largest coefficient, after which none is taken."""
+"""Step of Newton's method, over the largest coefficient, after which none is taken."""
 MOST_STEPS, SLOW = 60, 0.3
-"""Steps; and what one may leave of the one before it until the derivatives are taken anew."""
+"""Most steps; and the largest ratio of a step to the last before the derivatives are taken anew."""
 FIRST = 1e-4
-"""A deflection with which the derivatives are taken first, over the longest link."""
+"""Deflection for the first derivatives, over the longest link."""
 FAR = 0.5
-"""The share of the largest coefficient by which the motion may differ from that of the linearised
-equations: what differs by more is another of several, or bends too far for a beam."""
+"""Largest difference of the motion from that of the linearised equations, over the largest
+coefficient: beyond it, the motion is another of several, or bends too far for a beam."""
 COMES_BACK = 1e-9
-"""What the forces of one turn and the next may differ by, over the largest."""
+"""Largest difference of the forces of one turn and the next, over the largest."""
 CURE = "take a lower speed or stiffer links, or give the links damping_s"
 
 
 @dataclass(frozen=True)
 class PeriodicMotion:
-    """Coefficients at N instants of a period from time 0 on, (N, m), N odd; and how they hang on
-    the stiffness of the links.
+    """Coefficients at N instants of a period from time 0 on, (N, m), N odd; and their sensitivity
+    to the stiffness of the links.
 
     By collocation with trigonometric polynomials over the whole turn: the coefficients of the links
     at an odd number of instants, whose derivatives follow exactly, have to meet the equations of
     motion there, unlinearised. Newton's method takes the derivatives of the linearised equations;
-    its first step is the motion of these. Source: L. N. Trefethen, Spectral Methods in MATLAB,
-    chapter 3.
+    its first step is their motion. Source: L. N. Trefethen, Spectral Methods in MATLAB, chapter 3.
     """
 
     period_s: float
@@ -107,7 +106,7 @@ class PeriodicMotion:
     sensitivity: FrequencySensitivity
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """The coefficients, their rates and second derivatives at times [s], (T, m) each."""
+        """Return the coefficients, their rates and second derivatives at times [s], (T, m) each."""
         series = np.fft.rfft(self.z, axis=0) / len(self.z)
         series[1:] *= 2.0
         order = 1j * np.arange(len(series)) * 2.0 * np.pi / self.period_s
@@ -122,18 +121,18 @@ class PeriodicMotion:
 
     @property
     def decay(self) -> float:
-        """The last of the coefficients of the Fourier series over the largest."""
+        """Last coefficient of the Fourier series, over the largest."""
         return decay(self.z)
 
 
 def periodic_motion(form: ReducedForm, fewest: int = FEWEST) -> PeriodicMotion:
-    """The periodic motion of a mechanism whose driver has a constant speed, at ``fewest`` instants
-    of a turn or more, an odd number.
+    """Find the periodic motion of a mechanism whose driver has a constant speed, at ``fewest``
+    instants of a turn or more, an odd number.
 
     Raises
     ------
     CrankcheckError
-        A resonance; links that bend too far; a drive or loads that do not come back after a turn.
+        A resonance; links that bend too far; a drive or loads that do not repeat after a turn.
     """
     check_periodic(form)
     linear = found = _first(form, fewest)
@@ -160,7 +159,7 @@ def _refuse_other(form: ReducedForm, found: PeriodicMotion, linear: PeriodicMoti
 
 
 def check_periodic(form: ReducedForm) -> None:
-    """Refuse what does not come back after a period. Raises CrankcheckError."""
+    """Refuse a drive or loads that do not repeat after a period. Raises CrankcheckError."""
     times = instants(9, form.period_s)
     still = np.zeros((len(times), form.size))
     bent = still + FIRST * form.assembly.scene.longest_m  # a straight link feels no pull
@@ -176,8 +175,8 @@ def check_periodic(form: ReducedForm) -> None:
 
 
 def linear_motion(form: ReducedForm, linear: LinearForm) -> PeriodicMotion:
-    """The periodic motion of linearised equations at an odd number of instants of a period: by
-    harmonic balance, which is collocation at these.
+    """Solve linearised equations for their periodic motion at an odd number of instants of a
+    period: by harmonic balance, which is collocation at these instants.
 
     Raises
     ------
@@ -188,7 +187,7 @@ def linear_motion(form: ReducedForm, linear: LinearForm) -> PeriodicMotion:
 
 
 def balanced(linear: LinearForm, period_s: float, stiffness: Array) -> tuple[Array, Array]:
-    """The coefficients (N, m) that meet linearised equations, and how they change for links of
+    """Return the coefficients (N, m) that solve linearised equations, and their change for links of
     twice the ``stiffness`` (m, m)."""
     factors = lu_factor(balance(linear, period_s))
     z = lu_solve(factors, linear.force.ravel()).reshape(linear.force.shape)
@@ -196,13 +195,13 @@ def balanced(linear: LinearForm, period_s: float, stiffness: Array) -> tuple[Arr
 
 
 def _first(form: ReducedForm, count: int) -> PeriodicMotion:
-    """The motion of the equations linearised about the rigid mechanism, at so many instants."""
+    """Return the motion linearised about the rigid mechanism, at so many instants."""
     time_s = instants(count, form.period_s)
     return linear_motion(form, linearise(form, time_s, FIRST * form.assembly.scene.longest_m))
 
 
 def _looked_at(form: ReducedForm, z: Array, change: Array) -> PeriodicMotion:
-    """A motion and its change for a stiffness of twice its size. Raises CrankcheckError."""
+    """Return a motion with its sensitivity. Raises CrankcheckError at a resonance."""
     found = sensitivity(form, z, change)
     if found.resonates:
         raise CrankcheckError(resonance_text(form, found))
@@ -210,7 +209,7 @@ def _looked_at(form: ReducedForm, z: Array, change: Array) -> PeriodicMotion:
 
 
 def balance(linear: LinearForm, period_s: float) -> Array:
-    """What linearised equations make of the coefficients at all N instants, (N m, N m)."""
+    """Return the matrix of linearised equations for all N instants, (N m, N m)."""
     count, m = linear.force.shape
     first = derivative(count, period_s)
     whole = (first @ first)[:, None, :, None] * linear.mass[:, :, None, :]
@@ -220,8 +219,8 @@ def balance(linear: LinearForm, period_s: float) -> Array:
 
 
 def _met(form: ReducedForm, start: Array) -> tuple[Array, Array]:
-    """Coefficients that meet the equations at as many instants as there are in a start (N, m), and
-    how they change for a stiffness of twice its size."""
+    """Solve the equations at as many instants as a start (N, m) has: coefficients, and their change
+    for a stiffness of twice its size."""
     z, (count, _) = start, start.shape
     unit = form.assembly.scene.longest_m
     time_s = instants(count, form.period_s)
@@ -257,12 +256,12 @@ def _met(form: ReducedForm, start: Array) -> tuple[Array, Array]:
 
 
 def instants(count: int, period_s: float) -> Array:
-    """So many instants of a period from time 0 on [s]."""
+    """Return so many instants of a period from time 0 on [s]."""
     return np.asarray(period_s * np.arange(count) / count)
 
 
 def derivative(count: int, period_s: float) -> Array:
-    """The derivative of what is periodic, at an odd number of instants, (N, N)."""
+    """Return the derivative matrix of a periodic series at an odd number of instants, (N, N)."""
     k = np.arange(count)
     apart = (k[:, None] - k) * np.pi / count
     np.fill_diagonal(apart, 1.0)
@@ -272,7 +271,7 @@ def derivative(count: int, period_s: float) -> Array:
 
 
 def decay(z: Array) -> float:
-    """The last of the coefficients of the Fourier series of what is periodic (N, m), over the
+    """Return the last coefficient of the Fourier series of periodic values (N, m), over the
     largest."""
     series = np.abs(np.fft.rfft(z, axis=0))
     return float(series[-1].max() / (series.max() or 1.0))

@@ -1,7 +1,7 @@
 """A driven mechanism with elastic links by coordinates that are independent of each other.
 
-The driver's angle is told, and the coefficients of the elastic links, z, are free; every other
-coordinate follows from the joints, so that there are no multipliers::
+The driver's angle is prescribed, and the coefficients of the elastic links, z, are free; every
+other coordinate follows from the joints, so that there are no multipliers::
 
     q = q(t, z)      q' = B z' + b phi'      q'' = B z'' + b phi'' + c
 
@@ -32,11 +32,11 @@ from models.scene.laws import Law
 
 MOST_STEPS = 20
 CLOSED = 1e-13
-"""A step of Newton's method, over the longest link or in radians, after which none is taken."""
+"""Step of Newton's method, over the longest link or in radians, after which none is taken."""
 EARLY = 1e-3
-"""Of a turn: how far apart in time deflections are from which their rates are taken."""
+"""Time between the deflections that the initial rates are taken from, over a turn."""
 SMALL = 1e-6
-"""A deflection that derivatives are taken with, over the longest link."""
+"""Change of a deflection for derivatives, over the longest link."""
 
 
 @dataclass(frozen=True)
@@ -56,13 +56,13 @@ class Instant:
         return np.asarray(np.linalg.solve(self.mass, self.force[:, :, None])[:, :, 0])
 
     def all_seconds(self, seconds: Array) -> Array:
-        """q'' (T, n) with z'' (T, m)."""
+        """Return q'' (T, n) with z'' (T, m)."""
         return np.asarray((self.by @ seconds[:, :, None])[:, :, 0] + self.gained)
 
 
 class ReducedForm:
-    """The equations of an assembly whose driver follows a law; coefficients of its elastic links
-    that are angles are told as lengths, times the longest link."""
+    """Equations of an assembly whose driver follows a law. Angles among the coefficients of its
+    elastic links count as lengths, times the longest link."""
 
     def __init__(self, assembly: Assembly, forces: GeneralisedForces, law: Law) -> None:
         if isinstance(law, Controlled):
@@ -76,8 +76,8 @@ class ReducedForm:
         free = [i for i in range(assembly.size) if i not in rigid]
         self._free = np.array(free, dtype=int)
         self._rest = np.array(sorted(rigid - {self._driver}), dtype=int)
-        # What an angle among the coefficients is per metre here: all count as lengths, so that a
-        # step of 1e-4 longest links is as small for one as for the other, in mm and in km.
+        # Size of an angle among the coefficients per metre: all count as lengths, so that a step of
+        # 1e-4 longest links is as small for an angle as for a length, in mm and in km.
         self._sizes = assembly.units[self._free] / assembly.scene.longest_m
         if assembly.joints.count != len(self._rest):
             raise CrankcheckError(
@@ -88,28 +88,28 @@ class ReducedForm:
 
     @property
     def size(self) -> int:
-        """m."""
+        """Number of coefficients, m."""
         return len(self._free)
 
     @property
     def period_s(self) -> float:
-        """Of a turn of the driver."""
+        """Period of a turn of the driver [s]."""
         return self.law.period_s
 
     def about_origin(self, z: Array) -> Array:
-        """Coordinates with coefficients (T, m), and every frame at the origin, (T, n)."""
+        """Return coordinates (T, n) with coefficients (T, m), and every frame at the origin."""
         q = np.zeros((len(z), self.assembly.size))
         q[:, self._free] = z * self._sizes
         return q
 
     def near(self, time_s: Array) -> Array:
-        """The coordinates of the rigid mechanism at times [s], (T, n)."""
+        """Return the coordinates of the rigid mechanism at times [s], (T, n)."""
         assembly = self.assembly
         return coordinates(assembly, solve(assembly.scene, time_s))
 
     def at(self, time_s: Array, z: Array, rates: Array, near: Array) -> Instant:
-        """The equations at times (T,), coefficients and their rates (T, m), from rough coordinates
-        ``near`` (T, n) on. Raises CrankcheckError where the joints can not be closed."""
+        """Return the equations at times (T,), for coefficients and their rates (T, m), from rough
+        coordinates ``near`` (T, n). Raises CrankcheckError where the joints can not be closed."""
         phi, omega, alpha = self.law.at(time_s)
         q = self._closed(np.asarray(phi), z, near)
         rest = self.assembly.at_rest(q)
@@ -134,7 +134,7 @@ class ReducedForm:
         return Instant(now, own, gained, turned @ mass @ own, (turned @ right[:, :, None])[:, :, 0])
 
     def _closed(self, phi: Array, z: Array, near: Array) -> Array:
-        """The coordinates with a told driver and coefficients, by Newton's method."""
+        """Return the coordinates with given driver angles and coefficients, by Newton's method."""
         q = near.copy()
         q[:, self._driver], q[:, self._free] = phi, z * self._sizes
         units, size = self.assembly.units[self._rest], np.inf
@@ -156,8 +156,8 @@ class ReducedForm:
         )
 
     def reactions(self, time_s: Array, now: Instant, seconds: Array) -> tuple[Array, Array]:
-        """The multipliers (T, m) and the torque on the driver (T,) that go with second derivatives
-        of the coefficients."""
+        """Return the multipliers (T, m) and the torque on the driver (T,) for given second
+        derivatives of the coefficients."""
         q, rates = now.now.q, now.now.rates
         mass, right = self.assembly.weigh(q, rates)
         right += self.forces.on(time_s, now.now)
@@ -170,12 +170,12 @@ class ReducedForm:
 
     @cached_property
     def stiffness(self) -> Array:
-        """Of the elastic links, (m, m)."""
+        """Stiffness matrix of the elastic links, (m, m)."""
         return self._of_links({name: body.stiffness for name, (body, _) in self._elastic.items()})
 
     @cached_property
     def damping(self) -> Array:
-        """Of the elastic links, (m, m)."""
+        """Damping matrix of the elastic links, (m, m)."""
         return self._of_links({name: body.damping for name, (body, _) in self._elastic.items()})
 
     @property
@@ -183,7 +183,7 @@ class ReducedForm:
         return self.assembly.elastic
 
     def _of_links(self, each: Mapping[str, Array]) -> Array:
-        """Matrices of the coefficients of each elastic link as one of all."""
+        """Assemble the matrices of each elastic link's coefficients to one of all."""
         whole = np.zeros((self.assembly.size, self.assembly.size))
         for name, (_, own) in self._elastic.items():
             at = slice(own.start + 3, own.stop)
@@ -193,8 +193,8 @@ class ReducedForm:
 
 
 def quasi_static(form: ReducedForm, time_s: float) -> Array:
-    """The coefficients (m,) with which the elastic links neither gain nor lose at an instant: what
-    they would have if they had no inertia of their own vibration.
+    """Return the coefficients (m,) with which the elastic links are in equilibrium at an instant,
+    as if their own vibration had no inertia.
 
     Raises
     ------
@@ -219,9 +219,8 @@ def quasi_static(form: ReducedForm, time_s: float) -> Array:
 
 
 def quasi_static_start(form: ReducedForm) -> tuple[Array, Array]:
-    """The coefficients at time 0 with which the elastic links neither gain nor lose, and the rates
-    at which these change, (m,): by one-sided differences of order 4, as there may be no time
-    before."""
+    """Return the quasi-static coefficients at time 0 and their rates, (m,): by one-sided
+    differences of order 4, as there may be no time before."""
     apart_s = EARLY * form.period_s
     still = [quasi_static(form, k * apart_s) for k in range(5)]
     weights = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / (12.0 * apart_s)
@@ -229,8 +228,8 @@ def quasi_static_start(form: ReducedForm) -> tuple[Array, Array]:
 
 
 def coordinates(assembly: Assembly, motion: Motion) -> Array:
-    """The coordinates (T, n) of an assembly where a motion has its links; 0 for all that is not of
-    a frame."""
+    """Return the coordinates (T, n) of an assembly at the links' positions in a motion; 0 for all
+    coefficients."""
     scene = assembly.scene
     q = np.zeros((len(motion.time_s), assembly.size))
     for name, link in scene.links.items():

@@ -1,8 +1,8 @@
-"""Let a mechanism with elastic links go: its motion, with all their vibration.
+"""Free motion of a mechanism with elastic links, with all their vibration.
 
-With as many coordinates as it has freedoms, integrated by collocation (`free_windows`), or by a
-stiff method of a library (`free_by_library`). The equations with a multiplier for every joint and a
-method that is explicit (`analytic.multibody.release_multibody`) are a third way to the same.
+It has as many coordinates as freedoms, integrated by collocation (`by_collocation`), or by a stiff
+method of a library (`by_library`). The equations with a multiplier for every joint and an explicit
+method (`analytic.multibody.release_multibody`) are a third way to the same motion.
 """
 
 from __future__ import annotations
@@ -38,23 +38,23 @@ from models.scene.driver import check_duration, check_within
 
 Method = Literal["collocation", "library"]
 PieceInstants = tuple[Array, FreePiece, FreeInstant, Array]
-"""Times (T,), the piece that they are in, the equations and the work until then."""
+"""Times (T,), their piece, the equations and the work until then."""
 TOLERANCE = 1e-11
 WITH_AXIAL = 1e-10
-"""The same where links stretch: they ring along themselves a thousand times faster than across, by
-1e-10 m or less, which is left to die out; at 1e-11 it would be followed, in ten times the time."""
+"""The tolerance where links stretch: they ring along themselves a thousand times faster than
+across, by 1e-10 m or less, which may die out; 1e-11 would follow it, in ten times the time."""
 ENOUGH, ROUGH = 1e-9, 1e-7
-"""The same for what engines are held to. A chain by the first: in a second of the shipped pulse it
-is 5e-10 of the deflection and 1e-12 rad off that of 1e-11, in a third of its time. A beam, which
-chains are no nearer to than some 1e-4 of the deflection, by the second: off by 1e-6 of it, in a
-sixth."""
+"""The tolerances of references for engines. A chain takes the first: in a second of the shipped
+pulse it is within 5e-10 of the deflection and 1e-12 rad of the motion at 1e-11, in a third of its
+time. A beam takes the second, as chains come no nearer than some 1e-4 of the deflection: its error
+is 1e-6 of it, in a sixth of the time."""
 COARSER = 100.0
-"""By how much larger is the tolerance of the motion that this one is held to."""
+"""Ratio of the tolerance of the compared, coarser motion to that of this one."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReleasedElasticMotion:
-    """What a scene with elastic links does from time 0, when it is let go, to ``until_s``."""
+    """Free motion of a scene with elastic links from its release at time 0 to ``until_s``."""
 
     scene: Scene
     until_s: float
@@ -71,7 +71,7 @@ class ReleasedElasticMotion:
 
     @property
     def dynamics(self) -> Dynamics:
-        """The equations that it obeys. Raises CrankcheckError as `release_elastic`."""
+        """Equations of motion. Raises CrankcheckError as `release_elastic`."""
         return self._ready[0]
 
     @property
@@ -90,12 +90,12 @@ class ReleasedElasticMotion:
 
     @cached_property
     def form(self) -> TangentForm:
-        """The equations in coordinates that are independent of each other."""
+        """Equations in coordinates that are independent of each other."""
         return TangentForm(self.dynamics)
 
     @property
     def freedoms(self) -> int:
-        """Those of the joints and of the shapes together."""
+        """Number of freedoms of the joints and of the shapes together."""
         return self.dynamics.assembly.size - self.dynamics.rank
 
     @property
@@ -110,14 +110,14 @@ class ReleasedElasticMotion:
         return integrate(self.form, *self.start, self.until_s, self.tolerance)
 
     def at(self, time_s: Array) -> Motion:
-        """The motion at times [s], (T,) in ascending order, with its reactions and its shapes.
+        """Return the motion at times [s], (T,) in ascending order, with its reactions and shapes.
         Raises CrankcheckError for times beyond it."""
         return self._motion(self._instants(time_s))
 
     def outside(self, time_s: Array) -> Motion:
-        """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
-        end, at times above ``until_s``: within a step of it, where some engines have the velocities
-        of their first or last sample."""
+        """Return the motion that leads to the start, at times below 0 [s], (T,), or that goes on
+        from the end, at times above ``until_s``: within a step of it, where some engines have the
+        velocities of their first or last sample."""
         return self._motion([self._in_piece(0 if time_s[-1] < 0.0 else -1, time_s)])
 
     def _motion(self, instants: Iterable[PieceInstants]) -> Motion:
@@ -138,11 +138,11 @@ class ReleasedElasticMotion:
         return self.dynamics.assembly
 
     def coordinates_at(self, time_s: Array) -> Array:
-        """Those of the assembly at times [s], (T,) in ascending order, (T, n)."""
+        """Return the coordinates of the assembly at times [s], (T,) in ascending order, (T, n)."""
         return np.concatenate([instant.now.q for _, _, instant, _ in self._instants(time_s)])
 
     def energy(self, time_s: Array) -> EnergyBalance:
-        """The energies at times [s], (T,) in ascending order: `EnergyBalance.balance` stays."""
+        """Return the energies at times [s], (T,) ascending: `EnergyBalance.balance` stays."""
         parts = [
             self.dynamics.energies(instant.now, work)
             for _, _, instant, work in self._instants(time_s)
@@ -151,7 +151,7 @@ class ReleasedElasticMotion:
 
     @cached_property
     def finer(self) -> ReleasedElasticMotion:
-        """The motion of the next finer description; `Segments` are what they are."""
+        """The motion of the next finer description; `Segments` have none."""
         return self if isinstance(self.by, Segments) else replace(self, by=self.by.finer)
 
     @cached_property
@@ -160,13 +160,13 @@ class ReleasedElasticMotion:
         return replace(self, tolerance=COARSER * self.tolerance)
 
     def doubt(self, time_s: Array) -> ElasticDoubt:
-        """What the motion may be off by up to times [s], (T,) in ascending order: how far it is
-        from that of the next finer shapes, and from one integrated to a larger tolerance."""
+        """Return the error estimate up to times [s], (T,) in ascending order: distance from the
+        motion of the next finer shapes, and from one integrated to a larger tolerance."""
         own = self.at(time_s)
         return ElasticDoubt.between(own, self.finer.at(time_s), self.coarser.at(time_s)).so_far
 
     def _instants(self, time_s: Array) -> Iterator[PieceInstants]:
-        """Those of all pieces, one after the other."""
+        """Yield the instants of all pieces, one after the other."""
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
         ends = np.array([piece.end_s for piece in self.pieces[:-1]])
@@ -189,24 +189,24 @@ def release_elastic(
     method: Method = "collocation",
     tolerance: float | None = None,
 ) -> ReleasedElasticMotion:
-    """The motion of a scene with elastic links from its start, when it is let go.
+    """Prepare the free motion of a scene with elastic links from its start.
 
     Parameters
     ----------
     scene : Scene
-        A mechanism of any mobility. If its driver follows a law, it is let go at time 0 of that.
-        ``start.shape`` is that of its elastic links, quasi-static where the scene is silent.
+        A mechanism of any mobility. A driver that follows a law is released at time 0 of it.
+        ``start.shape`` is the shape of its elastic links, quasi-static by default.
     until_s : float
-        For how long [s].
+        Duration [s].
     by : Discretisation or None
-        How its elastic links are described; None for `Modes`.
+        Description of its elastic links; None for `Modes`.
     stiffened : bool
-        Keep the shortening of bent links; without, as the thesis has them.
+        Keep the shortening of bent links; the thesis leaves it out.
     method : "collocation" or "library"
         By windows of our own, or by the library's method for stiff equations.
     tolerance : float or None
-        Of a window, or a step, over the longest link or in radians; None for 1e-11, or 1e-10
-        with links that stretch.
+        Tolerance of a window, or a step, over the longest link or in radians; None for 1e-11, or
+        1e-10 with links that stretch.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def follow(
     tolerance: float | None,
     acting: Acting,
 ) -> ReleasedElasticMotion:
-    """The motion under what is ``acting``. Parameters and errors as those of `release_elastic`."""
+    """Prepare the motion under ``acting`` forces. Parameters and errors as `release_elastic`."""
     if tolerance is None:
         axial = any(link.stretches for link in scene.elastic.values())
         tolerance = WITH_AXIAL if axial else TOLERANCE
@@ -240,7 +240,7 @@ def follow(
 
 
 def assembled(scene: Scene) -> State | None:
-    """Where the rigid mechanism of a scene starts, if there is a closed form of that."""
+    """Return the start of the rigid mechanism of a scene, if it has a closed form."""
     try:
         return solve(scene, np.zeros(1), bound=False).state()
     except StructureError:

@@ -1,8 +1,8 @@
 """Shapes that an elastic link may take: a few functions across its line, a few along it.
 
-Ritz and Galerkin's method takes the deflection as a sum of functions that are given, with
-coefficients that are looked for. Whether these are sines over the whole link or polynomials over
-parts of it, the rest asks for their values, slopes and curvatures alone.
+Ritz and Galerkin's method takes the deflection as a sum of given functions with unknown
+coefficients. They are sines over the whole link or polynomials over parts of it; the rest needs
+their values, slopes and curvatures alone.
 """
 
 import math
@@ -17,10 +17,10 @@ from models.array import Array, Mask
 
 
 class Shapes(Protocol):
-    """The functions of a link of ``length_m`` [m]; ``across`` and ``along`` are how many there are,
-    ``breaks`` (P + 1,) the places [m] between which they are smooth, from one end to the other,
-    and ``nodes`` how many of Gauss' rule it takes from one break to the next to integrate, to
-    rounding, products of four slopes that were integrated in pairs."""
+    """Functions of a link of ``length_m`` [m]: ``across`` and ``along`` are their numbers,
+    ``breaks`` (P + 1,) the places [m] between which they are smooth, from one end to the other.
+    ``nodes`` of Gauss' rule from one break to the next integrate, to rounding, products of four
+    slopes that were integrated in pairs."""
 
     @property
     def length_m(self) -> float: ...
@@ -33,7 +33,7 @@ class Shapes(Protocol):
 
     @property
     def slopes(self) -> Mask:
-        """Which coefficients, those across and then those along, are slopes, and not lengths."""
+        """Mask of the coefficients, across and then along, that are slopes and not lengths."""
 
     @property
     def breaks(self) -> Array: ...
@@ -42,29 +42,29 @@ class Shapes(Protocol):
     def nodes(self) -> int: ...
 
     def deflections(self, x: Array, order: int) -> Array:
-        """The functions across at places x (X,) [m], or their derivatives of an order up to 2,
-        (X, across). They are 0 at both ends."""
+        """Return the functions across at places x (X,) [m], or their derivatives of an order up to
+        2, (X, across). They are 0 at both ends."""
 
     def extensions(self, x: Array, order: int) -> Array:
-        """Those along, or their first derivatives, (X, along). They are 0 at x = 0."""
+        """Return those along, or their first derivatives, (X, along). They are 0 at x = 0."""
 
 
 @lru_cache(maxsize=64)
 def _rule(count: int) -> tuple[Array, Array]:
-    """Places in (0, 1) and weights of Gauss' rule."""
+    """Return places in (0, 1) and weights of Gauss' rule."""
     x, w = legendre.leggauss(count)
     return 0.5 * (x + 1.0), 0.5 * w
 
 
 def places(shapes: Shapes) -> tuple[Array, Array]:
-    """The nodes of Gauss' rule between all breaks [m], and their weights [m]."""
+    """Return the nodes of Gauss' rule between all breaks [m], and their weights [m]."""
     (share, weight), spans = _rule(shapes.nodes), np.diff(shapes.breaks)
     x = shapes.breaks[:-1, None] + spans[:, None] * share
     return x.ravel(), (spans[:, None] * weight).ravel()
 
 
 def shortening(shapes: Shapes, x: Array) -> Array:
-    """S (X, n, n) at places x (X,) [m]: a link bent to sum q_i f_i is shorter up to there by
+    """Return S (X, n, n) at places x (X,) [m]: a link bent to sum q_i f_i is shorter up to there by
     q S q / 2, S_ij = int f_i' f_j' from 0 to x."""
     breaks, (share, weight) = shapes.breaks, _rule(shapes.nodes)
     nodes, weights = places(shapes)
@@ -109,7 +109,7 @@ class SineModes(WholeLink):
 
     @property
     def nodes(self) -> int:
-        """Gauss' rule takes half a wave number over [-1, 1], and some: products of four have
+        """Gauss' rule takes half a wave number over [-1, 1], and some: products of four sines have
         2 pi times that of the highest mode."""
         return 12 + math.ceil(1.1 * math.pi * max(self.across, self.along))
 
@@ -120,19 +120,18 @@ class SineModes(WholeLink):
         return self._sines(x, range(1, self.along + 1), 0.5, order)
 
     def _sines(self, x: Array, modes: range, less: float, order: int) -> Array:
-        """Modes of so many half-waves over the link, ``less`` so many, or their derivatives."""
+        """Return modes of so many half-waves, ``less`` so many, or their derivatives."""
         wave = np.array([mode - less for mode in modes]) * math.pi / self.length_m
         return np.asarray(wave**order * np.sin(x[:, None] * wave + order * math.pi / 2.0))
 
 
 @dataclass(frozen=True)
 class LegendrePolynomials(WholeLink):
-    """``across`` polynomials of degrees 2, 3, ... and ``along`` ones of degrees 1, 2, ...
-    (`Shapes`).
+    """Polynomials of degrees 2, 3, ... ``across`` and of degrees 1, 2, ... ``along`` (`Shapes`).
 
-    Legendre's, integrated once, so that they are 0 at both ends; along the link a straight line is
-    the first. An even load and a linear one bend a beam to polynomials of degree 5, which four of
-    these hold exactly, where sines come to them as i^-5. Source: B. Szabo, I. Babuska, Finite
+    They are Legendre's, integrated once, so that they are 0 at both ends; the first along the link
+    is a straight line. An even load and a linear one bend a beam to polynomials of degree 5, which
+    four of these hold exactly, while sines converge as i^-5. Source: B. Szabo, I. Babuska, Finite
     Element Analysis, chapter 3 (the p-version).
     """
 
@@ -148,8 +147,8 @@ class LegendrePolynomials(WholeLink):
         return self._integrated(x, range(self.along), order)
 
     def _integrated(self, x: Array, degrees: range, order: int) -> Array:
-        """Integrals from 0 of Legendre's polynomials of degrees, times the square root of 2 k + 1,
-        or derivatives of these integrals."""
+        """Return integrals from 0 of Legendre's polynomials of degrees, times the square root of 2
+        k + 1, or derivatives of these integrals."""
         share, values = 2.0 * x / self.length_m - 1.0, np.empty((len(x), len(degrees)))
         for column, degree in enumerate(degrees):
             whole = legendre.legint(np.eye(degree + 1)[degree], lbnd=-1)
@@ -167,8 +166,8 @@ LINES = (Polynomial([1, -1]), Polynomial([0, 1]))
 
 @dataclass(frozen=True)
 class HermiteElements:
-    """``count`` elements of one length (`Shapes`); what does not bend or stretch has no functions
-    for it.
+    """Elements of one length, ``count`` of them (`Shapes`); a link that does not bend, or stretch,
+    has no functions across, or along.
 
     ::
 
@@ -187,7 +186,7 @@ class HermiteElements:
 
     @property
     def across(self) -> int:
-        """Slopes at all nodes, deflections at those within."""
+        """Slopes at all nodes, deflections at inner ones."""
         return 2 * self.count if self.bends else 0
 
     @property
@@ -196,7 +195,7 @@ class HermiteElements:
 
     @property
     def slopes(self) -> Mask:
-        """Of each node the second of its two, where both ends have no deflection."""
+        """Mask of the second of the two coefficients of each node; both ends have no deflection."""
         odd = np.delete(np.arange(2 * self.count + 2) % 2 == 1, [0, 2 * self.count])
         return np.concatenate([odd[: self.across], np.zeros(self.along, dtype=bool)])
 
@@ -232,7 +231,7 @@ class HermiteElements:
         scales: tuple[float, ...],
         width: int,
     ) -> Array:
-        """Functions of all nodes, ``width`` of each, (X, width (count + 1))."""
+        """Return the functions of all nodes, ``width`` of each, (X, width (count + 1))."""
         own = self.length_m / self.count
         element = np.clip((x / own).astype(int), 0, self.count - 1)
         s = x / own - element

@@ -1,17 +1,17 @@
-"""A mechanism that nothing drives, by coordinates in the tangent of its position.
+"""Equations of an undriven mechanism in coordinates in the tangent of its position.
 
-At a position that is closed the directions which the joints allow, V, and those which they do not,
-W, are columns of one orthogonal matrix (in the units of coordinates; those of links alone, while
-the coefficients of elastic ones are what they are). Near by, every closed position has one y::
+At a closed position the directions that the joints allow, V, and those that they do not, W, are
+columns of one orthogonal matrix (in the units of coordinates, for those of links alone: the
+coefficients of elastic ones stay as they are). Every closed position near by has one y::
 
     q = q0 + V y + W s(y)      q' = B y'      q'' = B y'' + c
 
     B^T M B y'' = B^T (Q - M c)
 
-so there are as many y as freedoms, rigid ones and those of elastic links alike; no multipliers, no
-drift from the joints, and no coordinate that has to lead: a crank may turn back. As the motion goes
-on, the tangent is taken anew. Source: E. J. Haug, J. Yen, Implicit Numerical Integration of
-Constrained Equations of Motion, Mech. Struct. Mach. 19, 1991 (tangent space parametrisation).
+so there are as many y as freedoms, rigid and elastic alike; no multipliers, no drift from the
+joints, and no leading coordinate: a crank may turn back. The tangent is taken anew along the
+motion. Source: E. J. Haug, J. Yen, Implicit Numerical Integration of Constrained Equations of
+Motion, Mech. Struct. Mach. 19, 1991 (tangent space parametrisation).
 """
 
 from dataclasses import dataclass
@@ -26,18 +26,18 @@ from models.errors import CrankcheckError
 
 MOST_STEPS = 20
 CLOSED = 1e-14
-"""A step of Newton's method, in the units of coordinates, after which none is taken."""
+"""Step of Newton's method, in the units of coordinates, after which none is taken."""
 INDEPENDENT = 1e-7
-"""A singular value over the largest, from which on rows count as independent of each other."""
+"""Singular value over the largest, from which on rows count as independent of each other."""
 NUDGE = 1e-7
-"""What y is changed by for derivatives; rates are by the same over their own size."""
+"""Change of y for derivatives; rates change by the same over their own size."""
 
 
 @dataclass(frozen=True)
 class Tangent:
-    """A closed position ``q`` (n,), the directions ``free`` (n, f) that the joints allow there and
-    those ``held`` (n, r) that they do not; ``rows`` (m, r) combine the equations of joints to as
-    many as count."""
+    """Closed position ``q`` (n,), the directions ``free`` (n, f) that the joints allow there and
+    the others, ``held`` (n, r); ``rows`` (m, r) combine the equations of joints to the independent
+    ones."""
 
     q: Array
     free: Array
@@ -47,9 +47,9 @@ class Tangent:
 
 @dataclass(frozen=True)
 class FreeInstant:
-    """The equations at T samples: ``now`` is the configuration, ``by`` B (T, n, f), ``gained`` c
-    (T, n); ``mass`` M (T, n, n), ``pushed`` Q (T, n), and of it what loads, springs and dampers
-    make, ``applied``."""
+    """Equations at T samples: ``now`` is the configuration, ``by`` B (T, n, f), ``gained`` c (T,
+    n); ``mass`` M (T, n, n), ``pushed`` Q (T, n), and its part from loads, springs and dampers,
+    ``applied``."""
 
     now: Configuration
     by: Array
@@ -77,21 +77,21 @@ class FreeInstant:
 
     @property
     def held(self) -> Array:
-        """What joints do to the coordinates, (T, n)."""
+        """Forces of the joints on the coordinates, (T, n)."""
         return np.asarray((self.mass @ self.all_seconds[:, :, None])[:, :, 0] - self.pushed)
 
 
 @dataclass(frozen=True)
 class TangentForm:
-    """The equations of motion of what nothing drives."""
+    """Equations of motion of an undriven mechanism."""
 
     dynamics: Dynamics
 
     def tangent(self, q: Array) -> Tangent:
-        """The tangent at a closed position (n,).
+        """Return the tangent at a closed position (n,).
 
-        The coefficients of elastic links are among the y as they are, as what is stiff is linear in
-        them; but where links would hold each other if they were rigid.
+        The coefficients of elastic links are among the y unchanged, as the stiff terms are linear
+        in them, except where the links would lock each other if they were rigid.
         """
         assembly = self.dynamics.assembly
         units, rank = assembly.units, self.dynamics.rank
@@ -109,15 +109,13 @@ class TangentForm:
         return Tangent(q, across[:, rank:], across[:, :rank], rows[:, :rank])
 
     def coordinates(self, at: Tangent, rates: Array) -> Array:
-        """The y' (f,) of rates (n,) that the joints allow at the position of a tangent."""
+        """Return the y' (f,) of rates (n,) that the joints allow at the position of a tangent."""
         units = self.dynamics.assembly.units
         return np.asarray((at.free / units[:, None]).T @ (rates / units))
 
     def at(self, time_s: Array, at: Tangent, y: Array, rates: Array) -> FreeInstant:
-        """The equations at times [s] (T,), and y with their rates (T, f).
-
-        Raises CrankcheckError where the joints can not be closed.
-        """
+        """Return the equations at times [s] (T,), for y and their rates (T, f). Raises
+        CrankcheckError where the joints can not be closed."""
         assembly = self.dynamics.assembly
         q = self._closed(at, y)
         rest = assembly.at_rest(q)
@@ -132,7 +130,7 @@ class TangentForm:
         return FreeInstant(now, by, gained, mass, right + applied, applied)
 
     def _closed(self, at: Tangent, y: Array) -> Array:
-        """The closed positions (T, n) next to a tangent, by Newton's method."""
+        """Return the closed positions (T, n) next to a tangent, by Newton's method."""
         assembly = self.dynamics.assembly
         q, last = at.q + y @ at.free.T, np.inf
         for _ in range(MOST_STEPS):
@@ -151,8 +149,8 @@ class TangentForm:
         )
 
     def derivatives(self, time_s: float, at: Tangent, y: Array, rates: Array) -> Array:
-        """Those of y'' by y and by y', (f, 2 f), at one state, by differences: in them is all that
-        is stiff, elastic links, springs, and what holds the driver."""
+        """Return the derivatives of y'' by y and by y', (f, 2 f), at one state, by differences:
+        they hold all stiff terms of elastic links, springs and the driver's control."""
         count = len(rates)
         quick = NUDGE * max(float(np.abs(rates).max()), 1.0)
         by_y, by_rates = np.zeros((2 * count + 1, count)), np.zeros((2 * count + 1, count))
@@ -162,7 +160,7 @@ class TangentForm:
         return np.asarray(change / np.repeat([NUDGE, quick], count))
 
     def multipliers(self, at: Tangent, instant: FreeInstant) -> Array:
-        """Those of the equations of joints, (T, m), the smallest ones."""
+        """Return the smallest multipliers of the equations of joints, (T, m)."""
         jacobian = self.dynamics.assembly.joints.jacobian(instant.now)
         across = np.swapaxes(at.rows.T @ jacobian @ at.held, 1, 2)
         right = -(instant.held @ at.held)[:, :, None]

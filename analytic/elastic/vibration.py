@@ -1,7 +1,7 @@
 """Elastic links over time, driven by a law: Gauss' collocation on the reduced form.
 
-The method is implicit, of order 2 s for s nodes, stable at every step, and keeps the energy of what
-is not damped: shapes whose cycles are shorter than its windows ring on at the wrong frequency, and
+The method is implicit, of order 2 s for s nodes, stable at every step, and keeps the energy of
+undamped shapes: those whose cycles are shorter than its windows ring on at the wrong frequency, and
 do no harm where they are hardly excited. Some windows are solved for at once by Newton's method,
 with derivatives of the equations taken at a few instants of them.
 """
@@ -26,22 +26,22 @@ TWICE, END_TWICE = RULE.once @ RULE.once, RULE.end_once @ RULE.once
 """Rates are integrated as accelerations are, from their values at the nodes; integrated as the
 polynomials that they are, the method would not be stable."""
 BLOCK = 16
-"""Windows that are solved for at once."""
+"""Number of windows that are solved at once."""
 SHORTEST = 1.0 / 16.0
-"""A window, over those that were asked for, below which none is halved to meet the equations."""
+"""Shortest window, over the requested ones, below which none is halved to meet the equations."""
 MOST_ROUNDS, MOST_TANGENTS = 40, 6
 CLOSE, NEARLY = 1e-13, 1e-9
-"""What a round may change accelerations by, over the largest. Where rounding leaves more, of what
-is stiff or hardly bends: what it may move coefficients by, over the longest link, or nearly over
-what they are and move by in a window."""
+"""Largest change of accelerations in a last round, over the largest. Where rounding leaves more, in
+stiff or hardly bent links: the change of coefficients, over the longest link, or nearly over their
+size and movement in a window."""
 SLOW = 0.3
-"""What a round may leave of the one before it until the derivatives are taken anew."""
+"""Largest ratio of a round's step to the last before the derivatives are taken anew."""
 
 
 @dataclass(frozen=True)
 class VibrationHistory:
-    """W windows between ``edges_s`` [s] (W + 1,): coefficients and rates at their beginnings,
-    (W, m), and those of Legendre's polynomials that their second derivatives are, (W, NODES, m)."""
+    """Coefficients and rates (W, m) at the beginnings of W windows between ``edges_s`` [s] (W +
+    1,), and the series of their second derivatives in Legendre's polynomials, (W, NODES, m)."""
 
     edges_s: Array
     z: Array
@@ -49,7 +49,7 @@ class VibrationHistory:
     series: Array
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """The coefficients, their rates and second derivatives at times [s], (T, m) each."""
+        """Return the coefficients, their rates and second derivatives at times [s], (T, m) each."""
         found = np.searchsorted(self.edges_s, time_s, side="right") - 1
         window = np.clip(found, 0, len(self.z) - 1)
         begin, h = self.edges_s[window], np.diff(self.edges_s)[window]
@@ -76,9 +76,9 @@ def vibrate(
     windows: int,
     kinks_s: Sequence[float] = (),
 ) -> VibrationHistory:
-    """The motion from coefficients and rates (m,) at time 0, in so many windows of time, or a few
-    more: some end at ``kinks_s``, where the equations are not smooth, and those in which they are
-    not met are halved.
+    """Integrate the motion from coefficients and rates (m,) at time 0, in so many windows of time,
+    or a few more: some end at ``kinks_s``, where the equations are not smooth, and windows in which
+    they are not met are halved.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def vibrate(
 
 
 def _edges(until_s: float, windows: int, kinks_s: Sequence[float]) -> Array:
-    """The ends of all windows, (W + 1,)."""
+    """Return the ends of all windows, (W + 1,)."""
     ends = [0.0, *sorted({kink for kink in kinks_s if 0.0 < kink < until_s}), until_s]
     longest = until_s / windows
     pieces = [
@@ -137,7 +137,7 @@ class _StepBlock:
 
     @staticmethod
     def along(h: Array, z: Array, rates: Array, seconds: Array) -> _StepBlock:
-        """From coefficients and rates (m,) at the beginning, and second derivatives."""
+        """Integrate second derivatives from coefficients and rates (m,) at the beginning."""
         gained = h[:, None] * np.tensordot(seconds, RULE.end_once, (1, 0))
         every = rates + np.concatenate([np.zeros_like(gained[:1]), np.cumsum(gained, axis=0)])
         moved = h[:, None] * every[:-1]
@@ -146,13 +146,13 @@ class _StepBlock:
         return _StepBlock(places, every, seconds)
 
     def reach(self, h: Array) -> float:
-        """The largest of the coefficients, and of what rates and accelerations add in a window."""
+        """Return the largest coefficient, or change of one by rates or accelerations."""
         longest = float(h.max())
         each = (self.z, longest * self.rates, longest**2 * self.seconds)
         return max(float(np.abs(own).max()) for own in each)
 
     def nodes(self, h: Array) -> tuple[Array, Array]:
-        """Coefficients and rates at the nodes, (W, NODES, m)."""
+        """Return coefficients and rates at the nodes, (W, NODES, m)."""
         step = h[:, None, None]
         rates = self.rates[:-1, None] + step * (RULE.once @ self.seconds)
         z = self.z[:-1, None] + step * RULE.places[:, None] * self.rates[:-1, None]
@@ -160,8 +160,8 @@ class _StepBlock:
 
     @staticmethod
     def solved(form: ReducedForm, edges: Array, z: Array, rates: Array) -> _StepBlock | None:
-        """The windows between edges (W + 1,), or None where Newton's method does not come to an
-        end."""
+        """Solve the windows between edges (W + 1,); None where Newton's method does not
+        converge."""
         h, m = np.diff(edges), form.size
         times = (edges[:-1, None] + h[:, None] * RULE.places).ravel()
         near, shape = form.near(times), (len(h), NODES, m)
@@ -219,8 +219,8 @@ class _Sweep:
         return _Sweep(h, damping, stiffness, np.linalg.inv(whole.reshape(-1, size, size)))
 
     def step(self, left: Array, rates: Array) -> Array:
-        """What second derivatives (W, NODES, m) change by where the equations leave that much,
-        from no change of the coefficients and one of the rates (m,) on."""
+        """Return the change of second derivatives (W, NODES, m) for residuals ``left`` of the
+        equations, from no change of the coefficients and a change of the rates (m,)."""
         shape, changed = left.shape[1:], np.empty_like(left)
         z = np.zeros_like(rates)
         for w, h in enumerate(self.h):
@@ -234,7 +234,7 @@ class _Sweep:
 
 
 STEP = 1e-5
-"""Of the differences, over the longest link."""
+"""Step of the differences, over the longest link."""
 
 
 @dataclass(frozen=True)
@@ -247,7 +247,7 @@ class SlopesOverWindows:
     stiffness: Array
 
     def at_shares(self, shares: Array, matrix: Array) -> Array:
-        """One of the matrices at shares (S,) of all windows, (W, S, m, m)."""
+        """Return one of the matrices at shares (S,) of all windows, (W, S, m, m)."""
         x = 2.0 * shares - 1.0
         parabolas = np.stack([0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)], axis=1)
         three = np.stack([matrix[:-2:2], matrix[1:-1:2], matrix[2::2]], axis=1)
@@ -255,10 +255,10 @@ class SlopesOverWindows:
 
 
 def tangent(form: ReducedForm, edges_s: Array, z: Array, rates: Array) -> SlopesOverWindows:
-    """Of the windows between edges [s] (W + 1,), where coefficients and rates are (W + 1, m).
+    """Linearise over the windows between edges [s] (W + 1,), at coefficients and rates (W + 1, m).
 
-    By one-sided differences, at the ends and in the middle of windows of time; what lies in between
-    is interpolated. Where the derivatives themselves are asked for: `analytic.elastic.periodic`.
+    One-sided differences at the ends and in the middle of windows, interpolated between. For the
+    derivatives themselves: `analytic.elastic.periodic`.
     """
     time_s, z, rates = (_with_middles(own) for own in (edges_s, z, rates))
     near, m = form.near(time_s), form.size
@@ -277,7 +277,7 @@ def tangent(form: ReducedForm, edges_s: Array, z: Array, rates: Array) -> Slopes
 
 
 def _with_middles(values: Array) -> Array:
-    """Values at edges, and means between them."""
+    """Return values at edges, and means between them."""
     both = np.empty((2 * len(values) - 1, *values.shape[1:]))
     both[::2], both[1::2] = values, 0.5 * (values[1:] + values[:-1])
     return both

@@ -1,1 +1,1 @@
-"""What the motion asks of the joints and of the drive."""
+"""Reactions of the joints and driving torque of a motion."""

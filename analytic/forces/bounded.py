@@ -1,9 +1,8 @@
 """Numbers and vectors of the plane that carry a bound of their own error.
 
-Every operation adds what its operands may be wrong by to first order and beyond, and its own
-rounding (running error analysis: N. J. Higham, Accuracy and Stability of Numerical Algorithms,
-section 3.3), so that a formula is written once. Where the error is None nobody asked for it, and no
-operation looks at it.
+Every operation adds the errors of its operands to first order and beyond, and its own rounding
+(running error analysis: N. J. Higham, Accuracy and Stability of Numerical Algorithms, section 3.3),
+so that a formula is written once. An error of None is not required, and no operation computes it.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from analytic.dyads.plane import EPS, ZERO, Real, Vec
 
 
 class Bounded:
-    """A number, and a bound of its error or None."""
+    """Number, and a bound of its error or None."""
 
     __slots__ = ("error", "value")
 
@@ -48,7 +47,7 @@ class Bounded:
         return Bounded(value, error + EPS * np.abs(value))
 
     def inverse(self) -> Bounded:
-        """1 over it; nothing is certain where its error is as large as itself."""
+        """Return 1 over it; nothing is certain where its error is as large as itself."""
         value = 1.0 / self.value
         if self.error is None:
             return Bounded(value, None)
@@ -59,18 +58,18 @@ class Bounded:
 
 
 def _rounded(value: Real, one: Bounded, other: Bounded) -> Bounded:
-    """A sum or a difference of two."""
+    """Return a sum or a difference of two, rounded."""
     if one.error is None or other.error is None:
         return Bounded(value, None)
     return Bounded(value, one.error + other.error + EPS * np.abs(value))
 
 
 NOUGHT = Bounded(0.0)
-"""The number that costs nothing to add; compare by identity."""
+"""Number that costs nothing to add; compare by identity."""
 
 
 class BoundedVec:
-    """A vector, the most that it may be long, and a bound of the length of its error or None.
+    """Vector, its largest possible length, and a bound of the length of its error or None.
 
     ``size`` counts only where there is an error.
     """
@@ -110,7 +109,7 @@ class BoundedVec:
         return BoundedVec(v, size, self.size * factor.error + most * self.error + EPS * size)
 
     def perp(self) -> BoundedVec:
-        """The vector turned by +90 deg."""
+        """Return the vector turned by +90 deg."""
         return self if self is NOWHERE else BoundedVec(self.v.perp(), self.size, self.error)
 
     def dot(self, other: BoundedVec) -> Bounded:
@@ -119,7 +118,7 @@ class BoundedVec:
         return _product(self.v.dot(other.v), self, other)
 
     def cross(self, other: BoundedVec) -> Bounded:
-        """The component of the cross product out of the plane."""
+        """Return the component of the cross product out of the plane."""
         if self is NOWHERE or other is NOWHERE:
             return NOUGHT
         return _product(self.v.cross(other.v), self, other)
@@ -133,7 +132,7 @@ def _sum(v: Vec, one: BoundedVec, other: BoundedVec) -> BoundedVec:
 
 
 def _product(value: Real, one: BoundedVec, other: BoundedVec) -> Bounded:
-    """A dot or a cross product: each of its two terms is rounded, and their sum."""
+    """Return a dot or a cross product: each of its two terms is rounded, and their sum."""
     if one.error is None or other.error is None:
         return Bounded(value, None)
     error = one.size * other.error + one.error * (other.size + other.error)
@@ -141,13 +140,13 @@ def _product(value: Real, one: BoundedVec, other: BoundedVec) -> Bounded:
 
 
 NOWHERE = BoundedVec(ZERO, 0.0, 0.0)
-"""The vector that costs nothing to add; compare by identity."""
+"""Vector that costs nothing to add; compare by identity."""
 
 Three = tuple[Bounded, Bounded, Bounded]
 
 
 def solved_three(columns: tuple[Three, Three, Three], given: Three) -> Three:
-    """The x with columns x = -given, by Cramer's rule."""
+    """Return the x with columns x = -given, by Cramer's rule."""
     a, b, c = columns
     bc, ca, ab = _cross(b, c), _cross(c, a), _cross(a, b)
     inverse = -_dot(a, bc).inverse()

@@ -1,11 +1,11 @@
-"""The equilibrium of a group of class III, and of a dyad with a compound.
+"""Equilibrium of a group of class III, and of a dyad with a compound.
 
-The central link is held by three unknowns: of each leg one, which its own link leaves open, and of
-a joint to a known body two. The matrix of its three equations is that of the wrenches of
+Three unknowns hold the central link: one of each leg, which its own link leaves open, and two of a
+joint to a known body. The matrix of its three equations is that of the wrenches of
 `analytic.assur.platform`: forces are singular where positions are.
 
-Letters: e along a line, n = e turned by +90 deg; K a force that is known and x what is not, of a
-wrench u on the central link; M about the point O of it that moments are taken about.
+Letters: e along a line, n = e turned by +90 deg; K a known force and x the unknown factor of a
+wrench u on the central link; M about its point O of reference.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -37,21 +37,21 @@ class Wrench:
 
 @dataclass(frozen=True)
 class Central:
-    """The central link: its bodies, and the ways from O to their places."""
+    """Central link: its bodies, and the ways from O to their places."""
 
     on: Balance
     bodies: tuple[str, ...]
 
     def part(self, joint: JointKey) -> str:
-        """The body of it that has a joint."""
+        """Return its body that has a joint."""
         kind, name = joint
         structure = self.on.structure
         ends = structure.pins[name] if kind == "R" else structure.prismatics[name]
         return next(body for body in self.bodies if body in ends)
 
     def way(self, body: str, place: Point) -> BoundedVec:
-        """From O to a place of one of the bodies: O is the centre of mass, or of a compound the
-        driven pin, or the point of the driven slider."""
+        """Return the vector from O to a place of one of the bodies: O is the centre of mass, or of
+        a compound the driven pin, or the point of the driven slider."""
         own, compound = self.on.free[body], self.on.structure.compound
         if len(self.bodies) == 1 or compound is None:
             return own.vector(own.centre, place)
@@ -64,7 +64,7 @@ class Central:
         return self.way(body, local_point(self.on.scene, body, point))
 
     def given(self) -> Wrench:
-        """All that acts on it but for its joints."""
+        """Return the sum of all forces on it except those of its joints."""
         force, moment = NOWHERE, NOUGHT
         for body in self.bodies:
             own = self.on.free[body]
@@ -74,19 +74,18 @@ class Central:
 
 
 class Hold(Protocol):
-    """A leg, or a joint to a known body: what it does to the central link, with one unknown or
-    two."""
+    """Leg, or joint to a known body: its wrench on the central link, with one unknown or two."""
 
     def known(self) -> Wrench:
-        """What it exerts whatever the unknowns are."""
+        """Return the wrench that is independent of the unknowns."""
         ...
 
     def unknown(self) -> list[Wrench]:
-        """What it exerts for each unknown of 1."""
+        """Return the wrench of each unknown of 1."""
         ...
 
     def settle(self, found: Iterator[Bounded]) -> None:
-        """Hand on what its own bodies and joints bear."""
+        """Store the forces on its own bodies and joints."""
         ...
 
 
@@ -121,7 +120,7 @@ class BarHold:
 
 @dataclass(frozen=True)
 class DrivenBarHold:
-    """RR of two bodies, which the driver keeps apart by any force that it takes: as `BarHold`."""
+    """RR of two bodies, which the driver keeps apart with any force: as `BarHold`."""
 
     central: Central
     leg: Leg
@@ -160,7 +159,7 @@ class DrivenBarHold:
 
 @dataclass(frozen=True)
 class SlidingHold:
-    """PR: along the known line the leg hands on what acts on it; across it, x n."""
+    """PR: along the known line the leg hands on its own force; across it, x n."""
 
     central: Central
     leg: Leg
@@ -188,7 +187,7 @@ class SlidingHold:
 
 
 def _through_pin(central: Central, leg: Leg, force: BoundedVec) -> None:
-    """The leg exerts a force on the central link in their pin."""
+    """Let the leg exert a force on the central link in their pin."""
     on, pin, part = central.on, leg.inner[1], central.part(leg.inner)
     on.on_pin(pin, part, force)
     on.on_pin(pin, leg.body, -force)
@@ -206,7 +205,7 @@ class GuidedHold:
         return self.central.on.pair(self.leg.inner[1])
 
     def _near(self) -> BoundedVec:
-        """From the outer pin to the slider's point."""
+        """Return the vector from the outer pin to the slider's point."""
         on, leg = self.central.on, self.leg
         return self._line().arms[leg.body] - on.arm(leg.body, leg.outer[1])
 
@@ -237,7 +236,7 @@ class CoupleHold:
     leg: Leg
 
     def _normal(self) -> Bounded:
-        """Of the inner line, on the leg."""
+        """Return the normal force of the inner line, on the leg."""
         on, leg = self.central.on, self.leg
         outer, inner = on.pair(leg.outer[1]), on.pair(leg.inner[1])
         along = outer.along.dot(on.free[leg.body].force)

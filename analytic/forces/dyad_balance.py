@@ -1,13 +1,13 @@
-"""The equilibrium of the five class II groups: reactions of a group from what acts on its bodies.
+"""Equilibrium of the five class II groups: reactions of a group from the forces on its bodies.
 
-A group is statically determinate: two bodies, six equations, three pairs of two unknowns each. Its
-bodies are solved one group after the other, in the reverse of the solving order, and leave what
-their outer pairs need on the bodies that hold them; the driver is last. Of the six equations four
-only take over what two have found: those of a 2 x 2 system with the determinant of the group's
-kinematics (the transposed problem), which is why forces are singular where positions are.
+A group is statically determinate: two bodies, six equations, three pairs of two unknowns each.
+Groups are solved one after the other, in the reverse of the solving order, and leave the reactions
+of their outer pairs on the bodies that hold them; the driver is last. Of the six equations four
+only take over the result of the other two: those of a 2 x 2 system with the determinant of the
+group's kinematics (the transposed problem), which is why forces are singular where positions are.
 
 Letters: e along a line, n = e turned by +90 deg; F the force on the first body in the inner pin, R
-that in its outer pin; E and M what else acts on a body, with moments about the pin named.
+that in its outer pin; E and M the other forces on a body, with moments about the pin named.
 """
 
 from collections.abc import Callable, Mapping
@@ -19,8 +19,8 @@ from analytic.structure.groups import Bridge, Group, Triad
 
 
 def torque_of(on: Balance) -> Bounded:
-    """Solve all groups, the last one first; the torque on the driver that is left over, or the
-    force along its line."""
+    """Solve all groups, the last one first; return the remaining torque on the driver, or the force
+    along its line."""
     compound = on.structure.compound
     inner = set() if compound is None else {compound.name}
     for part in reversed(on.structure.order):
@@ -38,7 +38,7 @@ def torque_of(on: Balance) -> Bounded:
 
 
 def _rrr(on: Balance, group: Group) -> None:
-    """Moments about the outer pins: r1 x F + M1 = 0, r2 x F = M2."""
+    """Solve moments about the outer pins: r1 x F + M1 = 0, r2 x F = M2."""
     one, other = on.free[group.first], on.free[group.second]
     r1 = on.span(group.first, group.outer1, group.inner)
     r2 = on.span(group.second, group.outer2, group.inner)
@@ -51,7 +51,7 @@ def _rrr(on: Balance, group: Group) -> None:
 
 
 def _rrp(on: Balance, group: Group) -> None:
-    """Along the line e F = e E2, and about the outer pin r x F + M1 = 0."""
+    """Solve e F = e E2 along the line, and r x F + M1 = 0 about the outer pin."""
     one, other = on.free[group.first], on.free[group.second]
     line = on.pair(group.outer2)
     r = on.span(group.first, group.outer1, group.inner)
@@ -65,8 +65,8 @@ def _rrp(on: Balance, group: Group) -> None:
 
 
 def _rpr(on: Balance, group: Group) -> None:
-    """The force N n on the first body: with d from the second outer pin to the first, moments of
-    both bodies about the second give (d e) N = M1 + M2."""
+    """Solve for the force N n on the first body: with d from the second outer pin to the first,
+    moments of both bodies about the second give (d e) N = M1 + M2."""
     one, other = on.free[group.first], on.free[group.second]
     line = on.pair(group.inner)
     near = line.arms[group.first] - on.arm(group.first, group.outer1)
@@ -81,7 +81,7 @@ def _rpr(on: Balance, group: Group) -> None:
 
 
 def _prp(on: Balance, group: Group) -> None:
-    """Along the two lines e1 F = -e1 E1, e2 F = e2 E2."""
+    """Solve e1 F = -e1 E1, e2 F = e2 E2 along the two lines."""
     one, other = on.free[group.first], on.free[group.second]
     line1, line2 = on.pair(group.outer1), on.pair(group.outer2)
     along1, along2 = -line1.along.dot(one.force), line2.along.dot(other.force)
@@ -94,7 +94,7 @@ def _prp(on: Balance, group: Group) -> None:
 
 
 def _rpp(on: Balance, group: Group) -> None:
-    """Along the inner line k R = -k E1, and of both bodies along the outer e R = -e (E1 + E2)."""
+    """Solve k R = -k E1 along the inner line, and e R = -e (E1 + E2) along the outer one."""
     one, other = on.free[group.first], on.free[group.second]
     inner, outer = on.pair(group.inner), on.pair(group.outer2)
     along1 = -inner.along.dot(one.force)
@@ -109,7 +109,7 @@ def _rpp(on: Balance, group: Group) -> None:
 def _crossing(
     line1: PrismaticPair, line2: PrismaticPair, along1: Bounded, along2: Bounded
 ) -> BoundedVec:
-    """The force with these components along two lines."""
+    """Return the force with these components along two lines."""
     inverse = line1.along.cross(line2.along).inverse()
     return line1.across * (along2 * inverse) - line2.across * (along1 * inverse)
 

@@ -1,4 +1,4 @@
-"""What friction costs: its power, and the efficiency at an instant and over a cycle."""
+"""Losses by friction: its power, and the efficiency at an instant and over a cycle."""
 
 import math
 from collections.abc import Mapping
@@ -19,15 +19,15 @@ from models.scene.joints import block_name
 from models.scene.laws import ConstantSpeed, Oscillating
 
 LOOKS = 720
-"""Looks at a cycle; what is shorter than one of its parts is missed."""
+"""Samples of a cycle; anything shorter than one of its parts is missed."""
 HALVINGS = 46
 
 
 @dataclass(frozen=True)
 class LockedRange:
-    """Driver angles [rad] between which friction locks (``locks``), in the order of the motion, or
-    may jam: there the load helps, and beside the motion that is given another equilibrium, of more
-    friction, is as good. ``end_rad`` may lie beyond the cycle that ``begin_rad`` is in."""
+    """Range of driver angles [rad] in which friction locks (``locks``), in the order of the motion,
+    or may jam: there the load helps, and a second equilibrium of more friction is possible beside
+    that of the given motion. ``end_rad`` may lie beyond the cycle that ``begin_rad`` is in."""
 
     begin_rad: float
     end_rad: float
@@ -35,24 +35,24 @@ class LockedRange:
 
     @property
     def ends(self) -> str:
-        """From where to where, for people."""
+        """Text of its ends, for people."""
         return f"from {math.degrees(self.begin_rad):.6g} to {math.degrees(self.end_rad):.6g} deg"
 
     @property
     def words(self) -> str:
-        """For people."""
+        """Text of the range, for people."""
         return f"locks itself {self.ends}" if self.locks else f"may jam {self.ends}"
 
 
 def self_locking(scene: Scene, count: int = LOOKS) -> tuple[LockedRange, ...]:
-    """Where in a cycle no finite torque keeps the mechanism moving, or it may jam.
+    """Find the ranges of a cycle in which friction locks any drive, or the mechanism may jam.
 
     Parameters
     ----------
     scene : Scene
         The mechanism with loads or masses, friction, and a driver that repeats.
     count : int
-        Looks at the cycle; between two that differ the angle is halved in upon.
+        Samples of the cycle; the change between two that differ is found by bisection.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def self_locking(scene: Scene, count: int = LOOKS) -> tuple[LockedRange, ...]:
     ------
     CrankcheckError
         As `analytic.forces.kinetostatics.forces`, but for dead points and locked positions; a
-        driver under whose law nothing repeats.
+        driver law without a period.
     """
     if not scene.coulomb_joints:
         return ()
@@ -84,14 +84,14 @@ def self_locking(scene: Scene, count: int = LOOKS) -> tuple[LockedRange, ...]:
 
 
 def _solutions(scene: Scene, time_s: Array) -> Array:
-    """How many equilibria there are, at each instant."""
+    """Return the number of equilibria at each instant."""
     solution = forces(scene, time_s, bound=False, skip_dead_points=True).friction_solution
     assert solution is not None
     return solution.solutions
 
 
 def _edges(scene: Scene, low: Array, high: Array, case: Array) -> Array:
-    """The instants between ``low``, with that case, and ``high`` at which it ends."""
+    """Return the instants between ``low``, with that case, and ``high`` at which it ends."""
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         same = _solutions(scene, middle) == case
@@ -105,8 +105,8 @@ def _range(scene: Scene, between: tuple[float, float] | list[float], case: float
 
 
 def cycle_s(scene: Scene) -> float:
-    """The time of a turn of the driver [s] (of two, where positions repeat after two only), or of a
-    swing to and fro. Raises CrankcheckError for a law under which nothing repeats."""
+    """Return the time of a turn of the driver [s] (of two, where positions repeat after two only),
+    or of a swing to and fro. Raises CrankcheckError for a law without a period."""
     law = scene.driver.law
     if isinstance(law, ConstantSpeed):
         return repeats_after(scene) / abs(law.speed_rad_s)
@@ -119,7 +119,7 @@ def cycle_s(scene: Scene) -> float:
 
 
 def looks(scene: Scene, count: int) -> Array:
-    """Instants over a cycle [s], none in the position at its start, which is often a dead point."""
+    """Return instants over a cycle [s], none at its start, which is often a dead point."""
     return np.asarray((np.arange(count) + 0.5) * (cycle_s(scene) / count))
 
 
@@ -128,12 +128,12 @@ SAMPLES = 720
 
 @dataclass(frozen=True)
 class Efficiency:
-    """Over a cycle, (T,) each: the driver's angle ``theta`` [rad], the power that the drive puts in
-    and that is lost in friction [W], and ``instantaneous``, the part of the power put in that goes
-    on to loads and masses; NaN where none goes on.
+    """Powers over a cycle, (T,) each: the driver's angle ``theta`` [rad], the ``power`` of the
+    drive and the part ``lost`` in friction [W], and ``instantaneous``, the share of the drive's
+    power that goes on to loads and masses; NaN where none goes on.
 
-    Work of the cycle [J]: ``put_in`` by the drive, ``useful`` done against the loads (those that
-    help counted off), ``wasted`` in friction. NaN where friction locks in the cycle: ``locked``.
+    Work of the cycle [J]: ``put_in`` by the drive, ``useful`` done against the loads (helping ones
+    subtracted), ``wasted`` in friction. NaN where friction locks in the cycle: ``locked``.
     """
 
     theta: Array
@@ -147,15 +147,15 @@ class Efficiency:
 
     @property
     def cycle(self) -> float:
-        """Useful work over the work put in; NaN where no useful work is done, as by a machine that
-        its loads drive."""
+        """Useful work over the drive's work; NaN without useful work, as in a machine driven by its
+        loads."""
         return self.useful / self.put_in if self.useful > 0.0 < self.put_in else float("nan")
 
 
 @dataclass(frozen=True)
 class PowerFlow:
-    """At instants of a motion, (T,) each: the power that the drive puts in, what of it is lost in
-    friction [W], and the part that goes on to loads and masses; NaN where none goes on."""
+    """Powers at instants of a motion, (T,) each: of the drive, the part lost in friction [W], and
+    the share that goes on to loads and masses; NaN where none goes on."""
 
     put_in: Array
     lost: Array
@@ -163,7 +163,7 @@ class PowerFlow:
 
 
 def power_flow(scene: Scene, motion: Motion, found: Forces) -> PowerFlow:
-    """What the drive and friction do in a whole motion with these forces."""
+    """Return the powers of the drive and of friction in a whole motion with these forces."""
     put_in = found.torque * driver_course(scene, motion)[1]
     watts = friction_power(scene, motion, found.friction).values()
     lost = sum((-each for each in watts), np.zeros_like(put_in))
@@ -174,13 +174,13 @@ def power_flow(scene: Scene, motion: Motion, found: Forces) -> PowerFlow:
 
 
 def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
-    """The efficiency of a machine at ``count`` instants of a cycle.
+    """Return the efficiency of a machine at ``count`` instants of a cycle.
 
-    Masses take power and give it back: over a cycle that is nothing, at an instant it counts as
-    power that goes on. Loads over time are taken as they are in the first cycle.
+    Masses take power and give it back: it is zero over a cycle, and counts at an instant as power
+    that goes on. Loads over time count as in the first cycle.
 
     Raises CrankcheckError as `analytic.forces.kinetostatics.forces`, but for dead points and locked
-    positions, and for a driver under whose law nothing repeats.
+    positions, and for a driver law without a period.
     """
     time_s, part_s = looks(scene, count), cycle_s(scene) / count
     motion = solve(scene, time_s, bound=False)
@@ -196,7 +196,7 @@ def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
 
 
 def friction_power(scene: Scene, motion: Motion, friction: Mapping[str, Array]) -> dict[str, Array]:
-    """The power of friction by joint [W], (T,), never positive.
+    """Return the power of friction by joint [W], (T,), never positive.
 
     ``friction`` is that of the forces of the motion (`models.motion.Forces`).
     """

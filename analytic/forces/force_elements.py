@@ -1,4 +1,4 @@
-"""Springs with their dampers over a chunk, what they pull with, and joints that rub.
+"""Springs with their dampers over a chunk, their forces, and joints with friction.
 
 A spring between two points pulls at the first body that has each of them: the ground, else the
 first link in the order of the scene, else a block.
@@ -32,15 +32,15 @@ from models.scene.loads import (
 )
 
 Stretch = tuple[Bounded, Bounded]
-"""The q of a spring [m or rad] and its rate q' [m/s or rad/s]."""
+"""Deflection q of a spring [m or rad] and its rate q' [m/s or rad/s]."""
 
 
 def spring_lengths(
     scene: Scene, chunk: Chunk, *, counted: bool = False
 ) -> Iterator[tuple[Spring, Array, Array]]:
-    """Every spring of a scene with its q [m or rad] and its rate q' [m/s or rad/s], (T,) each.
+    """Yield every spring with its q [m or rad] and its rate q' [m/s or rad/s], (T,) each.
 
-    Of a spring in a pin q is in (-pi, pi] of its free angle, or ``counted`` on from the start.
+    The q of a spring in a pin is in (-pi, pi] of its free angle, or ``counted`` on from the start.
     """
     like = np.zeros_like(chunk.theta)
     for spring in scene.springs.values():
@@ -56,7 +56,7 @@ def spring_lengths(
 
 
 def apply_springs(scene: Scene, chunk: Chunk, free: Mapping[str, FreeBody]) -> None:
-    """Put what all springs and dampers of a scene pull with on its bodies."""
+    """Put the forces of all springs and dampers of a scene on its bodies."""
     for spring in scene.springs.values():
         if isinstance(spring, LineSpring):
             _pull_points(scene, chunk, spring, free)
@@ -77,7 +77,7 @@ def apply_springs(scene: Scene, chunk: Chunk, free: Mapping[str, FreeBody]) -> N
 def _pull_points(
     scene: Scene, chunk: Chunk, spring: LineSpring, free: Mapping[str, FreeBody]
 ) -> None:
-    """A spring between two points, on the bodies of both."""
+    """Put the force of a spring between two points on the bodies of both."""
     way, drift = _way(scene, chunk, spring)
     force = way * Bounded(spring.rate)
     slack_m = spring.free
@@ -93,13 +93,13 @@ def _pull_points(
 
 
 def _pull(spring: Spring, q: Bounded, rate: Bounded) -> Bounded:
-    """What pulls q back [N or N m]."""
+    """Return the force that pulls q back [N or N m]."""
     held = Bounded(spring.rate) * (q - Bounded(spring.free))
     return held + Bounded(spring.damping) * rate
 
 
 def _way(scene: Scene, chunk: Chunk, spring: LineSpring) -> tuple[BoundedVec, BoundedVec]:
-    """From the first point to the second [m], and the velocity of that."""
+    """Return the vector from the first point to the second [m], and its velocity."""
     a, b = (chunk.point(_holder(scene, name), name) for name in spring.points)
     p, v = b.p - a.p, b.v - a.v
     if a.error is None or b.error is None:
@@ -109,20 +109,20 @@ def _way(scene: Scene, chunk: Chunk, spring: LineSpring) -> tuple[BoundedVec, Bo
 
 
 def _difference(v: Vec, error: Real) -> BoundedVec:
-    """A difference of vectors that are together wrong by ``error``."""
+    """Return a difference of vectors with a common error ``error``."""
     size = v.norm()
     return BoundedVec(v, size, error + EPS * size)
 
 
 def _line_stretch(way: BoundedVec, drift: BoundedVec) -> Stretch:
-    """The length of a way, and its rate."""
+    """Return the length of a way, and its rate."""
     size = way.v.norm()
     length = Bounded(size, None if way.error is None else way.error + 2 * EPS * size)
     return length, way.dot(drift) * length.inverse()
 
 
 def _pin_stretch(chunk: Chunk, spring: PinSpring) -> Stretch:
-    """The angle between two bodies; at the start within half a turn of the free one."""
+    """Return the angle between two bodies; at the start within half a turn of the free one."""
     first, second = (chunk.bodies[name] for name in spring.bodies)
     one, other = (_angle(chunk, name) for name in spring.bodies)
     q = other - one + _turns_at_start(Same(chunk.scene), spring)
@@ -137,7 +137,7 @@ def _pin_stretch(chunk: Chunk, spring: PinSpring) -> Stretch:
 
 
 def _within_half_a_turn(chunk: Chunk, spring: PinSpring) -> Bounded:
-    """The angle between two bodies, within half a turn of the free one."""
+    """Return the angle between two bodies, within half a turn of the free one."""
     first, second = (chunk.bodies[name] for name in spring.bodies)
     x, y = first.turn.dot(second.turn), first.turn.cross(second.turn)
     c, s = math.cos(spring.free), math.sin(spring.free)
@@ -145,20 +145,20 @@ def _within_half_a_turn(chunk: Chunk, spring: PinSpring) -> Bounded:
 
 
 def _angle(chunk: Chunk, body: str) -> Array:
-    """The angle of a link, or of the ground, with its whole turns [rad], (T,)."""
+    """Return the angle of a link, or of the ground, with its whole turns [rad], (T,)."""
     return np.zeros_like(chunk.theta) if body == GROUND else counted_angle(chunk, body)
 
 
 @lru_cache(maxsize=4 * KEPT)
 def _turns_at_start(same: Same, spring: PinSpring) -> float:
-    """The whole turns [rad] that bring the angle between the bodies near its free one at time 0."""
+    """Return the whole turns [rad] that bring the bodies' angle near its free one at time 0."""
     chunk = unit_chunk(same.scene, np.array([prepared(same.scene).start]), bound=False)
     one, other = (_angle(chunk, name) for name in spring.bodies)
     return whole_turns(spring, float((other - one)[0]))
 
 
 def _slide_stretch(chunk: Chunk, spring: SlideSpring) -> Stretch:
-    """The displacement of a slider, and its speed."""
+    """Return the displacement of a slider, and its speed."""
     sliding = chunk.sliders[spring.slider]
     error = sliding.error
     if error is None:
@@ -167,7 +167,7 @@ def _slide_stretch(chunk: Chunk, spring: SlideSpring) -> Stretch:
 
 
 def _holder(scene: Scene, point: str) -> str:
-    """The body that a spring's end is fixed to."""
+    """Return the body that a spring's end is fixed to."""
     if point in scene.pins:
         return scene.pins[point][0]
     return next(  # the point of blocks alone
@@ -176,24 +176,24 @@ def _holder(scene: Scene, point: str) -> str:
 
 
 STILL = 1e-12
-"""Below this share of the driver's rate (and of the longest link) a joint does not move: what is
-left is rounding, and its friction, anywhere within its limits, is taken as 0."""
+"""Share of the driver's rate (and of the longest link) below which a joint does not move: the rest
+is rounding, and its friction, anywhere within its limits, is taken as 0."""
 
 
 @dataclass(frozen=True)
 class Rubbing:
-    """A joint with friction: ``pair`` where it is a slider, the bodies ``first`` and ``second``.
+    """Joint with friction: ``pair`` where it is a slider, the bodies ``first`` and ``second``.
 
     ``against`` is the direction of friction, -1, 0 or 1, against that of the motion; its error is
-    up to 2 where rounding does not tell the way of the motion.
+    up to 2 where rounding hides the direction of the motion.
 
     ::
 
         pin     second body turns at w = omega2 - omega1  the first exerts a couple c, c w <= 0
-        slider  what slides moves at v along e            the guide exerts f e on it, f v <= 0
+        slider  the body moves at v along e               the guide exerts f e on it, f v <= 0
 
-    Friction in a slider acts at its point, along the line. Of a block or link that its guide holds
-    by two edges, with a moment, that is the classical friction of the resultant normal force alone.
+    Friction in a slider acts at its point, along the line. For a block or link that its guide holds
+    by two edges, with a moment, it is the classical friction of the resultant normal force alone.
     """
 
     law: Friction
@@ -203,7 +203,7 @@ class Rubbing:
     pair: PrismaticPair | None
 
     def put(self, free: Mapping[str, FreeBody], friction: Bounded) -> None:
-        """The friction, with its sign, on both bodies."""
+        """Put the friction, with its sign, on both bodies."""
         if self.pair is None:
             free[self.second].moment = free[self.second].moment + friction
             if self.first != GROUND:
@@ -215,7 +215,7 @@ class Rubbing:
             free[self.first].push(self.pair.arms[self.first], -force)
 
     def reaction(self, balance: Balance) -> BoundedVec | Bounded:
-        """What the friction grows with: the force in the pin, or the slider's normal force."""
+        """Return the reaction behind the friction: the force in the pin, or the normal force."""
         if self.pair is None:
             return balance.pins[self.law.joint][self.second]
         return balance.sliders[self.pair.name][0]
@@ -228,8 +228,8 @@ def rubbing_joints(
     free: Mapping[str, FreeBody],
     displaced: Displaced,
 ) -> Iterator[Rubbing]:
-    """The joints of a chunk that have friction. Raises CrankcheckError for a joint that is not
-    there, or in which more than two bodies meet."""
+    """Yield the joints of a chunk that have friction. Raises CrankcheckError for a missing joint,
+    or one in which more than two bodies meet."""
     for joint, law in scene.friction.items():
         if joint in scene.sliders:
             slider, sliding = scene.sliders[joint], chunk.sliders[joint]
@@ -251,7 +251,7 @@ def rubbing_joints(
 def put_constant_friction(
     joints: Iterable[Rubbing], free: Mapping[str, FreeBody]
 ) -> dict[str, Bounded]:
-    """Put what rubs the same whatever a joint bears on the bodies; that friction, by joint."""
+    """Put friction that is independent of the reactions on the bodies; return it by joint."""
     friction = {}
     for rubbing in joints:
         if isinstance(rubbing.law, ConstantFriction):
@@ -262,7 +262,7 @@ def put_constant_friction(
 
 
 def _bodies_of_pin(scene: Scene, structure: Structure, joint: str) -> tuple[str, str]:
-    """Files are checked when they are read; a scene may be made otherwise."""
+    """Check the bodies of a pin: a scene may be made without the check of its file."""
     bodies = structure.pins.get(joint, ())
     if len(bodies) != 2:
         names = [n for n, held in structure.pins.items() if len(held) == 2] + list(scene.sliders)
@@ -274,7 +274,7 @@ def _bodies_of_pin(scene: Scene, structure: Structure, joint: str) -> tuple[str,
 
 
 def _against(chunk: Chunk, rate: Real, error: Real | None, length_m: float) -> Bounded:
-    """The opposite direction of a rate; of one that is 0 but for rounding none."""
+    """Return the opposite direction of a rate; none for a rate that is 0 but for rounding."""
     least = STILL * length_m * np.abs(chunk.driver.omega)
     rate = np.broadcast_to(np.asarray(rate, dtype=np.float64), chunk.theta.shape)
     sign = np.where(np.abs(rate) > least, -np.sign(rate), 0.0)

@@ -1,6 +1,6 @@
-"""The free-body diagram of each body: what acts on it but for its joints.
+"""Free-body diagram of each body: the forces on it except those of its joints.
 
-By d'Alembert's principle that is its weight, its loads, and its inertia::
+By d'Alembert's principle these are its weight, its loads, and its inertia::
 
     P = m (g - a_S) in the centre of mass S        M = -J alpha
 
@@ -34,11 +34,11 @@ from models.scene.joints import block_name, local_point, sliding_body
 from models.scene.loads import Load
 
 ROUGH = 4 * EPS
-"""What turning a vector of a body rounds off, over its length."""
+"""Rounding of a turned vector of a body, over its length."""
 
 
 class FreeBody:
-    """A body cut free, over a chunk: the force on it [N] and the moment about its centre [N m]."""
+    """Body cut free, over a chunk: the force on it [N] and the moment about its centre [N m]."""
 
     def __init__(self, body: BodyKinematics, centre: Point) -> None:
         self.body, self.centre = body, centre
@@ -46,7 +46,7 @@ class FreeBody:
         self.moment: Bounded = NOUGHT
 
     def vector(self, start: Point, end: Point) -> BoundedVec:
-        """From one place of the body to another [m]."""
+        """Return the vector from one place of the body to another [m]."""
         x, y = end[0] - start[0], end[1] - start[1]
         if x == 0.0 and y == 0.0:
             return NOWHERE
@@ -64,24 +64,24 @@ class FreeBody:
         return BoundedVec(v, size, (size + apart) * (self.body.error.theta + ROUGH) + apart)
 
     def unit(self, angle_rad: float, rounding: float) -> BoundedVec:
-        """The unit vector at a constant angle, known but for ``rounding``, to the body's frame."""
+        """Return the unit vector at an angle, known but for ``rounding``, to the body's frame."""
         v = self.body.unit(angle_rad)
         if self.body.error is None:
             return BoundedVec(v, 0.0, None)
         return BoundedVec(v, 1.0 + ROUGH, self.body.error.theta + rounding + ROUGH)
 
     def push(self, arm: BoundedVec, force: BoundedVec) -> None:
-        """A force at the end of an arm from the centre."""
+        """Add a force at the end of an arm from the centre."""
         self.force = self.force + force
         self.moment = self.moment + arm.cross(force)
 
     def moment_about(self, arm: BoundedVec) -> Bounded:
-        """The moment of all that acts, about the end of an arm from the centre."""
+        """Return the moment of all forces, about the end of an arm from the centre."""
         return self.moment - arm.cross(self.force)
 
 
 def free_bodies(scene: Scene, chunk: Chunk) -> dict[str, FreeBody]:
-    """All bodies, and the ground, under their weight and inertia."""
+    """Return all bodies, and the ground, under their weight and inertia."""
     free = {GROUND: FreeBody(chunk.bodies[GROUND], (0.0, 0.0))}
     for link in scene.links.values():
         body = FreeBody(chunk.bodies[link.name], link.centre_m)
@@ -103,14 +103,14 @@ def free_bodies(scene: Scene, chunk: Chunk) -> dict[str, FreeBody]:
 
 
 def _nearest(scene: Scene, points: Mapping[str, Point], centre: Point) -> str:
-    """The point that the motion of the centre is taken from: one at rest, or the nearest."""
+    """Return the point from which the centre's motion is taken: one at rest, or the nearest."""
     return min(points, key=lambda p: (p not in scene.ground, math.dist(points[p], centre)))
 
 
 def _weigh(
     scene: Scene, body: FreeBody, centre: PointKinematics, masses: tuple[float, float]
 ) -> None:
-    """Put its weight and inertia on a body whose centre moves so."""
+    """Put its weight and inertia on a body with this motion of its centre."""
     mass, inertia = masses
     g = Vec(*scene.gravity_m_s2) if any(scene.gravity_m_s2) else ZERO
     force = centre.a * -mass if g is ZERO else (g - centre.a) * mass
@@ -130,7 +130,7 @@ def _weigh(
 def apply_loads(scene: Scene, chunk: Chunk, time_s: Array, free: Mapping[str, FreeBody]) -> None:
     """Put all loads of a scene on its bodies.
 
-    Raises CrankcheckError for a load on, at or over what the scene has not, and as
+    Raises CrankcheckError for a load whose body, point or slider the scene lacks, and as
     `Load.magnitude`.
     """
     for load in scene.loads.values():
@@ -146,7 +146,7 @@ def apply_loads(scene: Scene, chunk: Chunk, time_s: Array, free: Mapping[str, Fr
 
 
 def _check_there(scene: Scene, load: Load, free: Mapping[str, FreeBody]) -> None:
-    """Files are checked when they are read; a scene may be made otherwise."""
+    """Check the references of a load: a scene may be made without the check of its file."""
     bodies = [name for name in free if name != GROUND]
     if load.body not in bodies:
         what, found, have = "body", load.body, bodies
@@ -166,7 +166,7 @@ def _check_there(scene: Scene, load: Load, free: Mapping[str, FreeBody]) -> None
 
 
 def _magnitude(load: Load, chunk: Chunk, time_s: Array) -> Bounded:
-    """The force or torque at every sample of a chunk."""
+    """Return the force or torque at every sample of a chunk."""
     x, by, speed, speed_by = time_s, 0.0, None, 0.0
     sliding = None if load.slider is None else chunk.sliders[load.slider]
     error = chunk.driver.error
@@ -196,11 +196,11 @@ def _as_samples(values: Array | float, like: Array) -> Array:
 
 
 Displaced = Mapping[str, Bounded]
-"""The displacement of each slider [m]."""
+"""Displacement of each slider [m]."""
 
 
 class PrismaticPair:
-    """A prismatic pair: its directions, and the way to its point from the centre of each body."""
+    """Prismatic pair: its directions, and the way to its point from the centre of each body."""
 
     def __init__(self, slider: Slider, scene: Scene, free: Mapping[str, FreeBody], s: Bounded):
         self.name, self.body, self.guide = slider.name, sliding_body(slider), slider.on
@@ -219,10 +219,10 @@ class PrismaticPair:
 
 
 class Balance:
-    """The bodies of a chunk that still stand, and the reactions found so far.
+    """Unsolved bodies of a chunk, and the reactions found so far.
 
-    ``pins`` holds the force of each pin on each of its bodies, ``sliders`` what each guide exerts
-    on what slides: the force along n, and the moment about the slider's point.
+    ``pins`` holds the force of each pin on each of its bodies, ``sliders`` the force along n and
+    the moment about the slider's point that each guide exerts on the sliding body.
     """
 
     def __init__(
@@ -237,8 +237,8 @@ class Balance:
         self.sliders: dict[str, tuple[Bounded, Bounded]] = {}
 
     def drive(self) -> Bounded:
-        """The driven joint bears what is left on its link; the torque, or the force along a line,
-        that this takes."""
+        """Put the remaining force of its link on the driven joint; return the driving torque, or
+        the force along a line."""
         driver = self.scene.driver
         if driver.slider is not None:
             line = self.pair(driver.slider)
@@ -252,18 +252,18 @@ class Balance:
         return -body.moment_about(self.arm(link, pivot))
 
     def arm(self, body: str, point: str) -> BoundedVec:
-        """From the centre of a body to one of its points."""
+        """Return the vector from the centre of a body to one of its points."""
         own = self.free[body]
         return own.vector(own.centre, local_point(self.scene, body, point))
 
     def span(self, body: str, start: str, end: str) -> BoundedVec:
-        """From one point of a body to another."""
+        """Return the vector from one point of a body to another."""
         return self.free[body].vector(
             local_point(self.scene, body, start), local_point(self.scene, body, end)
         )
 
     def moment(self, body: str, point: str) -> Bounded:
-        """The moment of what acts on a body about one of its points."""
+        """Return the moment of the forces on a body about one of its points."""
         return self.free[body].moment_about(self.arm(body, point))
 
     def pair(self, slider: str) -> PrismaticPair:
@@ -272,20 +272,20 @@ class Balance:
         )
 
     def push(self, body: str, point: str, force: BoundedVec) -> None:
-        """A force of an inner pin on a body that needs it for its other pair."""
+        """Add the force of an inner pin to a body that needs it for its other pair."""
         self.free[body].push(self.arm(body, point), force)
 
     def on_pin(self, point: str, body: str, force: BoundedVec) -> None:
-        """A pin exerts a force on a body."""
+        """Let a pin exert a force on a body."""
         self.pins[point][body] = self.pins[point][body] + force
 
     def inner(self, group: Group, force: BoundedVec) -> None:
-        """The inner pin of a group exerts the force on its first body."""
+        """Let the inner pin of a group exert the force on its first body."""
         self.on_pin(group.inner, group.first, force)
         self.on_pin(group.inner, group.second, -force)
 
     def hold(self, point: str, body: str, force: BoundedVec) -> None:
-        """An outer pin exerts the force on a body of a group, and the opposite on what holds it."""
+        """Let an outer pin exert the force on a group's body, and the opposite on its holder."""
         holder = next(name for name in self.structure.pins[point] if name in self.standing)
         self.on_pin(point, body, force)
         self.on_pin(point, holder, -force)
@@ -293,8 +293,8 @@ class Balance:
             self.push(holder, point, -force)
 
     def slide(self, pair: PrismaticPair, body: str, normal: Bounded, moment: Bounded) -> None:
-        """A prismatic pair exerts a force along n and a moment on a body, and the opposite on the
-        other."""
+        """Let a prismatic pair exert a force along n and a moment on a body, and the opposite on
+        the other."""
         other = self.free[pair.other(body)]
         if pair.other(body) != GROUND:
             other.push(pair.arms[pair.other(body)], -(pair.across * normal))
@@ -303,6 +303,6 @@ class Balance:
         self.sliders[pair.name] = (normal, moment) if slides else (-normal, -moment)
 
     def rest(self, slider: str, body: str) -> None:
-        """A prismatic pair takes over all that acts on a body: along its line nothing is left."""
+        """Let a prismatic pair take over all forces on a body: none is left along its line."""
         pair, own = self.pair(slider), self.free[body]
         self.slide(pair, body, -pair.across.dot(own.force), -own.moment_about(pair.arms[body]))

@@ -6,10 +6,10 @@ in joint k alone, B_k, equilibrium being linear::
     g_j = mu_j |N0_j + sum_k B_jk g_k|        (N a number in a slider, a vector in a pin)
 
 Where the matrix mu_j |B_jk| has a spectral radius below 1 the right side contracts: there is one
-solution, and repeated substitution leads to it from anywhere. With the directions of the reactions
-known the equations are linear, and solving them is Newton's step; of the two steps that is taken
-which leaves less. Elsewhere there may be none, two or more: friction then holds against any drive,
-or a mechanism may jam, as the sliding rod of P. Painleve does (C. R. Acad. Sci. 121, 1895).
+solution, and repeated substitution leads to it from anywhere. For given directions of the reactions
+the equations are linear, and solving them is Newton's step; of both steps the one with the smaller
+residual is taken. Elsewhere there may be no solution, two or more: friction then holds against any
+drive, or a mechanism may jam, as the sliding rod of P. Painleve does (C. R. Acad. Sci. 121, 1895).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from models.scene.loads import CoulombFriction
 
 @dataclass(frozen=True)
 class LoadedBodies:
-    """A chunk whose bodies are loaded, to be solved for what else acts on them."""
+    """Chunk with loaded bodies, to be solved for the reactions."""
 
     scene: Scene
     structure: Structure
@@ -44,11 +44,11 @@ class LoadedBodies:
     def equilibrium(
         self, friction: Iterable[tuple[Rubbing, Bounded]] = ()
     ) -> tuple[Balance, Bounded]:
-        """The equilibrium of the loads and of friction, and the driving torque."""
+        """Return the equilibrium of the loads and of friction, and the driving torque."""
         return self._balance({name: copy(body) for name, body in self.free.items()}, friction)
 
     def influence(self, rubbing: Rubbing) -> Balance:
-        """The equilibrium of friction of size 1 in one joint, and of nothing else."""
+        """Return the equilibrium of friction of size 1 in one joint, and of no other force."""
         bare = {name: FreeBody(body.body, body.centre) for name, body in self.free.items()}
         return self._balance(bare, [(rubbing, Bounded(1.0))])[0]
 
@@ -64,7 +64,7 @@ class LoadedBodies:
 def coulomb_friction(
     bodies: LoadedBodies, joints: Sequence[Rubbing], count: int, *, certified: bool
 ) -> tuple[list[Bounded], CoulombSolution]:
-    """Coulomb's friction in all of its joints, with signs, at the samples of a chunk."""
+    """Return Coulomb's friction in all of its joints, with signs, at the samples of a chunk."""
     alone, _ = bodies.equilibrium()
     base = [_joined(rubbing.reaction(alone), count) for rubbing in joints]
     by_joint = [bodies.influence(rubbing) for rubbing in joints]
@@ -89,13 +89,13 @@ def coulomb_friction(
 
 
 def _factor(rubbing: Rubbing) -> float:
-    """The friction over the reaction: mu of a slider, the radius of a pin's friction circle."""
+    """Return the friction over the reaction: mu, or the radius of a pin's friction circle."""
     assert isinstance(rubbing.law, CoulombFriction)
     return rubbing.law.mu if rubbing.pair is not None else rubbing.law.arm_m
 
 
 def _joined(reaction: BoundedVec | Bounded, count: int) -> tuple[Array, Array]:
-    """A reaction as vectors (T, 2), that of a slider along x, and what it may be wrong by (T,)."""
+    """Return a reaction as vectors (T, 2), that of a slider along x, and its error (T,)."""
     if isinstance(reaction, Bounded):
         x, y = reaction.value, 0.0
     else:
@@ -109,19 +109,19 @@ def _series(values: Real, count: int) -> Array:
 
 
 MOST = 60
-"""Steps, of which Newton's take some five; plain ones are as many as a contraction needs."""
+"""Most steps: Newton's take some five; plain ones are as many as a contraction needs."""
 SETTLED = 1e-13
-"""A change over the largest friction at which nothing more is gained."""
+"""Change over the largest friction at which iteration ends."""
 SEARCHED, SOLVED = 30, 1e-9
-"""Steps from each start where solutions are looked for from many, and what one may leave open,
-over itself."""
+"""Number of steps from each of many starts of a search, and the residual of a solution, over
+itself."""
 MOST_STARTS = 64
 
 
 @dataclass(frozen=True)
 class CoulombSystem:
-    """The equations at T samples: ``alone`` N0 (T, m, 2), ``influence`` B (T, m, m, 2), by joint
-    and by what rubs, and ``mu`` (m,), [m] in a pin."""
+    """Equations at T samples: ``alone`` N0 (T, m, 2), ``influence`` B (T, m, m, 2), by joint and by
+    rubbing joint, and ``mu`` (m,), [m] in a pin."""
 
     alone: Array
     influence: Array
@@ -131,15 +131,15 @@ class CoulombSystem:
         return np.asarray(self.alone + np.einsum("tjkx,tk->tjx", self.influence, g))
 
     def friction(self, g: Array) -> Array:
-        """The right side of the equations."""
+        """Return the right side of the equations."""
         return np.asarray(self.mu * _length(self.reactions(g)))
 
     def gains(self) -> Array:
-        """mu_j |B_jk|, (T, m, m)."""
+        """Return mu_j |B_jk|, (T, m, m)."""
         return np.asarray(self.mu[:, None] * _length(self.influence))
 
     def along(self, direction: Array) -> Array:
-        """Newton's step: the solution where the reactions have these directions, (T, m, 2)."""
+        """Take Newton's step: the solution where the reactions have these directions, (T, m, 2)."""
         slope = self.mu[:, None] * np.einsum("tjx,tjkx->tjk", direction, self.influence)
         right = self.mu * np.einsum("tjx,tjx->tj", direction, self.alone)
         return solve_small(np.eye(len(self.mu)) - slope, right)
@@ -150,8 +150,8 @@ class CoulombSystem:
 
 @dataclass(frozen=True)
 class CoulombSolution:
-    """Sizes of friction ``g`` (T, m), NaN where there is no solution; by sample how many solutions
-    there are (0, 1, 2: two or more), the steps taken and the last change over the largest g."""
+    """Sizes of friction ``g`` (T, m), NaN where there is no solution; by sample the number of
+    solutions (0, 1, 2: two or more), the steps taken and the last change over the largest g."""
 
     g: Array
     solutions: Array
@@ -161,11 +161,11 @@ class CoulombSolution:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # dead points, searches that fail
 def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
-    """Friction in all joints.
+    """Solve for the friction in all joints.
 
-    Where nothing contracts, solutions are looked for from every set of directions (up to
-    `MOST_STARTS` of them): all are found in one joint, and in six sliders; with pins among several
-    joints some may be missed. Of two the one with the least friction is given.
+    Without a contraction, solutions are searched from every set of directions (up to `MOST_STARTS`
+    of them): all are found in one joint, and in six sliders; with pins among several joints some
+    may be missed. Of two the one with the least friction is returned.
     """
     finite = np.isfinite(system.alone).all(axis=(1, 2))
     finite &= np.isfinite(system.influence).all(axis=(1, 2, 3))
@@ -186,14 +186,14 @@ def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
 
 
 def weights(gains: Array) -> Array:
-    """w with (1 - gains) w = 1, (T, m): all above 0 where, and only where, the spectral radius of
-    the gains is below 1 (A. Berman, R. J. Plemmons, Nonnegative Matrices, chapter 6)."""
+    """Return w with (1 - gains) w = 1, (T, m): all above 0 where, and only where, the spectral
+    radius of the gains is below 1 (A. Berman, R. J. Plemmons, Nonnegative Matrices, chapter 6)."""
     ones = np.ones(gains.shape[:2])
     return np.nan_to_num(solve_small(np.eye(gains.shape[1]) - gains, ones), nan=-1.0)
 
 
 def solve_small(matrices: Array, right: Array) -> Array:
-    """The solutions of small systems (T, m, m) x = (T, m); NaN where one is singular."""
+    """Return the solutions of small systems (T, m, m) x = (T, m); NaN where one is singular."""
     if right.shape[1] == 1:
         return np.where(matrices[:, :, 0] == 0.0, np.nan, right / matrices[:, :, 0])
     determinants = np.linalg.det(matrices)
@@ -204,11 +204,11 @@ def solve_small(matrices: Array, right: Array) -> Array:
 
 
 def _contracted(system: CoulombSystem) -> tuple[Array, Array, Array]:
-    """The one solution where the equations contract, with the steps and the last change."""
+    """Return the one solution where the equations contract, with the steps and the last change."""
     weight = weights(system.gains())
 
     def left(g: Array) -> Array:
-        """How far off they are, in the norm in which they contract; not finite is far."""
+        """Return the residual in the norm in which they contract; not finite is far."""
         off = np.max(np.abs(system.friction(g) - g) / weight, axis=1)
         return np.where(np.isfinite(off), off, np.inf)
 
@@ -230,7 +230,7 @@ def _contracted(system: CoulombSystem) -> tuple[Array, Array, Array]:
 
 
 def _searched(system: CoulombSystem) -> tuple[Array, Array, Array]:
-    """The solution of least friction, how many there are, and what it leaves open over itself."""
+    """Return the solution of least friction, the number of solutions, and its relative residual."""
     count = len(system.alone)
     least, open_ = np.full((count, len(system.mu)), np.nan), np.full(count, np.nan)
     solutions = np.zeros(count)
@@ -250,7 +250,7 @@ def _searched(system: CoulombSystem) -> tuple[Array, Array, Array]:
 
 
 def _starts(system: CoulombSystem) -> list[Array]:
-    """Where to look from: no friction; endless friction, the same in all joints; and the solutions
+    """Return the starts: no friction; endless friction, the same in all joints; and the solutions
     for directions along and against the reactions without friction, in every mixture of joints."""
     own, count = _directions(system.alone), len(system.mu)
     signs = itertools.islice(itertools.product((1.0, -1.0), repeat=count), MOST_STARTS)
@@ -260,7 +260,7 @@ def _starts(system: CoulombSystem) -> list[Array]:
 
 
 def _directions(vectors: Array) -> Array:
-    """Unit vectors, and 0 of what has no direction."""
+    """Return unit vectors, and 0 for vectors without a direction."""
     length = _length(vectors)[..., None]
     return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
 
@@ -271,8 +271,8 @@ def _length(vectors: Array) -> Array:
 
 @dataclass(frozen=True)
 class CoulombErrors:
-    """What the equations may be wrong by: ``alone`` (T, m), ``influence`` (T, m, m), and the
-    directions of friction, ``against`` (T, m), whose size counts in ``influence`` as 1."""
+    """Errors of the equations: ``alone`` (T, m), ``influence`` (T, m, m), and the directions of
+    friction, ``against`` (T, m), whose size counts in ``influence`` as 1."""
 
     alone: Array
     influence: Array
@@ -280,10 +280,10 @@ class CoulombErrors:
 
 
 def coulomb_bound(system: CoulombSystem, errors: CoulombErrors, g: Array, sizes: Array) -> Array:
-    """What the friction ``g`` may be wrong by, (T, m); infinite where nothing contracts.
+    """Return the error bound of the friction ``g``, (T, m); infinite without a contraction.
 
-    Where e is the error of g, the equations give e <= D e + b, with the largest gains D, and b for
-    what g leaves open and its equations are wrong by. Any e > 0 with (1 - D) e >= b is a bound.
+    The equations give e <= D e + b for the error e of g, with the largest gains D, and b for the
+    residual of g and the errors of its equations. Any e > 0 with (1 - D) e >= b is a bound.
     ``sizes`` (T, m, m) is |B_jk| whatever the directions of friction are.
     """
     reach = sizes + errors.influence

@@ -1,4 +1,4 @@
-"""A given motion as the chunks that forces are worked out of."""
+"""Chunks of a given motion, for the computation of forces."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -26,13 +26,12 @@ from models.scene.joints import block_name
 
 
 def chunks_of(scene: Scene, motion: Motion, *, bound: bool) -> Iterator[tuple[slice, Chunk]]:
-    """The motion, a chunk of samples at a time; certified where a bound is asked for.
+    """Yield the motion, a chunk of samples at a time; certified where a bound is required.
 
     Raises
     ------
     CrankcheckError
-        A link, point or slider that the motion lacks, accelerations that it does not give, or
-        bounds that it does not carry.
+        A link, point or slider that the motion lacks, or missing accelerations or bounds.
     """
     _check_whole(scene, motion, bound=bound)
     for first in range(0, len(motion.time_s), CHUNK):
@@ -67,7 +66,7 @@ def _check_whole(scene: Scene, motion: Motion, *, bound: bool) -> None:
 
 
 class _Span:
-    """A span of a motion's samples."""
+    """Span of a motion's samples."""
 
     def __init__(self, scene: Scene, motion: Motion, span: slice, *, certified: bool) -> None:
         self.scene, self.motion, self.span = scene, motion, span
@@ -87,7 +86,7 @@ class _Span:
         return chunk
 
     def _driver(self) -> DrivenCoordinate:
-        """The driven joint, as the motion has it."""
+        """Return the driven joint from the motion."""
         scale, span, driver = driver_scale(self.scene), self.span, self.scene.driver
         theta, omega, alpha = (one[span] / scale for one in driver_course(self.scene, self.motion))
         if self.bound is None:
@@ -121,7 +120,7 @@ class _Span:
         return BodyKinematics(local, self._point(point), turn, omega, alpha, error, theta)
 
     def _block(self, slider: Slider, guide: BodyKinematics) -> BodyKinematics:
-        """A block stands as its line."""
+        """Return a block, which has the direction of its line."""
         angle, error = slider.direction_rad, guide.error
         if error is not None:
             error = replace(error, theta=error.theta + rounding_of_angles(angle))

@@ -1,8 +1,8 @@
 """Kinetostatics: the driving torque and the reactions in all joints of a known motion.
 
-What acts on each body, its inertia among it, is put on free-body diagrams; the Assur groups are
+All forces on each body, with its inertia, are put on free-body diagrams; the Assur groups are
 solved in the reverse of their order of placing, in closed form (`analytic.forces.free_body`), in
-chunks as their motion was. Source: I. I. Artobolevskii, Theory of Mechanisms, on kinetostatics.
+the chunks of their motion. Source: I. I. Artobolevskii, Theory of Mechanisms, on kinetostatics.
 """
 
 from __future__ import annotations
@@ -42,15 +42,15 @@ def forces(
     bound: bool = True,
     skip_dead_points: bool = False,
 ) -> Forces:
-    """The driving torque, and the reaction in every pin and slider.
+    """Return the driving torque, and the reaction in every pin and slider.
 
     Parameters
     ----------
     scene : Scene
         The mechanism with its masses, gravity, loads and springs.
     when : ArrayLike or Motion
-        Times [s], (T,), at which it follows its driver's law, or a motion of it, whole and with
-        accelerations: one by `analytic.kinematics.solve_driven`, say.
+        Times [s], (T,), of its driver's law, or a whole motion with accelerations: one by
+        `analytic.kinematics.solve_driven`, say.
     bound : bool
         Carry error bounds, which go on from those of the motion.
     skip_dead_points : bool
@@ -60,10 +60,10 @@ def forces(
     Returns
     -------
     Forces
-        With redundant links the torque alone, by virtual power: how such links share the load is
-        not for statics to say. Friction of the scene is in torque and reactions; in a joint that
-        does not move it is anywhere within its limits, taken as 0, and the bound says so.
-        ``friction_solution`` says where Coulomb's has two equilibria; bounds are infinite where
+        With redundant links the torque alone, by virtual power: statics leaves open how such links
+        share the load. Friction of the scene is in torque and reactions; in a joint that does not
+        move it is anywhere within its limits, taken as 0, and the bound shows it.
+        ``friction_solution`` marks two equilibria of Coulomb's friction; bounds are infinite where
         it is not shown to have one alone.
 
     Raises
@@ -73,8 +73,7 @@ def forces(
     CrankcheckError
         A driver in a dead point, where torque and reactions are not determined, or where friction
         locks the mechanism; Coulomb's friction with redundant links; a scene without mass and load;
-        a table of a load that does not reach as far as the motion; a motion that
-        lacks something.
+        a table of a load that does not reach as far as the motion; an incomplete motion.
     """
     structure = analyse(scene)
     _check_loaded(scene)
@@ -106,7 +105,7 @@ def forces(
 def _write(
     result: ForceArrays, span: slice, scene: Scene, structure: Structure, chunk: Chunk
 ) -> None:
-    """The forces of a chunk."""
+    """Write the forces of a chunk."""
     free = free_bodies(scene, chunk)
     if scene.loads:
         apply_loads(scene, chunk, result.time_s[span], free)
@@ -139,7 +138,7 @@ def _write(
 
 
 def _undetermined(structure: Structure) -> str:
-    """Why there are no reactions, where there are none."""
+    """Return the reason for missing reactions."""
     if not structure.redundant:
         return ""
     return (
@@ -149,7 +148,7 @@ def _undetermined(structure: Structure) -> str:
 
 
 def _check_loaded(scene: Scene) -> None:
-    """Refuse a scene in which nothing makes a force."""
+    """Refuse a scene without any force."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     rubs = any(isinstance(one, ConstantFriction) for one in scene.friction.values())
@@ -161,7 +160,7 @@ def _check_loaded(scene: Scene) -> None:
 
 
 def _check_friction(scene: Scene, structure: Structure) -> None:
-    """Refuse friction that hangs on reactions which statics does not determine."""
+    """Refuse friction that depends on reactions which statics does not determine."""
     if structure.redundant and scene.coulomb_joints:
         raise CrankcheckError(
             f"{scene.name}: friction.{scene.coulomb_joints[0]}: Coulomb's friction follows from "
@@ -171,7 +170,7 @@ def _check_friction(scene: Scene, structure: Structure) -> None:
 
 
 def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
-    """Where the torque is not determined, by which dyad, and what would work."""
+    """Return the text of a dead point: its place, its dyad, and a cure."""
     place = told(scene, _at(chunk.theta, index))
     where = f"{scene.driver.joint} at {place} (t = {time_s[index]:.6g} s)"
     if all(abs(_at(sine, index)) > 0.0 for sine in chunk.sines.values()):
@@ -192,7 +191,7 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
 
 
 def _locked(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
-    """Where friction holds against any torque, and what would work."""
+    """Return the text of a position that friction locks against any torque, and a cure."""
     place = told(scene, _at(chunk.theta, index))
     return (
         f"{scene.name}: {scene.driver.joint} at {place} (t = {time_s[index]:.6g} s) locks "
@@ -207,7 +206,7 @@ def _at(values: Real, index: int) -> float:
 
 
 class ForceArrays:
-    """The arrays of forces while they are filled; of redundant scenes the torque alone."""
+    """Arrays of forces while they are filled; of redundant scenes the torque alone."""
 
     def __init__(
         self,
@@ -268,21 +267,21 @@ class ForceArrays:
             _put(limit[span], friction[joint].error)
 
     def write_solution(self, span: slice, found: CoulombSolution) -> None:
-        """Store how the friction of a chunk was found."""
+        """Store the solution of a chunk's friction."""
         assert self.solution is not None
         self.solution.solutions[span] = found.solutions
         self.solution.iterations[span] = found.iterations
         self.solution.change[span] = found.change
 
     def locked(self, span: slice) -> Mask:
-        """The samples of a chunk at which no finite torque overcomes the friction."""
+        """Return the samples of a chunk at which no finite torque overcomes the friction."""
         if self.solution is None:
             return np.zeros(len(self.torque[span]), np.bool_)
         return np.asarray(self.solution.solutions[span] == 0.0)
 
     def not_finite(self, span: slice) -> Mask:
-        """The samples of a chunk at which a force is no number, by the sum of them; two forces of a
-        pin that are opposite count once."""
+        """Return the samples of a chunk at which a force is not finite, by the sum of them; two
+        forces of a pin that are opposite count once."""
         total = self.torque[span].copy()
         for by_body in self.pins.values():
             array = next(iter(by_body.values()))
@@ -294,7 +293,7 @@ class ForceArrays:
         return np.asarray(~np.isfinite(total))
 
     def leave_out(self, span: slice, samples: Mask) -> None:
-        """Have no numbers at some samples of a chunk, and infinite bounds."""
+        """Set NaN at some samples of a chunk, and infinite bounds."""
         for array in _arrays(self):
             array[span][samples] = np.nan
         if self.certified:
@@ -302,7 +301,7 @@ class ForceArrays:
                 array[span][samples] = np.inf
 
     def forces(self, undetermined: str, drive_unit: str) -> Forces:
-        """The filled arrays as forces."""
+        """Return the filled arrays as forces."""
         bound = self.bound if self.certified else None
         return Forces(
             self.time_s,
@@ -327,6 +326,6 @@ def _arrays(of: ForceArrays | ForceBound) -> Iterator[Array]:
 
 
 def _put(into: Array, error: Real) -> None:
-    """Store bounds, infinite where they come out of what is not certain (0 times infinity)."""
+    """Store bounds, infinite where they are undefined (0 times infinity)."""
     into[:] = error
     into[np.isnan(into)] = np.inf

@@ -1,11 +1,11 @@
-"""What impulses that come a step late make of the energy of a mechanism.
+"""Energy errors of a mechanism from impulses that come a step late.
 
 An engine that moves its bodies along tangents and closes the joints by impulses leaves these open
-by the arc of a step, dt^2/2 times the acceleration that the joints ask for. The forces of the
+by the arc of a step, dt^2/2 times the acceleration that the joints require. The forces of the
 joints have worked over that arc: the energy is off by twice the energy of accelerations times dt^2
-at most, from the first steps on, in which the arc opens. And as the arc of a step is closed in the
-next one, the forces are late by it, which is lost at every step: with the differences of the
-accelerations from step to step, dt^2 times the energy of accelerations of these.
+at most, from the first steps on, in which the arc opens. As the arc of a step is closed in the next
+one, the forces are late by it, a loss at every step: dt^2 times the energy of accelerations of the
+differences of accelerations from step to step.
 
 Source: the energy of accelerations is Gauss' and Appell's, S = sum (m a^2 + I alpha^2) / 2;
 measured against engines in `reports.judge.tolerance`.
@@ -27,9 +27,9 @@ from models.scene.joints import bodies, centre_of, mass_of
 
 @dataclass(frozen=True)
 class LateImpulses:
-    """Shares of the largest kinetic energy: ``start`` at the start of the motion; ``offset`` comes
-    and goes with it, and is the mean over its first or its last while, the larger; ``loss`` has
-    added up over it."""
+    """Energy errors over the largest kinetic energy: ``start`` at the start of the motion;
+    ``offset`` comes and goes with it, and is the mean over its first or its last while, the larger;
+    ``loss`` has added up over it."""
 
     start: float = 0.0
     offset: float = 0.0
@@ -40,11 +40,11 @@ ON_TIME = LateImpulses()
 
 
 def late_impulses(scene: Scene, motion: Motion, dt_s: float, while_s: float) -> LateImpulses:
-    """What steps of ``dt_s`` [s] may make of the energy of a motion, given at instants (T,), and of
-    its means over ``while_s`` [s]; nothing where nothing moves, or steps are not known (0).
+    """Return the energy errors by steps of ``dt_s`` [s] in a motion, given at instants (T,), with
+    means over ``while_s`` [s]; none at rest, or for an unknown step (0).
 
-    Instants that are further apart than a step count as so many steps on the average, and are to
-    follow the motion. Raises CrankcheckError as `analytic.forces.kinetostatics.forces`.
+    Instants that are further apart than a step count as so many average steps, and have to resolve
+    the motion. Raises CrankcheckError as `analytic.forces.kinetostatics.forces`.
     """
     samples = len(motion.time_s)
     kinetic, stirred, changed = np.zeros(samples), np.zeros(samples), np.zeros(max(samples - 1, 0))
@@ -58,7 +58,7 @@ def late_impulses(scene: Scene, motion: Motion, dt_s: float, while_s: float) -> 
     largest = float(np.max(kinetic))
     if not largest > 0.0 or samples < 2 or not dt_s:
         return ON_TIME
-    # Differences over a longer time than a step are those of so many steps.
+    # Differences over a longer time than a step belong to so many steps.
     steps = float(motion.time_s[-1] - motion.time_s[0]) / ((samples - 1) * dt_s)
     time_s = motion.time_s
     first, last = time_s <= time_s[0] + while_s, time_s >= time_s[-1] - while_s
@@ -68,8 +68,8 @@ def late_impulses(scene: Scene, motion: Motion, dt_s: float, while_s: float) -> 
 
 
 def _rates(scene: Scene, motion: Motion, body: str) -> tuple[Array, Array]:
-    """The velocity of a body's centre with its angular velocity, and their rates, (T, 3) each; 0
-    where a singular position leaves none."""
+    """Return the velocity of a body's centre with its angular velocity, and their rates, (T, 3)
+    each; 0 in a singular position."""
     speeds, pushes = [], []
     for _, chunk in chunks_of(scene, motion, bound=False):
         at = chunk.bodies[body].point(centre_of(scene, body))
@@ -81,22 +81,21 @@ def _rates(scene: Scene, motion: Motion, body: str) -> tuple[Array, Array]:
 
 
 BodyPlace = tuple[float | Array, float | Array]
-"""A place in the frame of a body [m], the same or another at every sample."""
+"""Place in the frame of a body [m], the same or another at every sample."""
 
 
 def jolts(scene: Scene, motion: Motion) -> Array:
-    """Half the largest acceleration that joints make up for in a step, at every sample (T,).
+    """Return half the largest acceleration that joints make up for in a step, at every sample (T,).
 
     A pure number: angles over the square of the driver's peak speed, places over the longest link
     too. Samples at which it is not finite (singular ones) are 0.
 
-    A motion whose velocities belong half a step away from its joints is put right by impulses in
+    A motion whose velocities belong half a step away from its joints is corrected by impulses in
     these. They change the velocity of the centre of each body by half a step's acceleration, and
-    its angular velocity by half a step's angular acceleration, as the acceleration of bodies that
-    only their joints push is the least change that the joints ask for. A point of a body at the
-    distance r from its centre is left with half of a + omega^2 r, as the part of its acceleration
-    that points to the centre comes from turning, and does not jump; a slider moves by the
-    difference of two bodies.
+    its angular velocity by half a step's angular acceleration, as bodies without other forces
+    accelerate by the least change that the joints require. A point of a body at the distance r from
+    its centre keeps half of a + omega^2 r, as the part of its acceleration that points to the
+    centre comes from rotation, and does not jump; a slider moves by the difference of two bodies.
 
     Source: Gauss's principle of least constraint (J. reine angew. Math. 4, 1829), for the step of
     an impulse solver; measured against two engines in `reports.judge.rules.limits`.
@@ -107,7 +106,7 @@ def jolts(scene: Scene, motion: Motion) -> Array:
 
 
 def _pushes(scene: Scene, motion: Motion) -> Iterator[Array]:
-    """For links [rad/s^2], their points and sliders [m/s^2 over the longest link], each (T,)."""
+    """Yield those of links [rad/s^2], points and sliders [m/s^2 over the longest link], (T,)."""
     for name, link in scene.links.items():
         yield np.abs(motion.links[name].alpha)
         for point, place in link.points.items():
@@ -123,7 +122,7 @@ def _pushes(scene: Scene, motion: Motion) -> Iterator[Array]:
 
 
 def _sides(scene: Scene, motion: Motion, slider: Slider) -> Iterator[tuple[str, BodyPlace]]:
-    """The guide, and the link that slides or carries the block, with the place on each."""
+    """Yield the guide, and the link that slides or carries the block, with the place on each."""
     s = motion.sliders[slider.name].displacement
     x, y = slider.through_m
     turn = slider.direction_rad
@@ -134,7 +133,7 @@ def _sides(scene: Scene, motion: Motion, slider: Slider) -> Iterator[tuple[str, 
 
 
 def _turning(scene: Scene, motion: Motion, body: str, place: BodyPlace) -> Array:
-    """The acceleration of a place of a body towards its centre of mass [m/s^2], (T,)."""
+    """Return the acceleration of a body's place towards its centre of mass [m/s^2], (T,)."""
     if body == GROUND:
         return np.zeros_like(motion.time_s)
     x, y = scene.links[body].centre_m

@@ -1,4 +1,4 @@
-"""The driving torque by virtual power: what all forces do along the motion that the driver allows.
+"""Driving torque by virtual power: that of all forces along the motion that the driver allows.
 
 With the velocity v' of each centre and the rate theta' of each body per unit of the driver's rate,
 and the force E and moment M that act on it, inertia among them::
@@ -27,8 +27,8 @@ from models.scene.joints import block_name
 
 
 def torque_by_power(free: Mapping[str, FreeBody], unit: Chunk, chunk: Chunk) -> Bounded:
-    """The torque on the driver [N m], or the force along its line [N], of a chunk whose bodies are
-    loaded.
+    """Return the torque on the driver [N m], or the force along its line [N], of a chunk with
+    loaded bodies.
 
     ``unit`` is the same positions with the driver at 1 rad/s, steady. Its angle is taken as exact:
     that of ``chunk`` may be wrong by its own bound, which moves every rate by its derivative.
@@ -47,7 +47,7 @@ def torque_by_power(free: Mapping[str, FreeBody], unit: Chunk, chunk: Chunk) -> 
 
 
 def _rate(body: BodyKinematics, off: Real) -> Bounded:
-    """The rate of a body [1]."""
+    """Return the rate of a body [1]."""
     if body.error is None:
         return Bounded(body.omega, None)
     change = np.abs(body.alpha) + body.error.alpha
@@ -55,7 +55,7 @@ def _rate(body: BodyKinematics, off: Real) -> Bounded:
 
 
 def _velocity(point: PointKinematics, off: Real) -> BoundedVec:
-    """The velocity of a point [m]."""
+    """Return the velocity of a point [m]."""
     if point.error is None:
         return BoundedVec(point.v, 0.0, None)
     change = point.a.norm() + point.error.acceleration
@@ -64,8 +64,8 @@ def _velocity(point: PointKinematics, off: Real) -> BoundedVec:
 
 @dataclass(frozen=True)
 class ReducedMachine:
-    """Over the driver's angle ``theta`` [rad]: ``inertia`` I [kg m^2], its ``slope`` I' [kg m^2]
-    by the angle, ``torque`` M of weights, loads and springs [N m]; (T,) each."""
+    """Machine reduced to the driver's angle ``theta`` [rad]: ``inertia`` I [kg m^2], its ``slope``
+    I' [kg m^2] by the angle, ``torque`` M of weights, loads and springs [N m]; (T,) each."""
 
     theta: Array
     inertia: Array
@@ -74,7 +74,7 @@ class ReducedMachine:
 
 
 def reduced_machine(scene: Scene, time_s: ArrayLike) -> ReducedMachine:
-    """The machine reduced to its driver, at the given times under its driver's law.
+    """Reduce the machine to its driver, at the given times under its driver's law.
 
     Raises as `analytic.forces.kinetostatics.forces`, but for dead points, where it is not finite.
 
@@ -84,7 +84,7 @@ def reduced_machine(scene: Scene, time_s: ArrayLike) -> ReducedMachine:
         I = sum (m v'^2 + J theta'^2)         M = sum (F v' + M theta')
         torque = I alpha + I' omega^2 / 2 - M          (I' = dI/dphi)
 
-    Friction is not in it: it hangs on the reactions. Source: I. I. Artobolevskii, Theory of
+    Friction is left out, as it depends on the reactions. Source: I. I. Artobolevskii, Theory of
     Mechanisms, on reduced masses.
     """
     instants = samples(time_s, "time_s")
@@ -101,8 +101,8 @@ def reduced_machine(scene: Scene, time_s: ArrayLike) -> ReducedMachine:
 
 
 def loaded_bodies(scene: Scene, chunk: Chunk, time_s: Array) -> dict[str, FreeBody]:
-    """All bodies of a chunk at times [s] under their weights and loads, without inertia. Raises
-    CrankcheckError as `analytic.forces.free_body.apply_loads`."""
+    """Return all bodies of a chunk at times [s] under their weights and loads, without inertia.
+    Raises CrankcheckError as `analytic.forces.free_body.apply_loads`."""
     free = {GROUND: FreeBody(chunk.bodies[GROUND], (0.0, 0.0))}
     for name, (mass, _, centre) in _masses(scene).items():
         free[name] = body = FreeBody(chunk.bodies[name], centre)
@@ -114,7 +114,7 @@ def loaded_bodies(scene: Scene, chunk: Chunk, time_s: Array) -> dict[str, FreeBo
 
 
 def _masses(scene: Scene) -> dict[str, tuple[float, float, Point]]:
-    """Mass [kg], moment of inertia [kg m^2] and centre of each body."""
+    """Return mass [kg], moment of inertia [kg m^2] and centre of each body."""
     own = {n: (k.mass_kg, k.inertia_kg_m2, k.centre_m) for n, k in scene.links.items()}
     for slider in scene.sliders.values():
         if slider.link is None:
@@ -124,8 +124,8 @@ def _masses(scene: Scene) -> dict[str, tuple[float, float, Point]]:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # accelerations at change points
 def inertia_and_slope(scene: Scene, unit: Chunk) -> tuple[Array, Array]:
-    """The reduced moment of inertia and its derivative [kg m^2], (T,), of a chunk with the driver
-    at 1 rad/s, steady: there accelerations are the derivatives of rates by its angle."""
+    """Return the reduced moment of inertia and its derivative [kg m^2], (T,), of a chunk with the
+    driver at 1 rad/s, steady: there accelerations are the derivatives of rates by its angle."""
     inertia, slope = np.zeros_like(unit.theta), np.zeros_like(unit.theta)
     for name, (mass, moment, centre) in _masses(scene).items():
         body = unit.bodies[name]

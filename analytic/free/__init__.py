@@ -1,1 +1,1 @@
-"""Motions that masses and forces make, and no driver."""
+"""Free motions, made by masses and forces without a driver."""

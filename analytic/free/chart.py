@@ -1,8 +1,7 @@
-"""What the motion is integrated over: the driver's angle, or near its limits the coordinate there.
+"""The coordinate of the integration: the driver's angle, or near its limits the coordinate there.
 
-A mechanism whose driver has limits moves in one chart about either of them, and changes from one to
-the other in between (`analytic.free.limit_position`); one whose driver turns fully has its angle
-alone.
+A mechanism whose driver has limits moves in one chart about either of them, and changes between
+them (`analytic.free.limit_position`); a driver that turns fully has its angle alone.
 """
 
 from __future__ import annotations
@@ -26,20 +25,20 @@ from models.scene import Scene
 from models.scene.driver import Released
 
 BEYOND = (1e-9, 1e-6, 1e-4, 1e-2)
-"""How far beyond a limit is looked which dyad is open there [rad]."""
+"""Distances beyond a limit at which the open dyad is looked for [rad]."""
 
 
 @dataclass(frozen=True, eq=False)
 class LimitedScene:
-    """A scene in one assembly; ``limits`` of its driver's range, the lower one first, or none."""
+    """Scene in one assembly; ``limits`` of its driver's range, the lower one first, or none."""
 
     scene: Scene
     limits: tuple[LimitPosition, LimitPosition] | None
 
     @staticmethod
     def of(scene: Scene, driver_rad: float) -> LimitedScene:
-        """The arc on which the driver stands at an angle. Raises CrankcheckError where the
-        mechanism cannot be assembled there, or its way ends at infinity."""
+        """Return the arc that holds a driver angle. Raises CrankcheckError where the mechanism
+        cannot be assembled there, or its way ends at infinity."""
         ready = prepared(scene)
         spans = ranges(ready.stretched, ready.looked_turns)
         span = _range_about(spans, driver_rad)
@@ -53,20 +52,20 @@ class LimitedScene:
 
     @property
     def length_rad(self) -> float:
-        """Of the driver's range."""
+        """Length of the driver's range."""
         assert self.limits is not None
         low, high = self.limits
         return high.driver_rad - low.driver_rad
 
     def nearest(self, driver_rad: float) -> LimitPosition | None:
-        """The limit that is nearest to a driver angle."""
+        """Return the limit that is nearest to a driver angle."""
         if self.limits is None:
             return None
         return min(self.limits, key=lambda limit: abs(limit.driver_rad - driver_rad))
 
     def beyond(self, limit: LimitPosition) -> LimitedScene:
-        """The arc of the other assembly, into which the motion passes at one of the limits. Raises
-        CrankcheckError where it is not to be told."""
+        """Return the arc of the other assembly, into which the motion passes at one of the limits.
+        Raises CrankcheckError where change points make it unclear."""
         scene = self.scene
         if ready := prepared(scene).passages:
             raise CrankcheckError(
@@ -87,8 +86,8 @@ class LimitedScene:
         return LimitedScene.of(started(0.5 * sum(span)), 0.5 * sum(span))
 
     def link_angles(self, driver_rad: float) -> Mapping[str, float]:
-        """The angles of all links at a driver angle, whole turns as `analytic.kinematics` counts
-        them for this scene."""
+        """Return the angles of all links at a driver angle, whole turns as `analytic.kinematics`
+        counts them for this scene."""
         still = np.zeros(1)
         found = solve_driven(
             self.scene, np.array([driver_rad]), still, still, points=(), sliders=(), bound=False
@@ -97,7 +96,7 @@ class LimitedScene:
 
 
 def _range_about(spans: list[tuple[float, float]], driver_rad: float) -> tuple[float, float] | None:
-    """The range that holds an angle, but for rounding, moved by whole turns to it."""
+    """Return the range that holds an angle, but for rounding, moved by whole turns to it."""
     room = 1e-9
     for low, high in spans:
         turns = math.tau * math.ceil((driver_rad - high - room) / math.tau)
@@ -107,8 +106,8 @@ def _range_about(spans: list[tuple[float, float]], driver_rad: float) -> tuple[f
 
 
 def _limit(scene: Scene, span: tuple[float, float], side: int) -> LimitPosition:
-    """The limit at one end of a range. Raises CrankcheckError where no dyad is stretched or folded
-    there, or two are."""
+    """Return the limit at one end of a range. Raises CrankcheckError where no dyad is stretched or
+    folded there."""
     ready, driver_rad = prepared(scene), span[1] if side > 0 else span[0]
     beyond = driver_rad + side * np.array(BEYOND)
     shortages = ready.stretched(beyond).shortage
@@ -126,8 +125,8 @@ def _limit(scene: Scene, span: tuple[float, float], side: int) -> LimitPosition:
 
 
 def _zero_of_root(ready: Prepared, key: str, driver_rad: float, inwards_rad: float) -> float:
-    """The driver angle at which the square of a dyad's root is 0, to rounding: a range ends where
-    the dyad is open by more than that."""
+    """Return the driver angle at which the square of a dyad's root is 0, to rounding: a range ends
+    where the dyad is open by more than that."""
 
     def square(theta: float) -> float:
         values = np.asarray(ready.stretched(np.array([theta])).closures[key].square)
@@ -140,21 +139,20 @@ def _zero_of_root(ready: Prepared, key: str, driver_rad: float, inwards_rad: flo
 
 
 def _is_open(short: Array) -> bool:
-    """Whether a dyad is open at once beyond a limit."""
+    """True if a dyad is open at once beyond a limit."""
     values = np.broadcast_to(np.asarray(short), (len(BEYOND),))
     return bool(np.all(np.nan_to_num(values[1:], nan=1.0) > 0.0))
 
 
 HOP = 0.6
-"""The share of a range that the chart of one of its limits is used over."""
+"""Share of a range over which the chart of one of its limits is used."""
 
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """A coordinate u along the motion: the driver's angle, or that about ``limit`` of ``arc``.
+    """Coordinate u along the motion: the driver's angle, or that about ``limit`` of ``arc``.
 
-    ``ahead`` is what link angles are ahead of those of the arc's scene [rad] by the way that the
-    motion came.
+    ``ahead`` is the lead of link angles over the arc's scene [rad] from the motion so far.
     """
 
     arc: LimitedScene
@@ -163,12 +161,12 @@ class Chart:
 
     @staticmethod
     def at(arc: LimitedScene, driver_rad: float, ahead: Mapping[str, float]) -> Chart:
-        """The chart that is best at a driver angle."""
+        """Return the best chart at a driver angle."""
         return Chart(arc, arc.nearest(driver_rad), ahead)
 
     @cached_property
     def other(self) -> tuple[LimitedScene, Mapping[str, float]]:
-        """The arc where u < 0, and what link angles are ahead there."""
+        """The arc where u < 0, and the lead of link angles there."""
         assert self.limit is not None
         arc, at = self.arc.beyond(self.limit), self.limit.driver_rad
         here, there = self.arc.link_angles(at), arc.link_angles(at)
@@ -179,7 +177,7 @@ class Chart:
         }
 
     def driver(self, u: Array) -> tuple[Array, Array, Array]:
-        """The driver's angle with its first two derivatives by u."""
+        """Return the driver's angle with its first two derivatives by u."""
         if self.limit is None:
             return u, np.ones_like(u), np.zeros_like(u)
         side = self.limit.side
@@ -187,7 +185,7 @@ class Chart:
         return phi, -2.0 * side * u, np.full_like(u, -2.0 * side)
 
     def state(self, driver_rad: float, omega: float) -> tuple[float, float]:
-        """u and its rate in the arc itself, at a driver angle with a rate [rad/s].
+        """Return u and its rate in the arc itself, at a driver angle with a rate [rad/s].
 
         At the limit itself the driver has no rate, and u is taken as at rest.
         """
@@ -197,14 +195,14 @@ class Chart:
         return u, -omega / (2.0 * self.limit.side * u) if u > 0.0 else 0.0
 
     def left(self, u: float) -> LimitedScene | None:
-        """The arc on which to take another chart, where u is far from the limit."""
+        """Return the arc on which to take another chart, where u is far from the limit."""
         if self.limit is None:
             return None
         arc = self.arc if u >= 0.0 else self.other[0]
         return arc if u * u > HOP * arc.length_rad else None
 
     def next(self, u: float, v: float) -> tuple[Chart, float, float]:
-        """The chart of the other limit, with u and its rate in it."""
+        """Return the chart of the other limit, with u and its rate in it."""
         assert self.limit is not None
         arc, ahead = (self.arc, self.ahead) if u >= 0.0 else self.other
         phi, first, _ = self.driver(np.array([u]))
@@ -212,12 +210,12 @@ class Chart:
         return chart, *chart.state(float(phi[0]), float(first[0]) * v)
 
     def unit(self, u: Array) -> Chunk:
-        """The mechanism at coordinates (T,), per unit of their rate. Raises ReachError."""
+        """Return the mechanism at coordinates (T,), per unit of their rate. Raises ReachError."""
         return self.chunk(u, 1.0, STEADY)
 
     def chunk(self, u: Array, v: Real, a: Real, error: AngleError | None = None) -> Chunk:
-        """The mechanism at coordinates u (T,) with rates, certified where it is given what these
-        may be wrong by. Raises ReachError."""
+        """Return the mechanism at coordinates u (T,) with rates, certified where their ``error`` is
+        given. Raises ReachError."""
         if self.limit is None:
             if error is not None:
                 error = AngleError(error.theta + EPS * np.abs(u), error.omega, error.alpha)

@@ -1,4 +1,4 @@
-"""What an integration found: the motion in windows of time, each a polynomial in a chart."""
+"""Result of an integration: the motion in windows of time, each a polynomial in a chart."""
 
 from __future__ import annotations
 
@@ -16,18 +16,17 @@ from analytic.free.window import gauss, sums
 from models.array import Array
 
 MOST = 1.001
-"""How far beyond what they were solved for polynomials are used."""
+"""Range in which polynomials are used, over that in which they were solved for."""
 
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """From ``start_s`` to ``end_s`` the coefficients in Legendre's polynomials of u, u' and u''.
+    """Coefficients in Legendre's polynomials of u, u' and u'' from ``start_s`` to ``end_s``.
 
-    The polynomials are over ``long_s``, which is that time or hardly less of it.
-    ``change`` (2, 2) is the derivative of u and u' at its end by those at its start; ``swing``
-    (2, n) that of u within it. ``wound`` are angles of springs in pins at its start; ``bends``
-    says that it ends where a load, a stroke or friction goes over to another formula by where the
-    machine is, or how fast.
+    The polynomials are over ``long_s``, which is that time or hardly less of it. ``change`` (2, 2)
+    is the derivative of u and u' at its end by those at its start; ``swing`` (2, n) that of u
+    within it. ``wound`` are angles of springs in pins at its start; ``bends`` says that it ends
+    where a load, a stroke or friction changes formula with the position or speed of the machine.
     """
 
     chart: Chart
@@ -58,30 +57,30 @@ class CoordinateHistory:
         return self.windows[-1].end_s
 
     def wound_at(self, windows: NDArray[np.intp]) -> dict[str, Array]:
-        """Angles of springs in pins at the start of windows, by number, (T,) each."""
+        """Return the angles of springs in pins at the start of windows, by number, (T,) each."""
         names = self.windows[0].wound
         every = {name: np.array([one.wound[name] for one in self.windows]) for name in names}
         return {name: angles[windows] for name, angles in every.items()}
 
     def windows_at(self, time_s: Array) -> NDArray[np.intp]:
-        """The number of the window of each time; at a border that of the later one."""
+        """Return the number of the window of each time; at a border that of the later one."""
         found = np.searchsorted(self.starts_s, time_s, side="right") - 1
         return np.asarray(np.clip(found, 0, len(self.windows) - 1))
 
     def state(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """u, u' and u'' at times [s], (T,), each in the chart of its window."""
+        """Return u, u' and u'' at times [s], (T,), each in the chart of its window."""
         k = self.windows_at(time_s)
         start, long_ = self.starts_s[k], self._long_s[k]
         share = np.clip((time_s - start) / long_, 0.0, MOST)
         return self.at(k, share)
 
     def at(self, windows: NDArray[np.intp], share: Array) -> tuple[Array, Array, Array]:
-        """u, u' and u'' at shares of windows, by number, (T,)."""
+        """Return u, u' and u'' at shares of windows, by number, (T,)."""
         u, v, a = (sums(table[windows], share) for table in self._tables)
         return u, v, a
 
     def legs(self) -> Iterator[tuple[Chart, int, int]]:
-        """The charts one after the other, with their first window and that after their last."""
+        """Yield the charts, each with its first window and that after its last."""
         first = 0
         for k in range(1, len(self.windows) + 1):
             if k == len(self.windows) or self.windows[k].chart is not self.windows[first].chart:
@@ -94,7 +93,7 @@ class CoordinateHistory:
 
     @cached_property
     def _tables(self) -> tuple[Array, Array, Array]:
-        """The coefficients of all windows, those of short series filled with 0."""
+        """Coefficients of all windows, short series filled with 0."""
         return (
             _table([window.u for window in self.windows]),
             _table([window.v for window in self.windows]),
@@ -110,21 +109,21 @@ def _table(series: list[Array]) -> Array:
 
 
 SAFETY = 8.0
-"""How much more than the largest difference so far the error may be."""
+"""Ratio of the error bound to the largest difference so far."""
 SHARES = (0.13, 0.5, 0.87)
-"""Where windows are looked at: not at their ends, where what acts may jump."""
+"""Shares of a window that are compared: not its ends, where forces may jump."""
 
 
 @dataclass(frozen=True, eq=False)
 class Doubt:
-    """What u, u' and u'' may be off by until the times ``time_s``: rows of ``off`` (3, T)."""
+    """Errors of u, u' and u'' until the times ``time_s``: rows of ``off`` (3, T)."""
 
     time_s: Array
     off: Array
 
     @staticmethod
     def between(history: CoordinateHistory, other: CoordinateHistory) -> Doubt:
-        """What two integrations of one motion leave in doubt of the first."""
+        """Estimate the errors of one integration from another of the same motion."""
         starts = np.repeat(history.starts_s, len(SHARES))
         ends = np.repeat([window.end_s for window in history.windows], len(SHARES))
         time_s = starts + np.tile(SHARES, len(history.windows)) * (ends - starts)
@@ -143,15 +142,15 @@ class Doubt:
         return Doubt(time_s, SAFETY * off + 4 * EPS * sizes)
 
     def at(self, time_s: Array) -> Array:
-        """What u, u' and u'' may be off by, (3, T)."""
-        # That of the next look: the differences before a time hold up to there.
+        """Return the errors of u, u' and u'', (3, T)."""
+        # The next sample holds the differences up to it.
         k = np.clip(np.searchsorted(self.time_s, time_s), 0, len(self.time_s) - 1)
         return np.asarray(self.off[:, k])
 
 
 def _moved(of: Chart, to: Chart, state: Array, near: Array) -> Array:
-    """A state (3, T) of one chart in another, next to coordinates ``near``: by the driver's angle
-    where they are about different limits, which is away from both."""
+    """Return a state (3, T) of one chart in another, next to coordinates ``near``: by the driver's
+    angle where they are about different limits, which is away from both."""
     if of is to or to.limit is None:
         return state
     u, v, a = state
@@ -168,23 +167,23 @@ def _moved(of: Chart, to: Chart, state: Array, near: Array) -> Array:
 
 
 STEEP = 0.1
-"""Nearer to a limit of the driver than where its angle changes by this per unit of the coordinate,
-a start is changed in the coordinate, as the angle is at its end there."""
+"""Slope of the driver's angle by the coordinate. Nearer to a limit, where the slope is less, a
+start is changed in the coordinate, as the angle is at its end there."""
 
 AT_REST = 1e-10
-"""Of the rates in a window: what is slower at its end has come to rest."""
+"""Rate over those in a window, below which its end is at rest."""
 
 
 def growth(history: CoordinateHistory, omega: float) -> tuple[Array, Array]:
-    """Times [s], and by how much a small change of the start has grown until then at most.
+    """Return times [s], and the largest growth of a small change of the start until then.
 
-    What has grown is the change of the driver's angle. It is the larger one of what comes of a
-    changed angle, per rad, and of a changed speed, per ``omega`` [rad/s]; at least 1.
+    It is the change of the driver's angle: the larger one for a changed angle, per rad, and for a
+    changed speed, per ``omega`` [rad/s]; at least 1.
 
-    Each window knows the derivative of its end by its start; their product is that of the motion.
-    Where the acceleration jumps at a place, whoever comes there later is pushed later; where it
-    jumps as the machine comes to rest, the rates before and after are as the accelerations. Source:
-    M. di Bernardo et al., Piecewise-smooth Dynamical Systems, section 2.5 (saltation matrices).
+    Each window has the derivative of its end by its start; their product is that of the motion.
+    Where the acceleration jumps at a place, a later arrival is pushed later; where it jumps as the
+    machine comes to rest, the rates before and after are as the accelerations. Source: M. di
+    Bernardo et al., Piecewise-smooth Dynamical Systems, section 2.5 (saltation matrices).
     """
     chart = history.windows[0].chart
     u0, v0 = (float(row[0]) for row in history.state(np.zeros(1))[:2])
@@ -206,7 +205,7 @@ def growth(history: CoordinateHistory, omega: float) -> tuple[Array, Array]:
 
 
 def _across(before: Window, after: Window) -> Array:
-    """The derivative from the end of a window to the start of the next one."""
+    """Return the derivative from the end of a window to the start of the next one."""
     matrix = np.eye(2)
     v = float(before.v.sum())
     if before.bends and before.chart is after.chart:
@@ -223,7 +222,7 @@ def _across(before: Window, after: Window) -> Array:
 
 
 def _between(old: Chart, new: Chart, u: float, v: float) -> Array:
-    """The derivative of the coordinate and the rate of one chart by those of another."""
+    """Return the derivative of the coordinate and the rate of one chart by those of another."""
     phi, first, second = (float(row[0]) for row in old.driver(np.array([u])))
     assert new.limit is not None
     x = np.array([new.limit.coordinate(phi)])

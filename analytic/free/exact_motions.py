@@ -1,5 +1,4 @@
-"""Hard free motions in closed form: a chain of windows, and a four-bar that is thrown at its
-toggle."""
+"""Hard free motions in closed form: a chain of windows, and a four-bar thrown at its toggle."""
 
 from __future__ import annotations
 
@@ -24,13 +23,13 @@ from models.scene.hard import UPRIGHT, WindowChain
 class Amplitude:
     """Jacobi's amplitude am(u | m) for a complementary parameter ``rest`` = 1 - m in (0, 1].
 
-    Good to a few roundings of u; near rest = 0 as well, as that is what is given.
+    Good to a few roundings of u; near rest = 0 as well, as ``rest`` itself is given.
     """
 
     rest: float
 
     def _means(self) -> tuple[list[float], list[float]]:
-        """The arithmetic means a and the half differences c of the sequence."""
+        """Return the arithmetic means a and the half differences c of the sequence."""
         a, b = [1.0], math.sqrt(self.rest)
         c = [math.sqrt(max(1.0 - self.rest, 0.0))]
         while c[-1] > 1e-8 * a[-1]:  # the next one would be of the order of its square
@@ -45,7 +44,7 @@ class Amplitude:
         return math.pi / (2.0 * self._means()[0][-1])
 
     def at(self, u: Array) -> Array:
-        """am(u), shape of u."""
+        """Return am(u), shape of u."""
         a, c = self._means()
         halves = np.round(u / (2.0 * self.quarter))
         angle = 2.0 ** (len(a) - 1) * a[-1] * (u - 2.0 * self.quarter * halves)
@@ -57,18 +56,18 @@ class Amplitude:
 
 @dataclass(frozen=True)
 class ChainMotion:
-    """The turning of all rockers of a chain that is left free at time 0."""
+    """Rotation of all rockers of a chain that is released at time 0."""
 
     chain: WindowChain
 
     @property
     def inertia(self) -> float:
-        """M: what the rods weigh against turning, in rods that move with B0."""
+        """M: inertia of the rods against turning, in rods that move with B0."""
         return (self.chain.count + 1) / 3 + self.chain.count
 
     @property
     def weight(self) -> float:
-        """P: what the rods weigh, in rods that are lifted with B0."""
+        """P: weight of the rods, in rods that are lifted with B0."""
         return (self.chain.count + 1) / 2 + self.chain.count
 
     @property
@@ -78,12 +77,12 @@ class ChainMotion:
 
     @property
     def fastest_rad_s(self) -> float:
-        """The angular velocity hanging down, without its sign."""
+        """Largest angular velocity, hanging down, without its sign."""
         return math.sqrt(self.chain.start_rad_s**2 + 4.0 * self.stiffness)
 
     @property
     def period_s(self) -> float:
-        """The time of one turn."""
+        """Time of one turn."""
         return 4.0 * self._amplitude.quarter / self.fastest_rad_s
 
     @property
@@ -91,10 +90,10 @@ class ChainMotion:
         return Amplitude((self.chain.start_rad_s / self.fastest_rad_s) ** 2)
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """theta [rad], omega [rad/s], alpha [rad/s^2] of the rockers, shape of time.
+        """Return theta [rad], omega [rad/s], alpha [rad/s^2] of the rockers, shape of time.
 
-        Good to a few roundings of the angle turned, at which the upright position is passed again
-        after each `period_s`.
+        Good to a few roundings of the angle turned; the upright position is passed again after each
+        `period_s`.
         """
         amplitude, sign = self._amplitude, math.copysign(1.0, self.chain.start_rad_s)
         half = amplitude.at(0.5 * self.fastest_rad_s * time_s - amplitude.quarter)
@@ -104,20 +103,20 @@ class ChainMotion:
         return UPRIGHT + sign * phi, sign * omega, sign * self.stiffness * np.sin(phi)
 
     def energy(self, theta: Array, omega: Array) -> Array:
-        """Kinetic and potential energy of all rods [J]; heights count from the ground line."""
+        """Return kinetic plus potential energy of all rods [J]; heights from the ground line."""
         chain = self.chain
         moving = 0.5 * chain.mass_kg * chain.length_m**2 * self.inertia * omega**2
         return moving + 0.5 * self.exchanged_j * np.sin(theta)
 
     @property
     def exchanged_j(self) -> float:
-        """The energy that goes back and forth between height and motion, 2 m g l P [J]."""
+        """Energy exchanged between height and motion, 2 m g l P [J]."""
         chain = self.chain
         return 2.0 * chain.mass_kg * chain.gravity_m_s2 * chain.length_m * self.weight
 
     def motion(self, time_s: Array) -> Motion:
-        """The motion of all rods and pins at times [s], (T,). Raises CrankcheckError for times that
-        are no numbers."""
+        """Return the motion of all rods and pins at times [s], (T,). Raises CrankcheckError for
+        times that are no numbers."""
         time_s = samples(time_s, "time_s")
         theta, omega, alpha = self.at(time_s)
         rest = np.zeros_like(theta)
@@ -136,20 +135,20 @@ class ChainMotion:
 
 GRAVITY_M_S2 = 9.81
 REACH = 0.25
-"""The share of the driver's range that it starts before its limit."""
+"""Distance of the start from the limit, over the driver's range."""
 BEYOND = 0.8
-"""How far beyond the toggle V has to fall, over how far before it the start is."""
+"""Distance beyond the toggle over which V has to fall, over that of the start before it."""
 LOOKS = 101
 
 
 @dataclass(frozen=True, eq=False)
 class ToggleBarrier:
-    """The hill of a four-bar about the limit of its driver.
+    """Potential barrier of a four-bar about the limit of its driver.
 
-    ``scene`` has gravity as above and stands at the start ``u``; ``barrier_j`` is by how much V
-    rises from there to the toggle [J], and ``growth_per_s`` the rate at which the motion leaves the
-    top [1/s]. ``open_rad`` is the angle of the rocker against the coupler at the start, less that
-    in the toggle; at -u it is as much to the other side.
+    ``scene`` has gravity as above and stands at the start ``u``; ``barrier_j`` is the rise of V
+    from there to the toggle [J], and ``growth_per_s`` the rate at which the motion leaves the top
+    [1/s]. ``open_rad`` is the angle of the rocker against the coupler at the start, less that in
+    the toggle; at -u it is as much to the other side.
     """
 
     scene: Scene
@@ -161,7 +160,7 @@ class ToggleBarrier:
 
     @staticmethod
     def of(scene: Scene) -> ToggleBarrier:
-        """The hill at the upper limit of a scene's driver, in the assembly of the scene.
+        """Compute the barrier at the upper limit of a scene's driver, in the assembly of the scene.
 
         Raises CrankcheckError where the driver has no limit, or V does not rise all the way to the
         toggle and fall beyond it.
@@ -193,12 +192,12 @@ class ToggleBarrier:
 
     @property
     def links(self) -> tuple[str, str]:
-        """The two that are in line in the toggle."""
+        """The two links that are in line in the toggle."""
         return _others(self.scene)
 
     def thrown(self, margin: float) -> Scene:
-        """The scene that starts with ``1 + margin`` of the barrier as its kinetic energy; it gets
-        over where the margin is above 0. Raises CrankcheckError for a margin of 0 or at most -1."""
+        """Return the scene that starts with ``1 + margin`` of the barrier as its kinetic energy; it
+        gets over for a margin above 0. Raises CrankcheckError for 0 or at most -1."""
         if not margin > -1.0 or margin == 0.0:
             raise CrankcheckError(
                 f"{self.scene.name}: margin {margin:g}: give one above -1, and not 0"
@@ -211,22 +210,22 @@ class ToggleBarrier:
         )
 
     def start(self, margin: float) -> State:
-        """The state at time 0, with the accelerations that the weights give."""
+        """Return the state at time 0, with the accelerations that the weights give."""
         theta, omega, alpha = (np.array([one]) for one in self._driver(margin))
         return solve_driven(self.scene, theta, omega, alpha, np.zeros(1), bound=False).state()
 
     def lasts_s(self, margin: float) -> float:
-        """By when it has been decided, twice over [s]: up and down at the rate of the top."""
+        """Return twice the time to the decision [s]: up and down at the rate of the top."""
         return (2.0 * math.log(4.0 / abs(margin)) + 8.0) / self.growth_per_s
 
     def is_toggle(self, passage: LimitPassage) -> bool:
-        """Whether a passage of a motion is one through the toggle, and not the other limit."""
+        """True if a passage of a motion goes through the toggle, not the other limit."""
         limit = self.machine.chart.limit
         assert limit is not None
         return math.isclose(passage.driver_rad, limit.driver_rad, abs_tol=1e-6)
 
     def _driver(self, margin: float) -> tuple[float, float, float]:
-        """Angle, rate and acceleration of the driver at the start."""
+        """Return angle, rate and acceleration of the driver at the start."""
         u = np.array([self.u])
         inertia, _ = self.machine.inertia(u)
         v = -np.sqrt(2.0 * (1.0 + margin) * self.barrier_j / inertia)
@@ -240,13 +239,13 @@ def _started(scene: Scene, law: Released) -> Scene:
 
 
 def _others(scene: Scene) -> tuple[str, str]:
-    """The links of a four-bar that are not its driver."""
+    """Return the links of a four-bar that are not its driver."""
     one, other = (name for name in scene.links if name != scene.driver.link)
     return one, other
 
 
 def _opening(scene: Scene, chart: Chart, u: float) -> float:
-    """By how much the second free link turns against the first from the toggle to u [rad].
+    """Return the rotation of the second free link against the first from the toggle to u [rad].
 
     Raises CrankcheckError where it turns to and fro.
     """
@@ -260,7 +259,7 @@ def _opening(scene: Scene, chart: Chart, u: float) -> float:
 
 
 def _upwards(scene: Scene, chart: Chart, u: float) -> tuple[float, float]:
-    """The gravity [m/s^2] in which the toggle is higher than its neighbours and level."""
+    """Return the gravity [m/s^2] in which the toggle is higher than its neighbours and level."""
     rate, below = [], []
     for unit in ((1.0, 0.0), (0.0, 1.0)):
         machine = Machine(replace(scene, gravity_m_s2=unit), chart)
@@ -268,7 +267,7 @@ def _upwards(scene: Scene, chart: Chart, u: float) -> tuple[float, float]:
         rate.append(float(machine.push(zero, zero, zero)[0]))
         heights = machine.potential(np.array([0.0, u]))
         below.append(float(heights[0] - heights[1]))
-    # Across the way that the common centre of mass has in the toggle, it does no work there.
+    # Across the common centre's velocity in the toggle, gravity does no work there.
     across = np.array([-rate[1], rate[0]]) / math.hypot(*rate)
     g = GRAVITY_M_S2 * math.copysign(1.0, float(across @ np.array(below))) * across
     return float(g[0]), float(g[1])

@@ -1,4 +1,4 @@
-"""What is asked of the motion of a mechanism that was let go, whatever integrated it."""
+"""Interface of the free motion of a mechanism, whichever integration it comes from."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from models.scene.laws import ConstantSpeed, Law
 
 @dataclass(frozen=True)
 class LimitPassage:
-    """A limit of the driver's angle that the motion goes through: there the driver turns back, and
+    """Limit of the driver's angle that the motion goes through: there the driver turns back, and
     the dyad of the inner joint ``dyad`` passes into its other assembly."""
 
     time_s: float
@@ -29,11 +29,11 @@ class LimitPassage:
 
 
 class FreeMotion(Protocol):
-    """What a scene does from time 0, when it is let go, to ``until_s``.
+    """Free motion of a scene from its release at time 0 to ``until_s``.
 
-    ``passages`` are the limit positions on the way, ``edges_s`` the instants at which what acts is
-    not smooth. ``freedoms`` is its mobility; ``by_dyads`` says that this is 1, and that there is
-    a closed form of its positions: then the driver's angle and the branch say where it is.
+    ``passages`` are the limit positions on the way, ``edges_s`` the instants at which the forces
+    are not smooth. ``freedoms`` is its mobility; ``by_dyads`` says that this is 1 and its positions
+    have a closed form: then the driver's angle and the branch determine the position.
     """
 
     @property
@@ -56,7 +56,7 @@ class FreeMotion(Protocol):
 
     @property
     def driver_tells(self) -> bool:
-        """Whether the driver's angle alone says where the mechanism is, all along the motion."""
+        """True if the driver's angle alone determines the position, all along the motion."""
 
     @property
     def peak_speed_rad_s(self) -> float:
@@ -64,36 +64,36 @@ class FreeMotion(Protocol):
 
     @property
     def range_rad(self) -> float:
-        """How far the driver goes, from its smallest angle to its largest."""
+        """Range of the driver's angle, from its smallest to its largest."""
 
     @property
     def law(self) -> IntegratedLaw:
         """The driver's motion as a law."""
 
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """The motion at times [s], (T,), from 0 to ``until_s``; bounds hold what the integration
-        may be off by as well. Raises CrankcheckError for times beyond."""
+        """Return the motion at times [s], (T,), from 0 to ``until_s``; bounds include the error of
+        the integration. Raises CrankcheckError for times beyond."""
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
-        end, at times above ``until_s``: within a step of it, where some engines have the velocities
-        of their first or last sample."""
+        """Return the motion that leads to the start, at times below 0 [s], (T,), or that goes on
+        from the end, at times above ``until_s``: within a step of it, where some engines have the
+        velocities of their first or last sample."""
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
-        """A motion of `at`, with the forces in its joints; there are none (NaN) in dead points."""
+        """Return a motion of `at` with the forces in its joints; they are NaN in dead points."""
 
     def beside(self, logged: Motion) -> Motion:
-        """The positions, without rates and bounds, that the mechanism has where a run of this scene
-        is at each of its instants, whatever time the true motion has them at."""
+        """Return the positions of the mechanism, without rates and bounds, next to a run of this
+        scene at each of its instants, whatever time the true motion has them at."""
 
     def energy(self, time_s: Array) -> EnergyBalance:
-        """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
+        """Return the energies at times [s], (T,). Raises CrankcheckError for times beyond."""
 
     def sensitivity(self, time_s: Array) -> Array:
-        """G (T,): by how much a small change of the start has grown by then at most, at least 1."""
+        """Return G (T,): the largest growth of a small change of the start by then, at least 1."""
 
     def error_rad(self, time_s: Array) -> Array:
-        """What the driver's angle may be off by [rad], (T,); with several freedoms, of any link."""
+        """Error of the driver's angle [rad], (T,); with several freedoms, of any link."""
 
 
 AngleHistory = Callable[[Array], tuple[Array, Array, Array]]
@@ -102,7 +102,7 @@ AngleHistory = Callable[[Array], tuple[Array, Array, Array]]
 
 @dataclass(frozen=True, eq=False)
 class IntegratedLaw(Law):
-    """What a free driver does from ``start_s`` to ``end_s``, as an integration has it."""
+    """Motion of a free driver from ``start_s`` to ``end_s``, from an integration."""
 
     history: AngleHistory
     start_s: float
@@ -134,21 +134,20 @@ class IntegratedLaw(Law):
 
 
 STILL = 1e-9
-"""Of the fastest link's rate: a link that does not move at the start tells no speed."""
+"""Rate over that of the fastest link, below which a link is at rest at the start."""
 
 
 def loosened(scene: Scene, duration_s: float | None = None) -> Scene:
-    """The scene let go, as `models.scene.driver.let_go` has it, of whatever joint its driver is.
+    """Return the scene released, as by `models.scene.driver.let_go`, whatever joint its driver is.
 
     Raises
     ------
     CrankcheckError
-        No link at the ground can tell its motion: none has groups that are solved, or moves at the
-        start.
+        No link at the ground can lead: none has groups that are solved, or moves at the start.
 
-    Nothing drives what is let go, so any link may tell its motion. Of a crank that is its own
-    angle; in place of a slider, or of the pin of two moving links, a link at the ground takes over
-    at the angle and with the speed that it has at the start, in the assembly that stands there.
+    Any link may lead a free motion. A crank keeps its own angle; a slider, or the pin of two moving
+    links, is replaced by a link at the ground, at its angle and speed of the start, in the assembly
+    of the start.
     """
     free = let_go(scene, duration_s)
     if scene.driver.is_crank:
@@ -170,8 +169,8 @@ def loosened(scene: Scene, duration_s: float | None = None) -> Scene:
 
 
 def _by_speed(scene: Scene, start: Motion) -> list[str]:
-    """The links that are pinned to the ground, the fastest first: one near a limit of its own tells
-    badly of the others."""
+    """Return the links that are pinned to the ground, the fastest first: a link near a limit of its
+    own determines the others badly."""
     speeds = {
         name: abs(float(start.links[name].omega[0]))
         for name, link in scene.links.items()

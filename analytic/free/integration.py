@@ -1,8 +1,8 @@
 """The equation of a machine over time: windows of collocation, from kink to kink.
 
 Windows are as long as their polynomials allow. They end at every kink over time; where a load, a
-stroke or friction goes over to another formula by where the machine is or how fast, the window is
-solved again until it ends there. At rest friction may hold the machine.
+stroke or friction changes formula with the position or speed of the machine, the window is solved
+again until it ends there. At rest friction may hold the machine.
 """
 
 import math
@@ -23,18 +23,18 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 
 GROWTH, LEAST = 2.0, 0.15
-"""By how much a window may be longer than the one before it, and shorter when tried again."""
+"""Largest ratio of a window to the one before it, and smallest when it is tried again."""
 SHORTEST = 1e-12
-"""A window, over the whole time, that is not to be had shorter."""
+"""Shortest window over the whole time."""
 AIMS = 30
-"""Windows that are tried so as to end at a change of formula."""
+"""Number of windows that are tried to end at a change of formula."""
 
 
 @dataclass
 class Integration:
-    """An integration on its way, which stands at ``u``, ``v`` of its machine's chart.
+    """State of an integration, at ``u``, ``v`` of its machine's chart.
 
-    ``edges_s`` are the instants at which what acts is not smooth.
+    ``edges_s`` are the instants at which the forces are not smooth.
     """
 
     scene: Scene
@@ -52,7 +52,7 @@ class Integration:
     edges_s: list[float] = field(default_factory=list)
 
     def run(self) -> CoordinateHistory:
-        """All windows. Raises CrankcheckError where it fails."""
+        """Integrate all windows. Raises CrankcheckError where it fails."""
         self.long_s = self.until_s / 100.0
         self.pace.note(self.now_s, abs(self.v))
         for border in edges(self.scene, self.until_s)[1:]:
@@ -63,7 +63,7 @@ class Integration:
         return CoordinateHistory(tuple(self.windows))
 
     def _to(self, border_s: float) -> None:
-        """Windows up to an instant; in between everything over time is smooth."""
+        """Integrate windows up to an instant; in between everything over time is smooth."""
         while self.now_s < border_s:
             if self.v == 0.0 and self._heeds_way:
                 way = self._way(np.array([self.now_s]))[0]
@@ -77,7 +77,7 @@ class Integration:
             check_count(self.scene, self.until_s, self.pace)
 
     def _step(self, border_s: float, way: float) -> None:
-        """One window."""
+        """Integrate one window."""
         left = border_s - self.now_s
         long_s = min(self.long_s, left)
         if 0.5 * left < long_s < left:
@@ -85,7 +85,7 @@ class Integration:
         solved, lasts_s, edge = self._solved(long_s, way)
         end_s = self.now_s + lasts_s
         if (over := end_s - border_s) >= -4.0 * math.ulp(border_s):
-            # A change of formula that comes with the instant, or only after it.
+            # A change of formula at the instant, or only after it.
             lasts_s, end_s, edge = left, border_s, edge and over <= 4.0 * math.ulp(border_s)
         self._keep(solved, lasts_s, end_s, bends=edge)
         if edge:
@@ -109,16 +109,16 @@ class Integration:
             self.wound = {name: float(q[0]) for name, q in ends.items()}
 
     def _solved(self, long_s: float, way: float) -> tuple[WindowSolution, float, bool]:
-        """A window that is short enough, how long it lasts [s], and whether it ends at a change of
-        formula: that is a little beyond what was solved, for which one formula counts so. Raises
-        CrankcheckError."""
+        """Return a window that is short enough, its duration [s], and True if it ends at a change
+        of formula. The end is a little beyond the solved part, over which one formula counts.
+        Raises CrankcheckError."""
         failed: CrankcheckError | None = None
         rough: WindowSolution | None = None
         aimed, start = 0, self._start(long_s, way)
         kinks = self._kinks()
         if kinks and (ahead := kinks.ahead(long_s, (self.u, self.v, start[0]))):
             aimed, long_s = 1, ahead * SHORT_OF
-        # What is left up to an instant may be less: a kink comes within rounding of it.
+        # The rest up to an instant may be less: a kink comes within rounding of it.
         shortest = min(SHORTEST * self.until_s, 0.5 * long_s)
         while long_s > shortest or 0 < aimed < AIMS:
             try:
@@ -152,9 +152,9 @@ class Integration:
         )
 
     def _start(self, long_s: float, way: float) -> tuple[float, float]:
-        """The acceleration with which a window starts, or hardly another, and its slope [1/s]."""
+        """Return the acceleration at, or just after, a window's start, and its slope [1/s]."""
         if self.windows and self.windows[-1].bends and self._goes_on:
-            # Tables are bent there and do not jump: as the window before ended.
+            # Tables bend there and do not jump: start as the window before ended.
             before = self.windows[-1]
             orders = np.arange(len(before.a))
             return float(before.a.sum()), float(orders * (orders + 1) @ before.a) / before.long_s
@@ -168,8 +168,8 @@ class Integration:
     def _tried(
         self, long_s: float, start: tuple[float, float], rough: WindowSolution | None
     ) -> WindowSolution | None:
-        """A window, begun from a ``rough`` one that was longer, or the acceleration ``start`` and
-        its slope."""
+        """Solve a window, begun from a ``rough`` one that was longer, or the acceleration ``start``
+        and its slope."""
         if rough is not None and rough.long_s >= long_s:
             first = sums(rough.series[2][None], self.rule.places * (long_s / rough.long_s))
         else:
@@ -190,7 +190,7 @@ class Integration:
 
     @property
     def _goes_on(self) -> bool:
-        """Whether the coordinate is that of the window before, and nothing turns with the way."""
+        """True if the chart is that of the window before, and no force has a direction."""
         return self.windows[-1].chart is self.machine.chart and not self._heeds_way
 
     @cached_property
@@ -202,7 +202,7 @@ class Integration:
         return is_kinked(self.scene)
 
     def _kinks(self) -> WindowKinks | None:
-        """Those of the next window; None where no formula has any."""
+        """Return the kinks of the next window; None where no formula has any."""
         if not self._kinked:
             return None
         smooth = bool(self.windows) and not self.windows[-1].bends
@@ -212,11 +212,11 @@ class Integration:
         return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
 
     def _way(self, time_s: Array) -> Array:
-        """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,)."""
+        """Return the direction out of rest, 0 where the machine is held, at times [s], (T,)."""
         return way_out(self._acceleration, self.u, time_s)
 
     def _rest(self, border_s: float) -> None:
-        """A window at rest, until something moves the machine, or to an instant."""
+        """Add a window at rest, until a force moves the machine, or to an instant."""
         end_s = rest_until(self._way, self.now_s, border_s)
         n = self.rule.count
         still = Window(
@@ -239,15 +239,15 @@ class Integration:
 
 
 LOOKS, LOOKED = 257, 7
-"""Instants at which an end of rest is looked for, and how often between two of them."""
+"""Number of instants at which an end of rest is looked for, and of refinements."""
 TINY = 1e-150
-"""A rate that only says which way the machine is about to move."""
+"""Rate that only gives the direction of the beginning motion."""
 
 
 def way_out(acceleration: Acceleration, at: float, time_s: Array) -> Array:
-    """Which way a machine leaves its rest at a coordinate, 0 where it is held, at times [s], (T,).
+    """Return the direction in which a machine leaves its rest, 0 where held, at times [s], (T,).
 
-    Where a load on one stroke lets it leave both ways, that in which it is pushed without: at
+    A load on one stroke may let it leave both ways: then the push without that load decides, as at
     rest no stroke has begun.
     """
     u, v = np.full_like(time_s, at), np.full_like(time_s, TINY)
@@ -262,7 +262,7 @@ def way_out(acceleration: Acceleration, at: float, time_s: Array) -> Array:
 
 
 def rest_until(way: Callable[[Array], Array], low: float, high: float) -> float:
-    """When the rest since ``low`` ends, ``high`` at the latest [s]."""
+    """Return the end of the rest since ``low``, ``high`` at the latest [s]."""
     for _ in range(LOOKED):
         looks = np.linspace(low, high, LOOKS)
         moved = np.flatnonzero(way(looks[1:]) != 0.0)
@@ -274,13 +274,13 @@ def rest_until(way: Callable[[Array], Array], low: float, high: float) -> float:
 
 
 MOST_WINDOWS = 50_000
-"""A thousand seconds of a crank's length of a tenth of a metre take half of them, and minutes."""
+"""Most windows: a crank of a tenth of a metre takes half of them, and minutes, for 1000 seconds."""
 FIRST_WINDOWS, FAR = 300, 4.0
-"""After so many it is told how many all take, and refused where they are so many times too many."""
+"""Number of windows after which the total is foretold, and the excess at which it is refused."""
 
 
 def check_count(scene: Scene, until_s: float, pace: Pace) -> None:
-    """Raises CrankcheckError where the time takes more windows than can be worked out."""
+    """Refuse a time that takes too many windows. Raises CrankcheckError."""
     made, now_s = pace.made, pace.times_s[-1]
     lasted_s = pace.lasted_s(FIRST_WINDOWS)
     if (until_s - now_s) * FIRST_WINDOWS > FAR * MOST_WINDOWS * lasted_s:

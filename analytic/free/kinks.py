@@ -1,9 +1,8 @@
-"""Where what acts on a machine is not smooth: over time, and over where and how fast it moves.
+"""Kinks of the forces on a machine: over time, and over its position and speed.
 
-Between two kinks every load follows one formula. Those over time are known beforehand; all others
-are told apart by the number of their piece, which changes where a load, a stroke or friction goes
-over to another formula (`Kinked`). So does the pull of a spring where its two points pass one
-another: it turns over.
+Between two kinks every load follows one formula. Kinks over time are known beforehand; all others
+show as a change of the piece's number, where a load, a stroke or friction changes formula
+(`Kinked`). The pull of a spring does so where its two points pass one another: it reverses.
 """
 
 from __future__ import annotations
@@ -28,12 +27,12 @@ from models.scene.loads import LineSpring, Spring
 
 
 def heeds_direction(scene: Scene) -> bool:
-    """Whether anything asks which way the machine moves: friction, or a load on one stroke."""
+    """True if a force depends on the direction of motion: friction, or a load on one stroke."""
     return bool(scene.friction) or any(load.stroke != "both" for load in scene.loads.values())
 
 
 def is_kinked(scene: Scene) -> bool:
-    """Whether anything has kinks over where or how fast the machine moves."""
+    """True if a force has kinks over the position or speed of the machine."""
     loads = scene.loads.values()
     return (
         heeds_direction(scene)
@@ -44,8 +43,8 @@ def is_kinked(scene: Scene) -> bool:
 
 @dataclass(frozen=True)
 class Kinked:
-    """What a formula of the scene goes over, ``x`` (T,), with its kinks there; a ``sign`` alone has
-    one, at 0, and is a piece of its own in it."""
+    """Argument ``x`` (T,) of a formula of the scene, with its kinks; a ``sign`` alone has one, at
+    0, and is a piece of its own in it."""
 
     x: Array
     kinks: Array
@@ -54,7 +53,7 @@ class Kinked:
 
     @property
     def pieces(self) -> Array:
-        """The number of its piece at each sample."""
+        """Number of the piece at each sample."""
         if self.sign:
             return np.sign(self.x)
         kinks, period, x = self.kinks, self.period, self.x
@@ -66,7 +65,7 @@ class Kinked:
         return np.asarray(turns * len(kinks) + np.minimum(within, len(kinks) - closes))
 
     def border(self, k: int) -> float:
-        """The kink that is passed on the way from the sample before ``k``: the nearest to that."""
+        """Return the kink passed on the way from the sample before ``k``: the nearest to that."""
         before, after, kinks = float(self.x[k - 1]), float(self.x[k]), self.kinks
         if self.period is not None:
             turn = math.floor((before - kinks[0]) / self.period)
@@ -79,7 +78,7 @@ class Kinked:
 
 
 def kinked(machine: Machine, u: Array, v: Array) -> list[Kinked]:
-    """All formulas of the scene that have kinks, at coordinates and rates (T,)."""
+    """Return all formulas of the scene that have kinks, at coordinates and rates (T,)."""
     zero = np.zeros(1)
 
     @cache  # loads over the angle ask for no more than the driver
@@ -113,13 +112,13 @@ def kinked(machine: Machine, u: Array, v: Array) -> list[Kinked]:
 
 
 def _turns_over(spring: Spring) -> bool:
-    """Whether it pulls with something where it has no length."""
+    """True if the spring pulls even at zero length."""
     return isinstance(spring, LineSpring) and spring.rate * spring.free != 0.0
 
 
 def _turning_over(scene: Scene, unit: Chunk, u: Array) -> Iterator[Kinked]:
-    """Springs whose two points may come to one place between the samples: the way between these,
-    times its own derivative, goes through 0 there, as it does where they are nearest."""
+    """Yield springs whose two points may coincide between the samples: the way between these, times
+    its own derivative, goes through 0 there, as it does where they are nearest."""
     with np.errstate(all="ignore"):  # of no length it has no rate
         stretched = [*spring_lengths(scene, unit)]
     for spring, length, rate in stretched:
@@ -129,25 +128,25 @@ def _turning_over(scene: Scene, unit: Chunk, u: Array) -> Iterator[Kinked]:
 
 
 LEAST_AHEAD = 0.02
-"""The share of a window from which on a change of formula is foretold before it is solved."""
+"""Share of a window from which on a change of formula is foretold before it is solved."""
 PRECISELY = 4e-14
-"""To what share of a window a change of formula is found: to rounding of what its formula goes
-over, some hundred times that of the time."""
+"""Precision of a change of formula over the window: rounding of the formula's argument, some
+hundred times that of the time."""
 SHORT_OF, BEYOND = 1.0 - 2e-4, MOST
-"""Windows are solved to a little before it, and used up to it."""
+"""Factors of its time: windows are solved to a little before a change, and used up to it."""
 
 
 @dataclass(frozen=True)
 class WindowKinks:
-    """The changes of formula in a window; ``smooth`` says that it does not start in one."""
+    """Changes of formula in a window; ``smooth`` says that it does not start in one."""
 
     machine: Machine
     rule: Gauss
     smooth: bool
 
     def ahead(self, long_s: float, start: tuple[float, float, float]) -> float | None:
-        """When a formula first gives way in a window that starts with u, u' and u'', as far as
-        these tell [s after the start]."""
+        """Return the first change of formula in a window that starts with u, u' and u'', as far as
+        these show it [s after the start]."""
         u, v, a = start
         if not math.isfinite(a):
             return None
@@ -160,7 +159,7 @@ class WindowKinks:
         return change.at_s if change and change.at_s > LEAST_AHEAD * long_s else None
 
     def within(self, solved: WindowSolution, *, beyond: bool) -> FormulaChange | None:
-        """Where in a window, or a little beyond it, a formula first gives way to another."""
+        """Return the first change of formula in a window, or a little beyond it."""
         end = BEYOND if beyond else 1.0
         shares, polynomials = looked_at(self.rule.count, end, smooth=self.smooth)
         u, v, _ = solved.series
@@ -168,7 +167,7 @@ class WindowKinks:
         return first_crossing(rows, shares * solved.long_s)
 
     def landing(self, solved: WindowSolution, change: FormulaChange) -> float:
-        """How long after the start of a window a formula has just given way [s]."""
+        """Return the time after the start of a window at which a formula has just changed [s]."""
 
         def formulas(after_s: Array) -> list[Kinked]:
             return kinked(self.machine, *solved.at(after_s))
@@ -180,8 +179,8 @@ class WindowKinks:
 
 @lru_cache(maxsize=32)
 def looked_at(count: int, end: float, *, smooth: bool) -> tuple[Array, Array]:
-    """The shares of a window at which formulas are looked at, (T,): its nodes and ``end``, and its
-    start if it is not between two formulas; and Legendre's polynomials there, (T, count + 2)."""
+    """Return the shares of a window at which formulas are evaluated, (T,): its nodes, ``end``, and
+    the start of a ``smooth`` one; and Legendre's polynomials there, (T, count + 2)."""
     shares = np.append(gauss(count).places, end)
     if smooth:
         shares = np.append(0.0, shares)
@@ -189,20 +188,20 @@ def looked_at(count: int, end: float, *, smooth: bool) -> tuple[Array, Array]:
 
 
 Formulas = Callable[[Array], list[Kinked]]
-"""The formulas with kinks at times after the start of a window [s], (T,)."""
+"""Formulas with kinks at times after the start of a window [s], (T,)."""
 NEIGHBOURS = 3
-"""Looks on either side that a crossing is foretold from."""
+"""Number of samples on either side for the prediction of a crossing."""
 AROUND = np.concatenate(
     [-(10.0 ** np.arange(-3.0, -17.5, -0.5)), [0.0], 10.0 ** np.arange(-17.0, -2.5, 0.5)]
 )
-"""Looks about a crossing, over the time that is looked over."""
+"""Samples about a crossing, over the window's time."""
 ROUNDS = 8
-"""Of looking closer, each of which about doubles the digits."""
+"""Most refinements, each of which about doubles the digits."""
 
 
 @dataclass(frozen=True)
 class FormulaChange:
-    """A first change of formula: between ``low_s`` and ``high_s``, and foretold at ``at_s`` [s]."""
+    """First change of formula: between ``low_s`` and ``high_s``, and foretold at ``at_s`` [s]."""
 
     low_s: float
     high_s: float
@@ -210,7 +209,7 @@ class FormulaChange:
 
 
 def first_crossing(rows: list[Kinked], looks: Array) -> FormulaChange | None:
-    """The first one in formulas at looks [s], (T,); None where all are as at the first look."""
+    """Return the first change among formulas at samples [s], (T,); None where none changes."""
     if not rows:
         return None
     pieces = np.array([row.pieces for row in rows])
@@ -224,7 +223,7 @@ def first_crossing(rows: list[Kinked], looks: Array) -> FormulaChange | None:
 
 
 def precisely(formulas: Formulas, crossing: FormulaChange, first: float, least_s: float) -> float:
-    """The time [s] at which the formulas of time ``first`` have just given way, to ``least_s``."""
+    """Return the time [s] just after the change from the formulas at ``first``, to ``least_s``."""
     long_s = crossing.high_s
     for _ in range(ROUNDS):
         low, high = crossing.low_s, crossing.high_s
@@ -241,8 +240,8 @@ def precisely(formulas: Formulas, crossing: FormulaChange, first: float, least_s
 
 
 def _foretold(row: Kinked, looks: Array, k: int) -> float:
-    """When a formula comes to its kink, from the looks about: the time as a polynomial of what it
-    goes over, where that goes one way, else by a straight line."""
+    """Predict the time of a formula's kink from the samples about it: by the time as a polynomial
+    of the argument, where that is monotonic, else by a straight line."""
     off = row.x - row.border(k)
     some = slice(max(k - NEIGHBOURS, 0), k + NEIGHBOURS)
     x, t = off[some], looks[some]

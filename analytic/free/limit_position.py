@@ -10,10 +10,10 @@
               phi*      over u everything is smooth, and x has a rate
 
 The root of the dyad, which is 0 there, is the difference of nearly the same numbers beside it; it
-is taken as u times what it is over u, a smooth function. In u = 0 the formulas of the dyad say 0/0:
-there its unknowns come of interpolation from both sides, as in a change point
-(`analytic.change_points.sign`). Source: limit positions, e.g. Norton, Design of Machinery,
-section 4.10; u is the local coordinate of a fold.
+is taken as u times its quotient by u, a smooth function. In u = 0 the formulas of the dyad give
+0/0: there its unknowns are interpolated from both sides, as in a change point
+(`analytic.change_points.sign`). Source: limit positions, e.g. Norton, Design of Machinery, section
+4.10; u is the local coordinate of a fold.
 """
 
 import math
@@ -33,19 +33,19 @@ from models.errors import CrankcheckError, ReachError
 from models.scene import Scene
 
 REACH, AHEADS = 0.8, (0.1, 0.01, 1e-3, 0.0)
-"""The share of a range within which its limit is the place to count from, and shares of which is
-looked beyond it: less where what comes before the dyad is open, and its square is not smooth."""
+"""Share of a range that counts from its limit, and shares looked at beyond it: smaller ones where
+an earlier dyad is open, and the square is not smooth."""
 COUNTS = (24, 32, 48, 64, 96, 128, 192, 256)
 SMOOTH, ROUNDED, ROUGH = 1e-14, 2e-13, 1e-9
-"""The end of a series over its largest: what is wanted, what rounding may leave of it, and what is
-no series of the square."""
+"""Ends of a series over its largest coefficient: wanted, left by rounding, and too large for a
+smooth square."""
 
 
 @dataclass(frozen=True, eq=False)
 class LimitPosition:
-    """The limit ``driver_rad`` of the driver in the assembly of ``scene``, in which the dyad
-    ``dyad`` is stretched or folded. ``side`` is 1 where the driver's range, of ``length_rad``,
-    ends there, -1 where it begins."""
+    """Limit ``driver_rad`` of the driver in the assembly of ``scene``, in which the dyad ``dyad``
+    is stretched or folded. ``side`` is 1 where the driver's range, of ``length_rad``, ends there,
+    -1 where it begins."""
 
     scene: Scene
     driver_rad: float
@@ -54,12 +54,12 @@ class LimitPosition:
     length_rad: float
 
     def coordinate(self, driver_rad: float) -> float:
-        """u of the assembly of the scene at a driver angle within its range."""
+        """Return u of the assembly of the scene at a driver angle within its range."""
         return math.sqrt(max(0.0, self.side * (self.driver_rad - driver_rad)))
 
     def chunk(self, u: Array, rates: Rates, *, bound: bool) -> Chunk:
-        """The mechanism at coordinates u (T,) with rates of u and what they and u may be wrong
-        by. Raises ReachError."""
+        """Return the mechanism at coordinates u (T,) with rates of u and their errors. Raises
+        ReachError."""
         theta = self.driver_rad - self.side * u * u
         first, second = -2.0 * self.side * u, -2.0 * self.side
         omega = first * rates.omega
@@ -69,7 +69,7 @@ class LimitPosition:
         return prepared(self.scene).chunk(theta, omega, alpha, error, passing, roots)
 
     def root(self, u: Array) -> Array:
-        """The root of the dyad at coordinates (T,), without its sign."""
+        """Return the root of the dyad at coordinates (T,), without its sign."""
         low, series = self._quotient
         high = REACH * self.length_rad
         square = chebyshev.chebval((2.0 * u * u - low - high) / (high - low), series)
@@ -77,7 +77,7 @@ class LimitPosition:
 
     @cached_property
     def _quotient(self) -> tuple[float, Array]:
-        """The square of the root over u^2, in Chebyshev's polynomials of u^2 from ``low``, a little
+        """Square of the root over u^2, in Chebyshev's polynomials of u^2 from ``low``, a little
         before the limit, where the dyad is open, to `REACH` of the range. Raises CrankcheckError
         where the square is not smooth."""
         best, least, high = (0.0, np.zeros(1)), math.inf, REACH * self.length_rad
@@ -97,7 +97,7 @@ class LimitPosition:
         return low, _over_argument(_trimmed(series), low, high)
 
     def _square(self, low: float, high: float, count: int) -> Array:
-        """The series of the square of the root, of ``count`` polynomials of u^2."""
+        """Return the series of the square of the root, of ``count`` polynomials of u^2."""
         x = chebyshev.chebpts1(count)
         w = 0.5 * (low + high) + 0.5 * (high - low) * x
         closure = prepared(self.scene).stretched(self.driver_rad - self.side * w).closures
@@ -107,7 +107,7 @@ class LimitPosition:
         return np.asarray(series)
 
     def _driver_error(self, u: Array, theta: Array, rates: Rates) -> AngleError:
-        """What the driver may be wrong by where u and its rates are by ``rates.error``."""
+        """Return the errors of the driver from those of u and its rates, ``rates.error``."""
         e, v, a = rates.error, np.abs(rates.omega), np.abs(rates.alpha)
         far = np.abs(u) + e.theta
         return AngleError(
@@ -119,7 +119,7 @@ class LimitPosition:
 
     @cached_property
     def piece(self) -> SignPiece:
-        """The dyad's unknowns about the limit, over u. Raises CrankcheckError where they are not
+        """Unknowns of the dyad about the limit, over u. Raises CrankcheckError where they are not
         smooth to within rounding."""
         best, least = None, math.inf
         with np.errstate(all="ignore"):
@@ -145,7 +145,7 @@ class LimitPosition:
         )
 
     def _solved(self, u: Array) -> tuple[Unknown, Unknown]:
-        """The unknowns of the dyad as it stands, per unit of the rate of u."""
+        """Return the unknowns of the dyad in its branch, per unit of the rate of u."""
         theta = self.driver_rad - self.side * u * u
         alpha = np.full_like(u, -2.0 * self.side)
         bare = _Bare(u)
@@ -156,13 +156,13 @@ class LimitPosition:
 
 
 def _trimmed(series: Array) -> Array:
-    """Without the end that is rounding."""
+    """Return the series without its end of rounding."""
     large = np.flatnonzero(np.abs(series) > 2e-15 * np.abs(series).max())
     return series[: int(large[-1]) + 3]
 
 
 def _over_argument(series: Array, low: float, high: float) -> Array:
-    """Chebyshev's series of (p(w) - p(0)) / w, of that of p(w) over [low, high]."""
+    """Return Chebyshev's series of (p(w) - p(0)) / w, from that of p(w) over [low, high]."""
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
     count = len(series) - 1
     # w T_k = centre T_k + half (T_(k - 1) + T_(k + 1)) / 2, whose sum has to be p but for p(0).
@@ -177,7 +177,7 @@ def _over_argument(series: Array, low: float, high: float) -> Array:
 
 
 class _Bare:
-    """In place of a passage while its piece is made: the dyad as its formulas have it."""
+    """Substitute of a passage while its piece is made: the dyad from its formulas."""
 
     def __init__(self, u: Array) -> None:
         self.u = u
@@ -197,7 +197,7 @@ class _Bare:
 
 @dataclass
 class _Passing:
-    """The passage of a dyad through a limit at coordinates ``u`` (T,)."""
+    """Passage of a dyad through a limit at coordinates ``u`` (T,)."""
 
     limit: LimitPosition
     u: Array
@@ -211,7 +211,7 @@ class _Passing:
         assert closure.short_m is not None
         short = np.broadcast_to(closure.short_m, self.u.shape)
         # Beside the limit it closes, but for rounding; beyond its reach the root is not known. The
-        # square of a root may be larger than what that was taken of.
+        # square of a root may be larger than its argument.
         beside = self.u * self.u <= REACH * limit.length_rad * (1.0 + 4.0 * EPS)
         if not beside.all():
             raise OpenError(np.where(beside, -np.abs(short), np.abs(short)))
@@ -226,7 +226,7 @@ class _Passing:
         return Dyad(first, second, sine, replace(closure, short_m=short))
 
     def _at(self, index: Index) -> Rates:
-        """The rates of u at some of the samples."""
+        """Return the rates of u at some of the samples."""
         e = self.rates.error
         each = (self.rates.omega, self.rates.alpha, e.theta, e.omega, e.alpha)
         omega, alpha, *bounds = (np.broadcast_to(one, self.u.shape)[index] for one in each)

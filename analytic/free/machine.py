@@ -5,8 +5,8 @@ With rates v', theta' and q' of bodies and springs per unit of the rate of u::
     J u'' + J' u'^2 / 2 = Q       J = sum (m v'^2 + I theta'^2)
                                   Q = sum (F v' + M theta') - sum (pull q') - sign(u') sum (f |s'|)
 
-J and J' come of the kinematics to second order, in closed form. Q is that of weights, loads,
-springs with their dampers, and of friction f of constant size in joints that rub at s'. Source:
+J and J' follow from the kinematics to second order, in closed form. Q comes from weights, loads,
+springs with their dampers, and friction f of constant size in joints that rub at s'. Source:
 problem book "Bai tap co hoc may", chapter on real motion; I. I. Artobolevskii, Theory of
 Mechanisms, on reduced masses.
 """
@@ -30,14 +30,14 @@ from models.scene.joints import block_name
 from models.scene.loads import ConstantFriction, PinSpring, Spring
 
 Wound = Mapping[str, Real]
-"""Of each spring in a pin an angle q that its own is within half a turn of [rad]."""
+"""Angle q of each spring in a pin that its own is within half a turn of [rad]."""
 UNWOUND: Wound = {}
 TAU = 2.0 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A scene with one freedom, reduced to a coordinate: the driver's angle, if no other is given.
+    """Scene with one freedom, reduced to a coordinate: by default the driver's angle.
 
     Raises CrankcheckError for friction that follows from the reactions.
     """
@@ -56,16 +56,16 @@ class Machine:
         object.__setattr__(self, "chart", chart or Chart(LimitedScene(scene, None), None))
 
     def inertia(self, u: Array) -> tuple[Array, Array]:
-        """J and J' at coordinates (T,)."""
+        """Return J and J' at coordinates (T,)."""
         return inertia_and_slope(self.scene, self.chart.unit(u))
 
     def push(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
-        """Q at times [s], coordinates and their rates, (T,)."""
+        """Return Q at times [s], coordinates and their rates, (T,)."""
         push = self._push(time_s, v, self.chart.unit(u), wound)
         return np.asarray(np.broadcast_to(push, u.shape))
 
     def acceleration(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
-        """u'' at times [s], coordinates and their rates, (T,)."""
+        """Return u'' at times [s], coordinates and their rates, (T,)."""
         unit = self.chart.unit(u)
         inertia, slope = inertia_and_slope(self.scene, unit)
         push = self._push(time_s, v, unit, wound)
@@ -76,11 +76,11 @@ class Machine:
         return push + self._springs(unit, v, wound) + self._friction(unit, v)
 
     def kinetic(self, u: Array, v: Array) -> Array:
-        """The kinetic energy [J]."""
+        """Return the kinetic energy [J]."""
         return np.asarray(0.5 * self.inertia(u)[0] * v**2)
 
     def potential(self, u: Array, wound: Wound = UNWOUND) -> Array:
-        """The energy of weights and springs [J], that of weights over the ground's origin."""
+        """Return the energy of weights (over the ground's origin) and springs [J]."""
         scene, unit = self.scene, self.chart.unit(u)
         total = np.zeros_like(u)
         g_x, g_y = scene.gravity_m_s2
@@ -92,7 +92,7 @@ class Machine:
         return np.asarray(total)
 
     def power(self, time_s: Array, u: Array, v: Array) -> Array:
-        """What loads, dampers and friction do in a second [W]: what is not kept as energy."""
+        """Return the power of loads, dampers and friction [W], which is not stored as energy."""
         unit = self.chart.unit(u)
         push = self._weights_and_loads(self._weightless, time_s, v, unit)
         for spring, _, rate in spring_lengths(self.scene, unit):
@@ -100,12 +100,12 @@ class Machine:
         return np.asarray((push + self._friction(unit, v)) * v)
 
     def lengths(self, u: Array, wound: Wound = UNWOUND) -> dict[str, Array]:
-        """q of the springs in pins, whole turns counted [rad]."""
+        """Return q of the springs in pins, whole turns counted [rad]."""
         found = self._lengths(self.chart.unit(u), wound)
         return {one.name: q for one, q, _ in found if isinstance(one, PinSpring)}
 
     def rubbing(self, unit: Chunk) -> Iterator[tuple[float, Array]]:
-        """The friction in each joint that rubs [N or N m], and its rate per unit of that of u."""
+        """Yield the friction in each joint [N or N m], and its rate per unit of that of u."""
         for joint, law in self.scene.friction.items():
             assert isinstance(law, ConstantFriction)
             if joint in self.scene.sliders:
@@ -133,12 +133,12 @@ class Machine:
 
     @cached_property
     def _heeds_rates(self) -> bool:
-        """Whether any load asks how fast something moves."""
+        """True if any load depends on a speed."""
         loads = self.scene.loads.values()
         return any(load.over in ("speed", "omega") or load.stroke != "both" for load in loads)
 
     def _moving(self, unit: Chunk, v: Array) -> Chunk:
-        """The mechanism with those rates that loads ask for; all others are per unit still."""
+        """Return the mechanism with the rates that loads need; all others stay per unit."""
         if not self._heeds_rates:
             return unit
         bodies, sliders = dict(unit.bodies), dict(unit.sliders)
@@ -155,7 +155,7 @@ class Machine:
         return -torque_by_power(bodies, unit, chunk).value
 
     def _lengths(self, unit: Chunk, wound: Wound) -> Iterator[tuple[Spring, Array, Array]]:
-        """As `spring_lengths`, with the whole turns of springs in pins."""
+        """Yield the rows of `spring_lengths`, with the whole turns of springs in pins."""
         for spring, q, rate in spring_lengths(self.scene, unit):
             turns = np.round((wound[spring.name] - q) / TAU) if spring.name in wound else 0.0
             yield spring, q + TAU * turns, rate
@@ -174,7 +174,7 @@ class Machine:
 
 
 def _weights(scene: Scene) -> Iterator[tuple[str, float, tuple[float, float]]]:
-    """Every body that weighs something, its mass [kg] and its centre."""
+    """Yield every body with a mass, its mass [kg] and its centre."""
     for name, link in scene.links.items():
         if link.mass_kg > 0.0:
             yield name, link.mass_kg, link.centre_m

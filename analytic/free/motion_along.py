@@ -1,8 +1,8 @@
-"""The places of all bodies along an integrated motion, by the closed forms, with bounds.
+"""Places of all bodies along an integrated motion, by the closed forms, with bounds.
 
-Away from a limit of the driver its logged angle says where the mechanism is, but for the assembly,
-which the other bodies tell. Near a limit the angle says little: there the body that moves most is
-what the coordinate is taken from.
+Away from a limit of the driver its logged angle determines the position, but for the assembly,
+which the other bodies show. Near a limit the angle says little: there the coordinate is fitted to
+the body that moves most.
 """
 
 import math
@@ -28,8 +28,8 @@ from models.scene import Scene
 def motion_along(
     scene: Scene, history: CoordinateHistory, doubt: Doubt | None, time_s: Array
 ) -> Motion:
-    """The motion of a scene at times [s], (T,), in any order; certified where the doubt is given
-    that there is about its coordinate."""
+    """Return the motion of a scene at times [s], (T,), in any order; certified where the ``doubt``
+    of its coordinate is given."""
     order = np.argsort(time_s, kind="stable")
     ordered = time_s[order]
     state = history.state(ordered)
@@ -56,14 +56,14 @@ def motion_along(
 
 @dataclass(frozen=True)
 class LegCounter:
-    """Counts the turns of links at coordinates ``u`` (T,) of a chart, driver at ``theta``."""
+    """Counter of the turns of links at coordinates ``u`` (T,) of a chart, driver at ``theta``."""
 
     chart: Chart
     u: Array
     theta: Array
 
     def count(self, name: str, angle: Array) -> None:
-        """Add the whole turns that angles of a link [rad], (T,), are short of."""
+        """Add the missing whole turns to angles of a link [rad], (T,)."""
         chart = self.chart
         if chart.limit is None:
             Counter(prepared(chart.arc.scene).turns, self.theta).count(name, angle)
@@ -78,7 +78,7 @@ class LegCounter:
 
 
 def reordered(motion: Motion, order: Index) -> Motion:
-    """The samples of a motion in another order."""
+    """Return the samples of a motion in another order."""
 
     def change(series: Array) -> Array:
         return np.asarray(series[order])
@@ -94,13 +94,13 @@ def reordered(motion: Motion, order: Index) -> Motion:
 
 
 NEAR = 0.3
-"""The coordinate about a limit [rad^0.5] within which the driver's angle is not asked."""
+"""Coordinate about a limit [rad^0.5] within which the driver's angle is not used."""
 ROUNDS = 8
-"""Of Gauss' and Newton's method for the coordinate."""
+"""Rounds of Gauss' and Newton's method for the coordinate."""
 
 
 def places_beside(scene: Scene, history: CoordinateHistory, logged: Motion) -> Motion:
-    """The positions of the reference, without rates and bounds, beside a run (T,)."""
+    """Return the positions of the reference, without rates and bounds, beside a run (T,)."""
     theta = logged.links[scene.driver.link].theta
     still = np.zeros_like(theta)
     if history.windows[0].chart.limit is None:
@@ -117,7 +117,7 @@ def places_beside(scene: Scene, history: CoordinateHistory, logged: Motion) -> M
 
 
 def _charts(history: CoordinateHistory) -> list[Chart]:
-    """The charts of a motion, each once, however often it comes back to it."""
+    """Return the charts of a motion, each once."""
     charts: dict[tuple[float, tuple[tuple[str, int], ...]], Chart] = {}
     for chart, _, _ in history.legs():
         assert chart.limit is not None
@@ -129,8 +129,8 @@ def _charts(history: CoordinateHistory) -> list[Chart]:
 def _fitted(
     scene: Scene, chart: Chart, side: float, theta: Array, logged: Motion
 ) -> tuple[Array, Array]:
-    """The coordinates on one side of a limit that are next to a run, and how far the points are
-    from there [m], (T,); infinity where the driver is out of the range."""
+    """Return the coordinates on one side of a limit that are next to a run, and the distances of
+    the points from there [m], (T,); infinity where the driver is out of the range."""
     limit = chart.limit
     assert limit is not None
     most = np.sqrt(REACH * limit.length_rad)
@@ -149,8 +149,8 @@ def _fitted(
 
 
 def _off(scene: Scene, chart: Chart, u: Array, logged: Motion, index: Index) -> tuple[Array, Array]:
-    """How far the points of the mechanism are from those of a run [m], and their rates by u,
-    (2, points, T) each."""
+    """Return the vectors from the points of a run to those of the mechanism [m], and their rates by
+    u, (2, points, T) each."""
     unit = chart.unit(u)
     way, slope = [], []
     for name, body in Selection.of(scene, (), None, ()).points.items():
@@ -162,9 +162,8 @@ def _off(scene: Scene, chart: Chart, u: Array, logged: Motion, index: Index) -> 
 
 
 def _turned(chart: Chart, u: Array, logged: Motion) -> Array:
-    """How far the links of the mechanism are turned from those of a run, (T,): a link that swings
-    about a fixed point and guides a block may have all its named points at rest in both
-    assemblies."""
+    """Return the largest rotation of a link against that of a run, (T,): a link that swings about a
+    fixed point and guides a block may have all its named points at rest in both assemblies."""
     unit, most = chart.unit(u), np.zeros_like(u)
     for name, link in logged.links.items():
         turn = unit.bodies[name].unit(0.0)
@@ -176,7 +175,7 @@ def _turned(chart: Chart, u: Array, logged: Motion) -> Array:
 def _positions(
     scene: Scene, charts: list[Chart], chosen: Index, u: Array, logged: Motion
 ) -> Motion:
-    """The mechanism at coordinates of charts, link angles with the whole turns of the run."""
+    """Return the mechanism at coordinates of charts, with the whole turns of the run."""
     order = np.argsort(chosen, kind="stable")
     wanted = Selection.of(scene, None, None, None)
     result = MotionArrays(wanted, logged.time_s[order], prepared(scene).steps, bound=False)
@@ -191,7 +190,7 @@ def _positions(
 
 @dataclass(frozen=True)
 class _LoggedTurns:
-    """Counts whole turns as a run did, at its samples ``index``."""
+    """Counter of whole turns as in a run, at its samples ``index``."""
 
     logged: Motion
     index: Index

@@ -1,5 +1,5 @@
-"""Let a mechanism go. With one freedom, by its own equation, integrated to rounding and held to a
-second integration with other nodes in other windows; else by those of all its bodies."""
+"""Free motion of a mechanism. With one freedom, by its own equation, integrated to rounding and
+compared with a second integration with other nodes; else by those of all bodies."""
 
 import math
 from collections.abc import Iterator
@@ -26,35 +26,35 @@ from models.scene.driver import Released, check_duration
 from models.scene.loads import LineSpring
 
 NODES, OTHERS = 20, 16
-"""Of a window, and of a window of the integration that it is compared with."""
+"""Nodes of a window, and of a window of the integration that it is compared with."""
 
 
 def release(scene: Scene, until_s: float) -> FreeMotion:
-    """The motion of a scene from its start, when it is let go.
+    """Return the free motion of a scene from its start.
 
     Parameters
     ----------
     scene : Scene
-        A mechanism whose driver is let go (`models.scene.driver`), with its masses. With another
-        mobility than 1, or a group without a closed form, the start names the links' angles.
+        A mechanism with a free driver (`models.scene.driver`) and masses. With another mobility
+        than 1, or a group without a closed form, the start names the links' angles.
     until_s : float
-        For how long [s].
+        Duration [s].
 
     Returns
     -------
     FreeMotion
         With one freedom and dyads to a few roundings of the driver's angle per turn times its
-        `sensitivity`, else to about 1e-11 times that; what it may be off by is `error_rad`.
+        `sensitivity`, else to about 1e-11 times that; its error is `error_rad`.
 
     Raises
     ------
     StructureError
-        No freedom; or a start that does not say where all links are, or in a change point, where
-        the mobility is not 1, or a group has no closed form.
+        No freedom; or a start that does not fix all links, or in a change point, where the mobility
+        is not 1, or a group has no closed form.
     CrankcheckError
         A driver that is driven; a start that contradicts itself; no mass that moves; friction that
-        follows from the reactions; a position on the way that has no smooth motion through it; a
-        time that is none.
+        follows from the reactions; a position on the way that has no smooth motion through it; an
+        invalid time.
     """
     check_duration(scene.name, until_s)
     return _released(Same(scene), float(until_s))
@@ -62,7 +62,7 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
 
 @lru_cache(maxsize=KEPT)
 def _released(same: Same, until_s: float) -> FreeMotion:
-    """The motion of a scene, kept with what was worked out of it."""
+    """Return the motion of a scene, kept in a cache."""
     scene = same.scene
     law = scene.driver.law
     if scene.elastic:
@@ -80,7 +80,7 @@ def _released(same: Same, until_s: float) -> FreeMotion:
 
 
 def _of_all_bodies(scene: Scene, until_s: float, reason: StructureError) -> BodiesMotion:
-    """The motion by the equations of all bodies, as there is no other for the ``reason``."""
+    """Return the motion by the equations of all bodies, as ``reason`` excludes any other."""
     try:
         return BodiesMotion(release_multibody(scene, until_s))
     except CrankcheckError as error:
@@ -91,7 +91,7 @@ def _of_all_bodies(scene: Scene, until_s: float, reason: StructureError) -> Bodi
 
 
 def _of_one_freedom(scene: Scene, law: Released, until_s: float) -> MachineMotion:
-    """The motion by the equation of the machine."""
+    """Return the motion by the equation of the machine."""
     chart = Chart.at(LimitedScene.of(scene, law.start_rad), law.start_rad, {})
     machine = Machine(scene, chart)
     u, v = chart.state(law.start_rad, law.speed_rad_s)
@@ -111,13 +111,13 @@ def _integrated(
     start: tuple[float, float],
     wound: dict[str, float],
 ) -> tuple[CoordinateHistory, list[float]]:
-    """The windows up to a time, and the instants at which what acts is not smooth."""
+    """Return the windows up to a time, and the instants at which the forces are not smooth."""
     going = Integration(machine.scene, gauss(nodes), until_s, machine, *start, wound)
     return going.run(), going.edges_s
 
 
 def _passages(history: CoordinateHistory) -> Iterator[LimitPassage]:
-    """The limits that the motion passes, one after the other."""
+    """Yield the limits that the motion passes, one after the other."""
     for window in history.windows:
         limit = window.chart.limit
         if limit is None:
@@ -132,7 +132,7 @@ def _passages(history: CoordinateHistory) -> Iterator[LimitPassage]:
 
 
 def _zero(window: Window, low: float, high: float) -> float:
-    """Where in a window its coordinate is 0, between two shares of it."""
+    """Return the share of a window at which its coordinate is 0, between two shares."""
     for _ in range(10):
         share = np.linspace(low, high, 65)
         u = sums(np.ones((65, 1)) * window.u, share)
@@ -142,15 +142,15 @@ def _zero(window: Window, low: float, high: float) -> float:
 
 
 CLOSE = 1e-9
-"""Points that are not as far apart are at one place: over the longest link."""
+"""Distance of coincident points, over the longest link."""
 ROOM = 1e-6
-"""By how much a start may be open that is written with some digits: [rad], and of the longest link
-[m]; rates, by that of those that it follows from."""
+"""Allowed contradiction of a start that is written with some digits: [rad], and of the longest link
+[m]; of rates, over those that they follow from."""
 
 
 def check_start(scene: Scene, machine: Machine, u: float) -> None:
-    """Raises CrankcheckError for a start, at coordinate ``u`` of the machine, that contradicts
-    itself; that has no mass that moves; that is at rest in a change point."""
+    """Refuse a start, at coordinate ``u`` of the machine, that contradicts itself, that moves no
+    mass, or that is at rest in a change point. Raises CrankcheckError."""
     law = scene.driver.law
     assert isinstance(law, Released)
     turned = math.degrees(law.start_rad)
@@ -184,7 +184,7 @@ def check_start(scene: Scene, machine: Machine, u: float) -> None:
 
 
 def _without_direction(scene: Scene, at: Motion) -> Iterator[str]:
-    """Springs whose two points are at one place, in words."""
+    """Yield texts on springs whose two points are at one place."""
     for spring in scene.springs.values():
         if isinstance(spring, LineSpring):
             a, b = (at.points[name].position[0] for name in spring.points)
@@ -196,7 +196,7 @@ def _without_direction(scene: Scene, at: Motion) -> Iterator[str]:
 
 
 def _contradictions(scene: Scene, at: Motion) -> Iterator[str]:
-    """Where the start of a scene is not that of its assembly, in words."""
+    """Yield texts on contradictions between the start of a scene and its assembly."""
     start, long_m = scene.start, scene.longest_m
     links, sliders = at.links, at.sliders
     fastest = max(

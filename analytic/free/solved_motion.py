@@ -1,6 +1,5 @@
-"""The free motion of a mechanism: of one freedom in its driver's angle, or the coordinate in its
-place; of several, or without a closed form, by the equations of motion of all bodies.
-"""
+"""Solved free motions: of one freedom in its driver's angle, or the coordinate in its place; of
+several, or without a closed form, by the equations of motion of all bodies."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -27,22 +26,21 @@ from models.scene import Scene
 from models.scene.driver import check_within
 
 COARSER = Projection(1e-12)
-"""The integration that this one is held to: it is off by more, so that their difference is what it
-is off by itself."""
+"""Method of the compared integration: it has larger errors, so that the difference is its own."""
 SAFETY = 4.0
-"""How much more than the largest difference so far the error may be."""
+"""Ratio of the error bound to the largest difference so far."""
 LOOKS = 801
-"""Instants at which both are compared."""
+"""Number of instants at which both are compared."""
 
 BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
 
 
 @dataclass(frozen=True, eq=False)
 class BodiesMotion:
-    """What all bodies of a scene do (`FreeMotion`), integrated at once as ``bodies``.
+    """Motion of all bodies of a scene (`FreeMotion`), integrated at once as ``bodies``.
 
-    No coordinate of it is special: `sensitivity` is that of all coordinates, what it may be off by
-    that of the worst link. Bounds are estimates, of a second integration.
+    No coordinate is special: `sensitivity` is that of all coordinates, `error_rad` that of the
+    worst link. Bounds are estimates from a second integration.
     """
 
     bodies: MultibodyMotion
@@ -57,12 +55,12 @@ class BodiesMotion:
 
     @property
     def passages(self) -> tuple[LimitPassage, ...]:
-        """None: where a link turns back, no other coordinate has to take its place."""
+        """None: where a link turns back, no other coordinate has to replace it."""
         return ()
 
     @property
     def edges_s(self) -> tuple[float, ...]:
-        """Those of loads over time."""
+        """Kinks of loads over time."""
         return self.bodies.edges_s
 
     @property
@@ -98,7 +96,7 @@ class BodiesMotion:
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
-        """With reactions without bounds of their own."""
+        """Return the motion with reactions without bounds of their own."""
         del bound
         return replace(motion, forces=self.bodies.at(motion.time_s).forces)
 
@@ -129,7 +127,7 @@ class BodiesMotion:
 
     @cached_property
     def _doubt(self) -> Bound:
-        """What all bodies may be off by until each of these instants."""
+        """Errors of all bodies until each of these instants."""
         time_s, motion = self._looks
         other = replace(self.bodies, method=COARSER).at(time_s)
         return Bound(
@@ -139,7 +137,7 @@ class BodiesMotion:
         )
 
     def _bound(self, time_s: Array) -> Bound:
-        # That of the next look: the differences before a time hold up to there.
+        # The next sample holds the differences up to it.
         k = np.clip(np.searchsorted(self._looks[0], time_s), 0, LOOKS - 1)
         doubt = self._doubt
         return Bound(_some(doubt.links, k), _some(doubt.points, k), _some(doubt.sliders, k))
@@ -148,7 +146,7 @@ class BodiesMotion:
 def _apart(
     own: Mapping[str, BodyMotion], others: Mapping[str, BodyMotion]
 ) -> dict[str, BodyMotion]:
-    """How far bodies of two motions have been apart until each instant at most, with room."""
+    """Return the largest distances of bodies of two motions until each instant, with room."""
     return {
         name: type(body)(*map(_room, vars(body).values(), vars(others[name]).values()))
         for name, body in own.items()
@@ -171,8 +169,8 @@ def _some(bodies: Mapping[str, BodyMotion], index: NDArray[np.intp]) -> dict[str
 
 @dataclass(frozen=True, eq=False)
 class MachineMotion:
-    """What a scene of one freedom does (`FreeMotion`): ``history`` is the integration, and
-    ``doubt`` what it may be off by."""
+    """Motion of a scene of one freedom (`FreeMotion`): ``history`` is the integration, and
+    ``doubt`` its error."""
 
     scene: Scene
     until_s: float
@@ -200,7 +198,7 @@ class MachineMotion:
 
     @property
     def range_rad(self) -> float:
-        """How far the driver goes, from its smallest angle to its largest."""
+        """Range of the driver's angle, from its smallest to its largest."""
         return float(np.ptp(self._looks[0]))
 
     @cached_property
@@ -209,14 +207,14 @@ class MachineMotion:
         return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
 
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """The motion at times [s], (T,), from 0 to ``until_s``; bounds hold what the integration
-        may be off by as well. Raises CrankcheckError for times beyond."""
+        """Return the motion at times [s], (T,), from 0 to ``until_s``; bounds include the error of
+        the integration. Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
         return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """As `FreeMotion.outside`; the third rate of the driver is taken as constant."""
+        """Return as `FreeMotion.outside`, with a constant third rate of the driver."""
         end_s, t, h = from_end(time_s, self.until_s)
         theta, omega, alpha = self._driver(end_s + np.array([0.0, h, 2.0 * h]))
         jerk = (4.0 * alpha[1] - 3.0 * alpha[0] - alpha[2]) / (2.0 * h)
@@ -234,28 +232,28 @@ class MachineMotion:
         return replace(motion, forces=load)
 
     def beside(self, logged: Motion) -> Motion:
-        """The reference, without rates and bounds, in the position that a run of this scene has at
-        each of its instants, in the assembly that it is in: at the driver's angle that it logged,
-        and near a limit of that at the angle or the displacement of what goes on through it."""
+        """Return the reference, without rates and bounds, next to a run of this scene at each of
+        its instants, in the run's assembly: at its logged driver angle, and near a limit of that at
+        the angle or the displacement of a body that goes on through it."""
         return places_beside(self.scene, self.history, logged)
 
     def energy(self, time_s: Array) -> EnergyBalance:
-        """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
+        """Return the energies at times [s], (T,). Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
         return history_energy(self.scene, self.history, instants)
 
     def sensitivity(self, time_s: Array) -> Array:
-        """G (T,): by how much a small change of the start has grown by then at most, at least 1.
+        """Return G (T,): the largest growth of a small change of the start by then, at least 1.
 
-        In the driver's angle: for a start that is off by an angle, per rad; or in its speed, per
-        peak speed over the range that the driver goes through (a turn at most): changes that are
-        the same part of the motion.
+        It is the change of the driver's angle: for an error of the start's angle, per rad; or of
+        its speed, per peak speed over the driver's range (a turn at most): changes that are the
+        same part of the motion.
         """
         return np.interp(time_s, *self._growth)
 
     def error_rad(self, time_s: Array) -> Array:
-        """What the driver's angle may be off by [rad], (T,)."""
+        """Return the error of the driver's angle [rad], (T,)."""
         instants = samples(time_s, "time_s")
         u, off = self.history.state(instants)[0], self.doubt.at(instants)[0]
         error, window = np.zeros_like(u), self.history.windows_at(instants)
@@ -266,7 +264,7 @@ class MachineMotion:
         return error
 
     def _driver(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """Angle, rate and acceleration of the driver."""
+        """Return angle, rate and acceleration of the driver."""
         u, v, a = self.history.state(time_s)
         theta, omega, alpha = np.empty_like(u), np.empty_like(u), np.empty_like(u)
         window = self.history.windows_at(time_s)
@@ -279,7 +277,7 @@ class MachineMotion:
 
     @cached_property
     def _looks(self) -> tuple[Array, Array, Array]:
-        """The driver at instants that are close."""
+        """Angle, rate and acceleration of the driver at instants that are close."""
         ends = np.append(self.history.starts_s, self.history.end_s)
         share = np.linspace(0.0, 1.0, 17)
         return self._driver((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel())
@@ -291,7 +289,7 @@ class MachineMotion:
 
 
 def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> EnergyBalance:
-    """The energies of an integrated motion at times [s], (T,)."""
+    """Return the energies of an integrated motion at times [s], (T,)."""
     u, v, _ = history.state(time_s)
     window = history.windows_at(time_s)
     series, before = _work(scene, history)
@@ -311,7 +309,7 @@ def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> E
 
 
 def _work(scene: Scene, history: CoordinateHistory) -> tuple[Array, Array]:
-    """The series of the work in each window, and the work before it [J]."""
+    """Return the series of the work in each window, and the work before it [J]."""
     n = history.windows[0].swing.shape[1]
     rule = gauss(n)
     long_s = np.array([window.long_s for window in history.windows])

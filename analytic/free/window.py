@@ -5,9 +5,9 @@
     t0   o    o      o      o    o   t0 + h      the polynomial of degree n - 1 that is a(t, u, u')
                                                  at the n nodes; u and u' are its integrals
 
-The end of a window is of order 2 n, what is in between of order n. Polynomials are kept by their
-coefficients in Legendre's, which tell by their decay whether a window is short enough. Source:
-E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.7.
+The end of a window is of order 2 n, its inside of order n. Polynomials are kept by their
+coefficients in Legendre's, whose decay shows whether a window is short enough. Source: E. Hairer,
+S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.7.
 """
 
 import math
@@ -23,7 +23,7 @@ from models.array import Array
 
 @dataclass(frozen=True)
 class Gauss:
-    """For n nodes in (0, 1), ``places``: ``once`` and ``twice`` (n, n) integrate values at the
+    """Rule of n nodes in (0, 1), ``places``: ``once`` and ``twice`` (n, n) integrate values at the
     nodes from 0 to the nodes, ``end_once`` and ``end_twice`` (n,) to 1; ``series`` (n, n) makes
     coefficients of them, which ``lift_once`` (n + 1, n) and ``lift_twice`` (n + 2, n) integrate."""
 
@@ -43,7 +43,7 @@ class Gauss:
 
 @lru_cache(maxsize=8)
 def gauss(count: int) -> Gauss:
-    """The rule of ``count`` nodes."""
+    """Return the rule of ``count`` nodes."""
     x, w = legendre.leggauss(count)
     orders = np.arange(count)
     # Gauss' rule is exact for products of two of these polynomials.
@@ -58,7 +58,7 @@ def gauss(count: int) -> Gauss:
 
 
 def _integral(count: int) -> Array:
-    """From coefficients in Legendre's polynomials over [0, 1] to those of the integral from 0."""
+    """Return the matrix that integrates Legendre's polynomials over [0, 1], from 0."""
     table = np.zeros((count + 1, count))
     for k in range(count):
         table[: k + 2, k] = 0.5 * legendre.legint(np.eye(count)[k], lbnd=-1)[: k + 2]
@@ -66,8 +66,8 @@ def _integral(count: int) -> Array:
 
 
 def sums(coefficients: Array, share: Array) -> Array:
-    """The values of series (..., n) at shares of their windows that broadcast with (...,), by
-    Clenshaw's recurrence."""
+    """Return the values of series (..., n) at shares of their windows that broadcast with (...,),
+    by Clenshaw's recurrence."""
     x = 2.0 * share - 1.0
     one, two = np.zeros_like(x), np.zeros_like(x)
     for k in range(coefficients.shape[-1] - 1, 0, -1):
@@ -82,17 +82,16 @@ Acceleration = Callable[[Array, Array, Array], Array]
 """u'' at times, coordinates and rates, (T,)."""
 MOST_ROUNDS = 14
 NUDGE = 1e-6
-"""Of coordinates and rates, over their scale, for the derivatives of the acceleration."""
+"""Change of coordinates and rates, over their scale, for the derivatives of the acceleration."""
 STALLED = 1e-11
-"""A change of the acceleration, over its largest, at which Newton's method may end because it no
-longer shrinks: rounding."""
+"""Change of the acceleration, over its largest, that is rounding where it no longer shrinks."""
 SLOW = 1e-6
-"""Of the coordinate in a window: what moves no further is looked at no closer."""
+"""Movement of the coordinate in a window, below which it is resolved no further."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """What is large in a motion: its coordinate (at least 1), its rate."""
+    """Scale of a motion: its coordinate (at least 1), its rate."""
 
     u: float
     v: float
@@ -100,8 +99,8 @@ class Scale:
 
 @dataclass(frozen=True)
 class WindowSolution:
-    """A window: accelerations at the nodes, and u, u' at its end; as good as there are, where
-    Newton's method has not ``converged``."""
+    """Solved window: accelerations at the nodes, and u, u' at its end; best values where Newton's
+    method has not ``converged``."""
 
     rule: Gauss
     long_s: float
@@ -114,14 +113,14 @@ class WindowSolution:
     converged: bool
 
     def after(self, lasts_s: float) -> tuple[float, float]:
-        """u and u' a while after the start [s]: at the end, or hardly beyond it."""
+        """Return u and u' a while after the start [s]: at the end, or hardly beyond it."""
         if lasts_s == self.long_s:
             return self.end
         u, v = self.at(np.array([lasts_s]))[:, 0]
         return float(u), float(v)
 
     def at(self, after_s: Array) -> Array:
-        """u and u' at times after the start [s], (2, T)."""
+        """Return u and u' at times after the start [s], (2, T)."""
         u, v, _ = self.series
         both = np.zeros((2, 1, u.size))
         both[0, 0], both[1, 0, : v.size] = u, v
@@ -129,7 +128,7 @@ class WindowSolution:
 
     @cached_property
     def series(self) -> tuple[Array, Array, Array]:
-        """The coefficients of u, u', u''."""
+        """Coefficients of u, u', u''."""
         h, own = self.long_s, self.rule.series @ self.a
         v = h * (self.rule.lift_once @ own)
         v[0] += self.v0
@@ -138,7 +137,7 @@ class WindowSolution:
         return u, v, own
 
     def excess(self, scale: Scale) -> float:
-        """What is cut off of the polynomials over what may be: at most 1 is short enough."""
+        """Return the truncation of the polynomials over the allowed one, at most 1."""
         own, h, n = np.abs(self.series[2]), self.long_s, self.rule.count
         tail = float(max(own[-1], own[-2]))
         rate = max(scale.v, abs(self.v0), SLOW * scale.u / h)
@@ -146,8 +145,8 @@ class WindowSolution:
         return tail / room
 
     def changes(self) -> tuple[Array, Array]:
-        """The derivatives by u and u' at the start of those at the end, (2, 2), and of u at the
-        nodes, (2, n): the columns, and rows, are those of a start that is off in u, and in u'."""
+        """Return the derivatives of u and u' at the end by those at the start, (2, 2), and of u at
+        the nodes, (2, n): the columns, and rows, belong to a start that is off in u, and in u'."""
         h, rule = self.long_s, self.rule
         matrix = _matrix(rule, h, self.by_u, self.by_v)
         sides = np.stack([self.by_u, self.by_u * h * rule.places + self.by_v], axis=1)
@@ -159,7 +158,7 @@ class WindowSolution:
 
 
 def _matrix(rule: Gauss, h: float, by_u: Array, by_v: Array) -> Array:
-    """That of Newton's method for the accelerations at the nodes."""
+    """Return the matrix of Newton's method for the accelerations at the nodes."""
     return np.asarray(
         np.eye(rule.count) - h * h * by_u[:, None] * rule.twice - h * by_v[:, None] * rule.once
     )
@@ -173,10 +172,10 @@ def solve_window(
     first: Array,
     scale: Scale,
 ) -> WindowSolution | None:
-    """A window from ``start`` (time, u, u'), or None where there is none.
+    """Solve a window from ``start`` (time, u, u'); None where it has no solution.
 
-    ``first`` is where it begins, the accelerations at the nodes. Raises whatever ``acceleration``
-    does.
+    ``first`` is the initial guess of the accelerations at the nodes. Raises whatever
+    ``acceleration`` raises.
     """
     time_s, u0, v0 = start
     h, n, a = long_s, rule.count, first
@@ -199,7 +198,7 @@ def solve_window(
         change = float(np.abs(step).max())
         size = max(float(np.abs(a).max()), float(np.abs(v).max()) / h, SLOW * scale.u / h**2)
         stalled = change <= STALLED * size and change > 0.25 * before
-        # What is left shrinks at least as it did in this round: no other one confirms it.
+        # The rest shrinks at least as in this round: no other one confirms it.
         left = change * min(change / before, 1.0) if math.isfinite(before) else change
         if converged := change <= 1e-15 * size or left <= 1e-17 * size or stalled:
             break

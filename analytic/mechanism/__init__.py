@@ -1,1 +1,1 @@
-"""What theory says of a whole mechanism."""
+"""Theory of a whole mechanism."""

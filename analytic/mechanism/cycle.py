@@ -1,12 +1,12 @@
-"""One cycle of a mechanism: what repeats, over the driver's phase, and where a rate of it is zero.
+"""One cycle of a mechanism over the driver's phase, and the zeros of its rates.
 
-The phase grows evenly in time. Of a driver that turns it is its angle, and a cycle is a turn (two,
-where change points let positions repeat after two only); of one that swings it is the argument of
+The phase grows evenly in time. For a driver that turns it is its angle, and a cycle is a turn (two,
+where change points let positions repeat after two only); for one that swings it is the argument of
 the sine, and a cycle is a swing to and fro.
 
-Zeros are looked for at `SCAN` phases a turn, closer where a rate comes nearer to zero than beside
-it, as it may pass zero and return between two looks; each is then halved in upon, on the closed
-form, until its floats have no middle.
+Zeros are searched at `SCAN` phases a turn, closer where a rate comes nearer to zero than beside it,
+as it may pass zero and return between two samples; each is then bisected, on the closed form, until
+its floats have no middle.
 """
 
 from __future__ import annotations
@@ -26,32 +26,32 @@ from models.scene import Scene
 from models.scene.laws import Oscillating
 
 SCAN = 720
-"""Looks at a turn."""
+"""Samples of a turn."""
 ZOOMS = 5
 FINER = 65
-"""Looks at the neighbourhood of every smallest rate in each zoom."""
+"""Samples of the neighbourhood of every smallest rate in each zoom."""
 HALVINGS = 60
 DEPTH = 1e-9
-"""What a rate falls by, over the largest, or is below zero by, if it is more than rounding."""
+"""Fall of a rate, over the largest, or value below zero, that is more than rounding."""
 
 
 @dataclass(frozen=True)
 class Along:
-    """The place of a point along a direction of the ground, counter-clockwise from x [rad]."""
+    """Place of a point along a direction of the ground, counter-clockwise from x [rad]."""
 
     point: str
     direction_rad: float
 
 
 Output = str | Along
-"""A link or a slider by name, or a point along a direction."""
+"""Link or slider by name, or a point along a direction."""
 Series = tuple[Array, Array, Array]
-"""A place ([rad] or [m]) and its rates by the phase."""
+"""Place ([rad] or [m]) and its rates by the phase."""
 
 
 @dataclass(frozen=True)
 class Cycle:
-    """A cycle of ``period_rad`` of the phase; ``swing`` is the law of a driver that swings."""
+    """Cycle of ``period_rad`` of the phase; ``swing`` is the law of a driver that swings."""
 
     scene: Scene
     period_rad: float
@@ -59,7 +59,7 @@ class Cycle:
 
     @staticmethod
     def of(scene: Scene) -> Cycle:
-        """That of a scene's driver; one that is no swing is taken to turn at constant speed."""
+        """Return the cycle of a scene's driver; without a swing it turns at constant speed."""
         law = scene.driver.law
         if isinstance(law, Oscillating):
             return Cycle(scene, math.tau, Oscillating(law.centre_rad, abs(law.amplitude_rad), 1.0))
@@ -72,16 +72,16 @@ class Cycle:
 
     @property
     def grid(self) -> Array:
-        """The phases looked at, half a look away from 0."""
+        """Sampled phases, half a step away from 0."""
         count = SCAN * round(self.period_rad / math.tau)
         return (np.arange(count, dtype=np.float64) + 0.5) * (math.tau / SCAN)
 
     def driver(self, phase: Array) -> Array:
-        """The driver's angles [rad], or displacements [m]."""
+        """Return the driver's angles [rad], or displacements [m]."""
         return phase if self.swing is None else self.swing.at(phase)[0]
 
     def at(self, outputs: Sequence[Output], phase: Array, *, bound: bool = False) -> Motion:
-        """The motion of the outputs at phases that grow by one a second."""
+        """Return the motion of the outputs at phases that grow by one a second."""
         theta, one, zero = phase, np.ones_like(phase), np.zeros_like(phase)
         if self.swing is not None:
             theta, one, zero = self.swing.at(phase)
@@ -119,7 +119,7 @@ class Cycle:
 
 
 def series(motion: Motion, output: Output) -> Series:
-    """The place of an output, its rate and the rate of that."""
+    """Return the place of an output, its rate and the rate of that."""
     if isinstance(output, Along):
         along = np.array([math.cos(output.direction_rad), math.sin(output.direction_rad)])
         point = motion.points[output.point]
@@ -132,10 +132,10 @@ def series(motion: Motion, output: Output) -> Series:
 
 
 def zeros(cycle: Cycle, outputs: Sequence[Output], order: int) -> dict[Output, Array]:
-    """By output, the phases of a cycle at which its rate (``order`` 1) or the rate of that (2)
-    changes its sign, in order, to rounding.
+    """Return by output the phases of a cycle at which its rate (``order`` 1) or the rate of that
+    (2) changes its sign, in order, to rounding.
 
-    The work is that of one output: all are refined together. None where it is zero all the time.
+    The work is that of one output: all are refined together. A rate that is always zero has none.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def zeros(cycle: Cycle, outputs: Sequence[Output], order: int) -> dict[Output, A
 
 
 def _moves(motion: Motion, output: Output, order: int) -> bool:
-    """Whether a rate is anything but rounding somewhere."""
+    """True if a rate is more than rounding somewhere."""
     assert motion.bound is not None
     if isinstance(output, Along):
         bounds: PointMotion = motion.bound.points[output.point]
@@ -173,11 +173,11 @@ def _moves(motion: Motion, output: Output, order: int) -> bool:
 def _closer(
     cycle: Cycle, outputs: Sequence[Output], grid: Array, looked: Motion, order: int
 ) -> dict[Output, tuple[Array, Array]]:
-    """By output, the phases of the grid and those where its rate went through zero and back between
-    them, in order, and the rates there.
+    """Return by output the phases of the grid and those where its rate went through zero and back
+    between them, in order, and the rates there.
 
-    A rate that is nearest to zero at one sample is looked at ever closer on both sides of it, as
-    far as where it is smallest.
+    A rate that is nearest to zero at one sample is sampled ever closer on both sides of it, up to
+    its smallest value.
     """
     rates = {output: series(looked, output)[order] for output in outputs}
     valleys = [(output, k) for output, rate in rates.items() for k in _valleys(rate)]
@@ -205,7 +205,7 @@ def _closer(
 
 
 def _valleys(rate: Array) -> NDArray[np.intp]:
-    """The samples at which a rate that repeats is nearer to zero than beside them, of one sign."""
+    """Return the samples where a periodic rate of one sign is nearer to zero than beside them."""
     before, after, size = np.roll(rate, 1), np.roll(rate, -1), np.abs(rate)
     same = (np.sign(before) == np.sign(rate)) & (np.sign(after) == np.sign(rate))
     least = (size <= np.abs(before)) & (size <= np.abs(after))
@@ -216,8 +216,8 @@ def _valleys(rate: Array) -> NDArray[np.intp]:
 def _refined(
     cycle: Cycle, between: Mapping[Output, tuple[Array, Array, Array]], order: int
 ) -> dict[Output, Array]:
-    """The zeros by bisection: ``between`` has, by output, the looks just before and after them, and
-    the signs of the rate before."""
+    """Return the zeros by bisection: ``between`` has, by output, the samples just before and after
+    them, and the signs of the rate before."""
     owner = [output for output, (low, _, _) in between.items() for _ in low]
     if not owner:
         return {}

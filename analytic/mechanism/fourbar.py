@@ -42,7 +42,7 @@ GrashofClass = Literal[
     "crank-rocker", "double-crank", "double-rocker", "triple-rocker", "change point"
 ]
 SAME = 1e-12
-"""Sums of lengths that differ by less, relative to their size, are equal: a change point."""
+"""Relative difference of sums of lengths, below which they are equal: a change point."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class FourBar:
 
     @staticmethod
     def of(scene: Scene) -> FourBar:
-        """The four-bar that a scene is. Raises StructureError if it is something else."""
+        """Return the four-bar of a scene. Raises StructureError if it is another mechanism."""
         groups = analyse(scene).groups
         if len(groups) != 1 or groups[0].kind != "RRR":
             kinds = ", ".join(group.kind for group in groups)
@@ -104,7 +104,7 @@ class FourBar:
 
     @property
     def grashof_class(self) -> GrashofClass:
-        """Which links turn fully against the ground."""
+        """Class by the links that turn fully against the ground."""
         lengths = (self.driver, self.coupler, self.rocker, self.ground)
         if abs(self.excess_m) <= SAME * sum(lengths):
             return "change point"
@@ -123,7 +123,7 @@ class FourBar:
 
     @property
     def driver_range_rad(self) -> tuple[float, float]:
-        """The driver's angles against AD on one side of it (from, to), within 0 to pi [rad].
+        """Driver's angles against AD on one side of it (from, to), within 0 to pi [rad].
 
         The other side mirrors it. (0, pi) where the driver turns fully.
         """
@@ -141,7 +141,7 @@ class FourBar:
 
     @property
     def rocker_limits_rad(self) -> tuple[float, float]:
-        """The rocker's angles against DA at its two limits (crank and coupler in line) [rad].
+        """Rocker's angles against DA at its two limits (crank and coupler in line) [rad].
 
         Raises StructureError unless the driver is the crank of a crank-rocker.
         """
@@ -151,7 +151,7 @@ class FourBar:
 
     @property
     def rocker_swing_rad(self) -> float:
-        """The angle between the rocker's limits [rad]."""
+        """Angle between the rocker's limits [rad]."""
         low, high = self.rocker_limits_rad
         return high - low
 
@@ -173,7 +173,7 @@ class FourBar:
 
 
 def _angle(p: float, q: float, opposite: float) -> float:
-    """The angle between sides p and q of a triangle with the given opposite side [rad].
+    """Return the angle between sides p and q of a triangle with the given opposite side [rad].
 
     By half-angle sines: no cancellation where the triangle is nearly flat.
     """
@@ -184,9 +184,9 @@ def _angle(p: float, q: float, opposite: float) -> float:
 
 @dataclass(frozen=True)
 class GrashofType:
-    """What a chain is called; ``margin_m`` is what it is a Grashof chain by [m]: negative where
-    it is none, 0 within rounding at a change point. ``driver_turns`` and ``follower_turns`` say
-    whether these turn fully against the ground (a block never does)."""
+    """Name of a chain and its Grashof margin ``margin_m`` [m]: negative for a non-Grashof chain, 0
+    within rounding at a change point. ``driver_turns`` and ``follower_turns`` are True if these
+    turn fully against the ground (a block never does)."""
 
     name: str
     margin_m: float
@@ -195,12 +195,12 @@ class GrashofType:
 
     @property
     def is_grashof(self) -> bool:
-        """Whether some link turns fully; a change point counts."""
+        """True if some link turns fully; a change point counts."""
         return self.margin_m >= 0.0
 
 
 def four_bar_type(bar: FourBar) -> GrashofType:
-    """The type of a four-bar by its driver, the first of its four lengths."""
+    """Return the type of a four-bar by its driver, the first of its four lengths."""
     a, b, c, d = lengths = (bar.driver, bar.coupler, bar.rocker, bar.ground)
     excess, small = bar.excess_m, SAME * sum(lengths)
     turns, back = bar.driver_turns_fully, FourBar(c, b, a, d).driver_turns_fully
@@ -220,7 +220,7 @@ def four_bar_type(bar: FourBar) -> GrashofType:
 
 
 def _special(a: float, b: float, c: float, d: float, small: float) -> str:
-    """What a four-bar in which all links come to lie in line is called."""
+    """Return the name of a four-bar in which all links come to lie in line."""
 
     def same(one: float, other: float) -> bool:
         return abs(one - other) <= small
@@ -236,7 +236,7 @@ def _special(a: float, b: float, c: float, d: float, small: float) -> str:
 
 
 def slider_crank_type(crank: float, rod: float, offset: float) -> GrashofType:
-    """The type of a slider-crank driven at its crank: lengths and offset [m].
+    """Return the type of a slider-crank driven at its crank: lengths and offset [m].
 
     Raises
     ------
@@ -263,11 +263,11 @@ def slider_crank_type(crank: float, rod: float, offset: float) -> GrashofType:
 
 
 def inverted_slider_crank_type(crank: float, ground: float, offset: float) -> GrashofType:
-    """The type of an inverted slider-crank, its guide ``offset`` [m] beside the guide's pin.
+    """Return the type of an inverted slider-crank, its guide ``offset`` [m] beside the guide's pin.
 
     The block pinned to the crank reaches the guide where it is no nearer to the guide's pin than
-    the offset. The guide turns fully (Whitworth) where the crank goes round its pin, and swings
-    (slotted lever) where the crank does not.
+    the offset. The guide turns fully (Whitworth) where the crank goes round its pin, else it swings
+    (slotted lever).
 
     Raises
     ------
@@ -292,7 +292,7 @@ def inverted_slider_crank_type(crank: float, ground: float, offset: float) -> Gr
 
 
 def grashof_of(scene: Scene) -> GrashofType | None:
-    """What a scene is called; None of one that is no such chain. Raises StructureError."""
+    """Return the type of a scene; None for another chain. Raises StructureError."""
     structure = analyse(scene)
     if len(structure.order) != 1 or len(structure.groups) != 1 or not scene.driver.is_crank:
         return None
@@ -310,7 +310,7 @@ def grashof_of(scene: Scene) -> GrashofType | None:
 
 
 def _slider_crank(scene: Scene, group: Group, slider: Slider) -> GrashofType | None:
-    """Of a crank, a rod and a block on the ground."""
+    """Return the type of a crank, a rod and a block on the ground."""
     crank, rod = scene.links[scene.driver.link].points, scene.links[group.first].points
     if slider.link is not None or slider.on != GROUND or group.outer1 not in crank:
         return None
@@ -321,7 +321,7 @@ def _slider_crank(scene: Scene, group: Group, slider: Slider) -> GrashofType | N
 
 
 def _inverted(scene: Scene, group: Group, slider: Slider) -> GrashofType | None:
-    """Of a crank, a block pinned to it, and a guide pinned to the ground."""
+    """Return the type of a crank, a block pinned to it, and a guide pinned to the ground."""
     crank, pivot = scene.links[scene.driver.link].points, scene.driver_pivot
     pins = (group.outer1, group.outer2)
     held = next((pin for pin in pins if pin in scene.ground), None)
@@ -336,6 +336,6 @@ def _inverted(scene: Scene, group: Group, slider: Slider) -> GrashofType | None:
 
 
 def _beside(point: Point, slider: Slider) -> float:
-    """How far a point of the slider's guide is from its line [m]."""
+    """Return the distance of a point of the slider's guide from its line [m]."""
     x, y = point[0] - slider.through_m[0], point[1] - slider.through_m[1]
     return abs(y * math.cos(slider.direction_rad) - x * math.sin(slider.direction_rad))

@@ -1,8 +1,8 @@
-"""How far an output travels: swing of a link, stroke of a slider or of a point along a direction,
-time ratio, limit positions.
+"""Travel of an output: swing of a link, stroke of a slider or of a point along a direction, time
+ratio, limit positions.
 
-For any mechanism that goes through a whole cycle (`analytic.mechanism.cycle`). Where a closed form
-exists (`analytic.mechanism.fourbar`, slider-crank, slotted lever) the tests hold this to it.
+It covers any mechanism that goes through a whole cycle (`analytic.mechanism.cycle`). Tests compare
+it with the closed forms (`analytic.mechanism.fourbar`, slider-crank, slotted lever).
 """
 
 import math
@@ -18,18 +18,18 @@ from models.motion import Motion
 from models.scene import GROUND, Scene
 
 SAME = 1e-9
-"""Limit positions that are nearer to each other than this part of the stroke are one place."""
+"""Distance of limit positions, over the stroke, below which they are one place."""
 
 
 @dataclass(frozen=True)
 class Travel:
-    """The travel of an output over ``period_rad`` of the driver's phase, after which it is back.
+    """Travel of an output over ``period_rad`` of the driver's phase, after which it is back.
 
-    ``low`` and ``high`` are its extremes ([rad] for a link, [m] for all else), ``low_at_rad`` the
-    phase (of the cycle, see `analytic.mechanism.cycle`) where it first has the one, and
-    ``high_at_rad`` that where it next has the other; ``limits`` is the number of limit positions in
-    a cycle: two, or more where it turns back on its way. ``time_ratio`` is the phase of the longer
-    stroke between the extremes over that of the shorter, and so of their times.
+    ``low`` and ``high`` are its extremes ([rad] for a link, else [m]), ``low_at_rad`` the phase (of
+    the cycle, see `analytic.mechanism.cycle`) where it first has ``low``, and ``high_at_rad`` that
+    where it next has ``high``; ``limits`` is the number of limit positions in a cycle: two, or more
+    where it turns back on its way. ``time_ratio`` is the phase of the longer stroke between the
+    extremes over that of the shorter, and so of their times.
     """
 
     low: float
@@ -52,7 +52,7 @@ class Travel:
 
 
 def travel(scene: Scene, output: Output) -> Travel:
-    """The travel of a link, a slider or a point along a direction until the mechanism repeats.
+    """Find the travel of a link, a slider or a point along a direction until the mechanism repeats.
 
     Raises
     ------
@@ -72,10 +72,10 @@ def travel(scene: Scene, output: Output) -> Travel:
 
 
 def travels(scene: Scene, outputs: Sequence[Output]) -> dict[Output, Travel | CrankcheckError]:
-    """The travel of several outputs, or why one has none.
+    """Return the travel of several outputs, or the error of an output without one.
 
-    The work is that of one output: all are refined together. Raises as `travel` what concerns the
-    whole mechanism.
+    The work is that of one output: all are refined together. Raises the errors of `travel` that
+    concern the whole mechanism.
     """
     cycle = Cycle.of(scene)
     limits = {o: at for o, at in zeros(cycle, outputs, 1).items() if at.size > 1}
@@ -84,15 +84,15 @@ def travels(scene: Scene, outputs: Sequence[Output]) -> dict[Output, Travel | Cr
 
 
 def _endless(scene: Scene, output: Output) -> CrankcheckError:
-    """Why an output without limit positions has no travel."""
+    """Return the error of an output without limit positions."""
     name = output if isinstance(output, str) else output.point
     return CrankcheckError(f"{scene.name}: {name} never turns back: it has no limit positions")
 
 
 def _extremes(cycle: Cycle, limits: Mapping[Output, Array]) -> dict[Output, Travel]:
-    """The outermost of the limit positions, of which the phases are given by output.
+    """Return the outermost of the limit positions, whose phases are given by output.
 
-    Angles are continuous along the cycle: a swing of more than half a turn is one, too.
+    Angles are continuous along the cycle: a swing may be more than half a turn.
     """
     if not limits:
         return {}
@@ -114,16 +114,16 @@ def _extremes(cycle: Cycle, limits: Mapping[Output, Array]) -> dict[Output, Trav
 
 
 def _next(at: Array, after: float, cycle: Cycle) -> float:
-    """The first of the phases that follows another in the cycle."""
+    """Return the first of the phases that follows another in the cycle."""
     return float(at[np.argmin((at - after) % cycle.period_rad)])
 
 
 @dataclass(frozen=True)
 class ExtremeSpeed:
-    """A largest or smallest speed within a cycle.
+    """Largest or smallest speed within a cycle.
 
-    ``driver_rad`` is the driver's angle (of one that turns, 0 to ``period_rad`` of its cycle),
-    ``rate`` the speed over that of the driver's phase: [1] for a link, [m] for all else.
+    ``driver_rad`` is the driver's angle (0 to ``period_rad`` of its cycle if it turns), ``rate``
+    the speed over that of the driver's phase: [1] for a link, else [m].
     """
 
     driver_rad: float
@@ -133,11 +133,9 @@ class ExtremeSpeed:
 def extreme_speeds(
     scene: Scene, outputs: Sequence[Output]
 ) -> dict[Output, tuple[ExtremeSpeed, ...]]:
-    """By output, its extreme speeds in the order of the phase, under a driver of constant speed or
-    one that swings: where its acceleration changes sign, found on the closed form to rounding.
-
-    None of an output that has one speed. Raises as `analytic.mechanism.cycle.zeros`.
-    """
+    """Return by output its extreme speeds in the order of the phase, under a driver of constant
+    speed or one that swings: where its acceleration changes sign, found on the closed form to
+    rounding. A constant speed has none. Raises as `analytic.mechanism.cycle.zeros`."""
     cycle = Cycle.of(scene)
     found = {}
     for output, at in zeros(cycle, outputs, 2).items():
@@ -151,7 +149,7 @@ def extreme_speeds(
 
 
 def coriolis(scene: Scene, motion: Motion) -> Mapping[str, Array]:
-    """2 omega v [m/s^2], (T,), of every slider on a moving guide: omega of the guide, v along it.
+    """Return 2 omega v [m/s^2], (T,), of sliders on moving guides: omega of the guide, v along it.
 
     Positive to the left of the slider's line, a quarter turn counter-clockwise from its direction:
     v turned in the sense of omega. The guides must be among the motion's links. Its rounding is

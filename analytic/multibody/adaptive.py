@@ -1,9 +1,9 @@
-"""Integrate the equations of motion over time, from kink to kink of what acts.
+"""Integrate the equations of motion over time, from kink to kink of the forces.
 
 The state is q, q' and the work of loads and dampers, (2 n + 1,). After each step of the adaptive
-method the state is put back onto the constraints, by what its own error has left them open, so that
-the order of the method stays. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations
-II, VII.2 (projection); the same and S. P. Norsett, I, II.5 (the method of order 8).
+method the state is projected onto the constraints, by no more than the step's error, so that the
+order of the method stays. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
+VII.2 (projection); the same and S. P. Norsett, I, II.5 (the method of order 8).
 """
 
 import itertools
@@ -39,17 +39,17 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 CAREFUL = 0.1
-"""The smallest singular value of the constraints, of rows of the largest entry 1, below which the
-stages of a step are put back onto the constraints as well: what they are off by, which is more than
-the step is, counts there over that value."""
+"""Smallest singular value of the constraints, of rows of the largest entry 1, below which the
+stages of a step are projected onto the constraints as well: their errors, larger than the step's,
+count there over that value."""
 EPS = float(np.finfo(float).eps)
 AGAIN = 0.5
-"""A passage is looked for again at a smallest singular value of so much of the last one."""
+"""Ratio of smallest singular values after which a passage is looked for again."""
 
 
 @dataclass(frozen=True)
 class _Crossing:
-    """When a switch is gone over, the cells of all after it, and whose switch it is."""
+    """Crossing of a switch: its time, the cells of all after it, its load and slider."""
 
     at_s: float
     cells: Array
@@ -59,15 +59,15 @@ class _Crossing:
 
 @dataclass(frozen=True)
 class Adaptive:
-    """Integrates with steps of a size that keeps to a tolerance, over the largest of what a
-    coordinate has been and its unit; ``projected`` back onto the constraints after each."""
+    """Integration with adaptive steps to a tolerance, over the largest value so far of a coordinate
+    and its unit; ``projected`` onto the constraints after each step."""
 
     dynamics: Dynamics
     tolerance: float
     projected: bool
 
     def history(self, q: Array, rates: Array, until_s: float) -> StateHistory:
-        """The motion from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
+        """Integrate from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
         forces = self.dynamics.forces
         own, state = switches(forces), np.concatenate([q, rates, [0.0]])
         steps = Steps(Pace(), until_s)
@@ -80,7 +80,7 @@ class Adaptive:
         return StateHistory(steps.solution, len(steps.within), tuple(steps.passages))
 
     def _first_cells(self, own: tuple[Switch, ...], state: Array) -> Array:
-        """The cells in which the switches are as the motion starts, or into which it moves."""
+        """Return the cells of the switches at the start of the motion, or into which it moves."""
         cells = state_cells(own, self.dynamics.forces, state)
         if not any(switch.turning for switch in own):
             return cells
@@ -99,7 +99,7 @@ class Adaptive:
         end: float,
         state: Array,
     ) -> tuple[Array, Array]:
-        """Integrate between two edges over time; the state and the cells at the end."""
+        """Integrate between two edges over time; return the state and the cells at the end."""
         solver = self._solver(steps, begin, end, state, strokes(own, cells), None)
         steps.clear_s = begin
         while solver.status == "running":
@@ -129,7 +129,7 @@ class Adaptive:
         return solver.y, cells
 
     def _passed(self, steps: Steps, solver: DOP853, own: Strokes) -> DOP853:
-        """The integration on the other side of a change point, if one is just ahead."""
+        """Return the integration on the other side of a change point, if one is just ahead."""
         if not self.projected or self.dynamics.rank == 0 or solver.status != "running":
             return solver
         now_s = float(solver.t)
@@ -161,10 +161,10 @@ class Adaptive:
         return self._solver(steps, passage.end_s, float(solver.t_bound), state, own, None)
 
     def _shortened(self, crossing: _Crossing, step_s: float) -> float:
-        """A shorter step from the turn of a slider on, within which it may not turn back.
+        """Return a shorter step from the turn of a slider on, within which it may not turn back.
 
-        Raises CrankcheckError for one that turns back at once: a load that comes on with its stroke
-        drives it back, and it is held where it is.
+        Raises CrankcheckError for a slider that turns back at once: a load that begins with its
+        stroke drives it back and holds it in place.
         """
         if step_s > 1e-9 * max(crossing.at_s, 1e-3):
             return 0.1 * step_s
@@ -183,7 +183,7 @@ class Adaptive:
         own: Strokes,
         first_s: float | None,
     ) -> DOP853:
-        # What jumps at an edge has its old value up to it.
+        # A jump at an edge has its old value up to it.
         last = math.nextafter(end, begin)
 
         def rates(time_s: float, state: Array) -> Array:
@@ -196,11 +196,11 @@ class Adaptive:
         return DOP853(rates, begin, state, end, rtol=rtol, atol=atol, first_step=first)
 
     def _tolerances(self, loose: float = 1.0) -> tuple[float, Array]:
-        """So many times the tolerance, relative and absolute, as steps are held to it."""
+        """Return so many times the tolerance of steps, relative and absolute."""
         return loose * max(self.tolerance, 3e-14), loose * self.tolerance * self._units()
 
     def _units(self) -> Array:
-        """What a coordinate, a rate and the work count as one of."""
+        """Return the units of coordinates, rates and work."""
         own = self.dynamics.assembly.units
         return np.concatenate([own, own, [self.dynamics.assembly.scene.longest_m**2]])
 
@@ -216,20 +216,20 @@ class Adaptive:
         steps.check_count(name, float(solver.t))
 
     def _speed(self, state: Array) -> float:
-        """The largest rate of a state, in the units of its coordinates."""
+        """Return the largest rate of a state, in the units of its coordinates."""
         rates = slice(self.dynamics.assembly.size, -1)
         return float(np.abs(state / self._units())[rates].max())
 
     def _take(self, steps: Steps, solver: DOP853) -> None:
-        """Keep a step, and put the state back onto the constraints."""
+        """Keep a step, and project the state onto the constraints."""
         within = solver.dense_output()
         if self.projected:
             solver.y = self.dynamics.closed_state(solver.y)
         steps.add(float(solver.t), within, self._speed(solver.y))
 
     def _crossing(self, own: tuple[Switch, ...], cells: Array, solver: DOP853) -> _Crossing | None:
-        """The switch that the last step goes over first; ``at_s`` is the start of the step for a
-        slider that turned there, and is on its way back at the end."""
+        """Return the first switch that the last step crosses; ``at_s`` is the start of the step for
+        a slider that turned there and is on its way back at the end."""
         found: list[_Crossing] = []
         forces = self.dynamics.forces
         arrived = state_cells(own, self.dynamics.forces, solver.y)

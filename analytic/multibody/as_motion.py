@@ -1,4 +1,4 @@
-"""Coordinates of an assembly as the motion of its links, points and sliders."""
+"""Motion of links, points and sliders from the coordinates of an assembly."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from models.scene.joints import sliding_angle, sliding_body
 
 
 def as_motion(assembly: Assembly, time_s: Array, now: Configuration, seconds: Array) -> Motion:
-    """The motion at times [s] (T,), with accelerations q'' (T, n)."""
+    """Return the motion at times [s] (T,), with accelerations q'' (T, n)."""
     flat = now.gradient.reshape(len(time_s), -1, assembly.size)
     gained = (flat @ seconds[:, :, None]).reshape(now.drift.shape) + now.drift
     scene = assembly.scene
@@ -32,7 +32,7 @@ def as_motion(assembly: Assembly, time_s: Array, now: Configuration, seconds: Ar
 
 
 def _shapes(assembly: Assembly, q: Array) -> dict[str, ElasticMotion]:
-    """How elastic links are bent and stretched at coordinates (T, n)."""
+    """Return the deflections and extensions of elastic links at coordinates (T, n)."""
     return {
         name: ElasticMotion(
             body.deflections(q[:, own], np.array([0.5 * body.length_m]))[:, 0],
@@ -43,7 +43,7 @@ def _shapes(assembly: Assembly, q: Array) -> dict[str, ElasticMotion]:
 
 
 def _slider(assembly: Assembly, name: str, now: Configuration, gained: Array) -> SliderMotion:
-    """The tip of a slider along its line, as seen from the guide."""
+    """Return the motion of a slider's tip along its line, as seen from the guide."""
     tip, guide = assembly.tips[name], assembly.guides[name]
     angle, omega, alpha = (own[:, guide, 2] for own in (now.place, now.velocity, gained))
     along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -64,24 +64,24 @@ def _slider(assembly: Assembly, name: str, now: Configuration, gained: Array) ->
 
 
 ROUNDS = 8
-"""Of Newton's method, from joints that are open by what an engine leaves."""
+"""Rounds of Newton's method, from the joint gaps that an engine leaves."""
 FAR = 0.5
-"""The largest step of it, in radians or longest links: one that is larger has lost the run."""
+"""Largest step of it, in radians or longest links: a larger one has lost the run."""
 CLOSED = 1e-10
-"""What joints may be open by in the end, over the longest link."""
+"""Largest joint gap in the end, over the longest link."""
 LOST = 1e-7
-"""A singular value over the largest that counts as 0."""
+"""Singular value over the largest that counts as 0."""
 TELLING = 1e-2
-"""The part of the motion that is free from which on an angle says a position."""
+"""Share of an angle in the free motion from which on it determines a position."""
 AT_ONCE = 2000
 
 
 def logged_places(assembly: Assembly, logged: Motion, freedoms: int) -> Array:
-    """Coordinates (T, n) with closed joints, at the run's own values of as many coordinates as
-    there are ``freedoms``; NaN where there are none next to what was logged.
+    """Return coordinates (T, n) with closed joints, at the run's own values of as many coordinates
+    as there are ``freedoms``; NaN where no such position is next to the log.
 
-    Those that are kept are angles of links where these say the position, and are at each instant
-    those that say it best: in a chain of pendulums all angles are, and all pins are placed anew.
+    The kept coordinates are those that determine the position best at each instant, angles of links
+    where possible: a chain of pendulums keeps all angles, and all pins are placed anew.
     """
     rough = _coordinates(assembly, logged)
     found = np.full_like(rough, np.nan)
@@ -93,7 +93,7 @@ def logged_places(assembly: Assembly, logged: Motion, freedoms: int) -> Array:
 
 
 def _coordinates(assembly: Assembly, logged: Motion) -> Array:
-    """Those of the bodies by their logged angles and one logged point of each."""
+    """Return the coordinates of the bodies by their logged angles and one logged point of each."""
     scene = assembly.scene
     q = np.full((logged.time_s.size, assembly.size), np.nan)
     for name, link in scene.links.items():
@@ -116,7 +116,7 @@ def _coordinates(assembly: Assembly, logged: Motion) -> Array:
 
 
 def _closed(assembly: Assembly, rough: Array, freedoms: int) -> Array:
-    """Newton's method for the joints, with some coordinates as they are."""
+    """Close the joints by Newton's method, with some coordinates kept."""
     units, q = assembly.units, rough.copy()
     kept = _kept(assembly, q, freedoms)
     hold = np.zeros((len(q), freedoms, assembly.size))
@@ -138,8 +138,8 @@ def _closed(assembly: Assembly, rough: Array, freedoms: int) -> Array:
 
 
 def _kept(assembly: Assembly, q: Array, freedoms: int) -> NDArray[np.intp]:
-    """The coordinates that say each position best, (T, f): each the one that what the ones before
-    it leave free moves most, angles of links first."""
+    """Return the coordinates that determine each position best, (T, f): each moves most in the
+    motion that the ones before leave free, angles of links first."""
     jacobian = assembly.joints.jacobian(assembly.at_rest(q)) * assembly.units
     _, _, directions = np.linalg.svd(jacobian)
     free = directions[:, assembly.size - freedoms :, :].copy()  # (T, f, n)

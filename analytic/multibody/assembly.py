@@ -1,7 +1,6 @@
 """The bodies of a scene and the markers that they carry, in one set of coordinates.
 
-Nothing here knows of dyads or of an order of solving. Every pin and every prismatic pair gives two
-equations, whatever they leave free::
+Dyads and a solving order play no part. Every pin and every prismatic pair gives two equations::
 
     pin      r_a - r_b = 0
     slider   n . (r - r_guide) = 0          n across the line, which turns with its guide
@@ -39,8 +38,7 @@ RIGID: Mapping[str, Flexible] = MappingProxyType({})
 
 @dataclass
 class _MarkerList:
-    """The markers that are asked for: a place of a body, or None for its frame, and an angle
-    against it."""
+    """Requested markers: a place of a body, or None for its frame, and an angle against it."""
 
     ground: dict[tuple[Point, float], int] = field(default_factory=dict)
     moving: dict[tuple[str, Point | None, float], int] = field(default_factory=dict)
@@ -49,10 +47,10 @@ class _MarkerList:
 class Assembly:
     """All bodies of a scene, and the equations of its ``joints``.
 
-    ``bodies`` are those with coordinates, each from ``at`` on in q; ``size`` is n, the number of
-    all coordinates. ``parts`` do the work, each with a slice of the coordinates and of the markers.
-    ``held`` are the markers at each pin, by body; ``elastic`` the bodies of links that are not
-    rigid, by name, each with its slice of the coordinates.
+    ``bodies`` have coordinates, each from ``at`` on in q; ``size`` is n, the number of all
+    coordinates. ``parts`` compute, each with a slice of the coordinates and of the markers.
+    ``held`` are the markers at each pin, by body; ``elastic`` the bodies of elastic links, by name,
+    each with its slice of the coordinates.
     """
 
     def __init__(self, scene: Scene, flexible: Mapping[str, Flexible] = RIGID) -> None:
@@ -86,7 +84,7 @@ class Assembly:
         )
 
     def _make_parts(self, rigid: Mapping[str, Inertia], flexible: Mapping[str, Flexible]) -> None:
-        """The bodies that do the work: all rigid ones at once, then each that is not."""
+        """Make the computing parts: all rigid bodies at once, then each elastic one."""
         gravity, moving = self.scene.gravity_m_s2, self._list.moving
         numbers = {name: i for i, name in enumerate(rigid)}
         asked = [
@@ -109,7 +107,7 @@ class Assembly:
         self.parts = tuple(parts)
 
     def _ask(self, body: str, place: Point | None, angle_rad: float = 0.0) -> int:
-        """The number of a marker; those of the ground are below 0, until all are known."""
+        """Return the number of a marker; markers of the ground are below 0, until all are known."""
         if body == GROUND:
             ground = self._list.ground
             return -1 - ground.setdefault((place or (0.0, 0.0), angle_rad), len(ground))
@@ -117,15 +115,15 @@ class Assembly:
         return moving.setdefault((body, place, angle_rad), len(moving))
 
     def _named_points(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Every named point with the bodies that carry it; those of blocks alone last."""
+        """Yield every named point with the bodies that carry it; points of blocks alone last."""
         yield from self.scene.pins.items()
         for slider in self.scene.sliders.values():
             if slider.point not in self.scene.pins:
                 yield slider.point, (sliding_body(slider),)
 
     def _number_markers(self, flexible: Mapping[str, Flexible]) -> None:
-        """Those of rigid bodies first, then those of each that is not, last those of the ground,
-        where they hold still."""
+        """Number the markers: those of rigid bodies, then of each elastic one, last the fixed ones
+        of the ground."""
         still, order = len(self._list.moving), {name: i for i, name in enumerate(flexible, 1)}
         moving = enumerate(self._list.moving)
         final = sorted(moving, key=lambda asked: order.get(asked[1][0], 0))  # keeps their order
@@ -148,17 +146,17 @@ class Assembly:
         self._still[still:] = np.array(places).reshape(-1, 3)
 
     def marker(self, body: str, point: str) -> int:
-        """The number of the marker at a named point of a body."""
+        """Return the number of the marker at a named point of a body."""
         held = self.held.get(point, {})
         return held[body] if body in held else self.carriers[point][1]
 
     @property
     def markers(self) -> int:
-        """How many markers there are."""
+        """Number of markers."""
         return len(self._still)
 
     def at_rates(self, q: Array, rates: Array) -> Configuration:
-        """All markers at coordinates and rates (T, n)."""
+        """Return all markers at coordinates and rates (T, n)."""
         count, markers = len(q), len(self._still)
         place = np.repeat(self._still[None], count, axis=0)
         gradient = np.zeros((count, markers, 3, self.size))
@@ -172,12 +170,12 @@ class Assembly:
         return Configuration(q, rates, place, gradient, velocity, drift)
 
     def at_rest(self, q: Array) -> Configuration:
-        """All markers at coordinates (T, n) alone."""
+        """Return all markers at coordinates (T, n) alone."""
         return self.at_rates(q, np.zeros_like(q))
 
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
-        """The mass matrix of all bodies (T, n, n); weights, and inertia that goes with the squares
-        of rates, on the right side (T, n)."""
+        """Return the mass matrix of all bodies (T, n, n); weights, and inertia with the squares of
+        rates, on the right side (T, n)."""
         matrix = np.zeros((len(q), self.size, self.size))
         right = np.empty_like(q)
         for part, own, _ in self.parts:
@@ -186,40 +184,40 @@ class Assembly:
 
     @property
     def units(self) -> Array:
-        """What each coordinate counts as one of: the longest link [m], or a radian."""
+        """Unit of each coordinate: the longest link [m], or a radian."""
         angular = np.concatenate([part.angular for part, _, _ in self.parts])
         return np.where(angular, 1.0, self.scene.longest_m)
 
     def scaled(self, rows: Array) -> Array:
-        """Rows of derivatives by coordinates (m, n) that count in their units, each of the largest
-        entry 1."""
+        """Return rows of derivatives by coordinates (m, n) in the units of these, each of the
+        largest entry 1."""
         scaled = rows * self.units
         size = np.abs(scaled).max(axis=1, keepdims=True, initial=0.0)
         return np.asarray(scaled / np.where(size > 0.0, size, 1.0))
 
     @cached_property
     def coefficients(self) -> NDArray[np.intp]:
-        """The numbers of the coordinates that say how elastic links are deformed, (k,)."""
+        """Numbers of the coordinates that deform elastic links, (k,)."""
         own = [np.arange(at.start + 3, at.stop) for _, at in self.elastic.values()]
         return np.concatenate([np.empty(0, dtype=np.intp), *own])
 
     def mass(self, q: Array) -> Array:
-        """The mass matrix alone."""
+        """Return the mass matrix alone."""
         return self.weigh(q, np.zeros_like(q))[0]
 
     def height_energy(self, q: Array) -> Array:
-        """The potential energy of all bodies [J], (T,)."""
+        """Return the potential energy of all bodies [J], (T,)."""
         return np.asarray(sum(part.height_energy(q[:, own]) for part, own, _ in self.parts))
 
     def lost(self, rates: Array) -> Array:
-        """The power that damping of elastic links takes [W], (T,)."""
+        """Return the power that damping of elastic links takes [W], (T,)."""
         return np.asarray(sum(part.lost(rates[:, own]) for part, own, _ in self.parts))
 
 
 @dataclass(frozen=True)
 class JointMarkers:
-    """The numbers of markers at joints: by pin and body, of each body itself, of what slides and
-    of the line that it slides on, by slider."""
+    """Numbers of markers at joints: by pin and body, of each body itself, of the sliding points and
+    of their lines, by slider."""
 
     held: Mapping[str, Mapping[str, int]]
     frames: Mapping[str, int]
@@ -228,7 +226,7 @@ class JointMarkers:
 
 
 class JointEquations:
-    """The equations of all joints, ``count`` in number (m): those of pins first, two each.
+    """Equations of all joints, ``count`` in number (m): those of pins first, two each.
 
     ``size`` is n, the number of coordinates.
     """
@@ -246,14 +244,14 @@ class JointEquations:
         self.count = 2 * len(pairs) + 2 * len(sliders)
 
     def pin_pairs(self) -> Iterator[tuple[str, str, str]]:
-        """The point and the two bodies of every two equations of pins, in their order."""
+        """Yield the point and the two bodies of every two equations of pins, in their order."""
         for point, held in self._held.items():
             first, *others = held
             for other in others:
                 yield point, first, other
 
     def gaps(self, now: Configuration) -> Array:
-        """The violation of each equation [m or rad], (T, m); angles but for whole turns."""
+        """Return the violation of each equation [m or rad], (T, m); angles but for whole turns."""
         place = now.place
         pins = place[:, self._first, :2] - place[:, self._other, :2]
         rows = np.empty((len(place), self.count))
@@ -267,7 +265,7 @@ class JointEquations:
         return rows
 
     def jacobian(self, now: Configuration) -> Array:
-        """Their derivatives by the coordinates, (T, m, n)."""
+        """Return their derivatives by the coordinates, (T, m, n)."""
         gradient = now.gradient
         rows = np.empty((len(gradient), self.count, self.size))
         pinned = 2 * len(self._first)
@@ -283,7 +281,7 @@ class JointEquations:
         return rows
 
     def gamma(self, now: Configuration) -> Array:
-        """The right side of the equations of accelerations, Phi_q q'' = gamma, (T, m)."""
+        """Return the right side of the equations of accelerations, Phi_q q'' = gamma, (T, m)."""
         drift = now.drift
         rows = np.empty((len(drift), self.count))
         pinned = 2 * len(self._first)
@@ -301,7 +299,7 @@ class JointEquations:
         return rows
 
     def _lines(self, now: Configuration) -> tuple[Array, Array, Array]:
-        """Along and across the line of every slider, and from guide to what slides (T, S, 2)."""
+        """Vectors along and across the line of every slider, and from guide to tip (T, S, 2)."""
         angle = now.place[:, self._guide, 2]
         c, s = np.cos(angle), np.sin(angle)
         away = now.place[:, self._tip, :2] - now.place[:, self._guide, :2]

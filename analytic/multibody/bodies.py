@@ -1,8 +1,8 @@
-"""What a body is to the equations of motion: coordinates of its own, and markers that it carries.
+"""Bodies in the equations of motion: coordinates of their own, and markers that they carry.
 
 A marker is a place of a body with a direction, whose x, y [m] and angle [rad] in the plane depend
-on the coordinates of its body alone. Joints, loads and springs ask for markers, and for nothing
-else; so they need not know what a body is, and a body not what it is joined to.
+on the coordinates of its body alone. Joints, loads and springs use markers alone; so they are
+independent of the kind of body, and a body of its joints.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from models.scene.joints import block_name
 
 @dataclass(frozen=True)
 class Markers:
-    """K markers at T samples: x, y [m] and angle [rad] (T, K, 3), their derivatives by the n
+    """Markers, K at T samples: x, y [m] and angle [rad] (T, K, 3), their derivatives by the n
     coordinates (T, K, 3, n), and their accelerations where the q'' are 0, (T, K, 3)."""
 
     place: Array
@@ -29,61 +29,61 @@ class Markers:
 
 
 class BodySet(Protocol):
-    """One body, or several that are worked out together, with a slice of the coordinates: its own
-    n, as its markers are its own K."""
+    """One body, or several computed together, with a slice of the coordinates: its own n, as its
+    markers are its own K."""
 
     @property
     def size(self) -> int:
-        """n."""
+        """Number of coordinates, n."""
 
     @property
     def angular(self) -> Mask:
-        """Which of the coordinates are in radians, and not in metres, (n,)."""
+        """Mask of the coordinates in radians, not in metres, (n,)."""
 
     def mark(self, q: Array, rates: Array) -> Markers:
-        """Its markers at coordinates and rates (T, n)."""
+        """Return its markers at coordinates and rates (T, n)."""
 
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
-        """Its mass matrix (T, n, n); and, on the right side, its weight, what of inertia goes with
-        the squares of rates, and what it does if it is elastic, (T, n)."""
+        """Return its mass matrix (T, n, n), and the right side (T, n): weight, inertia with the
+        squares of rates, and elastic forces."""
 
     def height_energy(self, q: Array) -> Array:
-        """The potential energy of its weight [J], (T,), and of its elasticity."""
+        """Return the potential energy of its weight and its elasticity [J], (T,)."""
 
     def lost(self, rates: Array) -> Array:
-        """The power that damping of its own takes [W], (T,)."""
+        """Return the power that damping of its own takes [W], (T,)."""
 
 
 class FlexibleBody(BodySet, Protocol):
-    """A link that bends or stretches between two pins. Its first three coordinates are those of a
-    frame, the others, its k coefficients, say how it is deformed."""
+    """Link that bends or stretches between two pins. Its first three coordinates are those of a
+    frame, the others, its k coefficients, deform it."""
 
     @property
     def length_m(self) -> float:
-        """Between its pins at rest."""
+        """Distance of its pins at rest."""
 
     @property
     def stiffness(self) -> Array:
-        """(k, k): strain has the energy c K c / 2."""
+        """Stiffness matrix K, (k, k): strain has the energy c K c / 2."""
 
     @property
     def damping(self) -> Array:
-        """(k, k), for the rates of the coefficients."""
+        """Damping matrix (k, k), for the rates of the coefficients."""
 
     def deflections(self, q: Array, x: Array) -> Array:
-        """How far it is from the line between its pins [m] at coordinates (T, n) and places x (X,)
+        """Return deflections from the line of its pins [m] at coordinates (T, n) and places x (X,)
         from the first pin [m], (T, X); positive to the left of the way to the second."""
 
     def extension(self, q: Array) -> Array:
-        """By how much its pins are further apart than at rest [m], (T,)."""
+        """Return the change of its pins' distance from that at rest [m], (T,)."""
 
 
 Marker = tuple[Point | None, float]
-"""A place in the frame of a body [m], or None for its frame, and an angle against it [rad]."""
+"""Place in the frame of a body [m], or None for its frame, and an angle against it [rad]."""
 
 
 class Flexible(Protocol):
-    """What makes the body of a link that is not rigid, of the markers that are asked of it."""
+    """Maker of the body of an elastic link, with the requested markers."""
 
     def body(self, markers: Sequence[Marker], gravity: Point) -> FlexibleBody: ...
 
@@ -99,7 +99,7 @@ class Inertia:
 
 
 def inertias(scene: Scene) -> dict[str, Inertia]:
-    """Those of all links, then of all slider blocks, which have 0 where they need no body."""
+    """Return the inertias of all links, then of all slider blocks, 0 where they need no body."""
     own = {
         name: Inertia(link.mass_kg, link.centre_m, link.inertia_kg_m2)
         for name, link in scene.links.items()
@@ -132,7 +132,7 @@ class RigidBodies:
         centre = np.array([one.centre for one in each]).reshape(-1, 2)
         self._centre_x, self._centre_y = centre.T
         self._gravity = gravity
-        # What does not depend on the coordinates, and the places of what does in flat arrays.
+        # Parts independent of the coordinates, and the places of the others in flat arrays.
         row, at = np.arange(len(markers)), 3 * self._owner
         self._ahead = np.zeros((len(markers), 3))
         self._ahead[:, 2] = [angle for _, _, angle in markers]
@@ -180,7 +180,7 @@ class RigidBodies:
         return matrix, right
 
     def _arms(self, q: Array) -> tuple[Array, Array]:
-        """From the origin of each frame to the centre of mass, x and y, (T, B)."""
+        """Return x and y from the origin of each frame to the centre of mass, (T, B)."""
         theta = q[:, 2::3]
         c, s = np.cos(theta), np.sin(theta)
         x, y = self._centre_x, self._centre_y
@@ -197,9 +197,9 @@ class RigidBodies:
 
 @dataclass(frozen=True)
 class Configuration:
-    """Coordinates with their rates at T samples, (T, n), and what they make of K markers: places
-    and velocities (T, K, 3), derivatives of places by coordinates (T, K, 3, n), and accelerations
-    where the q'' are 0 (T, K, 3)."""
+    """Coordinates with their rates at T samples, (T, n), and the resulting K markers: places and
+    velocities (T, K, 3), derivatives of places by coordinates (T, K, 3, n), and accelerations where
+    the q'' are 0 (T, K, 3)."""
 
     q: Array
     rates: Array
@@ -209,14 +209,14 @@ class Configuration:
     drift: Array
 
     def some(self, samples: Mask) -> Configuration:
-        """Those of some of the samples."""
+        """Return the configuration at some of the samples."""
         return Configuration(*(own[samples] for own in vars(self).values()))
 
 
 @dataclass(frozen=True)
 class EnergyBalance:
     """Energies [J], (T,): of motion; of weights, over the ground's origin, and springs; and the
-    ``work`` since time 0 of all that does not keep it: loads, dampers, friction."""
+    ``work`` since time 0 of the forces that do not conserve it: loads, dampers, friction."""
 
     kinetic: Array
     potential: Array
@@ -224,11 +224,11 @@ class EnergyBalance:
 
     @property
     def balance(self) -> Array:
-        """What stays as it is but for errors: energy less the work that was put in [J], (T,)."""
+        """Constant but for errors: energy less the work that was put in [J], (T,)."""
         return np.asarray(self.kinetic + self.potential - self.work)
 
     @staticmethod
     def joined(parts: Sequence[EnergyBalance]) -> EnergyBalance:
-        """Those of some instants after the other."""
+        """Join the energies of successive instants."""
         each = zip(*(vars(part).values() for part in parts), strict=True)
         return EnergyBalance(*(np.concatenate(own) for own in each))

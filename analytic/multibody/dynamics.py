@@ -2,7 +2,7 @@
 
     M q'' + Phi_q^T lambda = Q(q, q', t)        Phi_q q'' = gamma - 2 alpha Phi_q q' - beta^2 Phi
 
-with Baumgarte's terms, which let what a constraint is open decay, as the right side of those of
+with Baumgarte's terms, by which violations of constraints decay, on the right side of the
 accelerations; without them alpha and beta are 0. Source: J. Baumgarte, Stabilization of constraints
 and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1, 1972.
 """
@@ -26,16 +26,16 @@ from models.motion import Forces, SliderForces
 from models.scene import Scene
 
 WEAK = 1e-2
-"""A singular value over the largest below which, in a change point, it counts as 0."""
+"""Singular value over the largest below which, in a change point, it counts as 0."""
 MOST_PROJECTIONS = 20
 NEAR = 1e-9
-"""A step of a projection, over the longest link or in radians, whose square is below rounding."""
+"""Step of a projection, over the longest link or in radians, whose square is below rounding."""
 
 
 @dataclass(frozen=True)
 class Dynamics:
-    """An assembly that nothing drives, with what acts on it; ``rank`` is how many of its
-    constraints do not follow from others; ``alpha``, ``beta`` [1/s] of Baumgarte."""
+    """Undriven assembly with its forces; ``rank`` is the number of independent constraints;
+    ``alpha``, ``beta`` [1/s] of Baumgarte."""
 
     assembly: Assembly
     forces: GeneralisedForces
@@ -45,12 +45,12 @@ class Dynamics:
 
     @property
     def redundant(self) -> bool:
-        """Whether some of the constraints follow from others."""
+        """True if some of the constraints follow from others."""
         return self.rank < self.assembly.joints.count
 
     def solve(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
-        """q'' (T, n) and the multipliers (T, m) at times [s]. Raises CrankcheckError where they
-        are not determined, and as `GeneralisedForces.on`."""
+        """Return q'' (T, n) and the multipliers (T, m) at times [s]. Raises CrankcheckError where
+        they are not determined, and as `GeneralisedForces.on`."""
         return self._solved(time_s, now, self.forces.on(time_s, now))
 
     def _solved(self, time_s: Array, now: Configuration, pushed: Array) -> tuple[Array, Array]:
@@ -71,7 +71,7 @@ class Dynamics:
         return seconds, multipliers
 
     def multipliers(self, time_s: Array, now: Configuration, seconds: Array) -> Array:
-        """The multipliers (T, m) that go with accelerations q'' (T, n), the smallest ones."""
+        """Return the smallest multipliers (T, m) that belong to accelerations q'' (T, n)."""
         mass, right = self.assembly.weigh(now.q, now.rates)
         right += self.forces.on(time_s, now) - (mass @ seconds[:, :, None])[:, :, 0]
         rows = np.swapaxes(self.assembly.joints.jacobian(now), 1, 2)
@@ -85,8 +85,8 @@ class Dynamics:
             raise CrankcheckError(f"{self.assembly.scene.name}: at {time_s:g} s {error}") from None
 
     def rates(self, time_s: float, state: Array, strokes: Strokes) -> Array:
-        """The derivative of a state by time: of q, q' and the work of loads and dampers; the loads
-        of ``strokes`` act or not, whichever way their sliders move."""
+        """Return the derivative of a state by time: of q, q' and the work of loads and dampers;
+        ``strokes`` decides which loads act, whichever way their sliders move."""
         n, at = self.assembly.size, np.array([time_s])
         now = self.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
         pushed = self.forces.on(at, now, strokes)
@@ -94,7 +94,7 @@ class Dynamics:
         return np.concatenate([now.rates[0], seconds[0], self.power(now, pushed)])
 
     def power(self, now: Configuration, pushed: Array) -> Array:
-        """That of generalised forces (T, n) that does not keep the energy [W], (T,)."""
+        """Return the non-conservative power of generalised forces (T, n) [W], (T,)."""
         power = (pushed * now.rates).sum(axis=1)
         for deflection in self.forces.deflections(now):  # what springs take up they keep
             power += (
@@ -103,7 +103,7 @@ class Dynamics:
         return np.asarray(power - self.assembly.lost(now.rates))
 
     def energies(self, now: Configuration, work: Array) -> EnergyBalance:
-        """The energies at a configuration, beside the work until then [J]."""
+        """Return the energies at a configuration, with the work until then [J]."""
         assembly = self.assembly
         pushed = (assembly.mass(now.q) @ now.rates[:, :, None])[:, :, 0]
         potential = assembly.height_energy(now.q)
@@ -113,8 +113,8 @@ class Dynamics:
         return EnergyBalance(0.5 * (now.rates * pushed).sum(axis=1), potential, work)
 
     def closed(self, q: Array, rates: Array) -> tuple[Array, Array]:
-        """The coordinates (n,) on the constraints that are next to some, in the norm of the mass
-        matrix, and the rates that the constraints allow."""
+        """Return the coordinates (n,) on the constraints next to the given ones, in the norm of the
+        mass matrix, and the rates that the constraints allow."""
         assembly = self.assembly
         unit = max(1.0, assembly.scene.longest_m)
         now = assembly.at_rest(q[None])
@@ -130,23 +130,23 @@ class Dynamics:
         return now.q[0], rates + step
 
     def closed_state(self, state: Array) -> Array:
-        """A state of q, q' and what else, (2 n + 1,), on the constraints."""
+        """Project a state of q, q' and the work, (2 n + 1,), onto the constraints."""
         n = self.assembly.size
         q, rates = self.closed(state[:n], state[n : 2 * n])
         return np.concatenate([q, rates, state[2 * n :]])
 
 
 SOFT = 1e-7
-"""s of a redundant system, over the largest entry of its inverse mass."""
+"""Regularisation s of a redundant system, over the largest entry of its inverse mass."""
 ROUNDS = 3
-"""How often what a redundant system leaves open is put in again."""
+"""Number of corrections of a redundant system by its residual."""
 SPARSE = 150
-"""Unknowns from which on a factorisation that leaves out zeros is quicker."""
+"""Number of unknowns from which on a sparse factorisation is quicker."""
 
 
 class Saddle:
-    """One system, for a mass matrix (n, n) and a Jacobian (m, n); ``redundant`` if the rows of the
-    Jacobian depend on each other. Raises CrankcheckError for one that is singular.
+    """Linear system of a mass matrix (n, n) and a Jacobian (m, n); ``redundant`` if the rows of the
+    Jacobian depend on each other. Raises CrankcheckError for a singular one.
 
     ::
 
@@ -154,9 +154,9 @@ class Saddle:
         | Phi_q  -s      |  | lambda |  =  | bottom |
 
     Where constraints are redundant the system with s = 0 is singular, though x is determined. A
-    small s makes it regular; a solution with s, put in again for what it leaves open, comes to that
-    with s = 0 whose multipliers are the smallest (the proximal point method: each time what is open
-    shrinks by s over the least singular value of Phi_q M^-1 Phi_q^T that is not 0).
+    small s makes it regular; corrected by its residual, the solution with s converges to that with
+    s = 0 and the smallest multipliers (the proximal point method: each time the residual shrinks by
+    s over the least non-zero singular value of Phi_q M^-1 Phi_q^T).
     """
 
     def __init__(self, mass: Array, jacobian: Array, *, redundant: bool) -> None:
@@ -181,7 +181,7 @@ class Saddle:
                 raise singular_error() from None
 
     def solve(self, top: Array | float, bottom: Array | float) -> tuple[Array, Array]:
-        """x (n,) and lambda (m,)."""
+        """Return x (n,) and lambda (m,)."""
         right = np.empty(len(self._whole))
         right[: self._count], right[self._count :] = top, bottom
         found = self._once(right)
@@ -198,7 +198,7 @@ class Saddle:
 
 
 def singular_error() -> CrankcheckError:
-    """What is said where the system has no one solution."""
+    """Return the error of a system without a unique solution."""
     return CrankcheckError(
         "the equations of motion are singular: a freedom has no mass, or the mechanism is at a "
         "change point, where accelerations are not determined"
@@ -212,8 +212,8 @@ def joint_forces(
     multipliers: Array,
     torque: Array,
 ) -> Forces:
-    """The multipliers of the equations of joints, in their order (T, m), as forces;
-    beside the driving torque (T,)."""
+    """Return the multipliers of the equations of joints, in their order (T, m), as forces, with the
+    driving torque (T,)."""
     pins: dict[str, dict[str, Array]] = {}
     row = 0
     for point, first, other in pin_pairs:

@@ -14,13 +14,13 @@ from models.scene import Scene
 from models.scene.loads import LineSpring, Load, PinSpring, Spring
 
 Strokes = Mapping[str, bool]
-"""Whether each load that acts on one stroke of a slider does so."""
+"""Activity of each load that acts on one stroke of a slider."""
 
 
 @dataclass(frozen=True)
 class SpringDeflection:
-    """The q of a spring [m or rad], its rate, and its derivatives by the coordinates, (T,), (T,)
-    and (T, n)."""
+    """Deflection q of a spring [m or rad], its rate, and its derivatives by the coordinates, (T,),
+    (T,) and (T, n)."""
 
     spring: Spring
     q: Array
@@ -39,7 +39,7 @@ class Slide:
 
 
 class GeneralisedForces:
-    """What acts on an assembly from outside or between its bodies, but for weights.
+    """Forces on an assembly from outside or between its bodies, except weights.
 
     ``turns`` are the whole turns by which the angle of each spring in a pin is ahead of that
     within half a turn of its free angle, as the motion starts.
@@ -55,10 +55,10 @@ class GeneralisedForces:
         }
 
     def on(self, time_s: Array, now: Configuration, strokes: Strokes | None = None) -> Array:
-        """The generalised forces at times [s] and a configuration (T, n).
+        """Return the generalised forces at times [s] and a configuration (T, n).
 
-        ``strokes`` says for loads on one stroke whether they act, which otherwise the speed of the
-        slider does. Raises CrankcheckError as `Load.magnitude`.
+        ``strokes`` decides which loads on one stroke act; by default the speed of the slider does.
+        Raises CrankcheckError as `Load.magnitude`.
         """
         right = np.zeros_like(now.q)
         for load in self.scene.loads.values():
@@ -79,7 +79,7 @@ class GeneralisedForces:
         return right
 
     def driving(self, time_s: Array, now: Configuration) -> Array:
-        """The torque on the driver that is no load [N m], (T,): none, as it is let go."""
+        """Return the torque on the driver that is no load [N m], (T,): none in free motion."""
         return np.zeros(len(time_s))
 
     def _marker(self, load: Load) -> int:
@@ -90,7 +90,7 @@ class GeneralisedForces:
     def magnitude(
         self, load: Load, time_s: Array, now: Configuration, strokes: Strokes | None
     ) -> Array:
-        """The force or torque of a load, (T,)."""
+        """Return the force or torque of a load, (T,)."""
         speed = None
         if load.slider is not None and load.stroke != "both" and strokes is None:
             speed = self.slide(load.slider, now).speed
@@ -100,7 +100,7 @@ class GeneralisedForces:
         return size
 
     def over(self, load: Load, time_s: Array, now: Configuration) -> Array:
-        """What the magnitude of a load goes by, in the unit of `Load.over`, (T,)."""
+        """Return the argument of a load's magnitude, in the unit of `Load.over`, (T,)."""
         if load.over == "time":
             return time_s
         if load.over == "angle":
@@ -112,7 +112,7 @@ class GeneralisedForces:
         return slide.displacement if load.over == "displacement" else slide.speed
 
     def slide(self, name: str, now: Configuration) -> Slide:
-        """How far a slider is along its line."""
+        """Return the place of a slider along its line."""
         tip, guide = self.assembly.tips[name], self.assembly.guides[name]
         angle = now.place[:, guide, 2]
         along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -125,7 +125,7 @@ class GeneralisedForces:
         return Slide((along * away).sum(axis=1), speed, gradient)
 
     def deflections(self, now: Configuration) -> Iterator[SpringDeflection]:
-        """How far every spring is stretched."""
+        """Yield the deflection of every spring."""
         for spring in self.scene.springs.values():
             if isinstance(spring, LineSpring):
                 yield self._line(spring, now)
@@ -143,7 +143,7 @@ class GeneralisedForces:
         return np.asarray(now.place[:, second, 2] - now.place[:, first, 2])
 
     def _sides(self, spring: PinSpring) -> tuple[int, int]:
-        """The markers that it turns against each other: at the pin, where a link may be bent."""
+        """Return the two markers of its ends: at the pin, where a link may be bent."""
         held = self.assembly.held[spring.point]
         first, second = (held[body] for body in spring.bodies)
         return first, second
@@ -152,7 +152,7 @@ class GeneralisedForces:
         a, b = (self.assembly.carriers[point][1] for point in spring.points)
         way = now.place[:, b, :2] - now.place[:, a, :2]
         length = np.hypot(way[:, 0], way[:, 1])
-        # Of no length it has no direction, and whatever it pulls with pulls nowhere.
+        # At zero length it has no direction, and its pull has no effect.
         along = way / np.where(length > 0.0, length, 1.0)[:, None]
         drawn = now.gradient[:, b, :2] - now.gradient[:, a, :2]
         gradient = (along[:, None] @ drawn)[:, 0]
@@ -160,12 +160,12 @@ class GeneralisedForces:
 
 
 MOST_EDGES = 100_000
-"""Of a load over time that are integrated from one to the next."""
+"""Most edges of a load over time that are integrated from one to the next."""
 
 
 @dataclass(frozen=True)
 class Switch:
-    """A load with kinks over a coordinate of the state, or, ``turning``, with a stroke.
+    """Load with kinks over a coordinate of the state, or, ``turning``, with a stroke.
 
     Between two kinks the coordinate is in one ``cell``: cell k begins with kink k - 1; with a
     ``period`` they go on for ever, to both sides.
@@ -177,20 +177,20 @@ class Switch:
     turning: bool
 
     def coordinate(self, forces: GeneralisedForces, now: Configuration) -> float:
-        """Where the state is, in the unit of the kinks."""
+        """Return the coordinate of the state, in the unit of the kinks."""
         if self.turning:
             assert self.load.slider is not None
             return float(forces.slide(self.load.slider, now).speed[0])
         return float(forces.over(self.load, np.zeros(1), now)[0])
 
     def of_state(self, forces: GeneralisedForces, state: Array) -> float:
-        """That of a state, of q, q' and what else, (2 n + 1,)."""
+        """Return the coordinate of a state of q, q' and the work, (2 n + 1,)."""
         n = forces.assembly.size
         now = forces.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
         return self.coordinate(forces, now)
 
     def cell(self, x: float) -> int:
-        """The number of the cell that a coordinate is in."""
+        """Return the number of the cell of a coordinate."""
         if self.period is None:
             return int(np.searchsorted(self.kinks, x, side="right"))
         turns = int((x - self.kinks[0]) // self.period)
@@ -198,13 +198,13 @@ class Switch:
         return turns * len(self.kinks) + int(np.searchsorted(self.kinks, within, side="right"))
 
     def begin(self, cell: int) -> float:
-        """The kink with which a cell begins."""
+        """Return the kink with which a cell begins."""
         turns, k = divmod(cell - 1, len(self.kinks))
         return self.kinks[k] + (turns * self.period if self.period is not None else 0.0)
 
 
 def switches(forces: GeneralisedForces) -> tuple[Switch, ...]:
-    """Those of all loads of a scene that go by the state."""
+    """Return the switches of all loads of a scene that depend on the state."""
     return tuple(_switches(forces))
 
 
@@ -221,12 +221,12 @@ def _switches(forces: GeneralisedForces) -> Iterator[Switch]:
 
 
 def state_cells(own: tuple[Switch, ...], forces: GeneralisedForces, state: Array) -> Array:
-    """The cells that the switches are in at a state (2 n + 1,)."""
+    """Return the cells of the switches at a state (2 n + 1,)."""
     return np.array([switch.cell(switch.of_state(forces, state)) for switch in own], dtype=int)
 
 
 def strokes(own: tuple[Switch, ...], cells: Array) -> Strokes:
-    """Whether the loads on one stroke act, with the switches in their cells."""
+    """Return the activity of the loads on one stroke, with the switches in their cells."""
     return {
         switch.load.name: bool((cell > 0) == (switch.load.stroke == "forward"))
         for switch, cell in zip(own, cells, strict=True)
@@ -235,7 +235,7 @@ def strokes(own: tuple[Switch, ...], cells: Array) -> Strokes:
 
 
 def edges(scene: Scene, until_s: float) -> list[float]:
-    """The times at which loads over time are not smooth, from 0 to the end with both."""
+    """Return the times at which loads over time are not smooth, with 0 and the end."""
     inside: set[float] = set()
     for load in scene.loads.values():
         if load.over == "time":

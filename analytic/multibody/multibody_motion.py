@@ -1,4 +1,4 @@
-"""The motion of a mechanism of any mobility that was let go, by the method that integrates it."""
+"""Free motion of a mechanism of any mobility, by its method of integration."""
 
 import math
 from collections.abc import Iterator
@@ -23,17 +23,17 @@ from models.scene.driver import check_within
 
 TOLERANCE = 1e-13
 NUDGE = 1e-6
-"""What the start is changed by to see it grow [rad, or of the longest link]."""
+"""Change of the start for the growth of a change [rad, or of the longest link]."""
 LOOKS = 2001
-"""Times at which the growth of a change is looked at."""
+"""Number of times at which the growth of a change is computed."""
 MOST_NUMBERS = 4_000_000
-"""Of derivatives of markers that are worked out at a time."""
+"""Number of derivatives of markers that are computed at a time."""
 
 
 @dataclass(frozen=True)
 class Projection:
-    """The method of order 8 with steps of a size that keeps to ``tolerance``; after each step the
-    state is put back onto the constraints."""
+    """Method of order 8 with adaptive steps to ``tolerance``; after each step the state is
+    projected onto the constraints."""
 
     tolerance: float = TOLERANCE
 
@@ -41,7 +41,7 @@ class Projection:
 @dataclass(frozen=True)
 class Baumgarte:
     """Constraints whose violation decays by ``alpha`` and ``beta`` [1/s]; alpha = beta is critical
-    damping. With ``step_s`` [s] by steps of one size, of order 4; without, as `Projection`."""
+    damping. With ``step_s`` [s] in equal steps, of order 4; without, as `Projection`."""
 
     alpha: float
     beta: float
@@ -62,7 +62,7 @@ Method = Projection | Baumgarte
 
 @dataclass(frozen=True)
 class MultibodyMotion:
-    """What a scene does from time 0, when it is let go, to ``until_s``, as one method has it."""
+    """Free motion of a scene from its release at time 0 to ``until_s``, by one method."""
 
     dynamics: Dynamics
     method: Method
@@ -78,7 +78,7 @@ class MultibodyMotion:
         return self._integrated(*self.start, self.method)
 
     def _integrated(self, q: Array, rates: Array, method: Method) -> StateHistory:
-        """The state over time."""
+        """Return the state over time."""
         if isinstance(method, Baumgarte):
             dynamics = replace(self.dynamics, alpha=method.alpha, beta=method.beta)
             if method.step_s is not None:
@@ -91,8 +91,8 @@ class MultibodyMotion:
         )
 
     def at(self, time_s: Array) -> Motion:
-        """The motion at times [s], (T,), with its reactions. Raises CrankcheckError for times
-        beyond it."""
+        """Return the motion at times [s], (T,), with its reactions. Raises CrankcheckError for
+        times beyond it."""
         instants = samples(time_s, "time_s")
         parts = []
         for some, now, _ in self._configurations(instants):
@@ -106,8 +106,8 @@ class MultibodyMotion:
         return Motion.joined(parts)
 
     def outside(self, time_s: Array) -> Motion:
-        """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
-        end, at times above ``until_s``: within a step of it. The third derivatives of the
+        """Return the motion that leads to the start, at times below 0 [s], (T,), or that goes on
+        from the end, at times above ``until_s``: within a step of it. The third derivatives of the
         coordinates are taken as constant."""
         end_s, later, h = from_end(time_s, self.until_s)
         within, t = end_s + np.array([0.0, h, 2.0 * h]), later[:, None]
@@ -123,22 +123,22 @@ class MultibodyMotion:
 
     @property
     def edges_s(self) -> tuple[float, ...]:
-        """The instants at which loads over time are not smooth [s]."""
+        """Instants at which loads over time are not smooth [s]."""
         return tuple(edges(self.scene, self.until_s)[1:-1])
 
     @property
     def change_points_s(self) -> tuple[float, ...]:
-        """When it has gone through a change point [s]."""
+        """Instants of its change points [s]."""
         return tuple(passage.at_s for passage in self._history.passages)
 
     def _passing(self, time_s: Array) -> Iterator[tuple[SingularPassage, Mask]]:
-        """The passages through change points, and which of the times [s] are in each."""
+        """Yield the passages through change points, and the mask of the times [s] in each."""
         for passage in self._history.passages:
             yield passage, (passage.begin_s < time_s) & (time_s < passage.end_s)
 
     def _solved(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
-        """q'' (T, n) and the multipliers (T, m); in a change point, where the equations do not say
-        them, those of the motion before and after it, and the smallest multipliers."""
+        """Return q'' (T, n) and the multipliers (T, m); in a change point, which leaves them open,
+        those of the motion before and after it, and the smallest multipliers."""
         n, passed = now.q.shape[1], np.zeros(len(time_s), dtype=bool)
         for _, within in self._passing(time_s):
             passed |= within
@@ -158,14 +158,14 @@ class MultibodyMotion:
 
     @property
     def _dynamics(self) -> Dynamics:
-        """The equations that the method integrates."""
+        """Equations that the method integrates."""
         method = self.method
         if isinstance(method, Baumgarte):
             return replace(self.dynamics, alpha=method.alpha, beta=method.beta)
         return self.dynamics
 
     def energy(self, time_s: Array) -> EnergyBalance:
-        """The energies at times [s], (T,)."""
+        """Return the energies at times [s], (T,)."""
         instants = samples(time_s, "time_s")
         parts = [
             self.dynamics.energies(now, work) for _, now, work in self._configurations(instants)
@@ -173,7 +173,7 @@ class MultibodyMotion:
         return EnergyBalance.joined(parts)
 
     def gap(self, time_s: Array) -> Array:
-        """The largest violation of a constraint at times [s], [m or rad], (T,)."""
+        """Return the largest violation of a constraint at times [s], [m or rad], (T,)."""
         instants = samples(time_s, "time_s")
         gaps = [
             np.abs(self.dynamics.assembly.joints.gaps(now)).max(axis=1, initial=0.0)
@@ -182,7 +182,7 @@ class MultibodyMotion:
         return np.concatenate(gaps)
 
     def _configurations(self, time_s: Array) -> Iterator[tuple[Array, Configuration, Array]]:
-        """Times, all markers then, and the work until then, some times after the other."""
+        """Yield times, all markers then, and the work until then, in blocks."""
         check_within(self.scene, time_s, self.until_s)
         assembly = self.dynamics.assembly
         n = assembly.size
@@ -200,12 +200,12 @@ class MultibodyMotion:
             yield some, assembly.at_rates(q, rates), state[:, -1]
 
     def sensitivity(self, time_s: Array) -> Array:
-        """G (T,): by how much a small change of the start has grown by then at most, in any
+        """Return G (T,): the largest growth of a small change of the start by then, in any
         coordinate, at least 1.
 
-        For a start whose place is off, along any of the freedoms; or whose speed is, per peak speed
-        over the range that coordinates go through (a turn, or as many longest links, at most):
-        changes that are the same part of the motion.
+        The change is one of place, along any of the freedoms; or of speed, per peak speed over the
+        range of the coordinates (a turn, or as many longest links, at most): changes that are the
+        same part of the motion.
         """
         return np.interp(time_s, *self._growth)
 
@@ -223,7 +223,7 @@ class MultibodyMotion:
         per_s = peak / reach if reach > 0.0 else 0.0
         growth = np.ones(LOOKS)
         free = outset.freedoms(q)
-        # As many coordinates as there are freedoms, which move most: they keep their speeds.
+        # As many coordinates as freedoms, those that move most, keep their speeds.
         leads = qr(free / unit[:, 0], mode="r", pivoting=True)[1][: len(free)]
         for direction in free:
             moved = self.dynamics.closed(q + NUDGE * direction, rates)[0]

@@ -1,9 +1,9 @@
-"""The coordinates and rates with which a motion starts, from what a scene says of its start.
+"""Coordinates and rates of the start of a motion, from the start in a scene.
 
 The positions are found by Newton's method on all constraints. As many of the named angles and
-displacements as the mechanism has freedoms count as they are, the driver's first; further ones are
-where Newton's method starts, and have to be as near as somebody writes them down who read them off
-a drawing. The rates are those that the constraints allow, and have the named values.
+displacements as the mechanism has freedoms count exactly, the driver's first; further ones are the
+first guess of Newton's method, and have to be as near as values read off a drawing. The rates are
+those that the constraints allow, and have the named values.
 """
 
 import math
@@ -22,19 +22,19 @@ from models.scene import GROUND, Point
 from models.scene.joints import frames, local_point, sliding_angle, sliding_body, turned
 
 ROUGH_RAD, ROUGH = math.radians(1.0), 0.01
-"""What a named angle, and a named displacement over the longest link, may be off by where others
-say already where the mechanism is."""
+"""Allowed error of a named angle, and of a named displacement over the longest link, where others
+determine the position already."""
 SAME = 1e-9
-"""What a named speed may be off by where others say it already, over the largest."""
+"""Allowed error of a named speed where others determine it already, over the largest."""
 INDEPENDENT = 1e-7
-"""A singular value over the largest, from which on rows count as independent of each other."""
+"""Singular value over the largest, from which on rows count as independent of each other."""
 MOST_STEPS = 60
 EPS = float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
 class _Named:
-    """A value that the start names: of a coordinate, with the derivatives of that (n,)."""
+    """Value that the start names: of a coordinate, with its derivatives (n,)."""
 
     words: str
     value: float
@@ -45,27 +45,26 @@ class _Named:
 
 @dataclass(frozen=True)
 class Outset:
-    """Finds the start of the scene of an assembly."""
+    """Finder of the start of the scene of an assembly."""
 
     assembly: Assembly
 
     def find(self, near: State | None, bent: Array | None = None) -> tuple[Array, Array]:
-        """The coordinates and rates (n,) of the start.
+        """Return the coordinates and rates (n,) of the start.
 
         Parameters
         ----------
         near : State or None
-            A state to look for the position from; None for what the scene names. Of a scene that
-            is driven and rigid the rates are those of the state.
+            First guess of the position; None for the scene's named values. A driven rigid scene
+            takes the rates of the state.
         bent : Array or None
-            Coordinates of which those that say how elastic links are deformed count (n,); None for
-            straight ones. Their rates are 0.
+            Coordinates whose coefficients of elastic links count (n,); None for straight links.
+            Their rates are 0.
 
         Raises
         ------
         CrankcheckError
-            A start in which the joints are open, or which is not named whole; speeds that
-            contradict each other.
+            A start with open joints, or with missing values; speeds that contradict each other.
         """
         scene = self.assembly.scene
         rough = self._guess() if near is None else self._from_state(near)[0]
@@ -78,7 +77,7 @@ class Outset:
         return q, self._moving(q)
 
     def _from_state(self, near: State) -> tuple[Array, Array]:
-        """Coordinates and rates at a state; a block without mass has a frame too."""
+        """Return coordinates and rates at a state; a block without mass has a frame too."""
         assembly = self.assembly
         scene, placed = assembly.scene, frames(assembly.scene, near)
         q, rates = np.zeros(assembly.size), np.zeros(assembly.size)
@@ -96,7 +95,7 @@ class Outset:
         return q, rates
 
     def _guess(self) -> Array:
-        """Every body where the angles and displacements that the scene names have it.
+        """Place every body by the named angles and displacements of the scene.
 
         Raises CrankcheckError, with the links that have to be named.
         """
@@ -115,13 +114,13 @@ class Outset:
         return q
 
     def _of_frames(self, rows: Array) -> Array:
-        """Rows of derivatives (m, n) by the coordinates of frames alone."""
+        """Return rows of derivatives (m, n) by the coordinates of frames alone."""
         rows = rows.copy()
         rows[:, self.assembly.coefficients] = 0.0
         return rows
 
     def _named(self, now: Configuration, *, rates: bool) -> Iterator[_Named]:
-        """The values that the start names, the driver's first, at coordinates."""
+        """Yield the values that the start names, the driver's first, at coordinates."""
         scene, start = self.assembly.scene, self.assembly.scene.start
         theta, omega, _ = (float(each[0]) for each in scene.driver.law.at(np.zeros(1)))
         own = {scene.driver.link: omega if rates else theta}
@@ -143,7 +142,7 @@ class Outset:
             yield _Named(words, value, found, slide.gradient[0], ROUGH * scene.longest_m)
 
     def _positioned(self, rough: Array, *, whole: bool) -> Array:
-        """The closed position next to a rough one, with the named values that count."""
+        """Return the closed position next to a rough one, with the named values that count."""
         now = self.assembly.at_rest(rough[None])
         rows, counting = self._of_frames(self.assembly.joints.jacobian(now)[0]), []
         frames = 3 * len(self.assembly.bodies)
@@ -166,7 +165,7 @@ class Outset:
         return q
 
     def _apart(self, named: _Named, counting: list[str]) -> str:
-        """That a named value is none that the joints allow."""
+        """Return the text of a named value that the joints do not allow."""
         unit, by = ("m", 1.0) if named.words.startswith("start.displ") else ("deg", 180.0 / math.pi)
         return (
             f"{self.assembly.scene.name}: {named.words} is {by * named.value:.6g} {unit}, and the "
@@ -175,7 +174,7 @@ class Outset:
         )
 
     def _closed(self, rough: Array, counting: list[str]) -> Array:
-        """Newton's method from a rough position, by least squares. Raises CrankcheckError."""
+        """Close a rough position by Newton's method, by least squares. Raises CrankcheckError."""
         assembly, q = self.assembly, rough
         unit, last = self.assembly.units, math.inf
         for _ in range(MOST_STEPS):
@@ -207,7 +206,7 @@ class Outset:
         return few([f"{math.degrees(theta):.6g} deg of the driver", *others], 8)
 
     def _moving(self, q: Array) -> Array:
-        """The rates that the joints allow and that have the named values."""
+        """Return the rates that the joints allow and that have the named values."""
         assembly, scene = self.assembly, self.assembly.scene
         now = assembly.at_rest(q[None])
         named = list(self._named(now, rates=True))
@@ -227,7 +226,7 @@ class Outset:
         off = [abs(float(one.row @ rates) - one.value) for one in named]
         stuck = float(np.abs(assembly.joints.jacobian(now)[0] @ rates).max(initial=0.0))
         worst = int(np.argmax(off))
-        # Beside a limit what is named may be slow, and what follows from it fast.
+        # Beside a limit named rates may be slow, and those that follow fast.
         fastest = float(max(np.abs(values).max(), np.abs(rates / assembly.units).max()))
         if max(off[worst], stuck) > SAME * max(1.0, scene.longest_m) * fastest:
             raise CrankcheckError(
@@ -242,7 +241,7 @@ class Outset:
         return int(np.linalg.matrix_rank(self.assembly.scaled(rows), tol=INDEPENDENT))
 
     def _least(self, rows: Array, right: Array) -> Array:
-        """The smallest of the solutions, or of the nearest to one."""
+        """Return the smallest of the solutions, or of the nearest to one."""
         scaled = rows * self.assembly.units
         size = np.abs(scaled).max(axis=1, initial=0.0)
         size[size == 0.0] = 1.0
@@ -250,8 +249,8 @@ class Outset:
         return np.asarray(found * self.assembly.units)
 
     def freedoms(self, q: Array) -> Array:
-        """Directions of q that all joints allow, one a row, each of the largest entry 1 in the
-        units of coordinates, (f, n)."""
+        """Return directions of q that all joints allow, one a row, each of the largest entry 1 in
+        the units of coordinates, (f, n)."""
         _, sizes, directions = np.linalg.svd(
             self.assembly.scaled(self.assembly.joints.jacobian(self.assembly.at_rest(q[None]))[0])
         )
@@ -261,7 +260,7 @@ class Outset:
 
 
 class StartPoses:
-    """Bodies placed one beside the other by the angles that are known."""
+    """Bodies placed one beside the other by the known angles."""
 
     def __init__(self, assembly: Assembly) -> None:
         scene = assembly.scene
@@ -273,7 +272,7 @@ class StartPoses:
         self._known: dict[str, Point] = dict(scene.ground)
 
     def spread(self) -> None:
-        """Place what can be placed, until nothing more can."""
+        """Place all bodies that follow from the known values."""
         before = -1
         while before < (before := len(self.origins) + len(self.angles)):
             self._slide()
@@ -282,7 +281,7 @@ class StartPoses:
                     self._place(name, {p: at for p, at in link.points.items() if p in self._known})
 
     def _place(self, name: str, known: dict[str, Point]) -> None:
-        """A link with points in known places."""
+        """Place a link with points in known places."""
         if name not in self.angles and len(known) >= 2:
             (p, a), (q, b) = list(known.items())[:2]
             (px, py), (qx, qy) = self._known[p], self._known[q]
@@ -300,7 +299,7 @@ class StartPoses:
             self._known.setdefault(point, (origin[0] + arm[0], origin[1] + arm[1]))
 
     def _slide(self) -> None:
-        """What slides on a body whose angle is known has one; a named displacement is a place."""
+        """Give angles to bodies on known lines, and places to points of named displacements."""
         scene = self._scene
         for name, slider in scene.sliders.items():
             body = sliding_body(slider)
@@ -320,7 +319,7 @@ class StartPoses:
                 self._settle_at(body, slider.point, name)
 
     def _settle_at(self, body: str, point: str, name: str) -> None:
-        """What slides, with the place of its point known."""
+        """Place a sliding body whose point has a known place."""
         place = self._known[point]
         if self._scene.sliders[name].link is None:
             self.origins[body] = place

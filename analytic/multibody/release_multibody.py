@@ -1,4 +1,4 @@
-"""Let a mechanism go, of any mobility, by the equations of motion of all its bodies at once."""
+"""Free motion of a mechanism of any mobility, by the equations of motion of all its bodies."""
 
 from collections.abc import Callable, Mapping
 
@@ -21,7 +21,7 @@ from models.scene.driver import check_duration
 Acting = Callable[[Assembly, Array], GeneralisedForces]
 PROJECTED = Projection()
 LIGHT = 1e-12
-"""The mass of a freedom over that of the heaviest, below which it counts as none."""
+"""Mass of a freedom over that of the heaviest, below which it counts as none."""
 
 
 def release_multibody(
@@ -33,30 +33,30 @@ def release_multibody(
     flexible: Mapping[str, Flexible] = RIGID,
     acting: Acting = GeneralisedForces,
 ) -> MultibodyMotion:
-    """The motion of a scene from its start, when it is let go.
+    """Prepare the free motion of a scene from its start.
 
     Parameters
     ----------
     scene : Scene
-        A mechanism of any mobility, with its masses. If its driver follows a law, it is let go at
-        time 0 of that.
+        A mechanism of any mobility, with its masses. A driver that follows a law is released at
+        time 0 of it.
     until_s : float
-        For how long [s].
+        Duration [s].
     method : Method
-        `Projection` is to about 1e-11 times the sensitivity; `Baumgarte` shows what that costs.
+        `Projection` is good to about 1e-11 times the sensitivity; `Baumgarte` shows its cost.
     near : State or None
-        Where to look for the position of the start; None for a scene that names the angles of its
-        links in ``[start]``.
+        First guess of the start's position; None for a scene that names the angles of its links in
+        ``[start]``.
     flexible : Mapping
-        What makes the bodies of its elastic links (`analytic.elastic.discretisation`), by name.
+        Makers of the bodies of its elastic links (`analytic.elastic.discretisation`), by name.
     acting : Acting
-        What makes the forces on an assembly at its start (n,).
+        Maker of the forces on an assembly at its start (n,).
 
     Raises
     ------
     CrankcheckError
-        A start that is open, not named whole, or in a change point; speeds that contradict each
-        other; a freedom without mass; friction; a time that is none; an integration that fails.
+        A start that is open, incomplete, or in a change point; speeds that contradict each other; a
+        freedom without mass; friction; an invalid time; an integration that fails.
     """
     check_duration(scene.name, until_s)
     dynamics, q, rates = ready(scene, near, flexible, acting)
@@ -64,9 +64,9 @@ def release_multibody(
 
 
 def start_state(scene: Scene, near: State | None = None) -> State:
-    """A scene as it is let go, with the accelerations of that instant; of any mobility.
+    """Return the state of a scene at its release, with accelerations; of any mobility.
 
-    Parameters and errors as those of `release_multibody`.
+    Parameters and errors as in `release_multibody`.
     """
     dynamics, q, rates = ready(scene, near)
     now = dynamics.assembly.at_rates(q[None], rates[None])
@@ -81,9 +81,9 @@ def ready(
     flexible: Mapping[str, Flexible] = RIGID,
     acting: Acting = GeneralisedForces,
 ) -> tuple[Dynamics, Array, Array]:
-    """The equations of a scene, and its coordinates and rates (n,) at the start.
+    """Return the equations of a scene, and its coordinates and rates (n,) at the start.
 
-    Parameters and errors as those of `release_multibody`.
+    Parameters and errors as in `release_multibody`.
     """
     if scene.friction:
         raise CrankcheckError(
@@ -103,8 +103,8 @@ def ready(
 
 
 def _check_elastic(scene: Scene, flexible: Mapping[str, Flexible]) -> None:
-    """Raises CrankcheckError for elastic links of which nobody said how they are described, and for
-    a start that nothing but a driver's law has."""
+    """Refuse elastic links without a description, and a start for driven scenes alone. Raises
+    CrankcheckError."""
     if missing := [name for name in scene.elastic if name not in flexible]:
         raise CrankcheckError(
             f"{scene.name}: {few(missing, 6)} bends or stretches, and would be taken as rigid "
@@ -118,7 +118,7 @@ def _check_elastic(scene: Scene, flexible: Mapping[str, Flexible]) -> None:
 
 
 def _check_start(dynamics: Dynamics, q: Array, directions: Array) -> None:
-    """Raises CrankcheckError for a start in a change point, and for a freedom without mass."""
+    """Refuse a start in a change point, and a freedom without mass. Raises CrankcheckError."""
     assembly, count = dynamics.assembly, len(directions)
     if count == 0:
         raise CrankcheckError(f"{assembly.scene.name}: nothing of it can move; it has no freedom")
@@ -139,7 +139,7 @@ def _check_start(dynamics: Dynamics, q: Array, directions: Array) -> None:
 
 
 def _freer(dynamics: Dynamics, q: Array, directions: Array) -> bool:
-    """Whether a position has more freedoms than those next to it."""
+    """True if a position has more freedoms than those next to it."""
     outset = Outset(dynamics.assembly)
     for direction in directions:
         beside, _ = dynamics.closed(q + 1e-3 * direction, np.zeros_like(q))
@@ -150,21 +150,20 @@ def _freer(dynamics: Dynamics, q: Array, directions: Array) -> bool:
 
 MOST_ROUNDS = 100
 CLOSE = 1e-15
-"""What a round may change a coefficient by, over the longest link, after which none is made."""
+"""Largest change of a coefficient in the last round, over the longest link."""
 
 
 def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
-    """Coordinates and rates (n,) of the start with links in their quasi-static shape.
+    """Return coordinates and rates (n,) of the start with links in their quasi-static shape.
 
     Raises
     ------
     CrankcheckError
-        As `Outset.find`; links that are so soft that no such shape is found; links that the joints
-        hold as they are.
+        As `Outset.find`; links too soft for such a shape; links whose shape the joints hold.
 
-    Straight ones begin to ring at once. In the quasi-static shape the forces of elasticity are what
-    the links need to go along with the motion as if they were rigid: the second derivatives of all
-    their coefficients are 0 at the start, as their rates are.
+    Straight links begin to ring at once. In the quasi-static shape the elastic forces move the
+    links along as if they were rigid: the second derivatives of all their coefficients are 0 at the
+    start, as their rates are.
     """
     assembly, outset = dynamics.assembly, Outset(dynamics.assembly)
     free, inverse = assembly.coefficients, np.linalg.inv(elastic_stiffness(assembly))
@@ -179,7 +178,7 @@ def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
         bent = q.copy()
         bent[free] += step
         q, rates = outset.find(near, bent)
-        # Rounding of the forces over the stiffness is the least that a step is.
+        # The least step is rounding of the forces over the stiffness.
         floor = CLOSE * assembly.scene.longest_m
         if size <= floor or (size <= 1e3 * floor and size >= 0.5 * last):
             return q, rates
@@ -191,8 +190,8 @@ def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
 
 
 def _check_free(dynamics: Dynamics, q: Array) -> None:
-    """Raises CrankcheckError where the joints leave elastic links no shape to choose: more links
-    than the motion needs, whose lengths say those of each other."""
+    """Refuse joints that leave elastic links no free shape: more links than the motion needs, whose
+    lengths determine each other. Raises CrankcheckError."""
     assembly = dynamics.assembly
     rows = assembly.joints.jacobian(assembly.at_rest(q[None]))[0]
     rows[:, assembly.coefficients] = 0.0
@@ -204,7 +203,7 @@ def _check_free(dynamics: Dynamics, q: Array) -> None:
 
 
 def _held(dynamics: Dynamics, free: NDArray[np.intp], q: Array, rates: Array) -> Array:
-    """The forces on coefficients (k,) that keep their second derivatives 0."""
+    """Return the forces on coefficients (k,) that keep their second derivatives 0."""
     assembly, at = dynamics.assembly, np.zeros(1)
     now = assembly.at_rates(q[None], rates[None])
     mass, right = assembly.weigh(now.q, now.rates)
@@ -218,7 +217,7 @@ def _held(dynamics: Dynamics, free: NDArray[np.intp], q: Array, rates: Array) ->
 
 
 def elastic_stiffness(assembly: Assembly) -> Array:
-    """Of all elastic links, for their coefficients, (k, k)."""
+    """Return the stiffness matrix of all elastic links' coefficients, (k, k)."""
     each = [body.stiffness for body, _ in assembly.elastic.values()]
     whole, first = np.zeros((sum(map(len, each)),) * 2), 0
     for own in each:

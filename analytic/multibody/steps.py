@@ -1,4 +1,4 @@
-"""The steps of an integration, passages through change points, and the state that they give."""
+"""Steps of an integration, passages through change points, and the resulting state."""
 
 import itertools
 import math
@@ -18,36 +18,36 @@ from models.errors import CrankcheckError, few
 from models.scene import Scene
 
 NEAR = 1e-2
-"""The smallest singular value, of rows of the largest entry 1, from which on rounding tells: steps
-become short for it, unless their tolerance grows with its inverse square as what is lost does."""
+"""Smallest singular value, of rows of the largest entry 1, from which on rounding matters: steps
+become short, unless their tolerance grows with its inverse square as the loss does."""
 LEAST = 2e-3
-"""That at which a passage begins at the latest; from `NEAR` on it does where steps are short."""
+"""Value at which a passage begins at the latest; from `NEAR` on it does where steps are short."""
 CLOSE = 1.1
-"""A singular value over that one, from which on it counts as it."""
+"""Ratio to that value, up to which a singular value counts as it."""
 SHORT = 0.1
-"""A step that is short, over the time up to the change point."""
+"""Length of a short step, over the time up to the change point."""
 WINDOWS = {25.0: 12, 12.0: 12, 6.0: 12, 3.0: 8, 1.5: 6}
-"""For how long the motion before may count, over the duration of the passage, and the degree of the
-polynomials: a long time spreads what accelerations are off by, a short one follows fast changes,
-and is all there is where something has just jumped."""
+"""Duration of the motion before that counts, over that of the passage, and the degree of the
+polynomials: a long time spreads errors of accelerations, a short one follows fast changes, and is
+the only one after a recent jump."""
 LONG = 6.0
-"""Shorter ones are taken where none of the others will do."""
+"""Shortest preferred duration: shorter ones are taken where none of the others will do."""
 SAMPLES = 24
 OFF = 1e-9
-"""What coordinates may have to be moved by on the other side, in their units."""
+"""Largest correction of coordinates on the other side, in their units."""
 
 
 @dataclass(frozen=True)
 class SingularPassage:
-    """From ``begin_s`` to ``end_s`` through a change point at ``at_s`` [s].
+    """Passage from ``begin_s`` to ``end_s`` through a change point at ``at_s`` [s].
 
-    In a change point the rows of the Jacobian depend on each other, and next to it what the
-    equations say is lost in rounding, by eps over the square of the smallest singular value. The
-    motion itself is smooth there: polynomials through what its accelerations have been for a while
-    before carry them over the gap, where they are integrated from the state at its begin. On the
-    other side the motion has to be on the constraints again, to rounding, as only one through the
-    change point itself is: one that misses it by a little turns off, however shortly, into the
-    other branch.
+    In a change point the rows of the Jacobian depend on each other, and next to it the
+    accelerations are lost in rounding, by eps over the square of the smallest singular value. The
+    motion itself is smooth there: polynomials through its accelerations of a while before carry
+    them over the gap, where they are integrated from the state at its start. On the other side the
+    motion has to be on the constraints again, to rounding, as only a motion through the change
+    point itself is: one that misses it by a little turns off, however shortly, into the other
+    branch.
     """
 
     begin_s: float
@@ -56,20 +56,20 @@ class SingularPassage:
     course: tuple[Chebyshev, ...]
 
     def state(self, time_s: Array) -> Array:
-        """The state at times [s], (2 n + 1, T)."""
+        """Return the state at times [s], (2 n + 1, T)."""
         return np.array([one(np.asarray(time_s)) for one in self.course])
 
     def slope(self, time_s: Array) -> Array:
-        """Its derivative by time."""
+        """Return its derivative by time."""
         return np.array([one.deriv()(np.asarray(time_s)) for one in self.course])
 
 
 def singular_at(
     dynamics: Dynamics, within: Callable[[Array], Array], now_s: float, back_s: float
 ) -> float:
-    """When the smallest singular value is 0, as it falls now [s]; infinite where it grows.
+    """Return the time of a zero singular value, as it falls now [s]; infinite where it grows.
 
-    ``within`` says the state at times up to now, at least as far as ``back_s`` [s].
+    ``within`` gives the state at times up to now, at least as far as ``back_s`` [s].
     """
     states = within(np.array([now_s - back_s, now_s]))[: dynamics.assembly.size]
     before, now = (smallest_singular(dynamics, q) for q in states.T)
@@ -84,7 +84,7 @@ def passage_ahead(
     at_s: float,
     strokes: Strokes,
 ) -> SingularPassage | None:
-    """The passage that begins now, if the motion goes through a change point.
+    """Return the passage that begins now, if the motion goes through a change point.
 
     Parameters
     ----------
@@ -93,9 +93,9 @@ def passage_ahead(
     solution : Callable
         The state at times up to now.
     clear_s, now_s, at_s : float
-        Since when nothing has jumped, now, and when the change point is expected [s].
+        Times of the last jump, of now, and of the expected change point [s].
     strokes : Strokes
-        Which loads of one stroke act.
+        Activity of the loads on one stroke.
     """
     width_s = 2.0 * (at_s - now_s)
     least, best = OFF, None
@@ -117,7 +117,7 @@ def _course(
     degree: int,
     strokes: Strokes,
 ) -> tuple[Chebyshev, ...]:
-    """The state from now on [s], by what its slopes have been for a while."""
+    """Return the state from now on [s], from its slopes of a while before."""
     # Points that lie closer towards both ends, where polynomials swing.
     lean = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
     times = now_s - 0.5 * window_s * (1.0 + lean)
@@ -137,14 +137,14 @@ def _course(
 
 
 def smallest_singular(dynamics: Dynamics, q: Array) -> float:
-    """The smallest singular value of the constraints that count at coordinates (n,)."""
+    """Return the smallest singular value of the constraints that count at coordinates (n,)."""
     assembly = dynamics.assembly
     rows = assembly.scaled(assembly.joints.jacobian(assembly.at_rest(q[None]))[0])
     return float(np.linalg.svd(rows, compute_uv=False)[dynamics.rank - 1])
 
 
 def _open(dynamics: Dynamics, passage: SingularPassage) -> float:
-    """How far off the constraints the other end is, in the units of coordinates."""
+    """Return the distance of the other end from the constraints, in the units of coordinates."""
     n = dynamics.assembly.size
     state = passage.state(np.array([passage.end_s]))[:, 0]
     off = (dynamics.closed_state(state) - state)[:n] / dynamics.assembly.units
@@ -153,7 +153,7 @@ def _open(dynamics: Dynamics, passage: SingularPassage) -> float:
 
 @dataclass(frozen=True)
 class StateHistory:
-    """The ``state`` at times [s], (2 n + 1, T); ``passages`` are the change points on the way."""
+    """``state`` over time [s], (2 n + 1, T); ``passages`` are the change points on the way."""
 
     state: Callable[[Array], Array]
     steps: int
@@ -161,19 +161,19 @@ class StateHistory:
 
 
 LARGEST = 1e12
-"""Of a coordinate or rate, over what it counts as one of: beyond it a motion has come apart."""
+"""Largest coordinate or rate, over its unit: beyond it a motion has diverged."""
 
 
 @dataclass(frozen=True)
 class FixedSteps:
-    """The method of Runge and Kutta of order 4 with steps of one size, as the thesis on elastic
-    mechanisms has it; in between cubics, of the same order. Edges over time are at steps."""
+    """Method of Runge and Kutta of order 4 with equal steps, as in the thesis on elastic
+    mechanisms; in between cubics, of the same order. Edges over time are at steps."""
 
     dynamics: Dynamics
     step_s: float
 
     def history(self, q: Array, rates: Array, until_s: float) -> StateHistory:
-        """The motion from a state to a time [s]. Raises CrankcheckError where it comes apart."""
+        """Integrate from a state to a time [s]. Raises CrankcheckError where it diverges."""
         own = switches(self.dynamics.forces)
         state = np.concatenate([q, rates, [0.0]])
         times, states, slopes = [], [], []
@@ -200,7 +200,7 @@ class FixedSteps:
     def _step(
         self, at_s: float, h: float, last: float, state: Array, held: Strokes
     ) -> tuple[Array, Array]:
-        """The slope at the begin of a step, and the state at its end."""
+        """Return the slope at the start of a step, and the state at its end."""
         rates = self.dynamics.rates
         with np.errstate(all="ignore"):
             k1 = rates(at_s, state, held)
@@ -218,17 +218,17 @@ class FixedSteps:
 
 
 SHARE = 0.9
-"""Of the time of a motion that is lost: what is faster after it is held against what was before."""
+"""Share of the time of a lost motion: the speed after it is compared with that before."""
 MANY = 100.0
-"""That over which its speed has grown since then, where it grows without bound."""
+"""Growth of the speed since then that counts as without bound."""
 FEW = 0.05
-"""Edges over time in so many steps are not why they are short."""
+"""Share of steps that end at edges over time, up to which these are not why steps are short."""
 
 
 @dataclass
 class Pace:
-    """How fast a motion was at the ends of its steps: the largest up to each of them, and the
-    last; ``edges`` are the numbers of steps that edges over time end."""
+    """Speeds of a motion at the ends of its steps: the largest up to each of them, and the last;
+    ``edges`` are the numbers of steps that edges over time end."""
 
     times_s: list[float] = field(default_factory=list)
     largest: list[float] = field(default_factory=list)
@@ -236,33 +236,33 @@ class Pace:
     edges: list[int] = field(default_factory=list)
 
     def note(self, time_s: float, speed: float) -> None:
-        """The start of the motion, or the end of a step."""
+        """Note the start of the motion, or the end of a step."""
         self.times_s.append(time_s)
         self.largest.append(max(speed, self.largest[-1]) if self.largest else speed)
         self.last = speed
 
     def end_at_edge(self) -> None:
-        """Say that the last step ended at an edge over time."""
+        """Note that the last step ended at an edge over time."""
         self.edges.append(self.made)
 
     @property
     def made(self) -> int:
-        """How many steps there are."""
+        """Number of steps."""
         return len(self.times_s) - 1
 
     def lasted_s(self, count: int) -> float:
-        """How long the last ``count`` steps took [s]; infinite where there are not so many, or
-        where it is edges over time that made them short."""
+        """Return the duration of the last ``count`` steps [s]; infinite where there are fewer, or
+        where edges over time made them short."""
         first = self.made - count
         if first < 0 or len(self.edges) - bisect_right(self.edges, first) > FEW * count:
             return math.inf
         return self.times_s[-1] - self.times_s[first]
 
     def check_runaway(self, scene: Scene, lost_s: float) -> None:
-        """Raises CrankcheckError for a motion that is lost at ``lost_s`` [s], if that is because
-        its speed goes to infinity.
+        """Refuse a motion lost at ``lost_s`` [s] by an unbounded speed. Raises CrankcheckError.
 
-        It is held against the largest speed before: a motion that turns back is slow for a while.
+        The speed is compared with the largest one before: a motion that turns back is slow for a
+        while.
 
         A load that grows with the square of the speed that it drives, v' = c v^2, has v = 1 / (c
         (t* - t)): no step leads to t*, whatever its size.
@@ -282,18 +282,18 @@ class Pace:
 
 MOST_STEPS = 1_000_000
 FIRST_STEPS, FAR = 2_000, 2.0
-"""After so many it is told how many all take, and refused where they are so many times too many."""
+"""Number of steps after which the total is foretold, and the excess at which it is refused."""
 
 CROWD = 200
-"""The last steps, which tell how many all would take if they stay as short."""
+"""Number of last steps from which the total is foretold."""
 
 
 @dataclass
 class Steps:
-    """The steps of an integration: their ``pace`` with the times between them, and what is within
-    each; ``clear_s`` is the time since which nothing has jumped. ``careful`` if a change point may
-    be near, ``tried`` the smallest singular value from which on a passage through it was looked for
-    in vain."""
+    """Steps of an integration: their ``pace`` with the times between them, and the state ``within``
+    each; ``clear_s`` is the time of the last jump. ``careful`` if a change point may be near,
+    ``tried`` the smallest singular value at which a passage through it was last looked for in
+    vain."""
 
     pace: Pace
     until_s: float
@@ -317,15 +317,15 @@ class Steps:
 
     @property
     def crowded(self) -> bool:
-        """Whether the time that is left would take too many steps, as short as the last ones; it is
-        looked at now and then."""
+        """True if the remaining time would take too many steps, as short as the last ones; it is
+        checked now and then."""
         made, now_s = self.pace.made, self.times[-1]
         if made < CROWD or made % CROWD:
             return False
         return (self.until_s - now_s) * CROWD > FAR * MOST_STEPS * self.pace.lasted_s(CROWD)
 
     def check_count(self, name: str, now_s: float) -> None:
-        """Raises CrankcheckError where the time of a scene takes more steps than can be made."""
+        """Refuse a time of a scene that takes too many steps. Raises CrankcheckError."""
         made = len(self.times)
         ahead = made * self.until_s / now_s
         if made > MOST_STEPS or (made >= FIRST_STEPS and ahead > FAR * MOST_STEPS):

@@ -1,4 +1,4 @@
-r"""The Assur groups and the redundant links of a mechanism, in solving order.
+r"""Assur groups and redundant links of a mechanism, in solving order.
 
 ::
 
@@ -18,12 +18,12 @@ from dataclasses import dataclass
 from models.scene import Scene
 
 JointKey = tuple[str, str]
-"""R or P, and the name of the pin or the slider."""
+"""Letter R or P, and the name of the pin or the slider."""
 
 
 @dataclass(frozen=True)
 class Group:
-    """A class II Assur group.
+    """Class II Assur group.
 
     ``kind`` reads outer, inner, outer pair; ``first`` and ``second`` are its bodies in that order;
     ``outer1``, ``inner``, ``outer2`` name the pins (points) and prismatic pairs (sliders).
@@ -39,7 +39,7 @@ class Group:
 
     @property
     def branch_key(self) -> str:
-        """The pin or slider that ``Scene.branch`` names the assembly by."""
+        """Pin or slider that names the assembly in ``Scene.branch``."""
         return self.outer2 if self.kind == "RRP" else self.inner
 
     @property
@@ -48,13 +48,13 @@ class Group:
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """What is placed with it."""
+        """Bodies placed with it."""
         return self.first, self.second
 
 
 @dataclass(frozen=True)
 class Leg:
-    """A link of a triad between a known body, by its pair ``outer``, and the central link, by
+    """Link of a triad between a known body, by its pair ``outer``, and the central link, by
     ``inner``."""
 
     body: str
@@ -63,13 +63,13 @@ class Leg:
 
     @property
     def kind(self) -> str:
-        """Outer, inner: RR, PR (it slides on a known body), RP (on the central link), PP."""
+        """Outer, inner pair: RR, PR (it slides on a known body), RP (on the central link), PP."""
         return self.outer[0] + self.inner[0]
 
 
 @dataclass(frozen=True)
 class Triad:
-    """A class III Assur group of order 3: a ``central`` link on three legs."""
+    """Class III Assur group of order 3: a ``central`` link on three legs."""
 
     central: str
     legs: tuple[Leg, Leg, Leg]
@@ -80,30 +80,30 @@ class Triad:
 
     @property
     def branch_key(self) -> str:
-        """The link that ``Scene.branch`` names the assembly by."""
+        """Link that names the assembly in ``Scene.branch``."""
         return self.central
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """What is placed with it."""
+        """Bodies placed with it."""
         return self.central, *(leg.body for leg in self.legs)
 
 
 @dataclass(frozen=True)
 class Bridge:
-    """A redundant link: two or more of its ``pins`` lie on bodies that are placed without it."""
+    """Redundant link: two or more of its ``pins`` lie on bodies that are placed without it."""
 
     link: str
     pins: tuple[str, ...]
 
     @property
     def excess(self) -> int:
-        """The constraints that it adds to those which a rigid link needs to be placed."""
+        """Constraints beyond those that place a rigid link."""
         return 2 * len(self.pins) - 3
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """What is placed with it."""
+        """Bodies placed with it."""
         return (self.link,)
 
 
@@ -111,7 +111,7 @@ Part = Group | Triad | Bridge
 
 
 class Pairs:
-    """The pins and prismatic pairs of a mechanism, by name and by body."""
+    """Pins and prismatic pairs of a mechanism, by name and by body."""
 
     def __init__(
         self, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
@@ -124,31 +124,31 @@ class Pairs:
                 self._of.setdefault(body, []).append(pair)
 
     def outer(self, body: str, known: set[str]) -> list[JointKey]:
-        """The pairs between a body and the known ones."""
+        """Return the pairs between a body and the known ones."""
         return [pair for pair in self._of.get(body, ()) if not known.isdisjoint(self._ends[pair])]
 
     def inner(self, a: str, b: str, known: set[str]) -> list[JointKey]:
-        """The pairs between two bodies that are not pairs to known ones."""
+        """Return the pairs between two bodies, except pairs to known ones."""
         shared = (pair for pair in self._of[a] if b in self._ends[pair])
         return [pair for pair in shared if known.isdisjoint(self._ends[pair])]
 
     def partners(self, body: str, known: set[str]) -> set[str]:
-        """The bodies that share a pair with a body which is none to known ones."""
+        """Return the bodies that share a pair with a body, except pairs to known ones."""
         free = (self._ends[pair] for pair in self._of.get(body, ()))
         return {name for ends in free if known.isdisjoint(ends) for name in ends} - {body}
 
     def neighbours(self, body: str) -> set[str]:
-        """The bodies that share a pair with a body."""
+        """Return the bodies that share a pair with a body."""
         return {name for pair in self._of[body] for name in self._ends[pair]} - {body}
 
 
 def decompose(
     bodies: tuple[str, ...], known: frozenset[str], pairs: Pairs
 ) -> tuple[tuple[Part, ...], list[str]]:
-    """The groups and redundant links, each after what it hangs on; and what is left over.
+    """Return the groups and redundant links, each after its supports, and the unplaced bodies.
 
-    Groups are taken as small as they come; a link is taken for redundant only where no further
-    group can be placed. ``known`` is what the driver and the ground place.
+    The smallest groups come first; a link counts as redundant only where no further group can be
+    placed. ``known`` are the bodies placed by the driver and the ground.
     """
     placed = set(known)
     outer = {body: pairs.outer(body, placed) for body in bodies if body not in placed}
@@ -168,7 +168,7 @@ def decompose(
 
 
 def _dyads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -> Iterator[Group]:
-    """The class II groups that can be placed next, in the order of the bodies."""
+    """Yield the class II groups that can be placed next, in the order of the bodies."""
     ready = {body: place for place, (body, ends) in enumerate(outer.items()) if len(ends) == 1}
     for a in ready:
         later = [b for b in pairs.partners(a, known) & ready.keys() if ready[b] > ready[a]]
@@ -180,7 +180,7 @@ def _dyads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -
 
 
 def _dyad(a: str, b: str, outer1: JointKey, inner: JointKey, outer2: JointKey) -> Group | None:
-    """The class II group of two bodies with these pairs, if it is one."""
+    """Return the class II group of two bodies with these pairs, if it is one."""
     (ka, na), (ki, ni), (kb, nb) = outer1, inner, outer2
     kind = ka + ki + kb
     if kind == "PPP":
@@ -191,12 +191,12 @@ def _dyad(a: str, b: str, outer1: JointKey, inner: JointKey, outer2: JointKey) -
 
 
 def _triads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -> Iterator[Triad]:
-    """The triads that can be placed next, in the order of their central links."""
+    """Yield the triads that can be placed next, in the order of their central links."""
     ready = {body: place for place, (body, ends) in enumerate(outer.items()) if len(ends) == 1}
     for central, held in outer.items():
         if held:
             continue
-        # Others beside it belong to groups that come later.
+        # Other neighbours belong to later groups.
         beside = sorted(pairs.partners(central, known) & ready.keys(), key=ready.__getitem__)
         inner = {body: pairs.inner(central, body, known) for body in beside}
         legs = [Leg(b, outer[b][0], inner[b][0]) for b in beside if len(inner[b]) == 1]
@@ -205,7 +205,7 @@ def _triads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) 
 
 
 def _bridges(outer: Mapping[str, list[JointKey]]) -> Iterator[Bridge]:
-    """The links that known bodies hold at two pins or more."""
+    """Yield the links that known bodies hold at two pins or more."""
     for body, held in outer.items():
         if len(held) > 1 and all(kind == "R" for kind, _ in held):
             yield Bridge(body, tuple(name for _, name in held))
@@ -213,11 +213,11 @@ def _bridges(outer: Mapping[str, list[JointKey]]) -> Iterator[Bridge]:
 
 @dataclass(frozen=True)
 class Compound:
-    """The bodies ``base`` and ``link``, as the ``name`` of one unit; ``pin`` or ``slider`` is the
-    driven pair between them.
+    """Bodies ``base`` and ``link`` as one unit ``name``; ``pin`` or ``slider`` is the driven pair
+    between them.
 
-    With the driven pair held still the two are one rigid link, and what is left falls into Assur
-    groups as it does of any mechanism: the class depends on the pair that drives.
+    With the driven pair held still the two are one rigid link, and the rest falls into Assur groups
+    as in any mechanism: the class depends on the pair that drives.
     """
 
     name: str
@@ -227,32 +227,32 @@ class Compound:
     slider: str | None
 
     def unit(self, body: str) -> str:
-        """What stands for a body."""
+        """Return the unit of a body."""
         return self.name if body in (self.base, self.link) else body
 
     def units(self, bodies: tuple[str, ...]) -> tuple[str, ...]:
-        """What stands for the bodies, each once."""
+        """Return the units of the bodies, each once."""
         return tuple(dict.fromkeys(self.unit(body) for body in bodies))
 
     def joined(self, pins: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
-        """The pins that are left between units."""
+        """Return the pins between units."""
         units = {pin: tuple(dict.fromkeys(map(self.unit, on))) for pin, on in pins.items()}
         return {pin: names for pin, names in units.items() if len(names) > 1}
 
     def sliding(self, prismatics: Mapping[str, tuple[str, str]]) -> dict[str, tuple[str, str]]:
-        """The prismatic pairs that are left between units."""
+        """Return the prismatic pairs between units."""
         units = {n: (self.unit(a), self.unit(b)) for n, (a, b) in prismatics.items()}
         return {name: ends for name, ends in units.items() if ends[0] != ends[1]}
 
     def pairs(
         self, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
     ) -> Pairs:
-        """All that are left between units."""
+        """Return all pairs between units."""
         return Pairs(self.joined(pins), self.sliding(prismatics))
 
 
 def compound_of(scene: Scene) -> Compound | None:
-    """The compound of a scene; None where the driver moves a body against the ground."""
+    """Return the compound of a scene; None where the driver moves a body against the ground."""
     driver = scene.driver
     if not driver.is_inner:
         return None
@@ -263,8 +263,8 @@ def compound_of(scene: Scene) -> Compound | None:
 def as_triad(
     group: Triad | Group, compound: Compound | None
 ) -> tuple[str, tuple[Leg, ...], JointKey | None]:
-    """The central link of a group, its legs, and the joint by which it hangs on a known body
-    itself: of a triad none, of a dyad with a compound one, and one leg."""
+    """Return the central link of a group, its legs, and its own joint to a known body: none for a
+    triad; one joint and one leg for a dyad with a compound."""
     if isinstance(group, Triad):
         return group.central, group.legs, None
     assert compound is not None

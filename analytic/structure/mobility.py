@@ -33,8 +33,8 @@ from models.scene.joints import block_name, joined_at, sliding_body
 class Structure:
     """Bodies, pairs, mobility and groups of a scene.
 
-    ``order`` holds the groups and the redundant links, each after what it hangs on. Where the
-    driver moves two moving bodies against each other, one of the groups has the two as one link of
+    ``order`` holds the groups and the redundant links, each after its supports. Where the driver
+    moves two moving bodies against each other, one of the groups has the two as one link of
     changing shape: the ``compound``.
     """
 
@@ -56,46 +56,46 @@ class Structure:
 
     @property
     def redundant(self) -> tuple[Bridge, ...]:
-        """The links that the mechanism would move the same without."""
+        """Links without which the mechanism would move the same."""
         return tuple(part for part in self.order if isinstance(part, Bridge))
 
     @property
     def count(self) -> int:
-        """The mobility by count, W: with redundant links it is less than the real one."""
+        """Mobility by count, W: with redundant links it is less than the real one."""
         return 3 * len(self.bodies) - 2 * self.pairs
 
     @property
     def mobility(self) -> int:
-        """The real mobility, that of the mechanism without what its redundant links add."""
+        """Real mobility, without the constraints of redundant links."""
         return self.count + sum(bridge.excess for bridge in self.redundant)
 
     @property
     def words(self) -> str:
-        """The mobility for people, and what the count makes of it where that is something else."""
+        """Text of the mobility, with the count where it differs."""
         if not self.redundant:
             return f"mobility {self.mobility}"
         return f"mobility {self.mobility} ({self.count} by count; redundant: {self.spare})"
 
     @property
     def pairs(self) -> int:
-        """p5: the number of pairs of one freedom; a pin that joins k bodies is k - 1 of them."""
+        """Number p5 of pairs of one freedom; a pin that joins k bodies is k - 1 of them."""
         return sum(len(names) - 1 for names in self.pins.values()) + len(self.prismatics)
 
     @property
     def spare(self) -> str:
-        """The names of the redundant links."""
+        """Names of the redundant links."""
         return ", ".join(bridge.link for bridge in self.redundant)
 
 
 def analyse(scene: Scene) -> Structure:
-    """Mobility and Assur groups of a scene, in solving order.
+    """Return the mobility and Assur groups of a scene, in solving order.
 
     Raises
     ------
     StructureError
-        Mobility other than 1; links that hang on nothing, or in pairs on one pin; a group that is
+        Mobility other than 1; links without support, or in pairs on one pin; a group that is
         neither a dyad nor a triad (the message names its links); a driven joint that cannot move; a
-        branch for something that has one assembly only.
+        branch for a group of one assembly.
     """
     blocks = [block_name(s) for s in scene.sliders.values() if s.link is None]
     bodies = (*scene.links, *blocks)
@@ -118,13 +118,13 @@ def analyse(scene: Scene) -> Structure:
 
 
 def sides_of(scene: Scene) -> list[str]:
-    """The pins whose branch is a side, which a mirror exchanges: those of dyads of three pins.
-    Raises StructureError as `analyse`."""
+    """Return the pins whose branch is a side, which a mirror exchanges: those of dyads of three
+    pins. Raises StructureError as `analyse`."""
     return [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
 
 
 def _fault(structure: Structure, left: list[str]) -> str:
-    """Why this is no mechanism of dyads with one driver: ``left`` could not be placed."""
+    """Return the text of the fault, where ``left`` could not be placed."""
     mobility = structure.mobility
     if mobility == 1:
         return unsolved(
@@ -155,7 +155,7 @@ def _check_driver(
 
 
 def _check_held(scene: Scene, groups: tuple[Group, ...]) -> None:
-    """Refuse two bodies that only one pin holds: the count takes them for held at two."""
+    """Refuse two bodies that only one pin holds: the count assumes two."""
     for group in groups:
         if group.kind[0] == group.kind[2] == "R" and group.outer1 == group.outer2:
             raise StructureError(
@@ -165,7 +165,7 @@ def _check_held(scene: Scene, groups: tuple[Group, ...]) -> None:
 
 
 def _check_branches(scene: Scene, structure: Structure) -> None:
-    """Refuse a branch that chooses nothing."""
+    """Refuse a branch without a choice."""
     choices = [group.branch_key for group in structure.groups if group.assemblies == 2]
     choices += [triad.branch_key for triad in structure.triads]
     for key in scene.branch:
@@ -177,8 +177,8 @@ def _check_branches(scene: Scene, structure: Structure) -> None:
 
 
 def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | None = None) -> None:
-    """Raise CrankcheckError, for ``what`` is worked out of a crank at the ground and class II
-    groups alone, where the driver of a scene is another joint or its structure has a triad."""
+    """Refuse a driver other than a crank at the ground, and a structure with a triad, as ``what``
+    does not cover them. Raises CrankcheckError."""
     if not scene.driver.is_crank:
         raise CrankcheckError(
             f"{scene.name}: {what} takes a driver that is a link pinned to the ground, and this "
@@ -193,10 +193,10 @@ def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | No
 
 
 MOST_LOOKS = 200_000
-"""Pairs that are looked at, over all sets of links, to name a group: about 0.2 s, however many
-links there are."""
+"""Most pairs tested, over all sets of links, to name a group: about 0.2 s, however many links there
+are."""
 SHOWN = 8
-"""Links that are named of those left over."""
+"""Number of unplaced links that are named."""
 SOLVED = "dyads (RRR, RRP, RPR, PRP, RPP) and triads (class III, order 3) have a solution"
 
 
@@ -207,7 +207,7 @@ def unsolved(
     bodies: tuple[str, ...],
     left: list[str],
 ) -> str:
-    """Which of the links left over are in the way, and why; two that the driver moves are one."""
+    """Return the text on the unplaced links in the way, and the reason; two driven ones are one."""
     if compound is not None:
         pins, prismatics = compound.joined(pins), compound.sliding(prismatics)
         bodies = compound.units(bodies)
@@ -236,14 +236,14 @@ def unsolved(
 
 @dataclass(frozen=True)
 class LeftOver:
-    """The links that could not be placed, and all pairs."""
+    """Links that could not be placed, and all pairs."""
 
     pins: Mapping[str, tuple[str, ...]]
     prismatics: Mapping[str, tuple[str, str]]
     left: list[str]
 
     def parts(self) -> list[list[str]]:
-        """Apart where no pair without a known body joins them: a group is in one of these."""
+        """Return the links in parts that no unknown pair joins: a group is in one part."""
         unknown = set(self.left)
         part = {body: [body] for body in self.left}
         for names in (*self.pins.values(), *self.prismatics.values()):
@@ -261,14 +261,14 @@ class LeftOver:
         ]
 
     def sets(self) -> Iterator[tuple[str, ...]]:
-        """The sets of links that may form a group, the smallest first."""
+        """Yield the sets of links that may form a group, the smallest first."""
         parts = self.parts()
         for size in range(4, max(map(len, parts)) + 1, 2):
             for part in parts:
                 yield from itertools.combinations(part, size)
 
     def pairs_of(self, group: set[str]) -> tuple[int, int]:
-        """The pairs between members of a group, and whether it hangs on others that are left."""
+        """Return the numbers of pairs inside a group, and to other unplaced links."""
         others = set(self.left) - group
         inside = outside = 0
         for names in self.pins.values():
@@ -281,7 +281,7 @@ class LeftOver:
         return inside, outside
 
     def kind(self, group: tuple[str, ...], outer: Mapping[str, list[JointKey]]) -> str:
-        """Class and order, as far as four links tell them."""
+        """Return class and order, as far as four links determine them."""
         hanging = [body for body in group if outer[body]]
         if len(group) > 4:
             return f"class III or higher, order {len(hanging)}"

@@ -1,1 +1,1 @@
-"""Kinematic chains by number and type: which links and joints give a wanted mobility."""
+"""Kinematic chains by number and type: links and joints with a wanted mobility."""

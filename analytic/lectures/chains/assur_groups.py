@@ -1,4 +1,4 @@
-r"""Assur groups: the smallest sets of links of a graph that hang on others, without freedom.
+r"""Assur groups: the smallest sets of links of a graph that are fixed by others, without freedom.
 
 ::
 
@@ -10,15 +10,15 @@ r"""Assur groups: the smallest sets of links of a graph that hang on others, wit
                                    |
                                    o
 
-The class counts the corners of the largest closed contour of inner joints, the order the joints by
-which the group hangs on others (I. I. Artobolevskii, Theory of Mechanisms).
+The class counts the corners of the largest closed contour of inner joints, the order the joints to
+other links (I. I. Artobolevskii, Theory of Mechanisms).
 
 The same links and joints fall into other groups where another joint is driven, and the class of the
 mechanism is the highest of theirs (I. I. Artobolevskii, Theory of Mechanisms; problem book "Bai tap
 co hoc may", chapter on schemes, mobility and Assur groups).
 
 The Assur groups of a mechanism are those of its graph: without the ground and the driven link,
-groups that hang on what is placed are taken away, the smallest first.
+groups on placed links are taken away, the smallest first.
 """
 
 import itertools
@@ -32,12 +32,12 @@ from analytic.structure.mobility import Structure
 from models.scene import GROUND, Scene
 
 Name = TypeVar("Name", int, str)
-"""What links are called by: numbers in a chain, names in a scene."""
+"""Identity of links: numbers in a chain, names in a scene."""
 
 
 @dataclass(frozen=True)
 class AssurGroup(Generic[Name]):
-    """A group: its ``links``, and the joints among them and to what is placed."""
+    """Group: its ``links``, and the joints among them and to placed links."""
 
     links: tuple[Name, ...]
     inner: tuple[tuple[Name, Name], ...]
@@ -45,13 +45,13 @@ class AssurGroup(Generic[Name]):
 
     @property
     def order(self) -> int:
-        """The joints by which it hangs on what is placed."""
+        """Number of joints to placed links."""
         return len(self.outer)
 
     @property
     def class_number(self) -> int:
-        """2 of a dyad; else the corners of its largest closed contour: a link with so many inner
-        joints, or a ring of links without a shorter way across (I. I. Artobolevskii)."""
+        """Class 2 for a dyad; else the corners of its largest closed contour: a link with so many
+        inner joints, or a ring of links without a shorter way across (I. I. Artobolevskii)."""
         if len(self.links) == 2:
             return 2
         ends = [link for joint in self.inner for link in joint]
@@ -59,20 +59,20 @@ class AssurGroup(Generic[Name]):
         return max(3, own, *self._rings())
 
     def _rings(self) -> Iterator[int]:
-        """The sizes of the closed rings of links; 0 where there is none."""
+        """Yield the sizes of the closed rings of links; 0 where there is none."""
         yield 0
         for size in range(4, len(self.links) + 1):
             for some in itertools.combinations(self.links, size):
                 held = [pair for pair in self.inner if set(pair) <= set(some)]
                 ends = [link for pair in held for link in pair]
                 is_ring = len(held) == size and all(ends.count(link) == 2 for link in some)
-                # two rings apart have as many joints, of six links or more
+                # Two separate rings have as many joints, of six links or more.
                 if is_ring and _is_one(some, held):
                     yield size
 
 
 def _is_one(links: tuple[Name, ...], joints: Sequence[tuple[Name, Name]]) -> bool:
-    """Whether joints hold all the links together."""
+    """True if joints connect all the links."""
     reached = {links[0]}
     for _ in links:
         reached |= {b for joint in joints for b in joint if reached & set(joint)}
@@ -82,7 +82,7 @@ def _is_one(links: tuple[Name, ...], joints: Sequence[tuple[Name, Name]]) -> boo
 def groups_on(
     joints: Sequence[tuple[Name, Name]], links: Iterable[Name], placed: set[Name]
 ) -> Iterator[AssurGroup[Name]]:
-    """The groups of links that hang on what is placed, the smallest first."""
+    """Yield the groups of links on the placed ones, the smallest first."""
     left = [link for link in links if link not in placed]
     for size in range(2, len(left) + 1, 2):
         for some in itertools.combinations(left, size):
@@ -98,12 +98,12 @@ def groups_on(
 
 
 MOST_LEFT = 14
-"""Links that are searched for groups larger than a triad."""
+"""Most links that are searched for groups larger than a triad."""
 
 
 @dataclass(frozen=True)
 class DrivenChainJoint:
-    """A joint that may drive: its ``pin`` or ``slider``, and the two bodies that it moves against
+    """Joint that may drive: its ``pin`` or ``slider``, and the two bodies that it moves against
     each other."""
 
     base: str
@@ -119,7 +119,7 @@ class DrivenChainJoint:
 
 @dataclass(frozen=True)
 class ClassedGroup:
-    """A group in words: its ``kind`` where it has a name, its links, class and order."""
+    """Group in words: its ``kind`` where it has a name, its links, class and order."""
 
     kind: str
     links: tuple[str, ...]
@@ -129,9 +129,9 @@ class ClassedGroup:
 
 @dataclass(frozen=True)
 class StructureByDriver:
-    """The groups in solving order with one joint driven.
+    """Groups in solving order with one joint driven.
 
-    ``left`` are links that fall into none: the joint can not move then, or leaves them loose.
+    ``left`` are links in no group: the joint can not move then, or leaves them loose.
     """
 
     joint: DrivenChainJoint
@@ -141,26 +141,26 @@ class StructureByDriver:
 
     @property
     def class_number(self) -> int | None:
-        """The highest class of the groups, 1 where there is none; None where links are left."""
+        """Highest class of the groups, 1 where there is none; None where links are left."""
         if self.left:
             return None
         return max((group.class_number for group in self.groups), default=1)
 
 
 def classed(part: Group | Triad) -> ClassedGroup:
-    """A group with its class and order."""
+    """Return a group with its class and order."""
     if isinstance(part, Triad):
         return ClassedGroup(part.kind, part.bodies, 3, 3)
     return ClassedGroup(part.kind, part.bodies, 2, 2)
 
 
 def by_drivers(scene: Scene, structure: Structure) -> list[StructureByDriver]:
-    """The structure for each joint that could drive, in the order of pins and sliders."""
+    """Return the structure for each joint that could drive, in the order of pins and sliders."""
     return [_driven(scene, structure, joint) for joint in _joints(structure)]
 
 
 def _joints(structure: Structure) -> Iterator[DrivenChainJoint]:
-    """Every pin of two bodies, and every slider; of a pin that more bodies share, every pair."""
+    """Yield every pin of two bodies, every pair of a pin of more bodies, and every slider."""
     for pin, bodies in structure.pins.items():
         for base, body in itertools.combinations(bodies, 2):
             yield DrivenChainJoint(base, body, pin, None)
@@ -169,7 +169,7 @@ def _joints(structure: Structure) -> Iterator[DrivenChainJoint]:
 
 
 def _driven(scene: Scene, structure: Structure, joint: DrivenChainJoint) -> StructureByDriver:
-    """The groups with a joint driven: its two bodies are one link of changing shape."""
+    """Return the groups with a joint driven: its two bodies are one link of changing shape."""
     own = Compound(f"{joint.base} + {joint.body}", joint.base, joint.body, joint.pin, joint.slider)
     if GROUND in (joint.base, joint.body):
         units, known = structure.bodies, {GROUND, joint.base, joint.body}
@@ -193,7 +193,7 @@ def _driven(scene: Scene, structure: Structure, joint: DrivenChainJoint) -> Stru
 
 
 def _ends(structure: Structure, own: Compound | None) -> list[tuple[str, str]]:
-    """The bodies of each joint; a pin of k bodies is k - 1 joints of the first with the others."""
+    """Return the bodies of joints; a pin of k bodies is k - 1 joints of the first with others."""
     joints = [(bodies[0], body) for bodies in structure.pins.values() for body in bodies[1:]]
     joints += structure.prismatics.values()
     if own is None:
@@ -205,7 +205,7 @@ def _ends(structure: Structure, own: Compound | None) -> list[tuple[str, str]]:
 def _with_larger(
     groups: list[ClassedGroup], left: list[str], ends: list[tuple[str, str]], units: set[str]
 ) -> tuple[list[ClassedGroup], list[str]]:
-    """The groups, with those of higher class that the links left over form."""
+    """Return the groups, with those of higher class that the remaining links form."""
     while left and len(left) <= MOST_LEFT:
         placed = units - set(left)
         held = [sum(body in ab and bool(placed & set(ab)) for ab in ends) for body in left]
@@ -224,25 +224,25 @@ ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A chain with its ``ground``; ``name`` is that of the inversion."""
+    """Chain with its ``ground``; ``name`` is that of the inversion."""
 
     chain: Chain
     ground: int
     name: str
 
     def drivers(self) -> list[int]:
-        """The links at the ground that may drive, of alike ones one."""
+        """Return the links at the ground that may drive, one of each set of alike ones."""
         marked = self.chain.labelled(self.ground)
         alike = {link: own[0] for own in marked.orbits for link in own}
         return sorted({alike[link] for link in self.chain.neighbours[self.ground]})
 
     def classes(self) -> dict[int, int]:
-        """The class of the mechanism for each driving link at the ground; of mobility 1."""
+        """Return the class of the mechanism for each driving link at the ground; of mobility 1."""
         return {link: mechanism_class(self.chain, self.ground, link) for link in self.drivers()}
 
 
 def inversions(chain: Chain, name: str) -> list[Mechanism]:
-    """The distinct mechanisms of a chain: a ground link from each set of alike ones."""
+    """Return the distinct mechanisms of a chain: a ground link from each set of alike ones."""
     grounds = sorted(
         (own[0] for own in chain.labelled().orbits), key=lambda link: _rank(chain, link)
     )
@@ -256,15 +256,15 @@ def _number(k: int) -> str:
 
 
 def _rank(chain: Chain, link: int) -> tuple[object, ...]:
-    """Binary links first, those between larger links before others: so Stephenson's are I to III
-    as the field has them, with the ternary link at the ground in III, and Watt's in II."""
+    """Rank binary links first, those between larger links before others: so Stephenson's are I to
+    III as in the literature, with the ternary link at the ground in III, and Watt's in II."""
     beside = sorted((chain.degrees[other] for other in chain.neighbours[link]), reverse=True)
     return chain.degrees[link], [-degree for degree in beside], link
 
 
 def assur_groups(chain: Chain, ground: int, driver: int) -> list[AssurGroup[int]]:
-    """The groups in solving order, with ``driver`` moved against the ground, of mobility 1: with no
-    rigid part, what is left then always falls into groups."""
+    """Return the groups in solving order, with ``driver`` moved against the ground, of mobility 1:
+    without a rigid part, the remaining links then always fall into groups."""
     placed = {ground, driver}
     order: list[AssurGroup[int]] = []
     while len(placed) < chain.links:
@@ -275,5 +275,5 @@ def assur_groups(chain: Chain, ground: int, driver: int) -> list[AssurGroup[int]
 
 
 def mechanism_class(chain: Chain, ground: int, driver: int) -> int:
-    """The highest class of its groups."""
+    """Return the highest class of its groups."""
     return max(group.class_number for group in assur_groups(chain, ground, driver))

@@ -1,4 +1,4 @@
-r"""A kinematic chain: links, and the joints of one freedom that hold two of them each.
+r"""Kinematic chain: links, and the joints of one freedom that hold two of them each.
 
 ::
 
@@ -8,10 +8,10 @@ r"""A kinematic chain: links, and the joints of one freedom that hold two of the
         /         \                       |     |
        o===========o                      0 --- 3
 
-Corners are told apart by their colour and what they are joined to, again and again; where some are
+Corners are distinguished by their colour and their neighbours, again and again; where some are
 still alike, each of them is tried as the first (individualisation and refinement, B. D. McKay,
-Practical graph isomorphism, 1981, without its pruning: the graphs here have a dozen corners). The
-labellings that give the least form are one another's by the symmetries of the graph.
+Practical graph isomorphism, 1981, without its pruning: the graphs here have a dozen corners).
+Symmetries of the graph relate the labellings that give the least form.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True)
 class Labelled:
-    """The canonical ``form`` (colours, then rows of edge kinds) and all labellings that give it:
-    where each corner goes. Two graphs are isomorphic where their forms are equal."""
+    """Canonical ``form`` (colours, then rows of edge kinds) and all labellings that give it: the
+    new place of each corner. Two graphs are isomorphic where their forms are equal."""
 
     form: Form
     labellings: tuple[tuple[int, ...], ...]
 
     @property
     def orbits(self) -> list[tuple[int, ...]]:
-        """The corners that symmetries carry into one another, each set by increasing number."""
+        """Corners that symmetries carry into one another, each set by increasing number."""
         first = self.labellings[0]
         corner_at = {place: corner for corner, place in enumerate(first)}
         own = {
@@ -46,12 +46,12 @@ class Labelled:
 
     @property
     def symmetries(self) -> int:
-        """How many there are, the one that moves nothing with them."""
+        """Number of symmetries, with the identity."""
         return len(self.labellings)
 
 
 def canonical(corners: int, edges: Mapping[Edge, int], colours: Sequence[int]) -> Labelled:
-    """The canonical labelling of a graph with coloured corners and kinds of edges."""
+    """Return the canonical labelling of a graph with coloured corners and kinds of edges."""
     beside: list[dict[int, int]] = [{} for _ in range(corners)]
     for (a, b), kind in edges.items():
         beside[a][b] = beside[b][a] = kind
@@ -68,13 +68,13 @@ def canonical(corners: int, edges: Mapping[Edge, int], colours: Sequence[int]) -
 
 
 def _form(beside: list[dict[int, int]], colours: Sequence[int], order: list[int]) -> Form:
-    """The graph as it reads with its corners in an order."""
+    """Return the form of the graph with its corners in an order."""
     rows = (tuple(beside[a].get(b, 0) for b in order[: k + 1]) for k, a in enumerate(order))
     return (tuple(colours[corner] for corner in order), *rows)
 
 
 def _leaves(beside: list[dict[int, int]], colours: list[int]) -> Iterator[list[int]]:
-    """The orders of the corners that are left where all are told apart."""
+    """Yield the orders of the corners that remain where all are distinguished."""
     refined = _refined(beside, colours)
     alike: dict[int, list[int]] = {}
     for corner, colour in enumerate(refined):
@@ -90,7 +90,7 @@ def _leaves(beside: list[dict[int, int]], colours: list[int]) -> Iterator[list[i
 
 
 def _refined(beside: list[dict[int, int]], colours: list[int]) -> list[int]:
-    """Colours that also tell the colours of what each corner is joined to, numbered from 0."""
+    """Refine colours by those of each corner's neighbours, numbered from 0."""
     while True:
         told = [
             (colours[corner], sorted((kind, colours[other]) for other, kind in own.items()))
@@ -107,13 +107,13 @@ def _refined(beside: list[dict[int, int]], colours: list[int]) -> list[int]:
 
 
 Joint = tuple[int, int]
-"""The two links of a joint, the lower number first."""
+"""Two links of a joint, the lower number first."""
 NAMES_OF_LINKS = {2: "binary", 3: "ternary", 4: "quaternary", 5: "quinary", 6: "senary"}
 
 
 @dataclass(frozen=True)
 class Chain:
-    """``links`` many links, numbered from 0, and their simple ``joints``, two links in each.
+    """Links, ``links`` in number from 0 on, and their simple ``joints``, two links in each.
 
     ``sliders`` holds the joints that are prismatic; the others are pins.
     """
@@ -124,34 +124,34 @@ class Chain:
 
     @staticmethod
     def of(links: int, joints: Iterable[Joint], sliders: Iterable[Joint] = ()) -> Chain:
-        """The chain of these joints, in order."""
+        """Make the chain of these joints, in order."""
         return Chain(links, tuple(sorted(map(_sorted, joints))), frozenset(map(_sorted, sliders)))
 
     @property
     def mobility(self) -> int:
-        """W = 3 (n - 1) - 2 p of its links against one of them."""
+        """Mobility W = 3 (n - 1) - 2 p of its links against one of them."""
         return mobility_by_count(self.links, len(self.joints))
 
     @property
     def loops(self) -> int:
-        """Its independent loops."""
+        """Number of independent loops."""
         return len(self.joints) - self.links + 1
 
     @cached_property
     def degrees(self) -> tuple[int, ...]:
-        """The joints of each link."""
+        """Number of joints of each link."""
         count = Counter(link for joint in self.joints for link in joint)
         return tuple(count[link] for link in range(self.links))
 
     @property
     def assortment(self) -> tuple[int, ...]:
-        """How many links are binary, ternary, and so on."""
+        """Numbers of binary, ternary, ... links."""
         count = Counter(self.degrees)
         return tuple(count[k] for k in range(2, max(count, default=2) + 1))
 
     @cached_property
     def neighbours(self) -> tuple[frozenset[int], ...]:
-        """The links that share a joint with each."""
+        """Links that share a joint with each."""
         beside: list[set[int]] = [set() for _ in range(self.links)]
         for a, b in self.joints:
             beside[a].add(b)
@@ -159,17 +159,17 @@ class Chain:
         return tuple(map(frozenset, beside))
 
     def joints_of(self, link: int) -> list[Joint]:
-        """The joints of a link."""
+        """Return the joints of a link."""
         return [joint for joint in self.joints if link in joint]
 
     def labelled(self, ground: int | None = None) -> Labelled:
-        """The canonical labelling, with a link marked as the ground or with none."""
+        """Return the canonical labelling, with a link marked as the ground or with none."""
         marks = [int(link == ground) for link in range(self.links)]
         kinds = {joint: 2 if joint in self.sliders else 1 for joint in self.joints}
         return canonical(self.links, kinds, marks)
 
     def relabelled(self) -> Chain:
-        """The same chain with its links in canonical order: isomorphic chains become equal."""
+        """Return the chain with its links in canonical order: isomorphic chains become equal."""
         place = self.labelled().labellings[0]
         return Chain.of(
             self.links,
@@ -179,18 +179,18 @@ class Chain:
 
 
 def mobility_by_count(links: int, joints: int) -> int:
-    """W = 3 (n - 1) - 2 p of a planar chain against one of its links (Kutzbach and Gruebler)."""
+    """Return W = 3 (n - 1) - 2 p of a planar chain against a link (Kutzbach and Gruebler)."""
     return 3 * (links - 1) - 2 * joints
 
 
 def joints_for(links: int, mobility: int) -> int | None:
-    """The joints of one freedom that give a mobility; None where no whole number does."""
+    """Return the number of joints of one freedom for a mobility; None where none is whole."""
     twice = 3 * (links - 1) - mobility
     return twice // 2 if twice >= 0 and twice % 2 == 0 else None
 
 
 def assortments(links: int, mobility: int) -> list[tuple[int, ...]]:
-    """How many binary, ternary, ... links there may be: all that the counts allow.
+    """Return the possible numbers of binary, ternary, ... links: all that the counts allow.
 
     They are the solutions of sum n_k = n and sum k n_k = 2 p in whole numbers, with no link of
     more joints than loops and one (J. Uicker, G. Pennock, J. Shigley, Theory of Machines and
@@ -204,7 +204,7 @@ def assortments(links: int, mobility: int) -> list[tuple[int, ...]]:
 
 
 def _split(links: int, ends: int, most: int) -> list[tuple[int, ...]]:
-    """Counts of links with 2 to ``most`` joints that have so many ``ends`` of joints."""
+    """Return counts of links with 2 to ``most`` joints that have so many ``ends`` of joints."""
     if most == 2:
         return [(links,)] if 2 * links == ends else []
     ways: list[tuple[int, ...]] = []
@@ -217,7 +217,7 @@ def _split(links: int, ends: int, most: int) -> list[tuple[int, ...]]:
 
 
 def assortment_in_words(counts: tuple[int, ...]) -> str:
-    """4 binary, 2 ternary."""
+    """Return the counts in words: 4 binary, 2 ternary."""
     return ", ".join(
         f"{count} {NAMES_OF_LINKS.get(k, f'{k}-joint')}"
         for k, count in enumerate(counts, 2)
@@ -226,7 +226,7 @@ def assortment_in_words(counts: tuple[int, ...]) -> str:
 
 
 def has_rigid_part(chain: Chain) -> bool:
-    """Whether links of it, but not all, have by count no freedom among themselves."""
+    """True if some of its links, but not all, have by count no freedom among themselves."""
     mask = [sum(1 << other for other in beside) for beside in chain.neighbours]
     inside = [0] * (1 << chain.links)  # joints among the links of each set
     for part in range(1, (1 << chain.links) - 1):

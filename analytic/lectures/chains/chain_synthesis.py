@@ -1,15 +1,15 @@
-"""Number and type synthesis: all distinct chains of so many links with a wanted mobility, and which
-of their joints may be sliders.
+"""Number and type synthesis: all distinct chains of so many links with a wanted mobility, and the
+choices of sliders among their joints.
 
 A chain without a link whose loss would part it is a loop, to which open chains of links are added,
-each between two of its links (the ear decomposition of H. Whitney, 1932). What has a rigid part can
-not lose it by an addition, and is dropped at once; of isomorphic ones one is kept.
+each between two of its links (the ear decomposition of H. Whitney, 1932). A chain with a rigid part
+can not lose it by an addition, and is dropped at once; one of each isomorphic set is kept.
 
 Published counts: 1, 2, 16, 230 chains of 4, 6, 8, 10 links with one freedom.
 
-A slider holds the angle of its two links, a pin some of their place. A choice is a mechanism where
-the constraints are independent with its joints anywhere, and every joint moves: so a loop with one
-pin is none, as its three sliders hold the angle at the pin.
+A slider holds the angle of its two links, a pin some of their place. A choice is a mechanism if the
+constraints are independent with its joints anywhere, and every joint moves: a loop with one pin is
+none, as its three sliders hold the angle at the pin.
 """
 
 import itertools
@@ -30,15 +30,15 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 FEWEST, MOST = 3, 10
-"""Links of chains that are enumerated."""
+"""Fewest and most links of enumerated chains."""
 MOST_MOBILITY = 7
 WATT, STEPHENSON = "Watt", "Stephenson"
 
 
 @cache
 def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
-    """All distinct chains with pins of two links each, which no link parts and of which no part is
-    rigid, by assortment.
+    """Return all distinct chains with pins of two links each, without a rigid part and without a
+    link whose loss would part them, by assortment.
 
     Raises CrankcheckError where no count of joints gives the mobility, and for more links than are
     enumerated.
@@ -55,7 +55,7 @@ def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
 
 
 def _joints_that_give(links: int, mobility: int) -> int:
-    """The count of joints. Raises CrankcheckError for what has no chain."""
+    """Return the number of joints. Raises CrankcheckError where no chain exists."""
     if not FEWEST <= links <= MOST:
         raise CrankcheckError(
             f"{links} links: chains are enumerated of {FEWEST} to {MOST} links; take so many"
@@ -80,7 +80,7 @@ def _ring(links: int) -> list[tuple[int, int]]:
 
 
 def _with_an_ear(chain: Chain, most: int) -> Iterator[Chain]:
-    """The chain with an open chain of new links, or one joint, between any two of its links."""
+    """Yield the chain with an open chain of new links, or a joint, between any two links."""
     for a, b in itertools.combinations(range(chain.links), 2):
         for new in range(most - chain.links + 1):
             if new == 0 and b in chain.neighbours[a]:
@@ -90,20 +90,20 @@ def _with_an_ear(chain: Chain, most: int) -> Iterator[Chain]:
 
 
 def _may_be(chain: Chain, links: int, mobility: int) -> bool:
-    """Whether a chain may be the whole, or a part of one that is larger."""
+    """True if a chain may be the whole, or a part of a larger one."""
     own = mobility_by_count(chain.links, len(chain.joints))
     return own == mobility if chain.links == links else own >= 1
 
 
 def _rank(chain: Chain) -> tuple[object, ...]:
-    """Chains with fewer joints in a link first; Watt's before Stephenson's."""
+    """Rank chains with fewer joints in a link first; Watt's before Stephenson's."""
     large = [k for k, degree in enumerate(chain.degrees) if degree > 2]
     joined = sum(b in chain.neighbours[a] for a, b in itertools.combinations(large, 2))
     return len(chain.assortment), chain.assortment[::-1], -joined, chain.joints
 
 
 def chain_names(every: Iterable[Chain]) -> list[str]:
-    """What the field calls them, or their numbers."""
+    """Return the names of chains in the literature, or their numbers."""
     return [_known_name(chain) or f"{k}" for k, chain in enumerate(every, 1)]
 
 
@@ -118,12 +118,12 @@ def _known_name(chain: Chain) -> str:
 
 SEED = 18
 RANK = 1e-9
-"""Singular values below this share of the largest are rounding."""
+"""Share of the largest singular value below which others are rounding."""
 
 
 @cache
 def types(chain: Chain, most_sliders: int) -> tuple[Chain, ...]:
-    """All distinct chains with up to so many of the joints sliders, those with fewer first."""
+    """Return all distinct chains with up to so many sliders among the joints, the fewest first."""
     kept: list[Chain] = []
     for count in range(min(most_sliders, len(chain.joints)) + 1):
         seen = set()
@@ -137,8 +137,8 @@ def types(chain: Chain, most_sliders: int) -> tuple[Chain, ...]:
 
 
 def every_joint_moves(chain: Chain) -> bool:
-    """Whether a chain has the mobility of the count, and no joint that stands still, where its
-    joints are anywhere: by the rank of its velocity equations at a place drawn by lot."""
+    """True if a chain has the mobility of the count, and every joint moves, with its joints
+    anywhere: by the rank of its velocity equations at a random position."""
     draw = np.random.default_rng(SEED)
     rows = [_rows(chain, joint, draw) for joint in chain.joints]
     held = np.vstack([constraint for constraint, _ in rows])
@@ -153,8 +153,8 @@ def every_joint_moves(chain: Chain) -> bool:
 
 
 def _rows(chain: Chain, joint: Joint, draw: np.random.Generator) -> tuple[Array, Array]:
-    """The two constraints on (vx, vy, omega) of all links, (2, 3 n), and what its freedom is of
-    them, (3 n,)."""
+    """Return the two constraints on (vx, vy, omega) of all links, (2, 3 n), and the row of the
+    joint's freedom, (3 n,)."""
     a, b = (slice(3 * link, 3 * link + 3) for link in joint)
     (x, y), angle = draw.uniform(-1.0, 1.0, 2), draw.uniform(0.0, np.pi)
     places = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])  # velocity there of what moves so
@@ -172,7 +172,7 @@ def _rows(chain: Chain, joint: Joint, draw: np.random.Generator) -> tuple[Array,
 
 
 def type_in_letters(chain: Chain) -> str:
-    """RRRP: the joints of a loop in order, the sliders last; of other chains how many there are."""
+    """Return RRRP: the joints of a loop in order, sliders last; for other chains their numbers."""
     if len(chain.joints) != chain.links:
         pins = len(chain.joints) - len(chain.sliders)
         return f"{pins}R" + (f"{len(chain.sliders)}P" if chain.sliders else "")
@@ -183,7 +183,7 @@ def type_in_letters(chain: Chain) -> str:
 
 
 def _around(chain: Chain) -> list[Joint]:
-    """The joints of a chain that is one loop, in order."""
+    """Return the joints of a chain of one loop, in order."""
     order, link = [chain.joints[0]], chain.joints[0][1]
     while len(order) < len(chain.joints):
         joint = next(one for one in chain.joints_of(link) if one != order[-1])

@@ -1,8 +1,8 @@
-"""Where a draughtsman would put the joints of a chain: no link over another, bars of like length.
+"""Layout of the joints of a chain as on a drawing: no link over another, bars of like length.
 
 Many starts are improved at once, by chance but from a fixed seed: places by springs between all
-joints, and with a loop of links outside and the rest in the middle of what holds it (W. T. Tutte,
-How to draw a graph, 1963); then steps that lower a measure of what disturbs the eye.
+joints, and with a loop of links outside and each other joint in the middle of its neighbours (W. T.
+Tutte, How to draw a graph, 1963); then steps that lower the cost of a drawing.
 """
 
 import itertools
@@ -15,25 +15,25 @@ from analytic.lectures.chains.chain import Chain, Joint
 from models.array import Array
 
 SEED, SPRUNG, PULLS, RINGS = 18, 24, 40, 48
-"""Of the chance; starts by springs and how often these pull; starts with a loop outside."""
+"""Seed; numbers of starts by springs, of their pulls, and of starts with a loop outside."""
 KEPT, TRIES, ROUNDS, REACH, GOOD = 20, 10, 240, (0.35, 0.012), 0.12
-"""Starts that are improved; steps of each tried at once, how often, the length of the first and the
-last [bars], and a cost for each joint above six that is as good as none."""
+"""Improved starts; steps of each tried at once, their number, the length of the first and the last
+[bars], and the cost for each joint above six that is as good as none."""
 FINAL = 4
-"""After this share of the rounds this share of the starts is left."""
+"""Divisor of the rounds, after which the starts are divided by it as well."""
 CLEAR = 0.42
-"""Distance [bars] from a bar to a joint that is not on it, that is enough."""
+"""Sufficient distance [bars] from a bar to a joint that is not on it."""
 SHARP = 0.5
-"""The sine of an angle between two links at a joint that is enough."""
+"""Sufficient sine of an angle between two links at a joint."""
 CROSSING, CLOSE, POINTED, UNEVEN, HOLLOW = 30.0, 12.0, 4.0, 1.0, 20.0
 """Costs: of two bars that cross, a joint too near a bar, a sharp angle, a bar of another length
-than 1, and a plate with a corner that is none."""
+than 1, and a plate with a false corner."""
 
 
 @dataclass(frozen=True)
 class Outline:
-    """The chain's joints ``at`` places (p, 2), the bars being about 1 long; ``cost`` tells what
-    disturbs the eye, and ``crossings`` how many bars cross."""
+    """Chain's joints ``at`` places (p, 2), the bars being about 1 long; ``cost`` of the drawing,
+    and the number ``crossings`` of bars."""
 
     at: Array
     cost: float
@@ -41,8 +41,8 @@ class Outline:
 
 
 class _Pattern:
-    """What of a chain the measure looks at: edges of links, and pairs of these with each other and
-    with joints."""
+    """Parts of a chain for the cost: edges of links, and pairs of these with each other and with
+    joints."""
 
     def __init__(self, chain: Chain) -> None:
         place = {joint: k for k, joint in enumerate(chain.joints)}
@@ -77,7 +77,7 @@ class _Pattern:
         self.joints = len(chain.joints)
 
     def cost(self, at: Array) -> tuple[Array, Array]:
-        """What disturbs the eye of places (k, p, 2), and the crossings, (k,) each."""
+        """Return the cost of places (k, p, 2), and the crossings, (k,) each."""
         a, b = at[:, self.edges[:, 0]], at[:, self.edges[:, 1]]
         along = b - a
         length = np.hypot(along[..., 0], along[..., 1])
@@ -102,7 +102,7 @@ class _Pattern:
         return np.asarray(((one < 0.0) & (other < 0.0)).sum(axis=1))
 
     def _distances(self, at: Array, a: Array, along: Array) -> Array:
-        """Of joints from the edges of links that they are not on."""
+        """Return the distances of joints from the edges of links that they are not on."""
         point, edge = self.off.T
         to, way = at[:, point] - a[:, edge], along[:, edge]
         share = (to * way).sum(axis=2) / np.maximum((way * way).sum(axis=2), 1e-12)
@@ -110,7 +110,7 @@ class _Pattern:
         return np.asarray(np.hypot(left[..., 0], left[..., 1]))
 
     def _sharpness(self, at: Array) -> Array:
-        """By how much the cosine of angles at joints, between two links, is too large."""
+        """Return the excess of the cosine of angles at joints, between two links."""
         own, one, other = self.corners.T
         u, v = at[:, one] - at[:, own], at[:, other] - at[:, own]
         size = np.hypot(u[..., 0], u[..., 1]) * np.hypot(v[..., 0], v[..., 1])
@@ -123,7 +123,7 @@ def _cross(u: Array, v: Array) -> Array:
 
 
 def _hollow(corners: Array) -> Array:
-    """How far plates (k, c, 2) are from having all their joints at corners that stand out."""
+    """Return the deviation of plates (k, c, 2) from convex ones with a joint at each corner."""
     middle = corners.mean(axis=1, keepdims=True)
     angle = np.arctan2(*np.moveaxis((corners - middle)[..., ::-1], -1, 0))
     order = np.argsort(angle, axis=1)
@@ -136,7 +136,7 @@ def _hollow(corners: Array) -> Array:
 
 @cache
 def layout(chain: Chain) -> Outline:
-    """The places of the joints, in the order of ``chain.joints``, its longest side level."""
+    """Return the places of the joints, ordered as ``chain.joints``, the longest side level."""
     pattern = _Pattern(chain)
     draw = np.random.default_rng(SEED)
     starts = np.concatenate([_sprung(pattern, draw), _with_loops_outside(chain, pattern, draw)])
@@ -147,7 +147,7 @@ def layout(chain: Chain) -> Outline:
 
 
 def _sprung(pattern: _Pattern, draw: np.random.Generator) -> Array:
-    """Places by springs from starts by lot, (k, p, 2): distances as those along the links."""
+    """Place joints by springs from random starts, (k, p, 2): distances as along the links."""
     want = _steps_apart(pattern)
     at = draw.normal(size=(SPRUNG, pattern.joints, 2)) * np.sqrt(pattern.joints) / 2
     weight = 1.0 / want**2
@@ -162,7 +162,7 @@ def _sprung(pattern: _Pattern, draw: np.random.Generator) -> Array:
 
 
 def _steps_apart(pattern: _Pattern) -> Array:
-    """How many links lead from each joint to each other, (p, p); 1 where it is the same."""
+    """Return the number of links from each joint to each other, (p, p); 1 on the diagonal."""
     p = pattern.joints
     steps = np.full((p, p), float(p))
     np.fill_diagonal(steps, 0.0)
@@ -175,8 +175,8 @@ def _steps_apart(pattern: _Pattern) -> Array:
 
 
 def _with_loops_outside(chain: Chain, pattern: _Pattern, draw: np.random.Generator) -> Array:
-    """Places with one of the longest loops on a circle, each other joint in the middle of those
-    that it shares links with, (k, p, 2), and a little chance."""
+    """Return places with one of the longest loops on a circle, each other joint in the middle of
+    those that it shares links with, (k, p, 2), and a little chance."""
     place = {joint: k for k, joint in enumerate(chain.joints)}
     loops = sorted(_loops(chain), key=len, reverse=True)
     starts = []
@@ -200,7 +200,7 @@ def _with_loops_outside(chain: Chain, pattern: _Pattern, draw: np.random.Generat
 
 
 def _loops(chain: Chain) -> list[list[int]]:
-    """All closed ways over links, each once."""
+    """Return all closed ways over links, each once."""
     loops: list[list[int]] = []
     ways = [[link] for link in range(chain.links)]
     while ways:
@@ -214,7 +214,7 @@ def _loops(chain: Chain) -> list[list[int]]:
 
 
 def _improved(pattern: _Pattern, at: Array, draw: np.random.Generator) -> Array:
-    """The best of the places that walks of ever shorter steps come to from (k, p, 2), (p, 2)."""
+    """Return the best places from walks of ever shorter steps from (k, p, 2), (p, 2)."""
     value = pattern.cost(at)[0]
     for k, reach in enumerate(np.geomspace(*REACH, ROUNDS)):
         if k == ROUNDS // FINAL:
@@ -235,7 +235,7 @@ def _improved(pattern: _Pattern, at: Array, draw: np.random.Generator) -> Array:
 
 
 def _level(at: Array) -> Array:
-    """The places about their middle, turned so that they are wide and low."""
+    """Return the places about their middle, turned to be wide and low."""
     at = at - (at.max(axis=0) + at.min(axis=0)) / 2
     turns = np.linspace(0.0, np.pi, 181)
     wide = [np.ptp(_turned(at, turn)[:, 1]) for turn in turns]
@@ -249,5 +249,5 @@ def _turned(at: Array, angle: float) -> Array:
 
 
 def joints_at(chain: Chain) -> dict[Joint, Array]:
-    """The place of each joint."""
+    """Return the place of each joint."""
     return dict(zip(chain.joints, layout(chain).at, strict=True))

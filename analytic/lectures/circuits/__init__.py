@@ -1,1 +1,1 @@
-"""Circuits and branches of a mechanism, and what its links do on the one that it is on."""
+"""Circuits and branches of a mechanism, and the motion of its links on its own branch."""

@@ -1,8 +1,8 @@
 """Arcs: the driver angles over which a mechanism closes with given branches of all its dyads.
 
-Dyads are taken in solving order. Over an arc of those before it, a dyad closes on parts of the arc,
-whose ends are its own limit positions or those of the arc. Looks at an arc are spread by the cosine
-of a parameter, and so lie close beside its ends, where what hangs on a dyad moves like a root.
+Dyads are taken in solving order. Over an arc of the earlier ones, a dyad closes on parts of the
+arc, whose ends are its own limit positions or those of the arc. Samples of an arc are spread by the
+cosine of a parameter, and so lie close beside its ends, where later groups move like a root.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from models.errors import StructureError
 from models.scene import Scene
 
 LOOKS = 1440
-"""Looks at an arc."""
+"""Number of samples of an arc."""
 HALVINGS = 60
 NARROW = 0.02
-"""Of an arc: a part of it that is less wide has few of its looks, and is looked at anew."""
+"""Width of a part over that of its arc, below which it has few samples, and is scanned anew."""
 ROUNDING = 64 * EPS
-"""What a dyad may be open by, over the longest link, and counts as closed: at a change point."""
+"""Allowed gap of a closed dyad, over the longest link: at a change point."""
 GAP = 1e-6
-"""Driver angles [rad] over which a dyad is open, or closes, and which are none: a change point, or
-a place where it just closes, to a root of rounding."""
+"""Width of a driver range [rad], open or closed, that counts as none: a change point, or a place
+where it just closes, to a root of rounding."""
 MOST = 8
-"""Dyads with two assemblies, 256 sets of signs, beyond which it takes a minute."""
+"""Most dyads with two assemblies: 256 sets of signs, beyond which it takes a minute."""
 
 Signs = tuple[int, ...]
 
 
 @dataclass(frozen=True)
 class ArcEnd:
-    """A limit position of the driver: its angle [rad] and the dyad whose two assemblies meet."""
+    """Limit position of the driver: its angle [rad] and the dyad whose two assemblies meet."""
 
     angle_rad: float
     dyad: str
@@ -48,7 +48,7 @@ class ArcEnd:
 
 @dataclass(frozen=True)
 class Arc:
-    """A branch: driver angles from ``low`` to ``high``, with the ``signs`` of the dyads. A driver
+    """Branch: driver angles from ``low`` to ``high``, with the ``signs`` of the dyads. A driver
     that turns fully has no ends."""
 
     signs: Signs
@@ -57,19 +57,19 @@ class Arc:
 
     @property
     def range_rad(self) -> tuple[float, float]:
-        """The driver's angles [rad]; a turn from -pi on where it turns fully."""
+        """Driver's angles [rad]; a turn from -pi on where it turns fully."""
         if self.low is None or self.high is None:
             return -math.pi, math.pi
         return self.low.angle_rad, self.high.angle_rad
 
     def holds(self, theta: float, slack: float = 0.0) -> bool:
-        """Whether a driver angle [rad] is on it, whole turns apart."""
+        """True if a driver angle [rad] is on it, whole turns apart."""
         low, high = self.range_rad
         off = math.remainder(theta - 0.5 * (low + high), math.tau)
         return self.low is None or abs(off) <= 0.5 * (high - low) + slack
 
     def angles(self, count: int) -> Array:
-        """So many driver angles from end to end [rad], close beside the ends of a limited one."""
+        """Return so many driver angles from end to end [rad], close beside limited ends."""
         low, high = self.range_rad
         if self.low is None:
             return np.linspace(low, high, count)
@@ -79,7 +79,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class SignedScene:
-    """A scene of dyads, driven at a crank, whose branches are chosen by signs in the order of
+    """Scene of dyads, driven at a crank, whose branches are chosen by signs in the order of
     ``dyads``."""
 
     scene: Scene
@@ -87,7 +87,7 @@ class SignedScene:
 
     @staticmethod
     def of(scene: Scene) -> SignedScene:
-        """Raises StructureError for another driver, and for groups that are no dyads."""
+        """Take a scene. Raises StructureError for another driver, and for other groups."""
         if not scene.driver.is_crank:
             raise StructureError(
                 f"{scene.name}: circuits were asked for, and {scene.driver.joint} drives; they are "
@@ -110,20 +110,20 @@ class SignedScene:
 
     @property
     def signs(self) -> Signs:
-        """Those of the scene's own branches."""
+        """Signs of the scene's own branches."""
         return tuple(self.scene.branch.get(key, 1) for key in self.dyads)
 
     @property
     def start_rad(self) -> float:
-        """The driver's angle at time 0."""
+        """Driver's angle at time 0."""
         return prepared(self.scene).start
 
     def with_signs(self, signs: Signs) -> Scene:
-        """The scene on other branches."""
+        """Return the scene on other branches."""
         return replace(self.scene, branch=dict(zip(self.dyads, signs, strict=True)))
 
     def chunk(self, signs: Signs, theta: Array) -> Chunk:
-        """The mechanism with these signs at driver angles [rad], open dyads stretched."""
+        """Return the mechanism with these signs at driver angles [rad], open dyads stretched."""
         padded = signs + (1,) * (len(self.dyads) - len(signs))
         return stretched(self.with_signs(padded), self._steps, theta)
 
@@ -132,14 +132,14 @@ class SignedScene:
         return tuple(prepared(self.scene).steps)
 
     def shortage(self, signs: Signs, theta: Array) -> Array:
-        """By how much the last of the dyads that signs are given of is open [m], <= 0 closes."""
+        """Return the shortage of the last dyad with a given sign [m], <= 0 closes."""
         short = self.chunk(signs, theta).shortage.get(self.dyads[len(signs) - 1], -np.inf)
         less = ROUNDING * self.scene.longest_m
         return np.array(np.broadcast_to(np.nan_to_num(short, nan=np.inf), theta.shape)) - less
 
 
 def arcs(signed: SignedScene) -> list[Arc]:
-    """All branches of a mechanism, in the order of their signs, + before -, and of the driver."""
+    """Return all branches of a mechanism, ordered by their signs, + before -, and the driver."""
     found = [Arc(())]
     for _ in signed.dyads:
         parts = [list(_closing(signed, arc)) for arc in found]
@@ -153,7 +153,7 @@ def arcs(signed: SignedScene) -> list[Arc]:
 
 
 def _closing(signed: SignedScene, arc: Arc) -> Iterator[Arc]:
-    """The parts of an arc over which the next dyad closes: whatever its own sign."""
+    """Yield the parts of an arc over which the next dyad closes, for either sign of it."""
     signs = (*arc.signs, 1)
     key = signed.dyads[len(arc.signs)]
     theta = with_valleys(lambda looks: signed.shortage(signs, looks), arc.angles(LOOKS + 1))
@@ -188,7 +188,7 @@ def _width(arc: Arc) -> float:
 
 
 def _merged(arc: Arc, opens: list[ArcEnd], shuts: list[ArcEnd]) -> Iterator[Arc]:
-    """The parts of an arc between their ends, without gaps that are rounding."""
+    """Yield the parts of an arc between their ends, without gaps by rounding."""
     parts: list[tuple[ArcEnd, ArcEnd]] = []
     for one, other in zip(opens, shuts, strict=True):
         if parts and one.angle_rad - parts[-1][1].angle_rad < GAP:
@@ -207,19 +207,19 @@ def _merged(arc: Arc, opens: list[ArcEnd], shuts: list[ArcEnd]) -> Iterator[Arc]
 
 
 def _later(end: ArcEnd) -> ArcEnd:
-    """An end a turn of the driver later."""
+    """Return an end a turn of the driver later."""
     return ArcEnd(end.angle_rad + math.tau, end.dyad)
 
 
-"""Looks at a turn of the driver."""
+"""Samples of a turn of the driver."""
 
 
 def own_arc(scene: Scene) -> Arc:
-    """The driver's angles about its start [rad]; of a slider its place over the driver's scale.
-    Raises ReachError where the scene can not be assembled at its start.
+    """Return the driver's range about its start [rad]; for a slider, places over the driver's
+    scale. Raises ReachError where the scene can not be assembled at its start.
 
-    As far as the driver goes both ways from where it stands at time 0; ends are found by looks, and
-    refined. A part in which the mechanism is open that is narrower than a look is passed over.
+    It is the range of the driver both ways from its start; ends are found by samples, and refined.
+    An open part narrower than a sample's width is passed over.
     """
     ready = prepared(scene)
     ready.chunk(np.array([ready.start]), 0.0, 0.0, None)
@@ -230,8 +230,8 @@ def own_arc(scene: Scene) -> Arc:
 
 
 def _end(ready: Prepared, way: float) -> ArcEnd | None:
-    """The first driver angle from the start on, one way, beyond which it is open; None where there
-    is none within a period."""
+    """Return the first driver angle from the start on, one way, beyond which it is open; None if
+    there is none within a period."""
     most = max(ready.period, ready.looked_turns * math.tau)
     theta = ready.start + way * np.linspace(0.0, most, LOOKS * round(most / math.tau) + 1)
     opens = np.flatnonzero(shortage(ready.stretched, theta) > 0.0)

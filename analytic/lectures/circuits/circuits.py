@@ -1,9 +1,9 @@
-r"""Circuits: the pieces that all configurations of a mechanism fall into, each in one piece.
+r"""Circuits: the connected pieces of all configurations of a mechanism.
 
 ::
 
     output |   ____        Two branches of a dyad (+ and -) end in the same limit positions of the
-           | /   +  \     driver, and are there one: a circuit is what hangs together. To come from
+           | /   +  \     driver, and are there one: a circuit is one connected piece. To come from
            |<        >     one circuit to another a mechanism has to be taken apart; from one branch
            | \__ - _/     to another of its circuit it can be brought, but not by this driver.
            +----------- driver
@@ -31,7 +31,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 
 SAME = 1e-7
-"""Limit positions that are nearer [rad] are one: what hangs on a dyad near its own limit finds its
+"""Distance of limit positions [rad] that are one: groups after a dyad near its own limit have their
 place to a root of rounding."""
 
 Defect = Literal["none", "branch", "circuit", "order"]
@@ -39,7 +39,7 @@ Defect = Literal["none", "branch", "circuit", "order"]
 
 @dataclass(frozen=True)
 class Position:
-    """A configuration: the driver's angle [rad] and the signs of the dyads."""
+    """Configuration: the driver's angle [rad] and the signs of the dyads."""
 
     driver_rad: float
     signs: Signs
@@ -47,8 +47,8 @@ class Position:
 
 @dataclass(frozen=True)
 class Circuits:
-    """The circuits of a scene, each its branches; ``change_points`` is whether some of them meet
-    in change points, where those that do are counted as one."""
+    """Circuits of a scene, each its branches; ``change_points`` is True if some of them meet in
+    change points, and then count as one."""
 
     signed: SignedScene
     circuits: tuple[tuple[Arc, ...], ...]
@@ -56,12 +56,12 @@ class Circuits:
 
     @property
     def own(self) -> tuple[int, Arc]:
-        """The circuit, from 0 on, and the branch that the scene is on at time 0."""
+        """Circuit, from 0 on, and branch of the scene at time 0."""
         return self.place(Position(self.signed.start_rad, self.signed.signs))
 
     def place(self, position: Position) -> tuple[int, Arc]:
-        """The circuit, from 0 on, and the branch of a position. Raises CrankcheckError where the
-        mechanism can not be assembled so."""
+        """Return the circuit, from 0 on, and the branch of a position. Raises CrankcheckError where
+        the mechanism can not be assembled so."""
         for number, circuit in enumerate(self.circuits):
             for arc in circuit:
                 if arc.signs == position.signs and arc.holds(position.driver_rad, SAME):
@@ -76,10 +76,10 @@ class Circuits:
         )
 
     def defect(self, positions: Sequence[Position]) -> Defect:
-        """What keeps the driver from leading through the positions in their order: that they lie
-        on several circuits, on several branches of one, or are met in another order.
+        """Return the defect that keeps the driver from the positions in their order: they lie on
+        several circuits, on several branches of one, or are met in another order.
 
-        Of a driver that turns fully the order is that of either sense of turning.
+        A driver that turns fully may have either sense.
         """
         places = [self.place(position) for position in positions]
         if len({number for number, _ in places}) > 1:
@@ -90,7 +90,7 @@ class Circuits:
 
 
 def _in_order(arc: Arc, positions: Sequence[Position]) -> bool:
-    """Whether a driver that goes one way along an arc meets the positions as they are listed."""
+    """True if a driver that goes one way along an arc meets the positions in their order."""
     low = arc.range_rad[0]
     angles = [(position.driver_rad - low + SAME) % math.tau for position in positions]
     if arc.low is None:
@@ -101,12 +101,12 @@ def _in_order(arc: Arc, positions: Sequence[Position]) -> bool:
 
 
 def circuits_of(scene: Scene) -> Circuits:
-    """The circuits of a mechanism whose driver is a crank.
+    """Find the circuits of a mechanism whose driver is a crank.
 
     Raises
     ------
     StructureError
-        Another driver; a group that is no dyad; too many dyads.
+        Another driver; a group other than a dyad; too many dyads.
     CrankcheckError
         A limit position whose two sides do not fit together: as good as a change point.
     """
@@ -125,7 +125,7 @@ def circuits_of(scene: Scene) -> Circuits:
 
 
 def _beyond(signed: SignedScene, every: list[Arc], arc: Arc, end: ArcEnd, *, upper: bool) -> int:
-    """The branch that goes on from a limit position, back with the other sign of its dyad."""
+    """Return the branch beyond a limit position, back with the other sign of its dyad."""
     flipped = _flipped(signed, arc.signs, end.dyad)
     best, where = math.inf, -1
     for index, other in enumerate(every):
@@ -143,7 +143,7 @@ def _beyond(signed: SignedScene, every: list[Arc], arc: Arc, end: ArcEnd, *, upp
 
 
 def _join_change_points(signed: SignedScene, every: list[Arc], joined: list[int]) -> bool:
-    """Join the branches that meet in change points; whether there are any."""
+    """Join the branches that meet in change points; True if there are any."""
     meets, steps = False, prepared(signed.scene).steps
     for index, arc in enumerate(every):
         for key, passage in passages(signed.with_signs(arc.signs), steps).items():
@@ -177,7 +177,7 @@ ZOOMS, FINER = 8, 33
 
 @dataclass(frozen=True)
 class AngleExtreme:
-    """A value and the driver's angle [rad] at which it is taken."""
+    """Extreme value and its driver angle [rad]."""
 
     value: float
     driver_rad: float
@@ -185,8 +185,8 @@ class AngleExtreme:
 
 @dataclass(frozen=True)
 class Transmission:
-    """Of a dyad: the least sine [1]; of two links (RRR) the smallest and the largest transmission
-    angle [rad] as well; of a rod and slider (RRP) the largest pressure angle [rad]."""
+    """Dyad's least sine [1]; for two links (RRR) also the smallest and the largest transmission
+    angle [rad]; for a rod and slider (RRP) the largest pressure angle [rad]."""
 
     dyad: str
     kind: str
@@ -196,16 +196,16 @@ class Transmission:
 
     @property
     def pressure_rad(self) -> float | None:
-        """The largest pressure angle [rad], of a dyad with a slider outside."""
+        """Largest pressure angle [rad], of a dyad with a slider outside."""
         return math.acos(min(self.least_sine.value, 1.0)) if self.kind == "RRP" else None
 
 
 def transmissions(circuits: Circuits) -> tuple[list[Transmission], AngleExtreme]:
-    """Those of the dyads in solving order, over the branch that the scene is on, and the least
-    index of merit of the whole.
+    """Return the transmissions of the dyads in solving order, over the scene's branch, and the
+    least index of merit of the whole.
 
-    The sine of a dyad is its conditioning: of two links (RRR) that of the transmission angle, of a
-    rod and a slider (RRP) the cosine of the pressure angle. The determinant of the constraint
+    The sine of a dyad is its conditioning: for two links (RRR) that of the transmission angle, for
+    a rod and a slider (RRP) the cosine of the pressure angle. The determinant of the constraint
     equations of the whole mechanism is the product of the dyads' own, as they are solved one after
     the other; over the lengths in it, the product of the sines is its index of merit: 1 at best, 0
     at a dead point.
@@ -239,7 +239,7 @@ def _merit(chunk: Chunk, group: Group) -> Array:
 
 
 def _angle(chunk: Chunk, group: Group) -> Array:
-    """The angle at the inner pin between the lines to the outer ones [rad], 0 to pi."""
+    """Return the angle at the inner pin between the lines to the outer ones [rad], 0 to pi."""
     inner = chunk.point(group.first, group.inner).p
     one = chunk.point(group.first, group.outer1).p - inner
     other = chunk.point(group.second, group.outer2).p - inner
@@ -249,7 +249,7 @@ def _angle(chunk: Chunk, group: Group) -> Array:
 
 
 def _extreme(circuits: Circuits, group: Group, of: object, sense: float) -> AngleExtreme:
-    """The largest (``sense`` 1) or smallest value over the branch."""
+    """Return the largest (``sense`` 1) or smallest value over the branch."""
     assert callable(of)
     ready, (_, arc) = prepared(circuits.signed.scene), circuits.own
     looks = arc.angles(LOOKS + 1)

@@ -1,8 +1,8 @@
-"""Which links turn fully against the ground and their neighbours, and how far others swing.
+"""Rotatability of links against the ground and their neighbours, and swing of the others.
 
-Over the branch that the mechanism is on. Where the driver turns fully whole turns are those counted
-with certainty (`analytic.change_points.turns`); else a link goes to and fro with the driver,
-between its extremes over the branch, each followed to rounding.
+All is over the mechanism's own branch. Where the driver turns fully, whole turns are counted with
+certainty (`analytic.change_points.turns`); else a link goes to and fro with the driver, between its
+extremes over the branch, each followed to rounding.
 
 Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions).
 
@@ -29,12 +29,12 @@ from models.scene.joints import block_name, joined_at
 LOOKS = 2880
 ZOOMS, FINER = 8, 33
 STILL_RAD = 1e-9
-"""A swing that is no more is none: the links keep their angle but for rounding."""
+"""Largest swing of links that keep their angle but for rounding."""
 
 
 @dataclass(frozen=True)
 class Rotation:
-    """How link ``link`` turns against ``against`` over a cycle of ``period_rad`` of the driver.
+    """Rotation of ``link`` against ``against`` over a cycle of ``period_rad`` of the driver.
 
     ``turns`` are the whole turns that it gains, counter-clockwise; without any it swings from
     ``low_rad`` to ``high_rad``, of which ``low_at_rad`` and ``high_at_rad`` are driver angles: its
@@ -56,14 +56,14 @@ class Rotation:
 
     @property
     def word(self) -> str:
-        """turns, swings or keeps its angle."""
+        """Word for it: turns, swings or keeps its angle."""
         if self.turns:
             return "turns"
         return "swings" if self.swing_rad > STILL_RAD else "keeps its angle"
 
 
 def neighbours(scene: Scene) -> list[tuple[str, str]]:
-    """The links by pairs with what they are pinned to or slide on, the ground first."""
+    """Return the pairs of links and their pinned or sliding neighbours, the ground first."""
     pairs = {(link, GROUND): None for link in scene.links}
     order = {name: k for k, name in enumerate(scene.links)}
     carried = {block_name(s): s.on for s in scene.sliders.values() if s.link is None}
@@ -78,8 +78,8 @@ def neighbours(scene: Scene) -> list[tuple[str, str]]:
 
 
 def rotations(scene: Scene, arc: Arc) -> list[Rotation]:
-    """How every link turns against the ground and against its neighbours, over a branch of its own:
-    that which the scene is on.
+    """Return the rotation of every link against the ground and its neighbours, over the scene's
+    branch ``arc``.
 
     Raises
     ------
@@ -131,8 +131,8 @@ class _Follower:
         )
 
     def _certain(self, link: str, against: str, seen: int) -> int:
-        """The turns as they are counted with certainty; those of links that keep an angle to the
-        driver or to the ground are told by it alone."""
+        """Return the turns counted with certainty; links that keep an angle to the driver or to the
+        ground follow these."""
         gains = prepared(self.scene).turns.gains
         cycle = self.period / math.tau
         own = {GROUND: 0.0, **gains}
@@ -145,7 +145,7 @@ class _Follower:
     def _extreme(
         self, link: str, against: str, relative: Array, sense: float
     ) -> tuple[float, float]:
-        """The largest (``sense`` 1) or smallest angle [rad], and the driver's angle there."""
+        """Return the largest (``sense`` 1) or smallest angle [rad], and its driver angle."""
         best = int(np.argmax(sense * relative))
         value, at = float(relative[best]), float(self.theta[best])
         low = float(self.theta[max(best - 1, 0)])
@@ -163,7 +163,7 @@ class _Follower:
 
 
 def _plain(scene: Scene, theta: Array) -> dict[str, Array]:
-    """The angles of all links but for whole turns, by the motion with its change points."""
+    """Return the angles of all links but for whole turns, by the motion with its change points."""
     chunk = prepared(scene).stretched(theta)
     found = {}
     for name in scene.links:
@@ -179,7 +179,7 @@ IN_LINE = 1e-5
 
 @dataclass(frozen=True)
 class DeadPoint:
-    """A dead point of an ``input`` link: the driver's angle [rad] and what is in line there."""
+    """Dead point of an ``input`` link: the driver's angle [rad] and the links in line."""
 
     input: str
     driver_rad: float
@@ -187,13 +187,12 @@ class DeadPoint:
 
 
 def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadPoint]:
-    """Those of the driver, at the ends of the branch that the scene is on, and those of the links
-    that are pinned to the ground, at the ends of their swing.
+    """Return the dead points of the driver, at the ends of the scene's branch, and of the links
+    pinned to the ground, at the ends of their swing.
 
     Where the driver stops, the two assemblies of a dyad meet: two links in line (RRR), a rod square
-    to its slider's line (RRP), or a guide square to the line to its pin (RPR). Where a link that is
-    pinned to the ground turns back, it could not drive the mechanism there: the dead points of that
-    input.
+    to its slider's line (RRP), or a guide square to the line to its pin (RPR). A link pinned to the
+    ground could not drive the mechanism where it turns back: the dead points of that input.
     """
     scene, (_, arc) = circuits.signed.scene, circuits.own
     found = []
@@ -216,7 +215,7 @@ def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadP
 
 
 def at_limit(scene: Scene, key: str) -> str:
-    """What is in line where two assemblies of a group meet, by the group's branch."""
+    """Return the text of the links in line where two assemblies of a group meet."""
     structure = analyse(scene)
     for triad in structure.triads:
         if triad.branch_key == key:
@@ -233,7 +232,7 @@ def at_limit(scene: Scene, key: str) -> str:
 
 
 def _in_line(circuits: Circuits, theta: float) -> str:
-    """Which two links that share a pin are in line: the lines between pins of each to the next."""
+    """Return the text of links in line at a shared pin: by lines from each to the next pin."""
     scene = circuits.signed.scene
     chunk = prepared(scene).stretched(np.array([theta]))
     found = []

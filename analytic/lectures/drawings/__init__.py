@@ -1,1 +1,1 @@
-"""What the lecture draws: vector polygons, images of links, graphs, centres, each to a scale."""
+"""Drawings of the lecture to scale: vector polygons, images of links, graphs, centres."""

@@ -51,10 +51,10 @@ QUANTITIES: tuple[Quantity, Quantity] = ("velocity", "acceleration")
 
 @dataclass(frozen=True)
 class DrawnPolygons:
-    """The polygons of a mechanism as it stands in ``placement``, and how its bodies move by them.
+    """Polygons of a mechanism in ``placement``, and the resulting rates of its bodies.
 
-    ``undetermined`` names the groups that could not be drawn, and why; ``flat`` those whose
-    directions hardly cross, at which angle.
+    ``undetermined`` names the groups that could not be drawn, with reasons; ``flat`` those whose
+    directions hardly cross, with angles.
     """
 
     placement: PlacedMechanism
@@ -69,17 +69,17 @@ class DrawnPolygons:
 
 
 def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
-    """The velocity and the acceleration polygon of a scene with its driver in a state.
+    """Draw the velocity and the acceleration polygon of a scene with its driver in a state.
 
-    Where two directions of a group are parallel (a limit position, a change point) it and what
-    hangs on it is left out and named. Raises as `analytic.kinematics.solve`, and CrankcheckError
+    Where two directions of a group are parallel (a limit position, a change point) it and later
+    groups on it are left out and named. Raises as `analytic.kinematics.solve`, and CrankcheckError
     where the driver is no crank or a group is of class III.
     """
     return polygons_of(PlacedMechanism.of(scene, driver))
 
 
 def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
-    """As `draw_polygons`, of a mechanism that stands already."""
+    """Draw as `draw_polygons`, from a placed mechanism."""
     refuse_other_than_cranked(placement.scene, "a vector polygon", placement.structure)
     table = _Table(placement)
     table.draw_driver()
@@ -102,7 +102,7 @@ def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
 
 @dataclass
 class _Table:
-    """What is on the drawing table: the steps of both polygons, and the bodies that are known."""
+    """Drawing table: the steps of both polygons, and the known bodies."""
 
     placement: PlacedMechanism
     rates: dict[str, BodyRates] = field(default_factory=lambda: {GROUND: STILL})
@@ -112,7 +112,7 @@ class _Table:
     flat: list[str] = field(default_factory=list)
 
     def draw_driver(self) -> None:
-        """The crank's points from the pole: a^n towards the pivot, a^t across."""
+        """Draw the crank's points from the pole: a^n towards the pivot, a^t across."""
         scene, state = self.placement.scene, self.placement.driver
         link, pivot = scene.driver.link, scene.driver_pivot
         place = self.placement.points[pivot]
@@ -136,7 +136,7 @@ class _Table:
         self._add("acceleration", title, acceleration, nodes)
 
     def draw(self, part: Group | Bridge) -> str:
-        """A group or a redundant link; what is said where it can not be drawn."""
+        """Draw a group or a redundant link; return the reason where it can not be drawn."""
         if missing := self._missing(part):
             return f"{_title(part)}: hangs on {missing}, which is not determined"
         if isinstance(part, Bridge):
@@ -167,7 +167,7 @@ class _Table:
     def _crossed(
         self, quantity: Quantity, ways: list[EquationSide], dyad: DyadPolygon
     ) -> tuple[Array, tuple[tuple[Vector, ...], dict[str, Array]]]:
-        """The node, and the vectors to it with what they begin at and was not drawn before."""
+        """Return the node, and the vectors to it with their new origins."""
         lengths = crossing(*ways)
         vectors: list[Vector] = []
         begun: dict[str, Array] = {}
@@ -181,12 +181,12 @@ class _Table:
         return one.before + lengths[0] * one.unknown.value, (tuple(vectors), begun)
 
     def _is_new(self, quantity: Quantity, origin: Origin) -> bool:
-        """Whether a point has no image yet; the ground's is the pole."""
+        """True if a point has no image yet; the ground's is the pole."""
         drawn = any(origin.name in step.nodes for step in self.steps[quantity])
         return not drawn and origin.body is not STILL
 
     def _missing(self, part: Group | Bridge) -> str:
-        """A body that a part hangs on and that is not known."""
+        """Return an unknown body that a part needs."""
         structure = self.placement.structure
         if isinstance(part, Bridge):
             known = Known(self.placement, self.rates)
@@ -199,7 +199,7 @@ class _Table:
         return ""
 
     def _bridge(self, part: Bridge) -> None:
-        """A redundant link, by two of its pins."""
+        """Draw a redundant link, by two of its pins."""
         known = Known(self.placement, self.rates)
         one, other = [known.pin(pin) for pin in part.pins if known.has(pin)][:2]
         across = quarter_turn(other.place - one.place)
@@ -221,7 +221,7 @@ class _Table:
 
 
 def _laid(quantity: Quantity, start: Array, terms: Iterable[Term]) -> list[Vector]:
-    """Vectors end to end."""
+    """Return vectors end to end."""
     vectors = []
     for term in terms:
         end = np.asarray(start + term.value)
@@ -232,22 +232,22 @@ def _laid(quantity: Quantity, start: Array, terms: Iterable[Term]) -> list[Vecto
 
 
 def _title(part: Group | Bridge) -> str:
-    """A group as it is called on the sheet."""
+    """Return the title of a group on the sheet."""
     if isinstance(part, Bridge):
         return f"redundant link {part.link}"
     return f"{part.kind} ({part.first}, {part.second})"
 
 
 POINT = 1e-12
-"""An image that is smaller than so much of the largest vector is one point: what is left of it is
-the rounding of the crossing."""
+"""Size of an image over the largest vector, below which it is one point: the rest is the rounding
+of the crossing."""
 
 
 @dataclass(frozen=True)
 class Similarity:
-    """How the image of a link comes from the link: ``scale`` [1/s or 1/s^2], turned by ``turn_rad``
-    counter-clockwise; of a link that moves without turning the scale is 0, and the image a point.
-    """
+    """Map from a link to its image: ``scale`` [1/s or 1/s^2], turned by ``turn_rad``
+    counter-clockwise; for a link that moves without turning the scale is 0, and the image a
+    point."""
 
     scale: float
     turn_rad: float
@@ -258,7 +258,7 @@ class Similarity:
 
 
 def similarity(drawn: DrawnPolygons, link: str, quantity: Quantity) -> Similarity:
-    """That of a link that was drawn, of its velocities or accelerations."""
+    """Return the map of a drawn link's velocities or accelerations."""
     factor = _factor(drawn.rates[link], quantity)
     if _is_rounding(drawn, link, quantity, abs(factor)):
         return Similarity(0.0, 0.0)
@@ -266,8 +266,7 @@ def similarity(drawn: DrawnPolygons, link: str, quantity: Quantity) -> Similarit
 
 
 def link_rates(drawn: DrawnPolygons, link: str) -> tuple[float, float]:
-    """omega [rad/s] and alpha [rad/s^2] of a link that was drawn, 0 where no more than rounding is
-    left of them."""
+    """Return omega [rad/s] and alpha [rad/s^2] of a drawn link, 0 where they are rounding."""
     body = drawn.rates[link]
     rates: tuple[tuple[float, Quantity], ...] = (
         (body.omega, "velocity"),
@@ -280,7 +279,7 @@ def link_rates(drawn: DrawnPolygons, link: str) -> tuple[float, float]:
 
 
 def _is_rounding(drawn: DrawnPolygons, link: str, quantity: Quantity, scale: float) -> bool:
-    """Whether an image of the link at a scale [1/s or 1/s^2] is as small as the rounding."""
+    """True if an image of the link at a scale [1/s or 1/s^2] is as small as the rounding."""
     polygon = drawn.velocity if quantity == "velocity" else drawn.acceleration
     places = np.array([*drawn.placement.scene.links[link].points.values()])
     reach = float(np.hypot(*np.ptp(places, axis=0)))
@@ -288,7 +287,7 @@ def _is_rounding(drawn: DrawnPolygons, link: str, quantity: Quantity, scale: flo
 
 
 def _factor(body: BodyRates, quantity: Quantity) -> complex:
-    """What the link is multiplied by, x + iy being its places."""
+    """Return the factor of the link, x + iy being its places."""
     if quantity == "velocity":
         return 1j * body.omega
     return 1j * body.alpha - body.omega**2

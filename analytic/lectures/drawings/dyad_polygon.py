@@ -1,5 +1,4 @@
-"""The two ways of every Assur group to the image that it is drawn by, and what they say of its
-bodies.
+"""Two ways of every Assur group to the image that it is drawn by, and the rates of its bodies.
 
 ======  ======================================  =========================
 group   the node                                its two ways
@@ -33,7 +32,7 @@ from models.scene.joints import sliding_body
 
 @dataclass(frozen=True)
 class NodeMotion:
-    """What the crossings gave: velocity and acceleration of the node, (2,) each."""
+    """Result of the crossings: velocity and acceleration of the node, (2,) each."""
 
     velocity: Array
     acceleration: Array
@@ -41,7 +40,7 @@ class NodeMotion:
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a way begins: the point ``name`` of a body that is known, at a ``place`` [m]."""
+    """Start of a way: the point ``name`` of a known body, at a ``place`` [m]."""
 
     name: str
     place: Array
@@ -58,7 +57,7 @@ class Origin:
 
 @dataclass(frozen=True)
 class RotatingArm:
-    """From a pin over a link to the point ``node`` of it at ``place``."""
+    """Arm from a pin over a link to the point ``node`` of it at ``place``."""
 
     origin: Origin
     node: str
@@ -68,7 +67,7 @@ class RotatingArm:
         return EquationSide(self.origin.name, self.origin.velocity, (), self._turning("rotation"))
 
     def acceleration_way(self, velocity: Array) -> EquationSide:
-        """With the velocity of the node [m/s], (2,)."""
+        """Return the way for the velocity of the node [m/s], (2,)."""
         towards = -(self.omega(velocity) ** 2) * self._arm
         normal = Term(self.node + self.origin.name, "normal", towards)
         return EquationSide(
@@ -76,11 +75,11 @@ class RotatingArm:
         )
 
     def omega(self, velocity: Array) -> float:
-        """The rate of the link [rad/s]."""
+        """Return the rate of the link [rad/s]."""
         return self._rate(velocity - self.origin.velocity)
 
     def rates(self, node: NodeMotion) -> BodyRates:
-        """How the link moves."""
+        """Return the rates of the link."""
         at = self.origin
         alpha = self._rate(node.acceleration - at.acceleration)
         return BodyRates(at.place, at.velocity, at.acceleration, self.omega(node.velocity), alpha)
@@ -90,7 +89,7 @@ class RotatingArm:
         return np.asarray(self.place - self.origin.place)
 
     def _rate(self, relative: Array) -> float:
-        """omega or alpha by the node's vector about the pin, (2,), of which it is across."""
+        """Return omega or alpha by the node's vector about the pin, (2,), from its part across."""
         return float(quarter_turn(self._arm) @ relative) / float(self._arm @ self._arm)
 
     def _turning(self, kind: Kind) -> Term:
@@ -101,8 +100,8 @@ class RotatingArm:
 
 @dataclass(frozen=True)
 class SlidingArm:
-    """From the point of another body under it to ``node``, along the unit vector ``along`` of the
-    line of ``slider``; ``frame`` is how the line turns, or the arm that says so."""
+    """Arm from the point of another body under it to ``node``, along the unit vector ``along`` of
+    the line of ``slider``; ``frame`` has the rates of the line, or the arm that gives them."""
 
     origin: Origin
     node: str
@@ -114,19 +113,19 @@ class SlidingArm:
         return EquationSide(self.origin.name, self.origin.velocity, (), self._sliding())
 
     def acceleration_way(self, velocity: Array) -> EquationSide:
-        """With the velocity of the node [m/s], (2,)."""
+        """Return the way for the velocity of the node [m/s], (2,)."""
         omega = self.omega(velocity)
         turned = 2.0 * omega * quarter_turn(velocity - self.origin.velocity)
         known = (Term(self.node + self.origin.name, "coriolis", turned),) if omega else ()
         return EquationSide(self.origin.name, self.origin.acceleration, known, self._sliding())
 
     def omega(self, velocity: Array) -> float:
-        """The rate of the line [rad/s]."""
+        """Return the rate of the line [rad/s]."""
         frame = self.frame
         return frame.omega if isinstance(frame, BodyRates) else frame.omega(velocity)
 
     def turning(self, node: NodeMotion) -> BodyRates:
-        """How the line turns."""
+        """Return the rates of the line."""
         return self.frame if isinstance(self.frame, BodyRates) else self.frame.rates(node)
 
     def _sliding(self) -> Term:
@@ -139,7 +138,7 @@ Arm = RotatingArm | SlidingArm
 
 @dataclass(frozen=True)
 class DyadPolygon:
-    """A group and its two arms to ``node``."""
+    """Group and its two arms to ``node``."""
 
     group: Group
     arms: tuple[Arm, Arm]
@@ -149,27 +148,27 @@ class DyadPolygon:
         return self.arms[0].node
 
     def rates(self, placement: PlacedMechanism, node: NodeMotion) -> dict[str, BodyRates]:
-        """How the bodies of the group move."""
+        """Return the rates of the group's bodies."""
         return _RATES[self.group.kind](self, placement, node)
 
 
 class Known:
-    """The bodies that are drawn already."""
+    """Bodies that are drawn already."""
 
     def __init__(self, placement: PlacedMechanism, rates: Mapping[str, BodyRates]) -> None:
         self.placement, self.rates = placement, rates
 
     def has(self, point: str) -> bool:
-        """Whether a pin is on one of them."""
+        """True if a pin is on one of them."""
         return any(body in self.rates for body in self.placement.structure.pins[point])
 
     def pin(self, point: str) -> Origin:
-        """A pin of one of them."""
+        """Return a pin of one of them."""
         body = next(b for b in self.placement.structure.pins[point] if b in self.rates)
         return Origin(point, self.placement.points[point], self.rates[body])
 
     def under(self, point: str, slider: str) -> tuple[Origin, BodyRates]:
-        """The point, under a named one, of the known body of a slider's pair, and that body."""
+        """Return the known body of a slider's pair: its point under a named one, and its rates."""
         ends = self.placement.structure.prismatics[slider]
         body = next(b for b in ends if b in self.rates)
         rates = self.rates[body]
@@ -190,7 +189,7 @@ class Known:
 def dyad_polygon(
     placement: PlacedMechanism, rates: Mapping[str, BodyRates], group: Group
 ) -> DyadPolygon:
-    """The group with its arms, the bodies that it hangs on being known by their ``rates``."""
+    """Return the group with its arms, from the known ``rates`` of its supports."""
     return DyadPolygon(group, _ARMS[group.kind](Known(placement, rates), group))
 
 
@@ -223,7 +222,7 @@ def _rpp(known: Known, g: Group) -> tuple[Arm, Arm]:
 
 
 def _guide_of(placement: PlacedMechanism, g: Group) -> tuple[str, str, str]:
-    """The guide of an RPR group, the pin of what slides on it, and its own pin."""
+    """Return the guide of an RPR group, the pin of the sliding body, and the guide's own pin."""
     guide = placement.scene.sliders[g.inner].on
     pins = (g.outer1, g.outer2) if guide == g.second else (g.outer2, g.outer1)
     return guide, *pins
@@ -282,7 +281,7 @@ def _rates_rpp(
 
 
 def _carried(arm: SlidingArm, place: Array, node: NodeMotion) -> BodyRates:
-    """A body that turns as the line does, by its point at the node."""
+    """Return a body that turns as the line does, by its point at the node."""
     turning = arm.turning(node)
     return replace(turning, place=place, velocity=node.velocity, acceleration=node.acceleration)
 

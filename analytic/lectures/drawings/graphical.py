@@ -27,7 +27,7 @@ Method = Literal["chords", "tangents", "integration"]
 METHODS: tuple[Method, ...] = get_args(Method)
 ORDERS: tuple[Order, ...] = get_args(Order)
 Readings = Callable[[Order, Array], Array]
-"""What a graph is plotted from: a quantity (0), its rate (1) or the rate of that (2) at places."""
+"""Source of a plotted graph: a quantity (0), its rate (1) or the rate of that (2) at places."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class Plotted:
 
 @dataclass(frozen=True)
 class ThreeGraphs:
-    """A quantity, its rate and the rate of that, two of them drawn from the third.
+    """Quantity, its rate and the rate of that, two of them drawn from the third.
 
-    ``slopes`` are what rays from the poles of the second and third graph cut off on their axes:
-    those of the chords (tangents, steps) of the graph of the order before.
+    ``slopes`` are the axis sections of rays from the poles of the second and third graph: those of
+    the chords (tangents, steps) of the graph of the order before.
     """
 
     graphs: tuple[Plotted, Plotted, Plotted]
@@ -51,21 +51,21 @@ class ThreeGraphs:
 
 
 def by_chords(graph: Plotted) -> Plotted:
-    """The derivative in the middles of the parts, of second order there."""
+    """Return the derivative in the middles of the parts, of second order there."""
     return Plotted(_middles(graph.x), np.diff(graph.y) / np.diff(graph.x))
 
 
 def by_tangents(graph: Plotted) -> Plotted:
-    """The derivative at the divisions between the ends, the tangent there being that of the
-    parabola through a division and its neighbours; of second order."""
+    """Return the derivative at the divisions between the ends, by the tangent of the parabola
+    through a division and its neighbours; of second order."""
     left, right = np.diff(graph.x)[:-1], np.diff(graph.x)[1:]
     chords = np.diff(graph.y) / np.diff(graph.x)
     return Plotted(graph.x[1:-1], (right * chords[:-1] + left * chords[1:]) / (left + right))
 
 
 def integrated(x: Array, mean_ordinates: Array, start: float) -> Plotted:
-    """The integral at the divisions ``x`` (n + 1,), from ``start`` at the first on, of second order
-    where the mean ordinates of the parts (n,) are those in their middles."""
+    """Return the integral at the divisions ``x`` (n + 1,), from ``start`` at the first on, of
+    second order where the mean ordinates of the parts (n,) are those in their middles."""
     steps = mean_ordinates * np.diff(x)
     return Plotted(x, start + np.concatenate([[0.0], np.cumsum(steps)]))
 
@@ -73,7 +73,7 @@ def integrated(x: Array, mean_ordinates: Array, start: float) -> Plotted:
 def three_graphs(
     method: Method, x: Array, readings: Readings, start: tuple[float, float]
 ) -> ThreeGraphs:
-    """A quantity and both of its rates, as drawn.
+    """Return a quantity and both of its rates, as drawn.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def three_graphs(
     x : Array
         The divisions (n + 1,), rising.
     readings : Readings
-        What is read; of order 0, or, for integration, of order 2.
+        Function that reads the graph, of order 0, or, for integration, of order 2.
     start : (float, float)
         Quantity and rate at the first division: the constants of integration.
     """
@@ -101,7 +101,7 @@ def three_graphs(
 
 
 def derivative_scale(pole_mm: float, scale_x: float, scale_y: float) -> float:
-    """mu_y = mu_Y / (H mu_x) of a derivative, from the scales of the graph and H [mm]."""
+    """Return mu_y = mu_Y / (H mu_x) of a derivative, from the scales of the graph and H [mm]."""
     return scale_y / (pole_mm * scale_x)
 
 

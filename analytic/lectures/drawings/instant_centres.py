@@ -1,16 +1,16 @@
-"""The instant centres of a mechanism by the theorem of Aronhold and Kennedy.
+"""Instant centres of a mechanism by the theorem of Aronhold and Kennedy.
 
-Three bodies have their three centres on a line. What joints show is known from the start: a pin is
-the centre of its two bodies; that of a slider and its guide is at infinity, across the line. Each
-other centre is where two lines cross, each through two centres that are known (the polygon of
-centres has the bodies as its corners, known centres as sides, and a new one as the diagonal that
-closes two triangles).
+Three bodies have their three centres on a line. Joints give the first centres: a pin is the centre
+of its two bodies; that of a slider and its guide is at infinity, across the line. Each other centre
+is where two lines cross, each through two centres that are known (the polygon of centres has the
+bodies as its corners, known centres as sides, and a new one as the diagonal that closes two
+triangles).
 
-Centres and lines are homogeneous and of unit length, lengths over the longest link, so that what is
-at infinity (a direction, the line of all directions) is as good as anything else.
+Centres and lines are homogeneous and of unit length, lengths over the longest link, so that
+infinity (a direction, the line of all directions) needs no special case.
 
-Of its centrodes the moving one rolls on the fixed one without sliding: so a link moves. With the
-velocity pole P, omega, alpha and the acceleration a_P of the body's point in P:
+A link moves as its moving centrode rolls on the fixed one without sliding. With the velocity pole
+P, omega, alpha and the acceleration a_P of the body's point in P:
 
 * the inflection circle (the first circle of Bresse), of points without normal acceleration, whose
   paths have an inflection: through P, with the diameter a_P / omega^2;
@@ -40,15 +40,15 @@ Pair = frozenset[str]
 SURE = 1e-7
 """Length of the product of two lines, of unit length each, below which they are one line."""
 FAR = 1e-12
-"""The third coordinate of what is at infinity, but for rounding."""
+"""Third coordinate of a centre at infinity, but for rounding."""
 
 
 @dataclass(frozen=True)
 class Centre:
-    """An instant centre: its ``place`` [m], (2,), or None where it is at infinity, across the unit
+    """Instant centre: its ``place`` [m], (2,), or None where it is at infinity, across the unit
     vector ``along`` then, in which the two bodies slide against each other.
 
-    ``by`` names the two pairs of centres whose lines cross in it, and is empty for that of a joint.
+    ``by`` names the two pairs of centres whose lines cross in it, and is empty for a joint's.
     """
 
     place: Array | None
@@ -58,14 +58,14 @@ class Centre:
 
 @dataclass(frozen=True)
 class _KnownCentres:
-    """A centre in homogeneous coordinates (3,)."""
+    """Centre in homogeneous coordinates (3,)."""
 
     at: Array
     by: tuple[tuple[Pair, Pair], ...] = ()
 
 
 def instant_centres(placement: PlacedMechanism) -> dict[Pair, Centre]:
-    """The centres of all pairs of bodies that the theorem leads to, the joints' first."""
+    """Return the centres of all pairs of bodies that the theorem leads to, the joints' first."""
     size = placement.scene.longest_m
     found = _of_joints(placement, size)
     bodies = [GROUND, *placement.structure.bodies]
@@ -82,7 +82,7 @@ def _centre(known: _KnownCentres, size: float) -> Centre:
 
 
 def _of_joints(placement: PlacedMechanism, size: float) -> dict[Pair, _KnownCentres]:
-    """The centres that pins and sliders show."""
+    """Return the centres of pins and sliders."""
     found: dict[Pair, _KnownCentres] = {}
     for point, bodies in placement.structure.pins.items():
         at = _KnownCentres(_unit(np.array([*placement.points[point] / size, 1.0])))
@@ -94,7 +94,7 @@ def _of_joints(placement: PlacedMechanism, size: float) -> dict[Pair, _KnownCent
 
 
 def _crossings(bodies: list[str], found: Mapping[Pair, _KnownCentres]) -> dict[Pair, _KnownCentres]:
-    """The centres that the known ones lead to at once, each by the two lines that cross best."""
+    """Return the centres that follow at once, each by the two lines that cross best."""
     new: dict[Pair, _KnownCentres] = {}
     for pair in map(frozenset, itertools.combinations(bodies, 2)):
         if pair in found:
@@ -113,8 +113,8 @@ def _crossings(bodies: list[str], found: Mapping[Pair, _KnownCentres]) -> dict[P
 def _lines(
     pair: Pair, bodies: list[str], found: Mapping[Pair, _KnownCentres]
 ) -> Iterator[tuple[tuple[Pair, Pair], Array]]:
-    """The lines that the centre of a pair is on, one for each third body that both have a centre
-    with, but for two that are one."""
+    """Yield the lines that the centre of a pair is on, one for each third body that both have a
+    centre with, except coincident ones."""
     one, other = sorted(pair)
     for third in bodies:
         sides = frozenset({one, third}), frozenset({other, third})
@@ -134,7 +134,7 @@ def _unit(vector: Array) -> Array:
 
 
 ROUNDING = 1e-12
-"""An angular velocity that is less than so much of the fastest link's is none."""
+"""Angular velocity over that of the fastest link, below which it is none."""
 
 
 @dataclass(frozen=True)
@@ -147,12 +147,12 @@ class Centrodes:
 
 
 def centrodes(motion: Motion, link: str, point: str) -> Centrodes:
-    """The centrodes of a link over a motion, by one of its points.
+    """Return the centrodes of a link over a motion, by one of its points.
 
     Raises CrankcheckError for a link that never turns.
     """
     body, at = motion.links[link], motion.points[point]
-    # against the fastest link: one that is carried round turns by the rounding of its neighbours
+    # Against the fastest link: a link without rotation turns by the rounding of its neighbours.
     fastest = max(float(np.abs(other.omega).max()) for other in motion.links.values())
     turning = np.abs(body.omega) > ROUNDING * fastest
     if not turning.any():
@@ -168,7 +168,7 @@ def centrodes(motion: Motion, link: str, point: str) -> Centrodes:
 
 @dataclass(frozen=True)
 class CentreCircle:
-    """A circle through the velocity pole [m]: its middle (2,) and radius."""
+    """Circle through the velocity pole [m]: its middle (2,) and radius."""
 
     middle: Array
     radius: float
@@ -176,7 +176,7 @@ class CentreCircle:
 
 @dataclass(frozen=True)
 class CurvatureCircles:
-    """Velocity pole, inflection circle, second circle of Bresse (None where alpha is 0, it being a
+    """Velocity pole, inflection circle, second circle of Bresse (None where alpha is 0, as it is a
     line), and acceleration pole of a body [m]."""
 
     pole: Array
@@ -186,12 +186,12 @@ class CurvatureCircles:
 
 
 def velocity_pole(body: BodyRates) -> Array:
-    """The point without velocity [m], (2,), of a body that turns."""
+    """Return the point without velocity [m], (2,), of a body that turns."""
     return np.asarray(body.place + quarter_turn(body.velocity) / body.omega)
 
 
 def curvature_circles(drawn: DrawnPolygons, link: str) -> CurvatureCircles:
-    """The circles of a link that was drawn. Raises CrankcheckError where it does not turn, but for
+    """Return the circles of a drawn link. Raises CrankcheckError where it does not turn, but for
     the rounding of the polygons."""
     omega, alpha = link_rates(drawn, link)
     if omega == 0.0:

@@ -1,4 +1,4 @@
-"""A mechanism as it stands at one instant: what a draughtsman has before the first vector."""
+"""Position of a mechanism at one instant, before the first vector is drawn."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class DriverState:
 
 @dataclass(frozen=True)
 class PlacedMechanism:
-    """The places of all points [m], (2,) each, and the angles of all bodies [rad], blocks and the
-    ground with them; no rates, which the polygons find."""
+    """Places of all points [m], (2,) each, and angles of all bodies [rad], with blocks and the
+    ground; no rates, which the polygons find."""
 
     scene: Scene
     structure: Structure
@@ -37,7 +37,7 @@ class PlacedMechanism:
 
     @staticmethod
     def of(scene: Scene, driver: DriverState) -> PlacedMechanism:
-        """The scene with its driver there. Raises as `analytic.kinematics.solve`."""
+        """Place the scene with its driver in a state. Raises as `analytic.kinematics.solve`."""
         one = np.ones(1)
         motion = solve_driven(
             scene, driver.theta * one, driver.omega * one, driver.alpha * one, bound=False
@@ -48,8 +48,8 @@ class PlacedMechanism:
     def standing(
         scene: Scene, motion: Motion, driver: DriverState | None = None, sample: int = 0
     ) -> PlacedMechanism:
-        """The scene as it stands in a sample of a motion, driven or let go, on whatever branch that
-        is; its driver moves as it does there where nothing else is said."""
+        """Place the scene in a sample of a motion, driven or free, on any branch; its driver moves
+        as there by default."""
         angles = {GROUND: 0.0} | {n: float(m.theta[sample]) for n, m in motion.links.items()}
         for slider in scene.sliders.values():
             if slider.link is None:
@@ -64,21 +64,21 @@ class PlacedMechanism:
         return PlacedMechanism(scene, analyse(scene), driver, points, angles)
 
     def along(self, slider: str) -> Array:
-        """The unit vector along the line of a slider."""
+        """Return the unit vector along the line of a slider."""
         guide = self.scene.sliders[slider]
         angle = self.angles[guide.on] + guide.direction_rad
         return np.array([np.cos(angle), np.sin(angle)])
 
 
 def quarter_turn(vector: Array) -> Array:
-    """The vector turned by a quarter turn counter-clockwise."""
+    """Return the vector turned by a quarter turn counter-clockwise."""
     return np.array([-vector[1], vector[0]])
 
 
 @dataclass(frozen=True)
 class BodyRates:
-    """A body by its point at ``place`` [m], with that point's ``velocity`` [m/s] and
-    ``acceleration`` [m/s^2], (2,) each, and by ``omega`` [rad/s] and ``alpha`` [rad/s^2]."""
+    """Body by its point at ``place`` [m], with that point's ``velocity`` [m/s] and ``acceleration``
+    [m/s^2], (2,) each, and by ``omega`` [rad/s] and ``alpha`` [rad/s^2]."""
 
     place: Array
     velocity: Array
@@ -87,15 +87,15 @@ class BodyRates:
     alpha: float
 
     def velocity_at(self, place: Array) -> Array:
-        """Of the body's point at a place [m/s], (2,)."""
+        """Return the velocity of the body's point at a place [m/s], (2,)."""
         return np.asarray(self.velocity + self.omega * quarter_turn(place - self.place))
 
     def acceleration_at(self, place: Array) -> Array:
-        """Of the body's point at a place [m/s^2], (2,)."""
+        """Return the acceleration of the body's point at a place [m/s^2], (2,)."""
         arm = place - self.place
         turning = self.alpha * quarter_turn(arm) - self.omega**2 * arm
         return np.asarray(self.acceleration + turning)
 
 
 STILL = BodyRates(np.zeros(2), np.zeros(2), np.zeros(2), 0.0, 0.0)
-"""The ground."""
+"""Rates of the ground."""

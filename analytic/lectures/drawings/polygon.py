@@ -1,9 +1,9 @@
-"""The vector polygons of a mechanism: velocities and accelerations, group by group from the pole.
+"""Vector polygons of a mechanism: velocities and accelerations, group by group from the pole.
 
-Every vector is found as one draws it: what is known is laid end to end from the pole, and where two
-directions cross stands the image of the group's inner joint
-(`analytic.lectures.drawings.dyad_polygon`). The rates of the reference do not go in, only its
-positions, so that the two are two computations.
+Every vector is found as on paper: known vectors are laid end to end from the pole, and two
+directions cross in the image of the group's inner joint
+(`analytic.lectures.drawings.dyad_polygon`). Only the positions of the reference go in, not its
+rates, so that the two are two computations.
 
 Source: lecture "Phan tich dong hoc", part III: v_B = v_A + v_BA; a_B = a_A + a^n + a^t;
 v_A2 = v_A1 + v_A2A1; a_A2 = a_A1 + a^k + a^r, a^k = 2 omega v_A2A1 turned in the sense of omega.
@@ -25,8 +25,8 @@ from models.array import Array
 from models.scene import GROUND
 
 Kind = Literal["whole", "rotation", "normal", "tangential", "coriolis", "sliding"]
-"""``whole``: of a point against the ground; ``rotation``: of a point about another of its link;
-``sliding``: of a point against the one of another body that lies under it."""
+"""Kinds: ``whole``, of a point against the ground; ``rotation``, of a point about another of its
+link; ``sliding``, of a point against the one of another body that lies under it."""
 SUPERSCRIPTS: dict[Kind, str] = {
     "whole": "", "rotation": "", "normal": "n", "tangential": "t", "coriolis": "k", "sliding": "r",
 }  # fmt: skip
@@ -44,8 +44,8 @@ class ParallelError(Exception):
 
 @dataclass(frozen=True)
 class Term:
-    """A vector of an equation: of what (``subscript``, as CB for C about B), what kind, and its
-    value (2,); ``direction`` says in words what it is parallel or perpendicular to."""
+    """Vector of an equation: its ``subscript`` (CB for C about B), its kind, and its value (2,);
+    ``direction`` names the line that it is parallel or perpendicular to."""
 
     subscript: str
     kind: Kind
@@ -55,8 +55,8 @@ class Term:
 
 @dataclass(frozen=True)
 class EquationSide:
-    """One side of the equation: from the point ``base`` of the polygon at ``start`` (2,) over
-    ``known`` vectors, and on along the direction of ``unknown``, whose value is a unit vector."""
+    """Side of the equation: from the point ``base`` of the polygon at ``start`` (2,) over ``known``
+    vectors, and on along the direction of ``unknown``, whose value is a unit vector."""
 
     base: str
     start: Array
@@ -65,11 +65,11 @@ class EquationSide:
 
     @property
     def before(self) -> Array:
-        """Where the unknown vector begins (2,)."""
+        """Start of the unknown vector (2,)."""
         return np.asarray(self.start + sum((term.value for term in self.known), np.zeros(2)))
 
     def with_length(self, length: float) -> tuple[Term, ...]:
-        """All vectors of the way, the unknown one with its length, which may be below 0."""
+        """Return all vectors of the way, the unknown one with its length, which may be below 0."""
         last = self.unknown
         return (
             *self.known,
@@ -78,13 +78,13 @@ class EquationSide:
 
 
 def sine_between(one: EquationSide, other: EquationSide) -> float:
-    """The sine of the angle from the direction of one way to that of the other."""
+    """Return the sine of the angle from the direction of one way to that of the other."""
     u, v = one.unknown.value, other.unknown.value
     return float(u[0] * v[1] - u[1] * v[0])
 
 
 def crossing(one: EquationSide, other: EquationSide) -> tuple[float, float]:
-    """The lengths of the unknown vectors of both ways. Raises ParallelError."""
+    """Return the lengths of the unknown vectors of both ways. Raises ParallelError."""
     u, v = one.unknown.value, other.unknown.value
     gap = other.before - one.before
     sine = sine_between(one, other)
@@ -103,10 +103,10 @@ UNITS: Mapping[Quantity, str] = {"velocity": "m/s", "acceleration": "m/s^2"}
 
 @dataclass(frozen=True)
 class Vector:
-    """A drawn vector from ``start`` to ``end`` (2,) [m/s or m/s^2], the pole at the origin.
+    """Drawn vector from ``start`` to ``end`` (2,) [m/s or m/s^2], the pole at the origin.
 
-    ``name`` is as in books (v_CB, a^n_CB); ``direction`` says what it is parallel or perpendicular
-    to where its length was found by a crossing, and is empty where all of it was known before.
+    ``name`` is as in books (v_CB, a^n_CB); ``direction`` names the line that it is parallel or
+    perpendicular to if a crossing gave its length, and is empty if it was known before.
     """
 
     name: str
@@ -127,7 +127,7 @@ class Vector:
 
 @dataclass(frozen=True)
 class PolygonStep:
-    """What is drawn at once: the driver, or a group; ``nodes`` are the images that it gives."""
+    """Step of drawing: the driver, or a group; ``nodes`` are its images."""
 
     title: str
     vectors: tuple[Vector, ...]
@@ -136,10 +136,11 @@ class PolygonStep:
 
 @dataclass(frozen=True)
 class Polygon:
-    """A polygon with its steps in the order of drawing.
+    """Polygon, steps in the order of drawing.
 
     ``images`` holds for every moving link the ends of the vectors of its points, by name (2,):
-    similar to the link, and turned. ``undetermined`` names groups that could not be drawn, and why.
+    similar to the link, and turned. ``undetermined`` names groups that could not be drawn, with
+    reasons.
     """
 
     quantity: Quantity
@@ -153,18 +154,18 @@ class Polygon:
 
     @property
     def nodes(self) -> dict[str, Array]:
-        """Every image drawn, by the name of its point; the pole is at the origin."""
+        """Every drawn image, by the name of its point; the pole is at the origin."""
         return {name: at for step in self.steps for name, at in step.nodes.items()}
 
     @property
     def ends(self) -> dict[str, Array]:
-        """The ends of the vectors of all points of moving links, and the other images, by name."""
+        """Ends of the vectors of all points of moving links, and the other images, by name."""
         of_links = {name: at for image in self.images.values() for name, at in image.items()}
         return of_links | self.nodes
 
     @property
     def largest(self) -> float:
-        """The greatest distance of two of its points [m/s or m/s^2]."""
+        """Greatest distance of two of its points [m/s or m/s^2]."""
         ends = [np.zeros(2), *self.nodes.values()]
         ends += [end for vector in self.vectors for end in (vector.start, vector.end)]
         places = np.array(ends)
@@ -172,7 +173,7 @@ class Polygon:
 
 
 def name_of(quantity: Quantity, kind: Kind, subscript: str) -> str:
-    """A vector's name: v_CB, a^n_CB."""
+    """Return a vector's name: v_CB, a^n_CB."""
     raised = SUPERSCRIPTS[kind] if quantity == "acceleration" else ""
     return f"{SYMBOLS[quantity]}{'^' * bool(raised)}{raised}_{subscript}"
 
@@ -180,7 +181,7 @@ def name_of(quantity: Quantity, kind: Kind, subscript: str) -> str:
 def images_of(
     placement: PlacedMechanism, rates: Mapping[str, BodyRates], quantity: Quantity
 ) -> dict[str, dict[str, Array]]:
-    """The ends of the vectors of all points of all moving links that are placed."""
+    """Return the ends of the vectors of all points of all placed moving links."""
     return {
         name: {
             point: end_of(rates[name], placement.points[point], quantity) for point in link.points
@@ -191,5 +192,5 @@ def images_of(
 
 
 def end_of(body: BodyRates, place: Array, quantity: Quantity) -> Array:
-    """The vector of a body's point at a place, from the pole (2,)."""
+    """Return the vector of a body's point at a place, from the pole (2,)."""
     return body.velocity_at(place) if quantity == "velocity" else body.acceleration_at(place)

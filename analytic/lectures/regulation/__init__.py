@@ -1,1 +1,1 @@
-"""How evenly a machine runs over its cycle, and the flywheel that makes it run so."""
+"""Evenness of a machine's speed over its cycle, and the flywheel for it."""

@@ -1,5 +1,5 @@
-"""The cycle in cells of the driver's angle, between whose borders all that acts is smooth, and
-polynomials through Gauss's nodes in them.
+"""Cycle in cells of the driver's angle, within which all torques are smooth, and polynomials
+through Gauss's nodes in them.
 
 Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, II.7, on
 collocation: with s nodes the borders are right to the order 2 s.
@@ -23,14 +23,14 @@ from models.scene.loads import Load
 
 NODES = 5
 CELLS = 120
-"""Cells of a turn, before it is cut where something is not smooth."""
+"""Cells of a turn, before it is cut at kinks."""
 APART = 1e-9
-"""Borders nearer to each other than this, over the cycle, are one."""
+"""Distance of borders, over the cycle, below which they are one."""
 
 
 def _lagrange() -> tuple[Array, Array]:
-    """Gauss's nodes in (0, 1), and by row the coefficients, that of x^0 first, of the integrals
-    from 0 of the polynomials that are 1 in one node and 0 in the others."""
+    """Return Gauss's nodes in (0, 1), and by row the coefficients, that of x^0 first, of the
+    integrals from 0 of the polynomials that are 1 in one node and 0 in the others."""
     nodes = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
     # Column j of the inverse of the Vandermonde matrix holds the coefficients of polynomial j.
     own = np.linalg.inv(np.vander(nodes, increasing=True)).T
@@ -42,7 +42,7 @@ PLACES, INTEGRALS = _lagrange()
 
 
 def integrals_to(share: Array) -> Array:
-    """The integrals of the polynomials from 0 to shares of a cell, (..., NODES)."""
+    """Return the integrals of the polynomials from 0 to shares of a cell, (..., NODES)."""
     return np.asarray(np.vander(np.ravel(share), NODES + 1, increasing=True) @ INTEGRALS.T).reshape(
         (*np.shape(share), NODES)
     )
@@ -51,13 +51,13 @@ def integrals_to(share: Array) -> Array:
 INSIDE: Array = integrals_to(PLACES)
 """Butcher's matrix (NODES, NODES): the integrals to each node."""
 WHOLE: Array = integrals_to(np.array(1.0))
-"""The weights of Gauss's quadrature, (NODES,)."""
+"""Weights of Gauss's quadrature, (NODES,)."""
 LEGENDRE: Array = (
     (2 * np.arange(NODES) + 1)
     * WHOLE[:, None]
     * np.polynomial.legendre.legvander(2.0 * PLACES - 1.0, NODES - 1)
 )
-"""The coefficients of Legendre's polynomials, by column, of a quantity at the nodes (by row)."""
+"""Coefficients of Legendre's polynomials, by column, of a quantity at the nodes (by row)."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class AngleCells:
 
     @staticmethod
     def of(cycle_rad: float, breaks: Array) -> AngleCells:
-        """Even cells of a cycle, cut at ``breaks`` as well."""
+        """Make even cells of a cycle, cut at ``breaks`` as well."""
         count = CELLS * max(1, round(cycle_rad / math.tau))
         every = np.unique(np.concatenate([np.linspace(0.0, cycle_rad, count + 1), breaks]))
         every = every[(every >= 0.0) & (every <= cycle_rad)]
@@ -78,7 +78,7 @@ class AngleCells:
 
     @property
     def widths(self) -> Array:
-        """(C,) [rad]."""
+        """Widths of the cells (C,) [rad]."""
         return np.diff(self.borders)
 
     @property
@@ -87,16 +87,16 @@ class AngleCells:
         return self.borders[:-1, None] + self.widths[:, None] * PLACES
 
     def places(self, u: Array) -> tuple[NDArray[np.intp], Array]:
-        """The cells that angles are in, and how far, as a share of the cell."""
+        """Return the cells of angles, and the positions in them as shares."""
         cell = np.clip(np.searchsorted(self.borders, u, side="right") - 1, 0, len(self.widths) - 1)
         return cell, (u - self.borders[cell]) / self.widths[cell]
 
     def integral(self, series: Array) -> float:
-        """Of a quantity at the nodes (C, NODES), over the cycle."""
+        """Return the integral of a quantity at the nodes (C, NODES) over the cycle."""
         return float(np.sum(self.widths[:, None] * WHOLE * series))
 
     def integrated(self, series: Array, u: Array) -> Array:
-        """The integrals from 0 to angles u (T,) of a quantity at the nodes."""
+        """Return the integrals from 0 to angles u (T,) of a quantity at the nodes."""
         parts = self.widths * (series @ WHOLE)
         before = np.concatenate([[0.0], np.cumsum(parts)])
         cell, share = self.places(u)
@@ -105,13 +105,13 @@ class AngleCells:
 
 
 LOOKS = 720
-"""Of a turn, for where a slider passes a row of a table."""
+"""Samples of a turn for the search of a slider's passage of a table row."""
 HALVINGS = 44
 
 
 @lru_cache(maxsize=16)
 def breaks(machine: TurningMachine) -> Array:
-    """The angles u of a cycle at which loads over angle or displacement are not smooth [rad]."""
+    """Return the angles u of a cycle at kinks of loads over angle or displacement [rad]."""
     found = [np.zeros(0)]
     u = looks(machine)
     for load in machine.scene.loads.values():
@@ -129,7 +129,7 @@ def breaks(machine: TurningMachine) -> Array:
 
 
 def _short_waves(machine: TurningMachine, load: Load) -> Array:
-    """Quarters of the shortest wave of a load over the angle, where even cells would miss it."""
+    """Return quarters of the shortest wave of a load over the angle that even cells would miss."""
     own = load.characteristic
     if not isinstance(own, Sine | FourierSum):
         return np.zeros(0)
@@ -141,7 +141,7 @@ def _short_waves(machine: TurningMachine, load: Load) -> Array:
 
 
 def rated_breaks(machine: TurningMachine, speed: Callable[[Array], Array]) -> Array:
-    """The same of loads over a speed, where the driver has speeds [rad/s] by the angle u."""
+    """Return those of loads over a speed, for driver speeds [rad/s] by the angle u."""
     found = [np.zeros(0)]
     for load in filter(follows_speed, machine.scene.loads.values()):
 
@@ -156,12 +156,12 @@ def rated_breaks(machine: TurningMachine, speed: Callable[[Array], Array]) -> Ar
 
 
 def looks(machine: TurningMachine) -> Array:
-    """Angles of a cycle, its ends among them [rad]."""
+    """Return angles of a cycle, its ends among them [rad]."""
     return np.linspace(0.0, machine.cycle_rad, LOOKS * round(machine.cycle_rad / math.tau) + 1)
 
 
 def crossings(of: Callable[[Array], Array], u: Array, levels: Iterable[float]) -> Array:
-    """The angles between those of ``u`` at which a quantity passes levels [rad], by bisection."""
+    """Return the angles within ``u`` at which a quantity passes levels [rad], by bisection."""
     values = np.broadcast_to(of(u), u.shape)
     above = [(level, values >= level) for level in levels]
     hits = [(level, k) for level, up in above for k in np.flatnonzero(up[1:] != up[:-1])]
@@ -177,14 +177,14 @@ def crossings(of: Callable[[Array], Array], u: Array, levels: Iterable[float]) -
 
 
 def _slider(machine: TurningMachine, load: Load, what: str) -> Callable[[Array], Array]:
-    """The displacement or the speed of a load's slider, over the angle."""
+    """Return the displacement or the speed of a load's slider, over the angle."""
     assert load.slider is not None
     slider = load.slider
     return lambda u: np.asarray(getattr(machine.mechanism(u).sliders[slider], what))
 
 
 def _rows(machine: TurningMachine, load: Load) -> Array:
-    """Where the driver's angle is that of a row of a table that repeats."""
+    """Return the angles at which the driver is at a row of a table that repeats."""
     rows, period = np.array(load.characteristic.kinks), load.characteristic.repeats_after
     if not rows.size or period is None:
         return np.zeros(0)
@@ -194,7 +194,7 @@ def _rows(machine: TurningMachine, load: Load) -> Array:
 
 
 def _turnings(machine: TurningMachine, joint: str, u: Array) -> Array:
-    """Where the motion in a joint turns round, and its friction with it."""
+    """Return the angles at which the motion in a joint reverses, and its friction with it."""
     if joint in machine.scene.sliders:
         return crossings(lambda x: np.asarray(machine.mechanism(x).sliders[joint].speed), u, [0.0])
     first, second = analyse(machine.scene).pins[joint][:2]

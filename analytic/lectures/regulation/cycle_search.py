@@ -1,9 +1,8 @@
-"""The cycle that a machine repeats is found: its energy by Newton's method, its extremes of speed.
+"""Search of the cycle that a machine repeats: energy by Newton's method, extremes of speed.
 
 A scene whose driver is driven at constant speed runs with that mean speed: its drive is taken as a
-constant torque, which closes the balance of work. One that is let go has its loads alone: where one
-of them follows the speed they settle it, else they have to balance, and the speed of its start is
-the mean one.
+constant torque, which closes the balance of work. A free machine has its loads alone: loads that
+follow the speed settle it, else they have to balance, and the speed of its start is the mean one.
 """
 
 import math
@@ -25,27 +24,27 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 SLOWEST, FASTEST, SPEEDS = 1e-3, 1e5, 81
-"""Speeds that are looked at [rad/s]; a factor of 1.26 lies between two of them."""
+"""Scanned speeds [rad/s]; a factor of 1.26 lies between two of them."""
 HALVINGS = 60
 
 
 @lru_cache(maxsize=16)
 def settled_speed(machine: TurningMachine) -> float:
-    """The speed at which the work of a cycle is 0, that a machine comes to from the speed of its
-    start [rad/s]. Raises CrankcheckError as `MeanBalance.settled`."""
+    """Return the speed at which the work of a cycle is 0, from the speed of a machine's start
+    [rad/s]. Raises CrankcheckError as `MeanBalance.settled`."""
     start = abs(float(machine.scene.driver.law.at(np.zeros(1))[1][0]))
     return MeanBalance(machine, AngleCells.of(machine.cycle_rad, breaks(machine))).settled(start)
 
 
 class MeanBalance:
-    """The work of all torques over a cycle [J], with the driver at constant speed."""
+    """Work of all torques over a cycle [J], with the driver at constant speed."""
 
     def __init__(self, machine: TurningMachine, cells: AngleCells) -> None:
         self.machine, self.cells = machine, cells
         self.steady = cells.integral(machine.steady_torque(cells.nodes))
 
     def work(self, speed: float) -> float:
-        """That at a speed [rad/s]; NaN where a table of a load does not reach as far."""
+        """Return the work at a speed [rad/s]; NaN where a table of a load does not reach as far."""
         nodes = self.cells.nodes
         try:
             rated = self.machine.rated_torque(nodes, np.full_like(nodes, speed))
@@ -54,8 +53,8 @@ class MeanBalance:
         return self.steady + self.cells.integral(rated)
 
     def settled(self, start: float) -> float:
-        """The speed at which the work is 0, that the machine comes to from its start [rad/s]:
-        upwards where it gains there, downwards where it loses.
+        """Return the speed at which the work is 0, from the machine's start [rad/s]: upwards where
+        it gains there, downwards where it loses.
 
         Raises CrankcheckError where there is none, or for a table that does not reach its start.
         """
@@ -80,7 +79,7 @@ class MeanBalance:
         return 0.5 * (low + high)
 
     def _to_the_ends(self, speeds: Array, works: Array) -> tuple[Array, Array]:
-        """The speeds that all tables reach, as far as they do."""
+        """Return the speeds that all tables reach, as far as they do."""
         known = np.flatnonzero(np.isfinite(works))
         kept, own = speeds[known].tolist(), works[known].tolist()
         for inside, outside, at in (
@@ -97,7 +96,7 @@ class MeanBalance:
         return np.array(kept), np.array(own)
 
     def _never(self, speeds: Array, works: Array, first: int) -> str:
-        """Why the machine comes to no steady cycle."""
+        """Return the reason for the lack of a steady cycle."""
         scene, gains = self.machine.scene, works[first] > 0.0
         end = -1 if gains else 0
         comes = "goes faster and faster" if gains else "comes to rest"
@@ -116,23 +115,23 @@ class MeanBalance:
 
 
 def other_way(machine: TurningMachine) -> TurningMachine:
-    """The machine turning to the other side."""
+    """Return the machine turning to the other side."""
     return replace(machine, way=-machine.way)
 
 
 CLOSED = 1e-6
-"""The work that loads alone may be short of in a cycle, over what drives: tables have six digits.
-It is made up by a constant torque."""
+"""Allowed imbalance of loads alone in a cycle, over the driving work: tables have six digits. A
+constant torque makes it up."""
 ROUNDS = 6
-"""Searches for the places of the extremes."""
+"""Most searches for the places of the extremes."""
 ROUGHLY, CLOSELY = 18, 40
 """Halvings of an interval of nodes for them: speeds do not change there to first order."""
 STILL = 1e-11
-"""A fluctuation below this is rounding."""
+"""Fluctuation below which it is rounding."""
 
 
 def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> SteadyCycle:
-    """The cycle that a machine repeats with a flywheel more on its driver.
+    """Find the cycle that a machine repeats with an added flywheel on its driver.
 
     Raises
     ------
@@ -167,8 +166,8 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
 
 
 def _with_extremes(solution: PeriodicSolution, wanted: WantedSpeed) -> SteadyCycle:
-    """The solution whose mean speed is right to rounding, and where its speed is largest and
-    smallest."""
+    """Return the solution with the mean speed right to rounding, and the places of its largest and
+    smallest speed."""
     mean = wanted.mean_rad_s
     for _ in range(ROUNDS):
         if mean is None:
@@ -182,7 +181,7 @@ def _with_extremes(solution: PeriodicSolution, wanted: WantedSpeed) -> SteadyCyc
 
 
 def _extremes(solution: PeriodicSolution, halvings: int) -> tuple[float, float]:
-    """The angles u at which the speed is largest and smallest, where its slope is 0."""
+    """Return the angles u at which the speed is largest and smallest, where its slope is 0."""
     u = np.sort(np.concatenate([solution.cells.borders, solution.cells.nodes.ravel()]))
     speed = solution.speed_at(u)
     if np.ptp(speed) <= STILL * speed.max():
@@ -199,7 +198,7 @@ def _extremes(solution: PeriodicSolution, halvings: int) -> tuple[float, float]:
 
 
 def _pull(solution: PeriodicSolution, u: Array) -> Array:
-    """J w dw/du: what the torques leave for a change of the speed [N m]."""
+    """Return J w dw/du: the torque that changes the speed [N m]."""
     inertia, slope = solution.machine.inertia(u)
     speed = np.sqrt(2.0 * solution.energy_at(u) / (inertia + solution.flywheel))
     torque = solution.machine.torque(u, speed) + solution.drive
@@ -223,7 +222,7 @@ def _check_closed(solution: PeriodicSolution) -> None:
 
 
 def cycle_of(machine: TurningMachine) -> SteadyCycle:
-    """The steady cycle, of a machine that starts from rest to the side that its loads drive it to.
+    """Return the steady cycle; a machine at rest starts to the side that its loads drive it to.
     Raises as `steady_cycle`."""
     try:
         return steady_cycle(machine)

@@ -1,4 +1,4 @@
-"""The flywheel that makes a machine run as evenly as wanted: exact, and as the textbooks draw it.
+"""Flywheel for a wanted evenness of speed: exact, and as the textbooks draw it.
 
 ::
 
@@ -11,7 +11,7 @@
 
 With k = w^2 / 2 of the largest and the smallest speed, w = mean (1 +- delta/2), the flywheel is
 (max(W - k_max J) - min(W - k_min J)) / (k_max - k_min). That is exact where no torque follows the
-speed; else W is that of the very cycle that the flywheel makes, and is found with it.
+speed; else W is that of the cycle with the flywheel, and is found with it.
 
 Sources: F. Wittenbauer, Graphische Dynamik (the tangents); I. I. Artobolevskii, Theory of
 Mechanisms, on flywheels (own inertia at mean speed, after N. I. Mertsalov); problem book "Bai tap
@@ -31,17 +31,17 @@ from models.errors import CrankcheckError
 
 MOST_TRIES = 40
 MET = 1e-12
-"""How near the coefficient comes to the one that was asked for, over it."""
+"""Relative error of the coefficient."""
 LEAST = 1e-6
-"""A coefficient; of a smaller one `MET` is below the rounding of a speed."""
+"""Smallest coefficient: below it `MET` is less than the rounding of a speed."""
 EVEN = 1e-4
-"""The share of a coefficient that changes no torque."""
+"""Share of a coefficient that changes no torque."""
 FINER = 20
-"""Places at which a curve is looked at, to the place of the cycle's own samples."""
+"""Samples of a curve per sample of the cycle."""
 
 
 class CoefficientError(CrankcheckError):
-    """A coefficient of fluctuation that no machine is given a flywheel for."""
+    """Coefficient of fluctuation without a flywheel."""
 
 
 @dataclass(frozen=True)
@@ -53,26 +53,26 @@ class EnergyMass:
     work: Array
 
     def tangent(self, slope: float, *, above: bool) -> tuple[float, int]:
-        """Where a line of a slope [J/(kg m^2)] that touches the curve passes J = 0 [J], and the
-        sample that it touches."""
+        """Return the value at J = 0 [J] of a tangent with a slope [J/(kg m^2)], and the sample that
+        it touches."""
         height = self.work - slope * self.inertia
         at = int(np.argmax(height) if above else np.argmin(height))
         return float(height[at]), at
 
     def flywheel(self, steep: float, flat: float) -> float:
-        """How far to the left of J = 0 two tangents meet [kg m^2]."""
+        """Return the distance of the crossing of two tangents to the left of J = 0 [kg m^2]."""
         above, below = self.tangent(steep, above=True)[0], self.tangent(flat, above=False)[0]
         return (above - below) / (steep - flat)
 
 
 @dataclass(frozen=True)
 class Approximations:
-    """Flywheels [kg m^2] as the textbooks have them, with torques as at the mean speed.
+    """Flywheels [kg m^2] of the textbooks, with torques as at the mean speed.
 
     ``by_surplus`` is the surplus of work over delta w^2, less the mean of the machine's own moment
-    of inertia. ``by_own_energy`` takes what of that varies, at the mean speed, off the work; the
-    rest, its least, turns as a flywheel does. ``by_tangents`` are Wittenbauer's, with
-    tan psi = w^2 (1 +- delta) / 2.
+    of inertia. ``by_own_energy`` subtracts the energy of its variable part, at the mean speed, from
+    the work; the rest, its minimum, turns as a flywheel does. ``by_tangents`` are Wittenbauer's,
+    with tan psi = w^2 (1 +- delta) / 2.
     """
 
     by_surplus: float
@@ -82,9 +82,9 @@ class Approximations:
 
 @dataclass(frozen=True)
 class WantedFlywheel:
-    """A flywheel of ``inertia_kg_m2`` on the driver, with which the machine runs as ``cycle``, with
-    the coefficient of fluctuation ``delta``; ``bare`` is the cycle without it, or None where the
-    machine stops without."""
+    """Flywheel of ``inertia_kg_m2`` on the driver, with the resulting ``cycle`` of the coefficient
+    of fluctuation ``delta``; ``bare`` is the cycle without it, or None where the machine stops
+    without."""
 
     delta: float
     inertia_kg_m2: float
@@ -100,18 +100,18 @@ class WantedFlywheel:
 
     @property
     def diagram(self) -> EnergyMass:
-        """Of the cycle with the flywheel, whose energy is not in it."""
+        """Diagram of the cycle with the flywheel, whose energy is not in it."""
         return energy_mass(self.cycle)
 
 
 def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywheel:
-    """The flywheel for a coefficient of fluctuation.
+    """Find the flywheel for a coefficient of fluctuation.
 
     Raises
     ------
     CrankcheckError
-        A coefficient that is none, or that the machine keeps without a flywheel; no steady cycle,
-        whatever flywheel it has.
+        An invalid coefficient, or one that the machine keeps without a flywheel; no steady cycle
+        with any flywheel.
     """
     _check(delta)
     machine, bare = _bare(scene_machine)
@@ -142,8 +142,8 @@ def _check(delta: float) -> None:
 
 
 def _bare(machine: TurningMachine) -> tuple[TurningMachine, SteadyCycle | None]:
-    """The machine, turning as its loads turn it, and its cycle without a flywheel if there is
-    one."""
+    """Return the machine, turning as its loads turn it, and its cycle without a flywheel if there
+    is one."""
     try:
         cycle = cycle_of(machine)
     except StallError:
@@ -152,7 +152,7 @@ def _bare(machine: TurningMachine) -> tuple[TurningMachine, SteadyCycle | None]:
 
 
 def _heavy(machine: TurningMachine, delta: float) -> SteadyCycle:
-    """The cycle with so much of a flywheel that the speed hardly changes: torques are those of
+    """Return the cycle with so large a flywheel that the speed hardly changes: torques are those of
     constant speed."""
     own = machine.inertia(np.linspace(0.0, machine.cycle_rad, 361))[0]
     inertia = 10.0 * float(np.max(own)) or 1.0
@@ -172,7 +172,7 @@ def _heavy(machine: TurningMachine, delta: float) -> SteadyCycle:
 
 
 def energy_mass(cycle: SteadyCycle) -> EnergyMass:
-    """The diagram of a cycle; the moment of inertia is without the flywheel that was put on."""
+    """Return the diagram of a cycle; the moment of inertia is without the added flywheel."""
     u = np.linspace(0.0, cycle.machine.cycle_rad, FINER * (len(cycle.fine) - 1) // 4 + 1)
     u = np.unique(np.concatenate([u, cycle.solution.cells.borders, [cycle.fastest, cycle.slowest]]))
     energy = cycle.energy(u)
@@ -180,7 +180,7 @@ def energy_mass(cycle: SteadyCycle) -> EnergyMass:
 
 
 def _classical(heavy: SteadyCycle, delta: float) -> Approximations:
-    """The approximations, from torques at constant speed."""
+    """Return the approximations, from torques at constant speed."""
     diagram, square = energy_mass(heavy), heavy.mean_rad_s**2
     own = diagram.inertia
     mean = float(np.mean(heavy.machine.inertia(heavy.fine[:-1])[0]))
@@ -193,8 +193,8 @@ def _classical(heavy: SteadyCycle, delta: float) -> Approximations:
 
 
 def _exact(machine: TurningMachine, delta: float, first: float) -> SteadyCycle:
-    """The cycle that has the coefficient, by the secant method: 1 / delta goes nearly straight with
-    the flywheel."""
+    """Return the cycle of the coefficient, by the secant method: 1 / delta is nearly linear in the
+    flywheel."""
     tried: list[tuple[float, SteadyCycle]] = []
     inertia = first
     for _ in range(MOST_TRIES):
@@ -220,7 +220,7 @@ def _exact(machine: TurningMachine, delta: float, first: float) -> SteadyCycle:
 
 
 def _next(tried: list[tuple[float, SteadyCycle]], delta: float) -> float:
-    """The next flywheel to try."""
+    """Return the next flywheel to try."""
     inertia, cycle = tried[-1]
     off = 1.0 / cycle.delta - 1.0 / delta
     own = cycle.inertia_range[0] - inertia

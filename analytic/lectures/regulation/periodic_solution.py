@@ -1,9 +1,9 @@
-"""The kinetic energy of a machine over a cycle that it repeats, in cells of its angle.
+"""Kinetic energy of a machine over a cycle that it repeats, in cells of its angle.
 
 With T = J w^2 / 2 the equation of the machine is dT/du = M(u, w) + D; D is a constant torque of the
 drive. In every cell T is a polynomial that satisfies it in Gauss's nodes; each Newton step solves
-the linear equation of what is left, cell by cell, with T at the start and D open, and these follow
-from T(cycle) = T(0) and, where a mean speed is asked for, from that.
+the linear equation of the residual, cell by cell, with T at the start and D open, and these follow
+from T(cycle) = T(0) and, if given, a mean speed.
 
 Mean speed is (w_max + w_min) / 2, that of the coefficient of fluctuation.
 """
@@ -27,14 +27,14 @@ from models.errors import CrankcheckError
 
 
 class StallError(CrankcheckError):
-    """A machine that stops on its way round, for want of inertia."""
+    """The machine stops on its way round, for want of inertia."""
 
 
 @dataclass(frozen=True)
 class PeriodicSolution:
-    """The energy T [J] at the nodes (C, NODES) and borders (C + 1,) of cells, the torque M there
-    and the constant one of the drive, D [N m]; ``gain`` is what a change of T at the start becomes
-    in a cycle."""
+    """Energy T [J] at the nodes (C, NODES) and borders (C + 1,) of cells, the torque M there and
+    the constant one of the drive, D [N m]; ``gain`` is the growth of a change of T at the start in
+    a cycle."""
 
     machine: TurningMachine
     cells: AngleCells
@@ -49,39 +49,39 @@ class PeriodicSolution:
 
     @property
     def speed(self) -> Array:
-        """w at the nodes [rad/s]."""
+        """Speed w at the nodes [rad/s]."""
         return np.asarray(np.sqrt(2.0 * self.energy / self.inertia))
 
     @property
     def roughness(self) -> Array:
-        """What the highest polynomial of the torque in a cell has of the energy, over the largest
-        energy, (C,): what that leaves out is less. Where a wave has none of that polynomial the one
-        before tells, as if each had the same share of the one before it."""
+        """Energy in the highest polynomial of the torque in a cell, over the largest energy, (C,):
+        the truncation is less. If a wave has none of that polynomial the one before counts, as if
+        each had the same share of the one before it."""
         parts = np.abs(self.torque @ LEGENDRE)
         size = np.maximum(parts.max(axis=1), np.finfo(float).tiny)
         last = np.maximum(parts[:, -1], size * (parts[:, -2] / size) ** (4.0 / 3.0))
         return np.asarray(self.cells.widths * last / float(np.max(self.energy)))
 
     def energy_at(self, u: Array) -> Array:
-        """T at angles (T,) [J]."""
+        """Return T at angles (T,) [J]."""
         cell, share = self.cells.places(u)
         torque = self.torque[cell] + self.drive
         inner = np.sum(integrals_to(share) * torque, axis=1)
         return np.asarray(self.at_borders[cell] + self.cells.widths[cell] * inner)
 
     def inertia_at(self, u: Array) -> Array:
-        """J with the flywheel [kg m^2]."""
+        """Return J with the flywheel [kg m^2]."""
         return self.machine.inertia(u)[0] + self.flywheel
 
     def speed_at(self, u: Array) -> Array:
-        """w at angles (T,) [rad/s]."""
+        """Return w at angles (T,) [rad/s]."""
         return np.asarray(np.sqrt(2.0 * self.energy_at(u) / self.inertia_at(u)))
 
 
 @dataclass(frozen=True)
 class WantedSpeed:
-    """``mean_rad_s``, a mean speed to be kept by a constant torque, or None for a machine left to
-    its torques; ``extremes`` are the angles of the largest and the smallest speed, where known."""
+    """Mean speed ``mean_rad_s``, kept by a constant torque, or None for a machine under its torques
+    alone; ``extremes`` are the angles of the largest and the smallest speed, where known."""
 
     mean_rad_s: float | None
     extremes: tuple[float, float] | None = None
@@ -89,13 +89,13 @@ class WantedSpeed:
 
 MOST_STEPS = 80
 LEFT = 0.2
-"""The least that a Newton step leaves of the energy anywhere: an energy is above 0."""
+"""Least share of the energy that a Newton step leaves anywhere: an energy is above 0."""
 DONE = 1e-13
-"""The last step, over the largest energy."""
+"""Size of the last step, over the largest energy."""
 RESTING = 1e-4
-"""The least speed over the largest: below it a machine stands."""
+"""Least speed over the largest, below which a machine is at rest."""
 NUDGE = 1e-6
-"""By what share of itself a speed is changed for the slope of torques over it."""
+"""Relative change of a speed for the slope of torques over it."""
 
 
 def repeated(
@@ -105,7 +105,7 @@ def repeated(
     guess: PeriodicSolution | float,
     wanted: WantedSpeed,
 ) -> PeriodicSolution:
-    """The solution that the machine repeats.
+    """Find the solution that the machine repeats.
 
     ``guess`` is a speed [rad/s] to begin with, or a solution, in cells of its own. Raises
     StallError where the energy runs out on the way, CrankcheckError for tables of loads that end
@@ -115,7 +115,7 @@ def repeated(
 
 
 class _Newton:
-    """The steps towards a solution that repeats."""
+    """Newton's method for a solution that repeats."""
 
     def __init__(
         self, machine: TurningMachine, cells: AngleCells, flywheel: float, wanted: WantedSpeed
@@ -155,7 +155,7 @@ class _Newton:
         raise StallError(self._stalled(solution))
 
     def _begun(self, guess: PeriodicSolution | float) -> PeriodicSolution:
-        """What the steps begin with."""
+        """Return the first guess of the steps."""
         if isinstance(guess, float):
             square = 0.5 * guess**2
             return self._solution(square * self.inertia, square * self.at_borders, 0.0, 1.0)
@@ -164,8 +164,8 @@ class _Newton:
         return self._solution(energy, guess.energy_at(self.cells.borders), guess.drive, guess.gain)
 
     def _holds(self, solution: PeriodicSolution) -> bool:
-        """Whether a solution is one of a machine that goes on, at the speed that was asked for; the
-        steps may come to rest where it all but stops as well."""
+        """True if a solution belongs to a machine that goes on, at the wanted speed; the steps may
+        also end where it all but stops."""
         (_, *high), (_, *low) = self._extremes(solution)
         fast, slow = (math.sqrt(2.0 * energy / inertia) for energy, inertia in (high, low))
         mean = self.wanted.mean_rad_s
@@ -176,7 +176,7 @@ class _Newton:
     def _solution(
         self, energy: Array, at_borders: Array, drive: float, gain: float
     ) -> PeriodicSolution:
-        """With the torque at the nodes that goes with the energy. Raises CrankcheckError."""
+        """Return the solution with the torque at the nodes. Raises CrankcheckError."""
         torque = self.steady
         if self.machine.is_rated:
             speed = np.sqrt(2.0 * energy / self.inertia)
@@ -189,7 +189,7 @@ class _Newton:
     def _mixed(
         self, solution: PeriodicSolution, full: PeriodicSolution, share: float
     ) -> PeriodicSolution:
-        """A share of the way; less of it where a table of a load would end."""
+        """Take a share of the way; less of it where a table of a load would end."""
         why: CrankcheckError | None = None
         for _ in range(40):
             try:
@@ -205,7 +205,7 @@ class _Newton:
         raise why
 
     def _slope(self, solution: PeriodicSolution) -> Array:
-        """dM/dT at the nodes [1]."""
+        """Return dM/dT at the nodes [1]."""
         if not self.machine.is_rated:
             return np.zeros_like(solution.energy)
         speed, nodes = solution.speed, self.cells.nodes
@@ -214,13 +214,13 @@ class _Newton:
         return np.asarray(by_speed / (self.inertia * speed))
 
     def _step(self, solution: PeriodicSolution) -> PeriodicSolution:
-        """The solution of the equation that is linear about a solution."""
+        """Solve the equation that is linear about a solution."""
         slope, wide = self._slope(solution), self.cells.widths[:, None]
         left = solution.torque - slope * solution.energy  # M = left + slope T
         matrix = np.eye(INSIDE.shape[0]) - wide[:, :, None] * INSIDE * slope[:, None, :]
         right = np.stack([np.ones_like(left), wide * (left @ INSIDE.T),
                           wide * (np.ones_like(left) @ INSIDE.T)], axis=2)  # fmt: skip
-        # T at the nodes of a cell, from T at its first border, from what is left, and from D.
+        # T at the nodes of a cell, from T at its first border, from the rest, and from D.
         within = np.linalg.solve(matrix, right)
         torques = slope[:, :, None] * within
         torques[:, :, 1] += left
@@ -248,7 +248,7 @@ class _Newton:
     def _open(
         self, solution: PeriodicSolution, start: Array, torques: Array
     ) -> tuple[float, float]:
-        """T at the start and D, from what is to be periodic, and the mean speed."""
+        """Return T at the start and D, from the periodicity and the mean speed."""
         gain, gained, driven = start[-1]
         mean = self.wanted.mean_rad_s
         if mean is None:
@@ -264,7 +264,7 @@ class _Newton:
         return float(first), float(drive)
 
     def _weights(self, u: float, start: Array, torques: Array) -> Array:
-        """T at an angle, from T(0), from what is left, and from D."""
+        """Return T at an angle, from T(0), from the rest, and from D."""
         cell, share = (each[0] for each in self.cells.places(np.array([u])))
         inner = self.cells.widths[cell] * (integrals_to(np.array(share)) @ torques[cell])
         found = start[cell] * (1.0 + inner[0])
@@ -272,7 +272,7 @@ class _Newton:
         return np.asarray(found)
 
     def _extremes(self, solution: PeriodicSolution) -> list[tuple[float, float, float]]:
-        """Angle, energy and inertia where the speed is largest, and where smallest."""
+        """Return angle, energy and inertia where the speed is largest, and where smallest."""
         if self.wanted.extremes is not None:
             u = np.array(self.wanted.extremes)
             energy, inertia = solution.energy_at(u), solution.inertia_at(u)
@@ -285,7 +285,7 @@ class _Newton:
         return list(zip(u.tolist(), energy.tolist(), inertia.tolist(), strict=True))
 
     def _stalled(self, solution: PeriodicSolution) -> str:
-        """Where the energy runs out."""
+        """Return the text of the place where the energy runs out."""
         scene, worst = self.machine.scene, int(np.argmin(solution.energy / self.inertia))
         where = np.degrees(self.machine.theta(self.cells.nodes.ravel()[worst])) % 360.0
         mean = self.wanted.mean_rad_s
@@ -298,13 +298,13 @@ class _Newton:
 
 
 RESOLVED, MOST_HALVINGS, MOST_CELLS = 1e-8, 16, 12_000
-"""What the highest polynomial of a cell may have of the energy, over the largest, of which what it
-leaves out is a hundredth; how often cells are halved for it, and how many there may be."""
+"""Share of the highest polynomial of a cell in the largest energy, of which the truncation is a
+hundredth; most halvings of cells for it, and most cells."""
 
 
 def resolved(solution: PeriodicSolution, wanted: WantedSpeed) -> PeriodicSolution:
-    """The solution in cells so narrow that their polynomials follow it: a machine that comes
-    quickly to the speed of its motor, or a load of short waves, takes narrower ones.
+    """Refine the cells until their polynomials follow the solution: a machine that comes quickly to
+    the speed of its motor, or a load of short waves, takes narrower ones.
 
     Raises CrankcheckError where no cells are narrow enough.
     """

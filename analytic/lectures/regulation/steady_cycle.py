@@ -1,4 +1,4 @@
-"""The cycle that a machine repeats: how fast it is where, how evenly it runs, what does the work.
+"""Cycle that a machine repeats: its speed over the angle, its evenness, its works by source.
 
 Source: problem book "Bai tap co hoc may", chapter on real motion and its regulation;
 I. I. Artobolevskii, Theory of Mechanisms, on the regulation of periodic fluctuations.
@@ -19,17 +19,17 @@ from models.scene.driver import Released
 from models.scene.loads import Load
 
 NO_WORK = 1e-12
-"""A work of the cycle below this, over all that is turned over in it, is rounding."""
+"""Work of the cycle over the turnover, below which it is rounding."""
 SAMPLES = 720
-"""Of a turn."""
+"""Samples of a turn."""
 
 
 @dataclass(frozen=True)
 class SteadyCycle:
-    """A machine over the cycle that it repeats.
+    """Machine over the cycle that it repeats.
 
     ``fastest`` and ``slowest`` are the angles u turned since the start at which the speed is
-    largest and smallest [rad]. Torques count along the motion: what is positive drives.
+    largest and smallest [rad]. Torques count along the motion: positive ones drive.
     """
 
     solution: PeriodicSolution
@@ -42,22 +42,21 @@ class SteadyCycle:
 
     @cached_property
     def turnover_j(self) -> float:
-        """The work of all torques over the cycle, whatever its sign: what rounding is measured
-        by."""
+        """Work of all torques over the cycle, whatever its sign: the scale of rounding."""
         return self.solution.cells.integral(np.abs(self.solution.torque))
 
     @cached_property
     def drive_n_m(self) -> float:
-        """The constant torque of the drive, along the motion; 0 of a machine that is let go."""
+        """Constant torque of the drive, along the motion; 0 for a free machine."""
         return self._clean(self.solution.drive * self.machine.cycle_rad) / self.machine.cycle_rad
 
     def _clean(self, work: float) -> float:
-        """A work of the cycle [J], 0 where it is rounding."""
+        """Return a work of the cycle [J], 0 where it is rounding."""
         return work if abs(work) > NO_WORK * self.turnover_j else 0.0
 
     @cached_property
     def extreme_speeds_rad_s(self) -> tuple[float, float]:
-        """The largest and the smallest speed of the driver."""
+        """Largest and smallest speed of the driver."""
         high, low = self.solution.speed_at(np.array([self.fastest, self.slowest]))
         return float(high), float(low)
 
@@ -68,30 +67,30 @@ class SteadyCycle:
 
     @property
     def delta(self) -> float:
-        """The coefficient of fluctuation, (w_max - w_min) / mean."""
+        """Coefficient of fluctuation, (w_max - w_min) / mean."""
         high, low = self.extreme_speeds_rad_s
         return (high - low) / self.mean_rad_s
 
     @cached_property
     def period_s(self) -> float:
-        """How long a cycle takes."""
+        """Time of a cycle."""
         return self.solution.cells.integral(1.0 / self.solution.speed)
 
     @property
     def time_mean_rad_s(self) -> float:
-        """The angle of a cycle over its time."""
+        """Angle of a cycle over its time."""
         return self.machine.cycle_rad / self.period_s
 
     @property
     def settling(self) -> float:
-        """What a change of the energy at the start becomes in a cycle: below 1 it dies away; 1
-        where no torque follows the speed."""
+        """Growth of a change of the energy at the start in a cycle: below 1 it dies away; 1 where
+        no torque follows the speed."""
         return self.solution.gain
 
     @cached_property
     def works_j(self) -> Mapping[str, float]:
-        """The work of a cycle by what does it: each load, spring and friction by its key in the
-        file, weights, and the drive."""
+        """Work of a cycle by source: each load, spring and friction by its key in the file,
+        weights, and the drive."""
         cells, speed = self.solution.cells, self.solution.speed
         torques = self.machine.torques_by_source(cells.nodes, speed)
         works = {n: self._clean(cells.integral(torque)) for n, torque in torques.items()}
@@ -101,18 +100,17 @@ class SteadyCycle:
 
     @property
     def work_j(self) -> float:
-        """What drives in a cycle: the sum of the works that are positive."""
+        """Driving work in a cycle: the sum of the positive works."""
         return sum(work for work in self.works_j.values() if work > 0.0)
 
     @property
     def power_w(self) -> float:
-        """The mean power of what drives."""
+        """Mean power of the driving work."""
         return self.work_j / self.period_s
 
     @cached_property
     def surplus_j(self) -> float:
-        """The surplus of work: by how much the work since the start is larger where it is largest
-        than where it is smallest."""
+        """Surplus of work: the largest work since the start less the smallest."""
         work = self.energy(
             self.solution.cells.borders, self.solution.cells.nodes.ravel(), self.fine
         )
@@ -120,7 +118,7 @@ class SteadyCycle:
 
     @cached_property
     def inertia_range(self) -> tuple[float, float]:
-        """The smallest and the largest reduced moment of inertia, with flywheels [kg m^2]."""
+        """Smallest and largest reduced moment of inertia, with flywheels [kg m^2]."""
         own = self.solution.inertia_at(self.fine)
         return float(own.min()), float(own.max())
 
@@ -131,15 +129,15 @@ class SteadyCycle:
         return np.linspace(0.0, self.machine.cycle_rad, count + 1)
 
     def energy(self, *angles: Array) -> Array:
-        """The kinetic energy at angles u [J]."""
+        """Return the kinetic energy at angles u [J]."""
         return self.solution.energy_at(np.concatenate(angles))
 
     def time_s(self, u: Array) -> Array:
-        """When the driver has turned by angles u."""
+        """Return the times at which the driver has turned by angles u."""
         return self.solution.cells.integrated(1.0 / self.solution.speed, u)
 
     def driver_rad(self, u: float) -> float:
-        """The driver's own angle, in [0, 2 pi) of the first turn, on into the next ones."""
+        """Return the driver's own angle, in [0, 2 pi) of the first turn, on into the next ones."""
         theta = float(self.machine.theta(np.array(u)))
         return float(np.mod(theta, self.machine.cycle_rad))
 
@@ -148,15 +146,15 @@ DRIVE = "drive"
 
 
 def with_flywheel(scene: Scene, inertia_kg_m2: float) -> Scene:
-    """The scene with a flywheel more on its driver."""
+    """Return the scene with an added flywheel on its driver."""
     link = scene.links[scene.driver.link]
     heavier = replace(link, inertia_kg_m2=link.inertia_kg_m2 + inertia_kg_m2)
     return replace(scene, links={**scene.links, link.name: heavier})
 
 
 def cycle_scene(cycle: SteadyCycle, cycles: float = 5.0, *, flywheel: bool = True) -> Scene:
-    """The scene of a cycle, with its flywheel if asked for, let go at its start with the speed that
-    the cycle has there, for so many cycles; the constant torque of the drive is a load of it."""
+    """Return the scene of a cycle, with its flywheel by default, released at its start with the
+    cycle's speed, for so many cycles; the drive's torque is a load."""
     machine = cycle.machine
     scene = with_flywheel(machine.scene, cycle.solution.flywheel) if flywheel else machine.scene
     start = machine.way * float(cycle.solution.speed_at(np.zeros(1))[0])

@@ -1,4 +1,4 @@
-"""A machine over the angle that its driver has turned: reduced moment of inertia, and torques.
+"""Machine over the angle that its driver has turned: reduced moment of inertia, and torques.
 
 The angle u counts along the motion, and so do torques: positive ones drive::
 
@@ -32,15 +32,15 @@ from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
 
 MOST_TURNS = 12
-"""Of the mechanism's own cycle, within which that of the loads has to come round."""
+"""Most turns of the mechanism's own cycle, within which the loads have to repeat."""
 MOST_PERIODS = 2000
-"""Of a load in a cycle; all of them are worked out."""
+"""Most periods of a load in a cycle; all of them are computed."""
 CLOSE = 1e-9
-"""What a period may be off a whole part of the cycle by, over it."""
+"""Deviation of a period from a whole part of the cycle, over it."""
 
 
 def cycle_angle(scene: Scene) -> float:
-    """The angle of the driver after which the machine is as it was [rad]: a turn, two of a
+    """Return the angle of the driver after which the machine repeats [rad]: a turn, two for a
     four-stroke engine.
 
     Raises
@@ -73,7 +73,7 @@ def cycle_angle(scene: Scene) -> float:
 
 
 def _check_turns(scene: Scene) -> None:
-    """Refuse a driver that no cycle is like the next of, or whose speed is no body's own."""
+    """Refuse a driver without a repeated cycle, or whose speed is no body's own."""
     refuse_other_than_cranked(scene, "a cycle of speed")
     if not (scene.is_free or isinstance(scene.driver.law, ConstantSpeed)):
         raise CrankcheckError(
@@ -90,7 +90,7 @@ def _check_turns(scene: Scene) -> None:
 
 
 def _period(scene: Scene, load: Load) -> float | None:
-    """The driver's angle after which a load over it repeats; None where it follows no angle."""
+    """Return the driver's angle after which a load repeats; None if it follows no angle."""
     own = load.characteristic
     if isinstance(own, Constant):
         return None
@@ -110,7 +110,7 @@ def _period(scene: Scene, load: Load) -> float | None:
 
 
 def _check_periods(scene: Scene, whole_rad: float) -> None:
-    """Refuse loads that repeat more often in a cycle than can be worked out."""
+    """Refuse loads that repeat too often in a cycle."""
     for load in scene.loads.values():
         period = _period(scene, load)
         if period is not None and whole_rad / period > MOST_PERIODS:
@@ -136,7 +136,7 @@ def _check_springs(scene: Scene, whole_rad: float) -> None:
 
 @dataclass(frozen=True, eq=False)
 class TurningMachine:
-    """A scene whose driver turns on, from ``start_rad`` by ``cycle_rad`` in a cycle, to the side
+    """Scene whose driver turns on, from ``start_rad`` by ``cycle_rad`` in a cycle, to the side
     ``way``."""
 
     scene: Scene
@@ -159,8 +159,8 @@ class TurningMachine:
 
     @staticmethod
     def of(scene: Scene) -> TurningMachine:
-        """That of a scene; to the side that its driver starts to, and left-handed from rest.
-        Raises CrankcheckError as `cycle_angle`, and for elastic links."""
+        """Make the machine of a scene; to the side of its driver's start, and left-handed from
+        rest. Raises CrankcheckError as `cycle_angle`, and for elastic links."""
         if scene.elastic:
             raise CrankcheckError(
                 f"{scene.name}: {next(iter(scene.elastic))} is elastic; the steady cycle of a "
@@ -172,15 +172,15 @@ class TurningMachine:
 
     @property
     def is_rated(self) -> bool:
-        """Whether any torque follows the speed."""
+        """True if any torque follows the speed."""
         return bool(self._rated.loads or self._rated.springs)
 
     def theta(self, u: Array) -> Array:
-        """The driver's angle [rad]."""
+        """Return the driver's angle [rad]."""
         return self.start_rad + self.way * u
 
     def inertia(self, u: Array) -> tuple[Array, Array]:
-        """J and dJ/du [kg m^2]. Raises CrankcheckError where J has no bound."""
+        """Return J and dJ/du [kg m^2]. Raises CrankcheckError where J has no bound."""
         pair = inertia_and_slope(self.scene, self._unit(u.ravel()))
         inertia, slope = (each.reshape(u.shape) for each in pair)
         if (off := ~(np.isfinite(inertia) & np.isfinite(slope))).any():
@@ -192,26 +192,26 @@ class TurningMachine:
         return inertia, self.way * slope
 
     def mechanism(self, u: Array) -> Chunk:
-        """The positions (T,), with rates and accelerations per unit of the driver's rate."""
+        """Return the positions (T,), with rates and accelerations per unit of the driver's rate."""
         return self._unit(u)
 
     def steady_torque(self, u: Array) -> Array:
-        """The torque of all that does not follow the speed [N m]."""
+        """Return the torque of all forces that do not follow the speed [N m]."""
         return self._torque(self._steady, u, 1.0)
 
     def rated_torque(self, u: Array, speed: Array) -> Array:
-        """The torque of all that follows the speed, at speeds [rad/s] of the driver, above 0.
-        Raises CrankcheckError for a table that does not reach as far."""
+        """Return the torque of all forces that follow the speed, at speeds [rad/s] of the driver,
+        above 0. Raises CrankcheckError for a table that does not reach as far."""
         if not self.is_rated:
             return np.zeros_like(u)
         return self._torque(self._rated, u, speed)
 
     def torque(self, u: Array, speed: Array) -> Array:
-        """M [N m]."""
+        """Return M [N m]."""
         return self.steady_torque(u) + self.rated_torque(u, speed)
 
     def torques_by_source(self, u: Array, speed: Array) -> dict[str, Array]:
-        """The torque of weights, and of each load, spring and friction, by its key in the file."""
+        """Return the torque of weights and each load, spring and friction, by key in the file."""
         scene = self.scene
         bare = replace(scene, loads={}, springs={}, friction={}, gravity_m_s2=(0.0, 0.0))
         parts = {f"loads.{n}": replace(bare, loads={n: x}) for n, x in scene.loads.items()}
@@ -227,7 +227,7 @@ class TurningMachine:
         return unit_chunk(self.scene, self.theta(u), bound=False)
 
     def _torque(self, part: Scene, u: Array, speed: Array | float) -> Array:
-        """The torque of what acts in ``part``, the same mechanism with less that acts on it."""
+        """Return the torque of ``part``, the same mechanism with some of its forces."""
         flat = u.ravel()
         rate = self.way * np.broadcast_to(speed, u.shape).ravel()
         chunk = driven_chunk(self.scene, self.theta(flat), rate)
@@ -242,5 +242,5 @@ class TurningMachine:
 
 
 def follows_speed(load: Load) -> bool:
-    """Whether a load depends on how fast the machine goes."""
+    """True if a load depends on a speed of the machine."""
     return load.over in ("speed", "omega") and not isinstance(load.characteristic, Constant)

@@ -1,23 +1,22 @@
-"""Each joint as a row of turns and displacements, one after the other, that its freedoms make.
+"""Joints as rows of successive turns and displacements of their freedoms.
 
-The pose of the second link in the first one is exp(s1 q1) exp(s2 q2) ..., with the screws s where
-they are in the drawn position, and that is exact however far the joint moves. Higher pairs are
-given by what is true of them over more than the instant: a planar contact by the centres of
-curvature of its two profiles (exact to the second order, for circles and straight lines always),
-gears by the line of centres, about whose two ends they roll.
+The pose of the second link in the first one is exp(s1 q1) exp(s2 q2) ..., with the screws s of the
+drawn position, exact however far the joint moves. Higher pairs are replaced beyond the instant: a
+planar contact by the centres of curvature of its two profiles (exact to the second order, for
+circles and straight lines always), gears by the line of centres, about whose two ends they roll.
 
 Two profiles that touch move against each other, to the second order, as if a link joined their
-centres of curvature; a straight profile has its centre infinitely far, and a block that slides
-along it in its place. Teeth of involutes have their centres where the line of action touches the
-base circles. A link and two joints of class 5 for one of class 4 leave the count as it is:
-3 - 2*2 = -1. Source: I. I. Artobolevskii, Theory of Mechanisms, chapter on structure; problem book
-"Bai tap co hoc may", chapter on schemes.
+centres of curvature; a straight profile has its centre at infinity, and is replaced by a block that
+slides along it. Teeth of involutes have their centres where the line of action touches the base
+circles. A link and two joints of class 5 for one of class 4 leave the count as it is: 3 - 2*2 = -1.
+Source: I. I. Artobolevskii, Theory of Mechanisms, chapter on structure; problem book "Bai tap co
+hoc may", chapter on schemes.
 
 A frictionless contact takes forces along its normals: a point one line of force, a straight line
 two of them, a surface as many as its normals span. The class is the number of independent ones, 1
-to 5; what does no work against any of them are the freedoms. Contact over surfaces makes a lower
-pair, along lines or in points a higher one. Source: problem book "Bai tap co hoc may", chapter on
-joint classes; K. H. Hunt, Kinematic Geometry of Mechanisms, chapter 1.
+to 5; the freedoms are the motions against which none of them does work. Contact over surfaces makes
+a lower pair, along lines or in points a higher one. Source: problem book "Bai tap co hoc may",
+chapter on joint classes; K. H. Hunt, Kinematic Geometry of Mechanisms, chapter 1.
 """
 
 import math
@@ -45,12 +44,12 @@ from models.lectures.scheme import PLANAR, Place, Scheme, SchemeJoint
 from models.lectures.touching import Contact, Touching
 
 UP = (0.0, 0.0, 1.0)
-"""The normal of the plane of a planar scheme."""
+"""Normal of the plane of a planar scheme."""
 
 
 @dataclass(frozen=True)
 class Element:
-    """A screw, and how much of the freedom numbered ``freedom`` it makes."""
+    """Screw, and its factor of the freedom numbered ``freedom``."""
 
     twist: Array
     freedom: int
@@ -58,7 +57,7 @@ class Element:
 
 
 def chain_of(joint: SchemeJoint) -> tuple[Element, ...]:
-    """The row of screws that a joint leaves, from the first link to the second."""
+    """Return the row of screws that a joint leaves, from the first link to the second."""
     found = _KINDS[joint.kind](joint)
     if joint.kind == "gear":
         _, _, roll = found
@@ -69,7 +68,7 @@ def chain_of(joint: SchemeJoint) -> tuple[Element, ...]:
 
 
 def curvature_centres(joint: SchemeJoint) -> tuple[Array | None, Array | None]:
-    """The centres of curvature of a planar contact's profiles, None for a straight one."""
+    """Return the centres of curvature of a planar contact's profiles, None for a straight one."""
     at, normal = np.array(joint.at), np.array(joint.axes[0])
     first, second = joint.radii
     return (
@@ -79,7 +78,7 @@ def curvature_centres(joint: SchemeJoint) -> tuple[Array | None, Array | None]:
 
 
 def gear_centres(joint: SchemeJoint) -> tuple[Array, Array]:
-    """The centres of two gears."""
+    """Return the centres of two gears."""
     at = np.array(joint.at)
     return at, at + abs(sum(joint.radii)) * np.array(joint.axes[0])
 
@@ -128,7 +127,7 @@ _KINDS: Mapping[str, Callable[[SchemeJoint], list[Array]]] = {
 
 
 def replaced(scheme: Scheme) -> Scheme:
-    """The scheme with every contact and every pair of teeth replaced by a link or a block.
+    """Return the scheme with every contact and every pair of teeth replaced by a link or a block.
 
     It has the count, the velocities and (but for teeth on centres that move against each other)
     the accelerations of the given one, in this position.
@@ -136,7 +135,7 @@ def replaced(scheme: Scheme) -> Scheme:
     Raises
     ------
     StructureError
-        A spatial scheme: a link between centres of curvature stands for a contact in the plane.
+        A spatial scheme: a link between centres of curvature replaces a contact in the plane only.
     """
     if scheme.space != PLANAR:
         raise StructureError(
@@ -154,7 +153,7 @@ def replaced(scheme: Scheme) -> Scheme:
 
 
 def teeth_centres(joint: SchemeJoint) -> tuple[Array, Array]:
-    """The centres of curvature of two teeth that touch at the pitch point.
+    """Return the centres of curvature of two teeth that touch at the pitch point.
 
     They are the feet of the perpendiculars from both wheels' centres on the line of action, which
     goes through the pitch point, at the pressure angle from the common tangent.
@@ -172,7 +171,7 @@ def teeth_centres(joint: SchemeJoint) -> tuple[Array, Array]:
 
 
 def _pairs(joint: SchemeJoint, link: str, scheme: Scheme) -> list[SchemeJoint]:
-    """The two lower pairs of the link that stands for a higher pair."""
+    """Return the two lower pairs of the link that replaces a higher pair."""
     centres = teeth_centres(joint) if joint.kind == "gear" else curvature_centres(joint)
     names = [each.name for each in scheme.joints]
     found = []
@@ -194,7 +193,7 @@ def _place(point: Array) -> Place:
 
 
 def _unused(name: str, names: list[str] | tuple[str, ...]) -> str:
-    """A name that is not taken yet, of at most 40 characters."""
+    """Return an unused name, of at most 40 characters."""
     name = name[-36:]
     number = 2
     fresh = name
@@ -204,12 +203,12 @@ def _unused(name: str, names: list[str] | tuple[str, ...]) -> str:
 
 
 OPENS = 1e-7
-"""A rate at which a contact opens, of at most 1."""
+"""Rate at which a contact opens, of at most 1."""
 
 
 @dataclass(frozen=True)
 class JointClass:
-    """The count of constraints and the freedoms that are left, by name."""
+    """Number of constraints, and names of the remaining freedoms."""
 
     constraints: int
     freedoms: tuple[str, ...]
@@ -221,9 +220,9 @@ class JointClass:
 
 @dataclass(frozen=True)
 class JointAnalysis:
-    """A joint by its contacts alone, and as the joints next to it guide it.
+    """Analysis of a joint by its contacts alone, and with the guidance of neighbouring joints.
 
-    ``kept`` is whether its form keeps the two together; else a force must.
+    ``kept`` is True if its form keeps the two together; else a force must.
     """
 
     touching: Touching
@@ -233,7 +232,7 @@ class JointAnalysis:
 
 
 def analyse_joint(touching: Touching) -> JointAnalysis:
-    """Class and freedoms of a joint, its contacts taken as closed."""
+    """Find class and freedoms of a joint, its contacts taken as closed."""
     size = _size(touching)
     loads = {
         contact: np.array(
@@ -255,21 +254,21 @@ def analyse_joint(touching: Touching) -> JointAnalysis:
 
 
 def _class_of(rows: Array, touching: Touching, size: float) -> JointClass:
-    """The class that wrenches make, about the joint's own point and over its size."""
+    """Return the class of wrenches, about the joint's own point and over its size."""
     free = kernel(rows)
     free[3:] = size * free[3:] + np.cross(np.array(touching.at), free[:3].T).T
     return JointClass(rank(rows), tuple(names_of_freedoms(free, touching.at)))
 
 
 def _is_kept(loads: Mapping[Contact, Array]) -> bool:
-    """Whether no motion opens a contact: found by a linear program that opens as much as it can."""
+    """True if no motion opens a contact: by a linear program that opens as much as it can."""
     closed = [rows for contact, rows in loads.items() if contact.both_ways]
     opening = [rows for contact, rows in loads.items() if not contact.both_ways]
     if not opening:
         return True
     rows = np.vstack(opening)
     count = len(rows)
-    # Of t and s: the rates W t are at least s, s is from 0 to 1, and their sum is to be large.
+    # In t and s: the rates W t are at least s, s is from 0 to 1, and their sum is maximised.
     held = np.vstack([np.zeros((0, 6)), *closed])
     answer = linprog(
         np.concatenate([np.zeros(6), -np.ones(count)]),
@@ -283,7 +282,7 @@ def _is_kept(loads: Mapping[Contact, Array]) -> bool:
 
 
 def _size(touching: Touching) -> float:
-    """How far the contacts are from the joint's point at most [m]; 1 where they are in it."""
+    """Return the largest distance of contacts from the joint's point [m]; 1 if there is none."""
     far = [np.abs(np.subtract(contact.at, touching.at)).max() for contact in touching.contacts]
     return float(max(far)) or 1.0
 
@@ -307,7 +306,7 @@ def _circle(contact: Contact, at: Array, size: float) -> list[Array]:
 
 
 def _leaving(*twists: Array) -> list[Array]:
-    """The wrenches of a joint that leaves some motions, and these alone."""
+    """Return the wrenches of a joint that leaves some motions, and these alone."""
     return list(reciprocal(np.array(twists).T))
 
 

@@ -1,20 +1,19 @@
-"""The closure of a scheme's loops in the freedoms of its joints, and what it leaves of them.
+"""Closure of a scheme's loops in the freedoms of its joints, and the remaining motions.
 
-A tree of joints places every link from the ground; each joint that is not of the tree closes a
-loop, which is as many equations as the plane or space has freedoms. With f freedoms of joints and
-L loops the count is f - 3 L or f - 6 L, the same as 3 n - 2 p5 - p4 and 6 n - sum k p_k, and the
-mobility at a position f - rank of the equations' derivative.
+A tree of joints places every link from the ground; each joint outside the tree closes a loop, with
+as many equations as the plane or space has freedoms. With f freedoms of joints and L loops the
+count is f - 3 L or f - 6 L, the same as 3 n - 2 p5 - p4 and 6 n - sum k p_k, and the mobility at a
+position f - rank of the equations' derivative.
 
-That rank, which compares turns with displacements, is of a drawing that is brought to a frame of
-its own first: it is that on paper, whatever the unit and the place of the drawing.
+That rank, which compares turns with displacements, is taken in the drawing's own frame: it is that
+on paper, whatever the unit and the place of the drawing.
 
-The rank at the drawn position alone may be fooled both ways: where all links lie in a line a motion
-more seems to be there, and a stretched row of bars seems to give way. So the scheme is moved: a
-step along a motion that the equations leave, then back to closed loops (Levenberg-Marquardt). A
-motion survives that where it can go on; one that is of first order only gives back. Looked at from
-a position next to the drawn one, in directions drawn at random, so that what holds there holds in
-general. Source for the terms: K. H. Hunt, Kinematic Geometry of Mechanisms, chapter 2 (transitory
-and full-cycle mobility); the steps are ours.
+The rank at the drawn position alone may mislead both ways: links in a line seem to have a motion
+more, and a stretched row of bars seems to give way. So the scheme is moved: a step along a motion
+that the equations leave, then back to closed loops (Levenberg-Marquardt). A finite motion survives
+that; one of first order only gives back. The steps start next to the drawn position, in random
+directions, so that the result holds in general. Source for the terms: K. H. Hunt, Kinematic
+Geometry of Mechanisms, chapter 2 (transitory and full-cycle mobility); the steps are ours.
 """
 
 from __future__ import annotations
@@ -32,20 +31,20 @@ from models.lectures.scheme import Place, Scheme, SchemeJoint
 from models.scene import GROUND
 
 PLACELESS = ("slider", "prismatic", "planar")
-"""Kinds that are the same wherever they are drawn."""
+"""Kinds of joints that are the same wherever they are drawn."""
 
 
 @dataclass(frozen=True)
 class DrawingFrame:
-    """An origin [m], and the size of the drawing [m]."""
+    """Origin [m] and size [m] of the drawing."""
 
     origin: Place
     size: float
 
     @classmethod
     def of(cls, scheme: Scheme) -> DrawingFrame:
-        """About the first joint that has a place; the size is how far the joints are apart, at most
-        in a coordinate, or the largest radius where they are in one place."""
+        """Make the frame about the first joint that has a place; the size is the largest distance
+        of the joints in a coordinate, or the largest radius where they are in one place."""
         places = [j.at for j in scheme.joints if j.kind not in PLACELESS or any(j.at)]
         if not places:
             return cls((0.0, 0.0, 0.0), 1.0)
@@ -54,28 +53,28 @@ class DrawingFrame:
         return cls(places[0], spread or max([*radii, 0.0]) or 1.0)
 
     def at(self, place: Place) -> Array:
-        """A point of the drawing in this frame [-]."""
+        """Return a point of the drawing in this frame [-]."""
         return np.asarray(np.subtract(place, self.origin) / self.size)
 
     def joint(self, joint: SchemeJoint) -> SchemeJoint:
-        """A joint in this frame."""
+        """Return a joint in this frame."""
         x, y, z = map(float, self.at(joint.at))
         first, second = (each / self.size for each in joint.radii)
         return replace(joint, at=(x, y, z), radii=(first, second), lead=joint.lead / self.size)
 
     def in_drawing(self, twist: Array) -> Array:
-        """A twist (6,) of this frame, about the drawing's own origin [m]."""
+        """Return a twist (6,) of this frame about the drawing's own origin [m]."""
         omega, v = twist[:3], twist[3:] * self.size
         return np.concatenate([omega, v - np.cross(omega, self.origin)])
 
 
 IN_PLANE = [2, 3, 4]
-"""Of a twist, what moves in the plane."""
+"""Components of a twist that move in the plane."""
 
 
 @dataclass(frozen=True)
 class PlacedLink:
-    """A link: its pose (4, 4) from the drawn one, and its twist for each freedom (6, f)."""
+    """Link: its pose (4, 4) from the drawn one, and its twist for each freedom (6, f)."""
 
     pose: Array
     twists: Array
@@ -83,7 +82,7 @@ class PlacedLink:
 
 @dataclass(frozen=True)
 class Loops:
-    """A scheme's joints in ``frame``, its tree, and the joints that close loops."""
+    """Scheme's joints in ``frame``, its tree, and the joints that close loops."""
 
     scheme: Scheme
     frame: DrawingFrame
@@ -95,7 +94,7 @@ class Loops:
 
     @classmethod
     def of(cls, scheme: Scheme, frame: DrawingFrame | None = None) -> Loops:
-        """The loops of a scheme. Raises StructureError where a link hangs on nothing."""
+        """Find the loops of a scheme. Raises StructureError for an unconnected link."""
         if loose := scheme.loose():
             raise StructureError(f"{scheme.name}: no row of joints leads to {', '.join(loose)}")
         frame = frame or DrawingFrame.of(scheme)
@@ -108,14 +107,14 @@ class Loops:
         return cls(scheme, frame, chains, columns, tree, closing, used)
 
     def placed(self, q: Array) -> dict[str, PlacedLink]:
-        """Every link as the joints of the tree place it, their freedoms at ``q`` (f,)."""
+        """Return every link as the joints of the tree place it, their freedoms at ``q`` (f,)."""
         links = {GROUND: PlacedLink(np.eye(4), np.zeros((6, self.freedoms)))}
         for joint, known, link in self.tree:
             links[link] = self._beyond(joint, known, links[known], q)
         return links
 
     def closure(self, q: Array) -> tuple[Array, Array]:
-        """How far each loop is from closed (k,), and the derivative of that (k, f)."""
+        """Return the gap of each loop (k,), and its derivative (k, f)."""
         links = self.placed(q)
         rows = IN_PLANE if self.scheme.dimension == 3 else list(range(6))
         open_by, slopes = [np.zeros(0)], [np.zeros((0, self.freedoms))]
@@ -127,20 +126,18 @@ class Loops:
         return np.concatenate(open_by), np.concatenate(slopes)
 
     def moves(self, q: Array, share: float = DEPENDENT) -> Array:
-        """The motions of the joints' freedoms that keep all loops closed at ``q``: (f, d).
-
-        What opens the loops by less than a ``share`` of what does most is one of them."""
+        """Return the motions of the joints' freedoms that keep all loops closed at ``q``: (f, d).
+        They open the loops by less than a ``share`` of the strongest direction."""
         return kernel(self.closure(q)[1], share)
 
     def margin(self, q: Array) -> float:
-        """The least of what holds: the smallest singular value of the closure that is not 0, over
-        the largest."""
+        """Return the smallest singular value of the closure that is not 0, over the largest."""
         values = np.linalg.svd(self.closure(q)[1])[1] if self.closing else np.ones(1)
         kept = values[values > DEPENDENT * values[0]]
         return float(kept[-1] / kept[0]) if len(kept) else 1.0
 
     def joint_twists(self, q: Array) -> dict[str, Array]:
-        """What each joint leaves at ``q``, as twists (6, f of the joint)."""
+        """Return the freedoms of each joint at ``q``, as twists (6, f of the joint)."""
         links = self.placed(q)
         return {
             joint.name: self._beyond(
@@ -153,13 +150,13 @@ class Loops:
         }
 
     def part(self, scheme: Scheme, q: Array) -> tuple[Loops, Array]:
-        """The loops of a scheme with fewer joints, and what of ``q`` is theirs."""
+        """Return the loops of a scheme with fewer joints, and their part of ``q``."""
         loops = Loops.of(scheme, self.frame)
         kept = [column for joint in scheme.joints for column in self.columns[joint.name]]
         return loops, q[kept]
 
     def _beyond(self, joint: SchemeJoint, known: str, link: PlacedLink, q: Array) -> PlacedLink:
-        """Where a joint puts the link on its other side than ``known``."""
+        """Return the place of the link on a joint's other side than ``known``."""
         first = self.columns[joint.name].start
         backward = known != joint.between[0]
         chain = self.chains[joint.name]
@@ -175,8 +172,8 @@ class Loops:
 def _spanned(
     scheme: Scheme,
 ) -> tuple[tuple[tuple[SchemeJoint, str, str], ...], tuple[SchemeJoint, ...]]:
-    """The joints of a tree from the ground, each with the link it hangs on and the one that it
-    places, and the joints that are left."""
+    """Return the joints of a tree from the ground, each with its known link and the one that it
+    places, and the other joints."""
     known, tree, used = [GROUND], [], set()
     for link in known:  # grows while it is gone through
         for joint in scheme.joints_of(link):
@@ -196,13 +193,13 @@ def _inverse(pose: Array) -> Array:
 
 
 AWAY = 0.2
-"""How far the drawn position is left [rad, or shares of the scheme's size]."""
+"""Distance of the test position from the drawn one [rad, or shares of the scheme's size]."""
 LOOK = 1e-2
-"""The step that tests a motion; what survives differs from the step by its square."""
+"""Step that tests a motion; a finite one differs from the step by its square."""
 CLOSED = 1e-13
 SHAKES = 1e-5
-"""Next to the drawn position a scheme that shakes is closed to its rounding, and so is off by the
-root of that; what opens its loops by less may be such a motion, and is tried."""
+"""Share of the loops' opening below which a motion may be a shake, and is tried: next to the drawn
+position a shaking scheme is closed to rounding, and so is off by the root of that."""
 MOST_STEPS = 60
 TRIES = 4
 SEED = 18
@@ -210,11 +207,11 @@ SEED = 18
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """What a scheme can do here and next to here.
+    """Motions of a scheme at the drawn position and next to it.
 
     ``at`` (f,) is the position next to the drawn one, ``moves`` (f, d) are all motions that the
-    equations leave there, ``finite`` says how many of them are motions indeed; ``here`` is what
-    the equations leave at the drawn position.
+    equations leave there, ``finite`` is the number of real motions among them; ``here`` is the
+    number that the equations leave at the drawn position.
     """
 
     here: int
@@ -222,13 +219,13 @@ class Neighbourhood:
     moves: Array
     finite: int
     others: tuple[int, ...]
-    """The mobility on other branches that begin at the drawn position."""
+    """Mobility on other branches that begin at the drawn position."""
     margin: float
-    """The least of what holds there, as a share of the most (`Loops.margin`)."""
+    """Smallest restraint there, over the largest (`Loops.margin`)."""
 
     @property
     def is_singular(self) -> bool:
-        """Whether the drawn position has motions that those next to it have not."""
+        """True if the drawn position has motions that those next to it have not."""
         return self.here > int(self.moves.shape[1])
 
 
@@ -249,21 +246,21 @@ def neighbourhood(loops: Loops) -> Neighbourhood:
 
 
 def settled(loops: Loops, q: Array) -> Array | None:
-    """The closed position next to ``q``, or None where none was come to."""
+    """Return the closed position next to ``q``, or None without convergence."""
     for _ in range(MOST_STEPS):
         open_by, slope = loops.closure(q)
         size = float(np.linalg.norm(open_by))
         if size < CLOSED * max(1, len(open_by)):
             return q
         left, values, right = np.linalg.svd(slope, full_matrices=False)
-        # Damped by the square of what is open: rows that depend on others are left alone.
+        # Damped by the square of the gap: rows that depend on others are left alone.
         damping = values / (values**2 + min(size**2, 1e-4) + 1e-18)
         q = q - right.T @ (damping * (left.T @ open_by))
     return q if size < 1e3 * CLOSED else None
 
 
 def _left(loops: Loops, moves: Array, draw: np.random.Generator) -> Array:
-    """A position off the drawn one, or that itself where nothing moves."""
+    """Return a position off the drawn one, or that itself where nothing moves."""
     stay = np.zeros(loops.freedoms)
     if moves.shape[1] == 0:
         return stay
@@ -271,14 +268,14 @@ def _left(loops: Loops, moves: Array, draw: np.random.Generator) -> Array:
         direction = moves @ draw.standard_normal(moves.shape[1])
         direction *= share * AWAY / max(float(np.abs(direction).max()), 1e-300)
         there = settled(loops, direction)
-        # What gives back comes to rest at the drawn position, or slowly towards it.
+        # A motion that gives back comes to rest at the drawn position, or slowly towards it.
         if there is not None and 0.05 < np.abs(there).max() / (share * AWAY) < 3.0:
             return there
     return stay
 
 
 def _finite(loops: Loops, at: Array, moves: Array, draw: np.random.Generator) -> int:
-    """The number of independent motions at a position that survive a step."""
+    """Return the number of independent motions at a position that survive a step."""
     count = int(moves.shape[1])
     if count == 0 or not loops.closing:
         return count

@@ -1,20 +1,20 @@
-"""Mobility of a scheme: by count, by rank in the drawn position and next to it, with names for what
-makes the difference.
+"""Mobility of a scheme: by count, by rank in the drawn position and next to it, with names for the
+causes of the difference.
 
 W by count is that of Kutzbach and Gruebler (Artobolevskii's and Chebyshev's form, with classes of
-joints). The real mobility is how many motions the loops leave next to the drawn position, as far as
-these are no motions of first order alone. Real less count are the passive constraints; idle
-freedoms are in both.
+joints). The real mobility is the number of motions that the loops leave next to the drawn position,
+except those of first order alone. Real less count are the passive constraints; idle freedoms are in
+both.
 
 A roller turns about its pin, a rod between two ball joints about the line of these: the count has
 such a freedom, and no other link feels it. A link at the end of an arm, and a shaft in its bearings
-alone, move others or are what is to be moved; so idle is what stands between two other bodies.
+alone, move others or are the output; so idle links are between two other bodies.
 
-What is named is a choice, as passive constraints come in sets of which some may be left out, no
-matter which: first whole links (the last listed first), then whole joints, then single constraints,
-each named by the motion that the joint might leave as well. With all of them left out the mechanism
-moves the same, and the equations that are left are independent. All of it at a position next to the
-drawn one, so that no momentary one is named.
+The named ones are a choice, as passive constraints come in sets of which any few may be left out:
+first whole links (the last listed first), then whole joints, then single constraints, each named by
+the motion that the joint might leave as well. Without all of them the mechanism moves the same, and
+the remaining equations are independent. All is at a position next to the drawn one, so that no
+momentary one is named.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -43,7 +43,7 @@ from models.lectures.scheme import Scheme, SchemeJoint
 
 @dataclass(frozen=True)
 class Idle:
-    """A freedom that only ``links`` have, and what it is in the drawn position."""
+    """Freedom that only ``links`` have, and its motion in the drawn position."""
 
     links: tuple[str, ...]
     freedoms: int
@@ -54,7 +54,7 @@ class Idle:
 
 
 def idle_freedoms(loops: Loops, q: Array) -> list[Idle]:
-    """The idle freedoms that a scheme has next to its drawn position, at ``q`` (f,)."""
+    """Find the idle freedoms of a scheme next to its drawn position, at ``q`` (f,)."""
     scheme = loops.scheme
     next_to = loops.joint_twists(q)
     drawn = loops.joint_twists(np.zeros(loops.freedoms))
@@ -73,7 +73,7 @@ def idle_freedoms(loops: Loops, q: Array) -> list[Idle]:
 
 
 def _rows(scheme: Scheme) -> Iterator[tuple[str, ...]]:
-    """Single links, then links of two joints in pairs: both turn where their joint holds them."""
+    """Yield single links, then joined pairs of links of two joints: both may turn together."""
     yield from ((link,) for link in scheme.links)
     binary = {link for link in scheme.links if len(list(scheme.joints_of(link))) == 2}
     for joint in scheme.joints:
@@ -82,7 +82,7 @@ def _rows(scheme: Scheme) -> Iterator[tuple[str, ...]]:
 
 
 def _outer(scheme: Scheme, links: tuple[str, ...]) -> list[SchemeJoint]:
-    """The joints of some links with others."""
+    """Return the joints of some links with others."""
     return [joint for joint in scheme.joints if len(set(joint.between) & set(links)) == 1]
 
 
@@ -92,12 +92,12 @@ def _far(joint: SchemeJoint, links: tuple[str, ...]) -> str:
 
 
 def _common(twists: Mapping[str, Array], joints: list[SchemeJoint]) -> Array:
-    """The motions (6, d) that all of some joints leave."""
+    """Return the motions (6, d) that all of some joints leave."""
     return kernel(np.vstack([reciprocal(twists[joint.name]) for joint in joints]))
 
 
 def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: DrawingFrame) -> str:
-    """What the motion is, by the joints' names where its axis goes through both."""
+    """Return the motion in words, by the joints' names where its axis goes through both."""
     if freedoms > 1 or motions.shape[1] != 1:
         return f"{freedoms} freedoms of its own"
     twist = motions[:, 0]
@@ -114,9 +114,9 @@ def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: Drawi
 
 @dataclass(frozen=True)
 class Passive:
-    """What may be left out: links with their joints, joints, and of others single constraints.
+    """Parts that may be left out: links with their joints, joints, and other single constraints.
 
-    ``also`` are links each of which might be left out in place of one of ``links``.
+    ``also`` are links that might each be left out instead of one of ``links``.
     """
 
     links: tuple[str, ...] = ()
@@ -172,9 +172,8 @@ def passive_constraints(loops: Loops, q: Array, idle: Iterable[Idle]) -> Passive
 
 
 def _without_link(loops: Loops, q: Array, link: str, idle: int) -> tuple[Loops, Array] | None:
-    """The scheme without a link, where the others move the same and passive constraints go.
-
-    Where no loop is left the link was no spare one, but half of the mechanism."""
+    """Return the scheme without a link, where the others move the same and passive constraints go.
+    Without any loop left the link was no spare one, but half of the mechanism."""
     scheme = loops.scheme.without_links(link)
     if len(scheme.joints) <= len(scheme.links) or scheme.loose():
         return None
@@ -182,7 +181,7 @@ def _without_link(loops: Loops, q: Array, link: str, idle: int) -> tuple[Loops, 
 
 
 def _same_moves(loops: Loops, q: Array, fewer: Scheme, idle: int) -> tuple[Loops, Array] | None:
-    """The scheme with fewer joints, where it has the same motions, without those idle ones."""
+    """Return the scheme with fewer joints, if it has the same motions, except idle ones."""
     part, at = loops.part(fewer, q)
     own, others = loops.moves(q).shape[1] - idle, part.moves(at).shape[1]
     gone = (loops.moves(q).shape[1] - loops.scheme.count) - (others - fewer.count)
@@ -190,9 +189,9 @@ def _same_moves(loops: Loops, q: Array, fewer: Scheme, idle: int) -> tuple[Loops
 
 
 def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
-    """Single constraints of joints, each named by the motion that it takes.
+    """Yield single constraints of joints, each named by the motion that it takes.
 
-    A motion more in a joint is a column more: where it is none of what the others span, the loops
+    A motion more in a joint is a column more: if it is outside the span of the others, the loops
     still leave no motion more, so the constraint is passive.
     """
     slope = loops.closure(q)[1]
@@ -215,7 +214,7 @@ def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
 
 
 def effect_of(loops: Loops, joint: SchemeJoint) -> Array:
-    """How a twist in a joint (the second link against the first) opens the loops: (k, 3 or 6)."""
+    """Return the loops' opening by a joint's twist (second link against first): (k, 3 or 6)."""
     size = loops.scheme.dimension
     blocks = [np.zeros((0, size))]
     for closing in loops.closing:
@@ -230,7 +229,7 @@ def effect_of(loops: Loops, joint: SchemeJoint) -> Array:
 
 
 def _passes(loops: Loops, joint: SchemeJoint, link: str) -> int:
-    """Whether the tree's way to a link goes through a joint: 1 forward, -1 backward, 0 not."""
+    """Return 1 if the tree's way to a link goes forward through a joint, -1 backward, else 0."""
     above = {placed: (by, known) for by, known, placed in loops.tree}
     while link in above:
         by, known = above[link]
@@ -245,12 +244,12 @@ def _plural(what: str, names: tuple[str, ...]) -> str:
 
 
 NEARLY = 1e-3
-"""Of what holds most: a file's numbers are often given to three or four digits."""
+"""Share of the largest restraint: a file's numbers are often given to three or four digits."""
 
 
 @dataclass(frozen=True)
 class SchemeMobility:
-    """How many motions a scheme has, and why that is not its count."""
+    """Number of motions of a scheme, and the reasons for its difference from the count."""
 
     scheme: Scheme
     near: Neighbourhood
@@ -259,42 +258,42 @@ class SchemeMobility:
 
     @property
     def real(self) -> int:
-        """The number of motions that the scheme has indeed."""
+        """Number of real motions of the scheme."""
         return self.near.finite
 
     @property
     def rank(self) -> int:
-        """How many of the constraints are independent next to the drawn position."""
+        """Number of independent constraints next to the drawn position."""
         return self.scheme.constraints - int(self.near.moves.shape[1]) + self.scheme.count
 
     @property
     def spare(self) -> int:
-        """The number of passive constraints: those that take no motion away."""
+        """Number of passive constraints, which take no motion away."""
         return self.real - self.scheme.count
 
     @property
     def yielding(self) -> int:
-        """Motions of first order that give back at once: the scheme shakes, and does not move."""
+        """Number of motions of first order that give back: the scheme shakes, and does not move."""
         return int(self.near.moves.shape[1]) - self.near.finite
 
     @property
     def margin_is_small(self) -> bool:
-        """Whether a motion is held by so little that rounded numbers of a file may be the cause."""
+        """True if a motion is held by so little that rounded numbers of a file may be the cause."""
         return self.near.margin < NEARLY
 
     @property
     def idle_count(self) -> int:
-        """The number of idle freedoms."""
+        """Number of idle freedoms."""
         return sum(each.freedoms for each in self.idle)
 
     @property
     def useful(self) -> int:
-        """The motions that others than the idle links have."""
+        """Number of motions of other links than the idle ones."""
         return self.real - self.idle_count
 
 
 def scheme_mobility(scheme: Scheme) -> SchemeMobility:
-    """Count the motions of a scheme. Raises StructureError for a link that hangs on nothing."""
+    """Count the motions of a scheme. Raises StructureError for an unconnected link."""
     loops = Loops.of(scheme)
     near = neighbourhood(loops)
     idle = tuple(idle_freedoms(loops, near.at))

@@ -6,8 +6,8 @@ is the power. Both are of shape (6,), in the frame of the ground. Source: J. M. 
 G. S. Soh, Geometric Design of Linkages, chapter on spatial kinematics; K. H. Hunt, Kinematic
 Geometry of Mechanisms, chapter 3.
 
-Qx, Qy, Qz are turns about axes through a point, Tx, Ty, Tz displacements along them: as the problem
-book "Bai tap co hoc may" writes the freedoms of a joint (exercise 1-1).
+Qx, Qy, Qz are turns about axes through a point, Tx, Ty, Tz displacements along them, as in the
+problem book "Bai tap co hoc may" (exercise 1-1).
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,33 +18,33 @@ from models.array import Array
 
 Vector = Sequence[float] | Array
 DEPENDENT = 1e-8
-"""A singular value smaller than this share of the largest is 0: lengths are of the size of 1."""
+"""Share of the largest singular value below which another is 0: lengths are of the size of 1."""
 
 
 def rotation(at: Vector, axis: Vector, pitch: float = 0.0) -> Array:
-    """The twist of a turn about an axis, with ``pitch`` displacement for each radian."""
+    """Return the twist of a turn about an axis, with ``pitch`` displacement for each radian."""
     direction = np.asarray(axis, dtype=float)
     return np.concatenate([direction, np.cross(at, direction) + pitch * direction])
 
 
 def translation(axis: Vector) -> Array:
-    """The twist of a displacement along a direction."""
+    """Return the twist of a displacement along a direction."""
     return np.concatenate([np.zeros(3), np.asarray(axis, dtype=float)])
 
 
 def force(at: Vector, along: Vector) -> Array:
-    """The wrench of a force on a line."""
+    """Return the wrench of a force on a line."""
     direction = np.asarray(along, dtype=float)
     return np.concatenate([np.cross(at, direction), direction])
 
 
 def couple(about: Vector) -> Array:
-    """The wrench of a moment alone."""
+    """Return the wrench of a moment alone."""
     return np.concatenate([np.asarray(about, dtype=float), np.zeros(3)])
 
 
 def across(axis: Vector) -> tuple[Array, Array]:
-    """Two directions at right angles to one and to each other, along the frame's where they can."""
+    """Return two directions square to one and to each other, along the frame's if possible."""
     direction = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
     rest = np.eye(3)[np.argsort(np.abs(direction), kind="stable")[0]]
     first = rest - (rest @ direction) * direction
@@ -53,12 +53,12 @@ def across(axis: Vector) -> tuple[Array, Array]:
 
 
 def cross_matrix(a: Array) -> Array:
-    """The matrix that takes b to a x b."""
+    """Return the matrix that takes b to a x b."""
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
 def displaced(twist: Array, by: float) -> Array:
-    """The finite motion of a twist as a matrix (4, 4): exp of the twist times ``by``."""
+    """Return the finite motion of a twist as a matrix (4, 4): exp of the twist times ``by``."""
     omega, v = twist[:3] * by, twist[3:] * by
     angle = float(np.linalg.norm(omega))
     move = np.eye(4)
@@ -75,26 +75,26 @@ def displaced(twist: Array, by: float) -> Array:
 
 
 def carried(move: Array, twist: Array) -> Array:
-    """A twist whose axis is moved along with a body."""
+    """Return a twist whose axis is moved along with a body."""
     turn, place = move[:3, :3], move[:3, 3]
     omega = turn @ twist[:3]
     return np.concatenate([omega, turn @ twist[3:] + np.cross(place, omega)])
 
 
 def gap(move: Array) -> Array:
-    """How far a motion is from none, as a twist; its derivative there is that of the motion."""
+    """Return a motion's distance from none, as a twist; its derivative there is the motion's."""
     turn = move[:3, :3]
     skew = (turn - turn.T) / 2.0
     return np.array([skew[2, 1], skew[0, 2], skew[1, 0], *move[:3, 3]])
 
 
 def rank(rows: Array) -> int:
-    """The number of rows (k, m) that no others give."""
+    """Return the number of independent rows (k, m)."""
     return 0 if rows.size == 0 else _rank(np.linalg.svd(rows)[1])
 
 
 def kernel(rows: Array, share: float = DEPENDENT) -> Array:
-    """An orthonormal basis (m, d) of what the rows (k, m) take to 0."""
+    """Return an orthonormal basis (m, d) of the kernel of the rows (k, m)."""
     if rows.shape[0] == 0 or rows.size == 0:
         return np.eye(rows.shape[1])
     _, values, basis = np.linalg.svd(rows)
@@ -106,16 +106,16 @@ def _rank(values: Array, share: float = DEPENDENT) -> int:
 
 
 def reciprocal(twists: Array) -> Array:
-    """The wrenches (k, 6) that do no work on any of the twists (6, d)."""
+    """Return the wrenches (k, 6) that do no work on any of the twists (6, d)."""
     return kernel(twists.T).T
 
 
 SLACK = 1e-9
-"""What a number may be off to be shown as 0."""
+"""Largest value that is shown as 0."""
 
 
 def named_twists(at: Vector = (0.0, 0.0, 0.0), planar: bool = False) -> Mapping[str, Array]:
-    """The twists of the names, of axes through a point; those of the plane alone where asked."""
+    """Return the named twists about axes through a point; if ``planar``, of the plane alone."""
     turns = {f"Q{name}": rotation(at, axis) for name, axis in zip("xyz", np.eye(3), strict=True)}
     slides = {f"T{name}": translation(axis) for name, axis in zip("xyz", np.eye(3), strict=True)}
     names = ("Qz", "Tx", "Ty") if planar else (*turns, *slides)
@@ -123,7 +123,7 @@ def named_twists(at: Vector = (0.0, 0.0, 0.0), planar: bool = False) -> Mapping[
 
 
 def names_of_freedoms(twists: Array, at: Vector) -> list[str]:
-    """Words for a basis of a space of twists (6, d): names first, what is left as axes."""
+    """Return words for a basis of a space of twists (6, d): names first, the rest as axes."""
     size, found = rank(twists.T), np.zeros((0, 6))
     names: list[str] = []
     for name, twist in named_twists(at).items():
@@ -137,7 +137,7 @@ def names_of_freedoms(twists: Array, at: Vector) -> list[str]:
 
 
 def axis_in_words(twist: Array) -> str:
-    """One twist for people: the axis that it turns about, or the direction that it slides along."""
+    """Return a twist in words: the axis that it turns about, or the direction of its slide."""
     omega, v = twist[:3], twist[3:]
     size = float(np.linalg.norm(omega))
     if size <= SLACK * max(1.0, float(np.linalg.norm(v))):
@@ -151,7 +151,7 @@ def axis_in_words(twist: Array) -> str:
 
 
 def _reduced(rows: Array, at: Vector) -> Array:
-    """The rows in echelon form about a point, so that as many numbers as can be are 0."""
+    """Return the rows in echelon form about a point, so that as many numbers as possible are 0."""
     shift = np.eye(6)
     shift[3:, :3] = -np.array([np.cross(at, axis) for axis in np.eye(3)]).T  # v there, not at 0
     left = rows @ shift.T
@@ -173,6 +173,6 @@ def _reduced(rows: Array, at: Vector) -> Array:
 
 
 def _numbers(vector: Array) -> str:
-    """Three numbers, the first that is not 0 above 0 for a direction's sake left as it is."""
+    """Return three numbers as text, rounding shown as 0."""
     clean = np.where(np.abs(vector) < SLACK, 0.0, vector)
     return "(" + ", ".join(f"{each:.6g}" for each in clean) + ")"

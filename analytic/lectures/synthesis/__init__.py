@@ -1,6 +1,6 @@
-"""Dimensional synthesis: from what a mechanism must do to its lengths, pivots and assembly.
+"""Dimensional synthesis: from the task of a mechanism to its lengths, pivots and assembly.
 
-Every kind of task becomes `Design`s: a scene, the precision positions that it is to meet, and the
-steps of the construction that found it. `examine` then runs the scene by the reference and says
-which defects it has. Planar vectors are complex numbers here, as in the field's own texts.
+Every kind of task becomes `Proposal`s: a scene, the precision positions that it is to meet, and the
+steps of its construction. `examine` then runs the scene by the reference and names its defects.
+Planar vectors are complex numbers here, as in the field's own texts.
 """

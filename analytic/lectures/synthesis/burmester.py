@@ -1,4 +1,4 @@
-"""Burmester's points: where a body can be held by a crank in four and in five of its positions.
+"""Burmester's points: pivots of a crank that holds a body in four and in five of its positions.
 
 A point of the body that lies on one circle in all positions is a circle point, the middle of that
 circle its centre point; the two are the moving and the fixed pivot of a crank, here a `PoseDyad`.
@@ -23,23 +23,23 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 BITS = 300
-"""Of the arithmetic in which the quartic's roots are told apart, real from complex."""
+"""Bits of the arithmetic in which the quartic's real roots are separated from complex ones."""
 MOST_BITS = 5000
 SHARP = 1e-40
-"""How well roots are asked for, over their size: far beyond floats, so that what is worked out from
-them is exact to rounding."""
+"""Required precision of roots, over their size: far beyond floats, so that all values from them are
+exact to rounding."""
 SPECIAL = 1e-9
-"""Of the sizes that make them: sides of the compatibility linkage that are none."""
+"""Size of vanishing sides of the compatibility linkage, over those that make them."""
 SWEEP = 720
-"""Turns of the compatibility linkage's first link that the curves are drawn by."""
+"""Positions of the compatibility linkage's first link that the curves are drawn by."""
 
 
 def five_positions(poses: Sequence[PlanePose]) -> list[PoseDyad]:
-    """All real dyads of five positions: none, two or four, in no order.
+    """Return all real dyads of five positions: none, two or four, in no order.
 
     Linear in w m', m', m and w, the four equations leave a quartic in w'. Its roots are isolated in
-    ball arithmetic. Conjugation leads from a solution to a solution; those that it leads to
-    themselves are the real ones, which isolated balls decide.
+    ball arithmetic. Conjugation maps solutions to solutions; its fixed points are the real ones,
+    which isolated balls decide.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def five_positions(poses: Sequence[PlanePose]) -> list[PoseDyad]:
 
 
 def _real_dyads(poses: Sequence[PlanePose]) -> list[PoseDyad] | None:
-    """The real dyads; None where balls of this size leave open which they are."""
+    """Return the real dyads; None where balls of this size leave them open."""
     rows = [_row(poses[0], pose) for pose in poses[1:]]
     quartic, numerators, over = _quartic(rows)
     while quartic.degree() >= 0 and quartic[quartic.degree()].contains(0):
@@ -86,8 +86,8 @@ Row = tuple[acb, ...]
 
 
 def _row(first: PlanePose, pose: PlanePose) -> Row:
-    """Of one displacement, about the first reference point: the coefficients of w m', m', m (of
-    degree 0 and 1 in w'), w, and the right side (of degree 0 and 1)."""
+    """Return for one displacement, about the first reference point, the coefficients of w m', m', m
+    (of degree 0 and 1 in w'), w, and the right side (of degree 0 and 1)."""
     angle = arb(pose.angle) - arb(first.angle)
     e = acb(angle.cos(), angle.sin())
     d = acb(pose.point) - acb(first.point)
@@ -104,7 +104,7 @@ def _row(first: PlanePose, pose: PlanePose) -> Row:
 
 
 def _quartic(rows: Sequence[Row]) -> tuple[acb_poly, tuple[acb_poly, ...], acb_poly]:
-    """The quartic in w', the numerators of w, m and m', and what these are over."""
+    """Return the quartic in w', the numerators of w, m and m', and their denominator."""
     wm, mc, m, w = (
         [row[0] for row in rows],
         [row[1] for row in rows],
@@ -114,7 +114,7 @@ def _quartic(rows: Sequence[Row]) -> tuple[acb_poly, tuple[acb_poly, ...], acb_p
     right = ([row[5] for row in rows], [row[6] for row in rows])
 
     def determinant(*columns: list[acb] | tuple[list[acb], list[acb]]) -> acb_poly:
-        """Of columns that are constant, or linear in w'."""
+        """Return the determinant of columns that are constant, or linear in w'."""
         coefficients = [acb(0)] * 3
         linear = [k for k, column in enumerate(columns) if isinstance(column, tuple)]
         for choice in np.ndindex(*(2,) * len(linear)):
@@ -135,11 +135,11 @@ def _quartic(rows: Sequence[Row]) -> tuple[acb_poly, tuple[acb_poly, ...], acb_p
 
 
 def four_positions(poses: Sequence[PlanePose], count: int = SWEEP) -> list[list[PoseDyad]]:
-    """Dyads of four positions along Burmester's curves: pieces of them, in order.
+    """Return dyads of four positions along Burmester's curves: pieces of them, in order.
 
     A crank of vector v, turned by beta_j, has v (exp(i beta_j) - e_j) + m (1 - e_j) = d_j. Two of
-    the three equations give v and m; that the third one fits is the closure of a four-bar with the
-    sides Delta_j, the compatibility linkage, which is turned through ``count`` angles beta_2.
+    the three equations give v and m; the third one is the closure of a four-bar with the sides
+    Delta_j, the compatibility linkage, which is turned through ``count`` angles beta_2.
     """
     first = poses[0]
     e = np.exp(1j * np.array([pose.angle - first.angle for pose in poses[1:]]))
@@ -176,7 +176,7 @@ def _sheet(
     beta: Array,
     sign: float,
 ) -> list[list[PoseDyad]]:
-    """The pieces of the curves with the compatibility linkage in one of its two assemblies."""
+    """Return the pieces of the curves in one of the compatibility linkage's two assemblies."""
     lead, one, other = order
     rest = -(ground + delta[lead] * beta)
     p, q, r = abs(delta[one]), abs(delta[other]), np.abs(rest)
@@ -184,7 +184,7 @@ def _sheet(
         cosine = (p**2 + r**2 - q**2) / (2.0 * p * r)
         side = rest / r * p * (cosine + 1j * sign * np.sqrt(1.0 - cosine**2))
         turned = side / delta[one]
-        # Of the three equations the two that stand best to each other.
+        # Of the three equations, the two of the best condition.
         x, y = beta - e[lead], turned - e[one]
         det = x * a[one] - y * a[lead]
         v = (d[lead] * a[one] - d[one] * a[lead]) / det

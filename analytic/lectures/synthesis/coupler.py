@@ -1,4 +1,4 @@
-"""A body carried by the coupler of a four-bar through two, three, four or five positions."""
+"""Body carried by the coupler of a four-bar through two, three, four or five positions."""
 
 import itertools
 from collections.abc import Iterator, Sequence
@@ -31,11 +31,11 @@ from models.lectures.tasks.positions import CouplerTask
 
 Pair = tuple[PoseDyad, PoseDyad]
 BEYOND = 0.15
-"""Of its length a bisector is drawn on."""
+"""Extension of a drawn bisector, over its length."""
 
 
 def guiding_steps(body: CarriedBody, pair: Pair, *, inverted: bool) -> Iterator[DrawingStep]:
-    """The construction: the body's places, bisectors or circles, and the links."""
+    """Yield the construction: the body's places, bisectors or circles, and the links."""
     yield given_positions(body)
     for which, (dyad, pivot) in enumerate(zip(pair, PIVOTS, strict=True)):
         letter = body.letter(dyad.moving, which)
@@ -52,8 +52,8 @@ def guiding_steps(body: CarriedBody, pair: Pair, *, inverted: bool) -> Iterator[
 
 
 def given_positions(body: CarriedBody) -> DrawingStep:
-    """The body in its positions: the line between two points of it, or a short one along its own
-    x-axis."""
+    """Draw the body in its positions: the line between two points of it, or a short one along its
+    own x-axis."""
     elements: list[Element] = []
     (name, start), *others = body.points.items()
     span = max(abs(b.point - a.point) for a, b in itertools.combinations(body.poses, 2))
@@ -67,7 +67,7 @@ def given_positions(body: CarriedBody) -> DrawingStep:
 
 
 def _bisected(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> DrawingStep:
-    """The fixed pivot on the bisectors between the places of a moving one."""
+    """Draw the fixed pivot on the bisectors between the places of a moving one."""
     places = [pose.at(dyad.moving) for pose in body.poses]
     elements: list[Element] = []
     for first, second in itertools.pairwise(places):
@@ -88,7 +88,7 @@ def _bisected(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> Dra
 
 
 def _inverted(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> DrawingStep:
-    """The moving pivot from the places of a fixed one, as the body in position 1 sees it."""
+    """Draw the moving pivot from the places of a fixed one, seen from the body in position 1."""
     first = body.poses[0]
     places = [first.at(pose.back(dyad.fixed)) for pose in body.poses]
     centre = first.at(dyad.moving)
@@ -105,7 +105,7 @@ def _inverted(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> Dra
 
 
 def links(body: CarriedBody, pair: Pair) -> DrawingStep:
-    """The four-bar in its first position."""
+    """Draw the four-bar in its first position."""
     pins = [body.poses[0].at(dyad.moving) for dyad in pair]
     letters = [f"{body.letter(dyad.moving, which)}1" for which, dyad in enumerate(pair)]
     elements: tuple[Element, ...] = (
@@ -123,7 +123,7 @@ def links(body: CarriedBody, pair: Pair) -> DrawingStep:
 
 
 def curve_steps(body: CarriedBody, curves: Sequence[Sequence[PoseDyad]]) -> Iterator[DrawingStep]:
-    """Burmester's curves of four positions."""
+    """Draw Burmester's curves of four positions."""
     yield given_positions(body)
     centres = tuple(tuple(dyad.fixed for dyad in piece) for piece in curves)
     circles = tuple(tuple(body.poses[0].at(dyad.moving) for dyad in piece) for piece in curves)
@@ -136,18 +136,18 @@ def curve_steps(body: CarriedBody, curves: Sequence[Sequence[PoseDyad]]) -> Iter
 
 
 DISTANCES = (0.5, 1.0, 2.0)
-"""Of two positions, where a task is silent: fixed pivots so far from the middles of the ways, over
-the longest way, on either side."""
+"""Default distances of fixed pivots for two positions, from the middles of the ways, over the
+longest way, on either side."""
 CURVE_DYADS = 240
-"""So many of Burmester's curves are paired with each other."""
+"""Number of dyads of Burmester's curves that are paired with each other."""
 CHOSEN = 40
 """Pairs of four positions that are examined, the best transmitting in the positions first."""
 FALLEN_BACK = 3
-"""Pairs that are examined where all have a defect."""
+"""Number of examined pairs if all have a defect."""
 
 
 def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
-    """The four-bars of a task, and how many pairs of cranks were looked at.
+    """Return the four-bars of a task, and the number of pairs of cranks considered.
 
     Raises
     ------
@@ -182,13 +182,13 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
 
 
 def carried_body(task: CouplerTask) -> CarriedBody:
-    """The body of a task in its positions."""
+    """Return the body of a task in its positions."""
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     return CarriedBody(task.name, task.source, poses, task.own_points)
 
 
 def _moving(task: CouplerTask, body: CarriedBody) -> tuple[complex, complex]:
-    """The two moving pivots in the body's frame."""
+    """Return the two moving pivots in the body's frame."""
     if task.moving_m is not None:
         one, other = (body.poses[0].back(complex(*place)) for place in task.moving_m)
     else:
@@ -199,7 +199,7 @@ def _moving(task: CouplerTask, body: CarriedBody) -> tuple[complex, complex]:
 
 
 def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str, str]]]:
-    """Two positions: the fixed pivots anywhere on the bisectors."""
+    """Yield pairs for two positions: the fixed pivots anywhere on the bisectors."""
     moving = _moving(task, body)
     ways = [abs(body.poses[1].at(z) - body.poses[0].at(z)) for z in moving]
     if task.distances_m is not None:
@@ -218,7 +218,7 @@ def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str,
 
 
 def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
-    """Three positions: from moving pivots by circles, from fixed ones by inversion."""
+    """Pair for three positions: from moving pivots by circles, from fixed ones by inversion."""
     if task.fixed_m is not None:
         one, other = (
             about_given_pivot(body.poses, complex(*place), letter)
@@ -233,7 +233,7 @@ def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
 
 
 def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
-    """Four positions: pairs along Burmester's curves; five: of all cranks that there are."""
+    """Return four-bars of four positions, along Burmester's curves, or of five, by all cranks."""
     is_four = len(body.poses) == 4
     curves = four_positions(body.poses) if is_four else []
     dyads = _wished(task, curves) if is_four else five_positions(body.poses)
@@ -255,7 +255,7 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
 
 
 def _wished(task: CouplerTask, pieces: Sequence[Sequence[PoseDyad]]) -> list[PoseDyad]:
-    """Cranks along the curves: those whose fixed pivots stand where they are wished, if two do."""
+    """Return cranks along the curves: those with fixed pivots in the wished region, if two have."""
     every = [dyad for piece in pieces for dyad in piece]
     region = task.pivots_in
     inside = [dyad for dyad in every if region is not None and region.holds(dyad.fixed)]
@@ -263,14 +263,14 @@ def _wished(task: CouplerTask, pieces: Sequence[Sequence[PoseDyad]]) -> list[Pos
 
 
 def _spread(every: Sequence[PoseDyad], count: int) -> list[PoseDyad]:
-    """About so many cranks, evenly."""
+    """Return about so many cranks, evenly."""
     return list(every[:: max(1, len(every) // count)])
 
 
 def _driven(
     task: CouplerTask, body: CarriedBody, pair: Pair, chosen: dict[str, str]
 ) -> Iterator[Proposal]:
-    """The four-bar of a pair, driven at the sides that are asked for."""
+    """Yield the four-bar of a pair, driven at the requested sides."""
     steps = tuple(guiding_steps(body, pair, inverted=task.fixed_m is not None))
     if task.driver != "second":
         yield body.four_bar(pair, chosen=chosen, steps=steps)

@@ -1,4 +1,4 @@
-"""A mechanism that a synthesis proposes: its scene, what is asked of it, and how it was found."""
+"""Mechanism proposed by a synthesis: its scene, its required positions, and its construction."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,52 +18,52 @@ from models.scene import Scene
 
 @dataclass(frozen=True)
 class AskedAngle:
-    """A link has an angle [rad], whole turns apart."""
+    """Required angle of a link [rad], whole turns apart."""
 
     link: str
     angle: float
 
     def value(self, motion: Motion) -> NDArray[np.complex128]:
-        """Where a motion has it, as a turn exp(i angle), (T,)."""
+        """Return the angle in a motion as a turn exp(i angle), (T,)."""
         return np.asarray(np.exp(1j * motion.links[self.link].theta))
 
     def off(self, motion: Motion) -> Array:
-        """How far a motion is from it [rad], (T,), with its sign."""
+        """Return the error of a motion [rad], (T,), with its sign."""
         off = motion.links[self.link].theta - self.angle
         return np.asarray(off - math.tau * np.round(off / math.tau))
 
 
 @dataclass(frozen=True)
 class AskedPlace:
-    """A point is at a place [m]."""
+    """Required place of a point [m]."""
 
     point: str
     place: complex
 
     def value(self, motion: Motion) -> NDArray[np.complex128]:
-        """Where a motion has it [m], (T,)."""
+        """Return the place in a motion [m], (T,)."""
         place = motion.points[self.point].position
         return np.asarray(place[:, 0] + 1j * place[:, 1])
 
     def off(self, motion: Motion) -> Array:
-        """How far a motion is from it [m], (T,)."""
+        """Return the distance of a motion from it [m], (T,)."""
         way = motion.points[self.point].position - (self.place.real, self.place.imag)
         return np.asarray(np.hypot(way[:, 0], way[:, 1]))
 
 
 @dataclass(frozen=True)
 class AskedSlide:
-    """A slider has a displacement [m]."""
+    """Required displacement of a slider [m]."""
 
     slider: str
     displacement: float
 
     def value(self, motion: Motion) -> NDArray[np.complex128]:
-        """Where a motion has it [m], (T,)."""
+        """Return the displacement in a motion [m], (T,)."""
         return motion.sliders[self.slider].displacement.astype(complex)
 
     def off(self, motion: Motion) -> Array:
-        """How far a motion is from it [m], (T,), with its sign."""
+        """Return the error of a motion [m], (T,), with its sign."""
         return np.asarray(motion.sliders[self.slider].displacement - self.displacement)
 
 
@@ -72,24 +72,24 @@ Asked = AskedAngle | AskedPlace | AskedSlide
 
 @dataclass(frozen=True)
 class PrecisionPosition:
-    """What is asked at an angle of the driver [rad], measured as the scene measures it."""
+    """Requirements at an angle of the driver [rad], measured as in the scene."""
 
     driver_rad: float
     asked: tuple[Asked, ...]
 
     def off(self, motion: Motion, size_m: float) -> Array:
-        """The largest distance of a motion from it, (T,): angles in rad, lengths over the size."""
+        """Return the largest error of a motion, (T,): angles in rad, lengths over the size."""
         off = [np.abs(each.off(motion)) / scale_of(each, size_m) for each in self.asked]
         return np.asarray(np.max(off, axis=0))
 
 
 def scale_of(asked: Asked, size_m: float) -> float:
-    """What an error of it is divided by: 1 of an angle."""
+    """Return the divisor of its error: 1 for an angle."""
     return 1.0 if isinstance(asked, AskedAngle) else size_m
 
 
 def names_of(positions: Sequence[PrecisionPosition]) -> tuple[list[str], list[str], list[str]]:
-    """The links, points and sliders of which anything is asked."""
+    """Return the links, points and sliders with a requirement."""
     every = [each for position in positions for each in position.asked]
     links = dict.fromkeys(each.link for each in every if isinstance(each, AskedAngle))
     points = dict.fromkeys(each.point for each in every if isinstance(each, AskedPlace))
@@ -98,7 +98,7 @@ def names_of(positions: Sequence[PrecisionPosition]) -> tuple[list[str], list[st
 
 
 def asked_motion(scene: Scene, positions: Sequence[PrecisionPosition]) -> Motion:
-    """The scene at the driver's angles of positions (P,), of what is asked alone.
+    """Solve the scene at the driver's angles of positions (P,), for required quantities alone.
 
     Raises
     ------
@@ -119,12 +119,12 @@ def asked_motion(scene: Scene, positions: Sequence[PrecisionPosition]) -> Motion
 
 
 Look = Literal["given", "auxiliary", "result"]
-"""What a task gives, what a construction draws on the way, and the links that it finds."""
+"""Role of an element: given by the task, auxiliary in the construction, or a resulting link."""
 
 
 @dataclass(frozen=True)
 class Dot:
-    """A point with its letter; ``fixed`` is drawn as a pivot of the ground."""
+    """Point with its letter; ``fixed`` is drawn as a pivot of the ground."""
 
     place: complex
     letter: str
@@ -134,7 +134,7 @@ class Dot:
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight line between two places; ``beyond`` of its length is drawn on past both ends."""
+    """Straight line between two places, extended by ``beyond`` of its length past both ends."""
 
     start: complex
     end: complex
@@ -144,7 +144,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class DrawnCircle:
-    """A circle, or an arc of it counter-clockwise from one direction to another [rad]."""
+    """Circle, or an arc of it counter-clockwise from one direction to another [rad]."""
 
     centre: complex
     radius: float
@@ -154,7 +154,7 @@ class DrawnCircle:
 
 @dataclass(frozen=True)
 class DrawnCurve:
-    """A curve through many places, in pieces."""
+    """Curve through many places, in pieces."""
 
     pieces: tuple[tuple[complex, ...], ...]
     look: Look = "auxiliary"
@@ -165,7 +165,7 @@ Element = Dot | Segment | DrawnCircle | DrawnCurve
 
 @dataclass(frozen=True)
 class DrawingStep:
-    """One step: what is done, in words, and what it draws."""
+    """Step of a construction: its text and its drawn elements."""
 
     words: str
     elements: tuple[Element, ...]
@@ -173,16 +173,16 @@ class DrawingStep:
 
 @dataclass(frozen=True)
 class Proposal:
-    """What a construction gives: the tables of a scene without its law, the link that drives, the
-    precision positions with the driver's angles [rad] in the order they are asked for.
+    """Result of a construction: the tables of a scene without its law, the link that drives, the
+    precision positions with the driver's angles [rad] in the required order.
 
-    ``chosen`` are the numbers that the task left open, in words and SI units; ``steps`` draw how
-    the rest was found. ``doubt`` is what a task gave up where it could not be met as asked.
-    ``speed_rad_s`` is the driver's, or the circular frequency of one that swings.
-    ``allowed`` is how far it may be from a position (angles in rad, lengths over the longest link):
-    0 of what is to be met exactly, more of what least squares fitted. ``also_rad`` are angles that
-    a driver that swings goes to as well, beyond the positions. ``turns_back`` is the link or slider
-    that has its limits in the two positions, and so goes to and fro between them.
+    ``chosen`` are the numbers that the task left open, in words and SI units; ``steps`` draw the
+    construction of the rest. ``doubt`` names requirements that could not be met. ``speed_rad_s`` is
+    the driver's speed, or the circular frequency of its swing. ``allowed`` is the tolerance of a
+    position (angles in rad, lengths over the longest link): 0 for exact positions, more for a
+    least-squares fit. ``also_rad`` are further angles that a swinging driver reaches.
+    ``turns_back`` is the link or slider that has its limits in the two positions, and so goes to
+    and fro between them.
     """
 
     draft: Draft
@@ -199,13 +199,13 @@ class Proposal:
 
 INPUT, COUPLER, OUTPUT = "input", "coupler", "output"
 PIVOTS, PINS = ("O2", "O4"), "ABEFGHJKLM"
-"""The fixed pivots are named as the lecture has them, the pins by letters that are free."""
+"""Fixed pivots as in the lecture, and free letters for pins."""
 
 
 @dataclass(frozen=True)
 class CarriedBody:
-    """A body in its positions, with the named points of it [m, own frame] whose places are asked;
-    ``name`` and ``source`` go on to its scenes."""
+    """Body in its positions, with its named points [m, own frame] of required places; ``name`` and
+    ``source`` go on to its scenes."""
 
     name: str
     source: str
@@ -220,8 +220,8 @@ class CarriedBody:
         chosen: Mapping[str, str] | None = None,
         steps: Sequence[DrawingStep] = (),
     ) -> Proposal:
-        """The four-bar whose coupler the body is, held by two dyads, the first of which stands on
-        O2; ``driven`` is which of them (0 or 1)."""
+        """Return the four-bar whose coupler the body is, held by two dyads, the first on O2;
+        ``driven`` is the number of the driven one (0 or 1)."""
         pins = [self.letter(dyad.moving, which) for which, dyad in enumerate(dyads)]
         cranks = [
             bar(pivot, pin, dyad.radius(self.poses))
@@ -241,12 +241,12 @@ class CarriedBody:
         return Proposal(draft, INPUT, positions, told, tuple(steps))
 
     def asked(self, driver_rad: float, pose: PlanePose) -> PrecisionPosition:
-        """The body in a pose while the driver has an angle [rad]."""
+        """Return the requirement of a pose while the driver has an angle [rad]."""
         places = (AskedPlace(point, pose.at(place)) for point, place in self.points.items())
         return PrecisionPosition(driver_rad, (AskedAngle(COUPLER, pose.angle), *places))
 
     def letter(self, moving: complex, which: int) -> str:
-        """The name of a pin: that of the body's point that it is, or a free letter."""
+        """Return the name of a pin: that of the coincident point of the body, or a free letter."""
         for name, place in self.points.items():
             if place == moving:
                 return name
@@ -254,6 +254,6 @@ class CarriedBody:
 
 
 def letters_beside(names: Iterable[str], count: int) -> list[str]:
-    """So many letters for pins that are not among the names."""
+    """Return so many letters for pins that are not among the names."""
     taken = set(names)
     return [letter for letter in PINS if letter not in taken][:count]

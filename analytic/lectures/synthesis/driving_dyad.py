@@ -1,4 +1,4 @@
-"""A dyad that drives a four-bar to and fro between two positions: a six-bar whose crank turns.
+"""Dyad that drives a four-bar to and fro between two positions: a six-bar whose crank turns.
 
 Where neither pivot of a four-bar can turn fully, a point of its input link goes to and fro between
 two places; a crank and a coupler swing it, as they swing the rocker of a crank-rocker.
@@ -40,13 +40,12 @@ from models.files.assemble import Table
 from models.lectures.draft import bar, plate
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
-"""Where a task is silent: distances of O2 from the middle of B1 B2, over the crank."""
+"""Default distances of O2 from the middle of B1 B2, over the crank."""
 
 
 @dataclass(frozen=True)
 class ToAndFro:
-    """The crank and the coupler: places [m], lengths [m], the crank's angles in both positions
-    [rad]."""
+    """Crank and coupler: places [m], lengths [m], the crank's angles in both positions [rad]."""
 
     pivot: complex
     crank_m: float
@@ -55,8 +54,8 @@ class ToAndFro:
 
     @staticmethod
     def of(first: complex, second: complex, distance_m: float, *, beyond: int) -> ToAndFro:
-        """Of the rocker's pin in its two places; the crank's pivot lies ``beyond`` the first (1)
-        or the second (2). Raises CrankcheckError where it would lie between them."""
+        """Make them from the rocker's pin in its two places; the crank's pivot lies ``beyond`` the
+        first (1) or the second (2). Raises CrankcheckError where it would lie between them."""
         crank = 0.5 * abs(second - first)
         if not distance_m > crank:
             raise CrankcheckError(
@@ -71,13 +70,13 @@ class ToAndFro:
         return ToAndFro(pivot, crank, distance_m, angles)
 
     def pin(self, position: int) -> complex:
-        """Where the crank's pin is in a position, 0 or 1."""
+        """Return the place of the crank's pin in a position, 0 or 1."""
         return self.pivot + cmath.rect(self.crank_m, self.angles[position])
 
     def steps(
         self, ends: tuple[complex, complex], letters: tuple[str, str, str]
     ) -> list[DrawingStep]:
-        """The construction; ``letters`` are the crank's pivot, its pin, the rocker's pin."""
+        """Return the construction; ``letters`` are the crank's pivot, its pin, the rocker's pin."""
         pivot, pin, end = letters
         middle = 0.5 * sum(ends)
         far = max(ends, key=lambda place: abs(place - self.pivot))
@@ -107,23 +106,23 @@ class ToAndFro:
 
 
 def choices(crank_m: float, asked: float | None) -> list[float]:
-    """Distances of the crank's pivot: that which is asked for, or several."""
+    """Return the distances of the crank's pivot: the required one, or several."""
     return [asked] if asked is not None else [factor * crank_m for factor in FACTORS]
 
 
 def chord(radius: float, swing_rad: float) -> float:
-    """The distance of the two places of a rocker's pin [m]."""
+    """Return the distance of the two places of a rocker's pin [m]."""
     return 2.0 * radius * math.sin(0.5 * swing_rad)
 
 
 O6 = "O6"
 SHARE = 0.6
-"""Of the input link, from its fixed pivot: there the dyad is pinned to it."""
+"""Distance of the dyad's pin from the fixed pivot, over the input link."""
 
 
 def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
-    """The six-bars of a four-bar of two positions, the dyad on its input link, O6 on either side
-    of the chord and at several distances from it."""
+    """Yield the six-bars of a four-bar of two positions, the dyad on its input link, O6 on either
+    side of the chord and at several distances from it."""
     draft = proposal.draft
     pivot_name, pin_name = _points(draft.links[INPUT])
     length = draft.links[INPUT]["length_m"]
@@ -169,13 +168,13 @@ def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
 
 
 def _points(link: Table) -> list[str]:
-    """The names of the points of a link's table."""
+    """Return the names of the points of a link's table."""
     names = link.get("bar") or link["points"]
     assert isinstance(names, Iterable)
     return list(names)
 
 
 def swings_little(proposal: Proposal) -> bool:
-    """Whether the input link turns by less than half a turn, so that a rocker's chord leads it."""
+    """True if the input link turns by less than half a turn, so that a rocker's chord leads it."""
     first, second = (position.driver_rad for position in proposal.positions)
     return abs(math.remainder(second - first, math.tau)) < math.pi

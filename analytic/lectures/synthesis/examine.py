@@ -1,9 +1,9 @@
-"""What is wrong with a proposed mechanism, and how good it is: by the reference, not by the
-equations that it was found with.
+"""Defects and merits of a proposed mechanism: by the reference, not by the equations of its
+construction.
 
 A mechanism that fits all positions may still not do the task: where they lie on two circuits it has
 to be taken apart between them, where they lie on two branches its driver can not lead from one to
-the other, and where they are met in another order it does another task.
+the other, and in another order they are another task.
 
 Source: lecture "Tong hop co cau" (synthesis), branch and order defect; T. R. Chase and J. A. Mirth,
 Journal of Mechanical Design 115 (1993), circuits and branches.
@@ -30,29 +30,28 @@ from models.scene import Scene
 from models.scene.laws import ConstantSpeed, Law, Oscillating
 
 LOOKS = 361
-"""Looks at the driver's way, for transmission and size."""
+"""Samples of the driver's way, for transmission and size."""
 UNMET = 1e-6
-"""Of the size, or rad: further off, a position is not met. It is a hundred times what a position
-near a limit of a dyad may lose, and far below any tolerance of a workshop."""
+"""Error of an unmet position, over the size or in rad: a hundred times the rounding of a position
+near a limit of a dyad, and far below any tolerance of a workshop."""
 MARGIN = math.radians(5.0)
-"""By what a driver that can not turn fully swings beyond the outermost positions, where it can."""
+"""Swing of a limited driver beyond the outermost positions, where possible."""
 KEEP = 0.5
-"""Of the way from an outermost position to the end of a branch, it keeps clear of."""
+"""Share of the way from an outermost position to the end of a branch that it keeps clear of."""
 
 
 @dataclass(frozen=True)
 class Examined:
-    """A proposal with its scene, in which the driver leads from the first position on as far as it
-    can, and what the reference says of it.
+    """Proposal with its scene, in which the driver leads from the first position on as far as it
+    can, and its values by the reference.
 
-    ``positions`` have the driver's angles [rad] as the scene's law goes through them, whole turns
-    counted. ``least_sine`` is the least sine of a transmission angle, or what stands for it in
-    other dyads, over the way of the driver; ``extent_m`` the larger side of the box that all named
-    points stay in. ``off`` is how far the reference is from each position (angles in rad, lengths
-    over the size). ``torque_n_m`` is the largest driving torque under the loads, None without any.
-    ``fault`` is what else keeps it from the task, ``notes`` say how well it does it, and ``misses``
-    is by how much it misses it between the positions. ``unfulfilled`` are wishes of the task that
-    it does not fulfil.
+    ``positions`` have the driver's angles [rad] of the scene's law, whole turns counted.
+    ``least_sine`` is the least sine of a transmission angle, or its equivalent in other dyads, over
+    the way of the driver; ``extent_m`` the larger side of the box that all named points stay in.
+    ``off`` is the error of each position by the reference (angles in rad, lengths over the size).
+    ``torque_n_m`` is the largest driving torque under the loads, None without any. ``fault`` is any
+    other defect, ``notes`` are its merits, and ``misses`` is its error between the positions.
+    ``unfulfilled`` are wishes of the task that it does not fulfil.
     """
 
     proposal: Proposal
@@ -73,17 +72,17 @@ class Examined:
 
     @property
     def text(self) -> str:
-        """The file of the scene."""
+        """Text of the scene's file."""
         return self.draft.text
 
     @property
     def least_transmission_rad(self) -> float:
-        """The angle of `least_sine` [rad]."""
+        """Angle of `least_sine` [rad]."""
         return math.asin(min(self.least_sine, 1.0))
 
     @property
     def defects(self) -> list[str]:
-        """What keeps it from the task, in words; empty of a mechanism that does it."""
+        """Texts of its defects; empty for a mechanism that does the task."""
         worst = max(self.off)
         unmet = [f"misses a position by {worst:.3g} rad or longest links"] * (
             not worst <= max(UNMET, self.proposal.allowed)
@@ -93,9 +92,8 @@ class Examined:
 
 
 def ranked(every: Sequence[Examined]) -> list[Examined]:
-    """Those without a defect first, of these what fulfils most wishes; what misses the task between
-    its positions by how much it does, each by its transmission angle, and where these are equal
-    the smaller mechanism first."""
+    """Sort: those without a defect first, then by unfulfilled wishes, by the error between the
+    positions, by transmission angle, and, where these are equal, the smaller mechanism first."""
     return sorted(
         every,
         key=lambda one: (
@@ -109,7 +107,7 @@ def ranked(every: Sequence[Examined]) -> list[Examined]:
 
 
 def examine(proposal: Proposal) -> Examined:
-    """Assemble a proposal in its first position and look at the way of its driver.
+    """Assemble a proposal in its first position and examine the way of its driver.
 
     Raises
     ------
@@ -162,8 +160,8 @@ def examine(proposal: Proposal) -> Examined:
 
 
 def _over_the_way(scene: Scene) -> tuple[float, float]:
-    """The least sine of a transmission angle over the way of the driver, and the larger side of the
-    box that all points stay in [m]."""
+    """Return the least sine of a transmission angle over the way of the driver, and the larger side
+    of the box that all points stay in [m]."""
     way, one = way_of(scene.driver.law), np.ones(1)
     motion = solve_driven(scene, way, one, 0.0 * one, links=(), sliders=(), bound=False)
     sine = min((float(np.min(np.abs(s))) for s in motion.conditioning.values()), default=1.0)
@@ -174,7 +172,7 @@ def _over_the_way(scene: Scene) -> tuple[float, float]:
 def _through_change_points(
     scene: Scene, positions: Sequence[PrecisionPosition]
 ) -> tuple[float, ...]:
-    """How far each position is off on the reference's own way, which goes smoothly through change
+    """Return the error of each position on the reference's own way, which is smooth through change
     points: branches that meet in them are one; inf where there is no such way."""
     try:
         return tuple(_off(scene, each) for each in positions)
@@ -187,7 +185,7 @@ def _turning(link: str, start_rad: float, speed_rad_s: float) -> Table:
 
 
 def _place_of(circuits: Circuits, position: PrecisionPosition) -> Position:
-    """The assembly in which a position is met, of all that there are at the driver's angle."""
+    """Return the assembly in which a position is met, among all at the driver's angle."""
     best, chosen = math.inf, circuits.signed.signs
     for signs in itertools.product((1, -1), repeat=len(circuits.signed.dyads)):
         off = _off(_at(circuits, Position(position.driver_rad, signs)), position)
@@ -200,14 +198,14 @@ def _place_of(circuits: Circuits, position: PrecisionPosition) -> Position:
 
 
 def _at(circuits: Circuits, place: Position) -> Scene:
-    """The scene that starts at a position."""
+    """Return the scene that starts at a position."""
     scene = circuits.signed.with_signs(place.signs)
     law = ConstantSpeed(place.driver_rad, SPEED_RAD_S)
     return replace(scene, driver=replace(scene.driver, law=law))
 
 
 def _off(scene: Scene, position: PrecisionPosition) -> float:
-    """How far a scene is from a position; inf where it is not assembled there."""
+    """Return the error of a scene at a position; inf where it is not assembled there."""
     try:
         motion = asked_motion(scene, [position])
     except ReachError:
@@ -216,8 +214,8 @@ def _off(scene: Scene, position: PrecisionPosition) -> float:
 
 
 def _unwrapped(arc: Arc, angles: Sequence[float]) -> list[float]:
-    """The driver's angles [rad] on one way through them: within the arc; of a driver that turns
-    fully each within a turn of the one before, in the sense that takes fewer turns."""
+    """Return the driver's angles [rad] on one way through them: within the arc; for a driver that
+    turns fully each within a turn of the one before, in the sense that takes fewer turns."""
     if arc.low is not None:
         low, high = arc.range_rad
         middle = 0.5 * (low + high)
@@ -229,8 +227,8 @@ def _unwrapped(arc: Arc, angles: Sequence[float]) -> list[float]:
 
 
 def _driver(link: str, arc: Arc, angles: Sequence[float], speed: float) -> Table:
-    """The table of a driver that goes through angles [rad] of its branch: at constant speed from
-    the first on, or to and fro."""
+    """Return the table of a driver that goes through angles [rad] of its branch: at constant speed
+    from the first on, or to and fro."""
     if arc.low is None:
         back = len(angles) > 1 and angles[-1] < angles[0]
         return _turning(link, angles[0], -speed if back else speed)
@@ -248,7 +246,7 @@ def _driver(link: str, arc: Arc, angles: Sequence[float], speed: float) -> Table
 
 
 def way_of(law: Law, count: int = LOOKS) -> Array:
-    """Angles of the driver [rad] over its whole way."""
+    """Return angles of the driver [rad] over its whole way."""
     if isinstance(law, Oscillating):
         swing = abs(law.amplitude_rad)
         return np.linspace(law.centre_rad - swing, law.centre_rad + swing, count)
@@ -257,15 +255,15 @@ def way_of(law: Law, count: int = LOOKS) -> Array:
 
 
 def _largest_torque(scene: Scene) -> float:
-    """Of the drive over the way of its law [N m], instants in dead points left out."""
+    """Return the largest driving torque over the way of its law [N m], without dead points."""
     time_s = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)
     return float(np.nanmax(np.abs(acting.torque)))
 
 
 def passing_times(law: Law, angles: Sequence[float]) -> Array:
-    """When a driver has angles [rad], one after the other [s]: in the first turn and those after
-    it, or in the first whole swing from end to end that leads through them in their order."""
+    """Return the times of successive driver angles [rad] [s]: in the first turn and later ones, or
+    in the first whole swing from end to end that leads through them in their order."""
     theta = np.asarray(angles)
     if isinstance(law, Oscillating):
         rising = len(angles) < 2 or theta[-1] >= theta[0]

@@ -1,4 +1,4 @@
-r"""The proposal of a linkage that leads a point along a line: to its place, and to its length.
+r"""Proposal of a linkage that leads a point along a line of given place and length.
 
 ::
 
@@ -39,12 +39,12 @@ from models.errors import CrankcheckError
 from models.lectures.draft import SPEED_RAD_S, Draft, bar
 
 DRAWN = 240
-"""Places at which a coupler curve is drawn."""
+"""Number of places at which a coupler curve is drawn."""
 
 
 @dataclass(frozen=True)
 class StraightLinkage:
-    """A linkage that leads a point nearly straight, and the part over which it does [m]."""
+    """Linkage that leads a point nearly straight, and the straight part [m]."""
 
     four_bar: CouplerCurve
     part: StraightPart
@@ -72,12 +72,12 @@ def placed(
     start: complex,
     direction_rad: float,
 ) -> StraightLinkage:
-    """A textbook's linkage, with its line from a place on, and its part of a length [m]."""
+    """Place a textbook's linkage, its line from a place on, and its part of a length [m]."""
     by = length_m / part.length_m * cmath.exp(1j * direction_rad) / part.along
     four_bar = book.moved(by, start - by * part.start)
     turn = cmath.phase(by)
     own = measured(four_bar, part.crank_rad[0] + turn, part.crank_rad[1] + turn)
-    # The ends of the part as well: between them the point is as near as is told.
+    # The ends of the part as well: between them the point is as near as stated.
     angles = sorted({own.crank_rad[0], *on_line(four_bar, own), own.crank_rad[1]})
     positions = tuple(
         PrecisionPosition(angle, (AskedPlace(POINT, complex(place)),))
@@ -96,7 +96,7 @@ def placed(
 def _steps(
     four_bar: CouplerCurve, part: StraightPart, angles: list[float]
 ) -> tuple[DrawingStep, ...]:
-    """The line, the linkage in the first position on it, and the curve with these positions."""
+    """Return the line, the linkage in its first position, and the curve with all positions."""
     end = part.start + part.length_m * part.along
     first = np.array(angles[:1])
     a, b = (complex(pin[0]) for pin in four_bar.pins(first))
@@ -129,19 +129,19 @@ ARM, SIDE, CIRCLE = 5.0, 2.0, 1.9
 """Proportions: the arms, the sides of the rhombus, and the crank. A may be 3 to 7 from O4, and is
 3.8 from it in the middle of the line."""
 LEAN = math.radians(32.0)
-"""Of O4-A, at most, to either side: the rhombus would be flat at 37.9 degrees."""
+"""Largest lean of O4-A, to either side: the rhombus would be flat at 37.9 degrees."""
 POSITIONS = 5
 
 
 def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 0.0) -> Proposal:
-    """Peaucellier's linkage with a way of a length [m], along which P is nowhere off the line.
+    """Return Peaucellier's linkage with a way of a length [m], with P exactly on the line.
 
     Parameters
     ----------
     length_m
-        Of the way [m], over which the crank swings by twice 64 degrees.
+        Length of the way [m], over which the crank swings by twice 64 degrees.
     start, direction_rad
-        Where the way begins [m], and its direction [rad].
+        Start of the way [m], and its direction [rad].
 
     Raises
     ------
@@ -157,12 +157,12 @@ def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 
     inward = -1j * turn
     o4 = middle - inward * distance * scale
     o2 = o4 + inward * CIRCLE * scale
-    # The crank turns by twice the lean of O4-A, and P goes by the tangent of the lean.
+    # The crank turns by twice the lean of O4-A, and P moves by the tangent of the lean.
     ways = np.linspace(-1.0, 1.0, POSITIONS)
     places = (middle + 0.5 * length_m * ways * turn).tolist()
     cranks = [o2 + CIRCLE * scale * inward * cmath.exp(2j * lean) for lean in _leans(ways)]
     corners = [_corner(a, p, scale) for a, p in zip(cranks, places, strict=True)]
-    # That of B tells the assembly from the one with B and C exchanged.
+    # The place of B selects the assembly, as B and C may be exchanged.
     positions = tuple(
         PrecisionPosition(cmath.phase(a - o2), (AskedPlace("P", p), AskedPlace("B", b)))
         for a, p, b in zip(cranks, places, corners, strict=True)
@@ -189,19 +189,19 @@ def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 
 
 
 def _leans(ways: Array) -> list[float]:
-    """The lean of O4-A [rad] with P at shares of half its way."""
+    """Return the lean of O4-A [rad] with P at shares of half its way."""
     leans: list[float] = np.arctan(ways * math.tan(LEAN)).tolist()
     return leans
 
 
 def _corner(a: complex, p: complex, scale: float) -> complex:
-    """The corner B of the rhombus over A and P: to the left of the way from A to P."""
+    """Return the corner B of the rhombus over A and P: to the left of the way from A to P."""
     half = 0.5 * (p - a)
     return a + half + 1j * half / abs(half) * math.sqrt((SIDE * scale) ** 2 - abs(half) ** 2)
 
 
 def _exact_steps(points: tuple[complex, ...], places: list[complex]) -> tuple[DrawingStep, ...]:
-    """The way, and the linkage in its middle."""
+    """Return the way, and the linkage in its middle."""
     o2, o4, a, b, p = points
     c = a + p - b
     pairs = ((o2, a), (o4, b), (o4, c), (a, b), (a, c), (b, p), (c, p))

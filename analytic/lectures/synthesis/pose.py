@@ -1,4 +1,4 @@
-"""Positions of a body in the plane, the poles and bisectors between them, and dyads that pair."""
+"""Positions of a body in the plane, the poles and bisectors between them, and pairs of dyads."""
 
 import cmath
 import math
@@ -12,41 +12,41 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 PARALLEL = 1e-9
-"""An angle [rad] between two positions that is smaller is a pure translation: its pole lies beyond
-all distances that a mechanism has."""
+"""Angle [rad] between two positions below which they are a pure translation: its pole lies beyond
+all distances of a mechanism."""
 
 
 @dataclass(frozen=True)
 class PlanePose:
-    """Where a body is: its reference point [m], and the angle of its own x-axis [rad]."""
+    """Position of a body: its reference point [m], and the angle of its own x-axis [rad]."""
 
     point: complex
     angle: float
 
     def at(self, place: complex) -> complex:
-        """Where a place of the body's own frame is."""
+        """Return the place in the plane of a place in the body's own frame."""
         return self.point + cmath.exp(1j * self.angle) * place
 
     def back(self, place: complex) -> complex:
-        """Where a place of the plane is in the body's own frame."""
+        """Return the place in the body's own frame of a place in the plane."""
         return (place - self.point) * cmath.exp(-1j * self.angle)
 
 
 @dataclass(frozen=True)
 class Bisector:
-    """The line of all points as far from one place as from another."""
+    """Line of all points as far from one place as from another."""
 
     middle: complex
     along: complex
-    """A unit vector, a quarter turn to the left of that from the first place to the second."""
+    """Unit vector, a quarter turn to the left of the way from the first place to the second."""
 
     def at(self, distance: float) -> complex:
-        """The point so far from the middle."""
+        """Return the point at a distance from the middle."""
         return self.middle + distance * self.along
 
 
 def bisector(first: complex, second: complex) -> Bisector:
-    """That of two places. Raises CrankcheckError where they coincide."""
+    """Return the bisector of two places. Raises CrankcheckError where they coincide."""
     across = second - first
     if across == 0.0:
         raise CrankcheckError(
@@ -57,13 +57,13 @@ def bisector(first: complex, second: complex) -> Bisector:
 
 
 def turn_between(first: PlanePose, second: PlanePose) -> float:
-    """The angle from one position to another [rad], in (-pi, pi]."""
+    """Return the angle from one position to another [rad], in (-pi, pi]."""
     turn = math.remainder(second.angle - first.angle, math.tau)
     return math.pi if turn == -math.pi else turn
 
 
 def pole(first: PlanePose, second: PlanePose) -> complex | None:
-    """The rotopole: the point about which a body turns from one position into the other; None of a
+    """Return the rotopole, about which a body turns from one position into the other; None for a
     pure translation, whose pole is at infinity, across the way."""
     turn = turn_between(first, second)
     if abs(turn) < PARALLEL:
@@ -73,8 +73,8 @@ def pole(first: PlanePose, second: PlanePose) -> complex | None:
 
 
 def circle_through(a: complex, b: complex, c: complex) -> complex | None:
-    """The centre of the circle through three points; None where they lie on a line, and it is at
-    infinity."""
+    """Return the centre of the circle through three points; None where they lie on a line, and it
+    is at infinity."""
     p, q = b - a, c - a
     across = (p.conjugate() * q).imag
     if abs(across) <= 1e-12 * abs(p) * abs(q):
@@ -83,7 +83,7 @@ def circle_through(a: complex, b: complex, c: complex) -> complex | None:
 
 
 def refuse_coinciding(poses: Sequence[PlanePose], size: float) -> None:
-    """Raise CrankcheckError where two positions are one, over a ``size`` [m]."""
+    """Refuse coincident positions, over a ``size`` [m]. Raises CrankcheckError."""
     for j, second in enumerate(poses):
         for i, first in enumerate(poses[:j]):
             near = abs(second.point - first.point) <= 1e-9 * size
@@ -96,30 +96,30 @@ def refuse_coinciding(poses: Sequence[PlanePose], size: float) -> None:
 
 @dataclass(frozen=True)
 class PoseDyad:
-    """A crank: its fixed pivot [m], its moving pivot in the body's own frame [m]."""
+    """Crank: its fixed pivot [m], its moving pivot in the body's own frame [m]."""
 
     fixed: complex
     moving: complex
 
     def radius(self, poses: Sequence[PlanePose]) -> float:
-        """The distance of its pivots [m]."""
+        """Return the distance of its pivots [m]."""
         return abs(poses[0].at(self.moving) - self.fixed)
 
     def turns(self, poses: Sequence[PlanePose]) -> list[float]:
-        """Its angle in each position [rad]."""
+        """Return its angle in each position [rad]."""
         return [cmath.phase(pose.at(self.moving) - self.fixed) for pose in poses]
 
 
 def about_bisector(poses: Sequence[PlanePose], moving: complex, distance_m: float) -> PoseDyad:
-    """Of two positions: the fixed pivot on the bisector of a moving one's places, so far from the
-    middle, to the left of its way. Raises CrankcheckError of a point that stays."""
+    """Dyad of two positions: fixed pivot on the bisector of a moving one's places, at a distance
+    from the middle, to the left of its way. Raises CrankcheckError for a point that stays."""
     first, second = (pose.at(moving) for pose in poses)
     return PoseDyad(bisector(first, second).at(distance_m), moving)
 
 
 def about_circumcentre(poses: Sequence[PlanePose], moving: complex, letter: str) -> PoseDyad:
-    """Of three positions: the fixed pivot in the middle of the circle through a moving one's
-    places. Raises CrankcheckError where they lie on a line."""
+    """Return the dyad of three positions: the fixed pivot in the middle of the circle through a
+    moving one's places. Raises CrankcheckError where they lie on a line."""
     places = [pose.at(moving) for pose in poses]
     centre = circle_through(*places)
     if centre is None:
@@ -133,9 +133,9 @@ def about_circumcentre(poses: Sequence[PlanePose], moving: complex, letter: str)
 
 
 def about_given_pivot(poses: Sequence[PlanePose], fixed: complex, letter: str) -> PoseDyad:
-    """Of three positions and a fixed pivot: inversion, as the body sees it. To the body the pivot
-    is in three places, and the middle of their circle is the moving pivot. Raises CrankcheckError
-    where they lie on a line."""
+    """Return the dyad of three positions and a fixed pivot, by inversion: seen from the body the
+    pivot is in three places, and the middle of their circle is the moving pivot. Raises
+    CrankcheckError where they lie on a line."""
     centre = circle_through(*(pose.back(fixed) for pose in poses))
     if centre is None:
         raise CrankcheckError(
@@ -155,9 +155,9 @@ class SoundPairs:
 
 
 def sound_pairs(poses: Sequence[PlanePose], dyads: Sequence[PoseDyad]) -> SoundPairs:
-    """The pairs, those first whose first crank leads through the poses in order and in one
-    assembly; each part by the least sine of the transmission angle in the poses. It chooses among
-    thousands: what is chosen is examined by the reference afterwards."""
+    """Return the pairs, those first whose first crank leads through the poses in order and in one
+    assembly; each part by the least sine of the transmission angle in the poses. They are chosen
+    among thousands, and examined by the reference afterwards."""
     fixed = np.array([dyad.fixed for dyad in dyads])
     own = np.array([dyad.moving for dyad in dyads])
     places = np.array([[pose.at(dyad.moving) for dyad in dyads] for pose in poses])
@@ -184,7 +184,7 @@ def _cross(one: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
 
 
 def _in_turn(angles: Array) -> NDArray[np.bool_]:
-    """Whether a crank that turns one way meets its angles (N, K) in order within a turn."""
+    """Return the mask of cranks that meet their angles (N, K) in order within a turn one way."""
     ways = np.diff(angles, axis=0) % (2.0 * np.pi)
     back = -np.diff(angles, axis=0) % (2.0 * np.pi)
     in_order = (ways.sum(axis=0) < 2.0 * np.pi) | (back.sum(axis=0) < 2.0 * np.pi)
@@ -192,9 +192,10 @@ def _in_turn(angles: Array) -> NDArray[np.bool_]:
 
 
 def _in_swing(angles: Array, a: Array, b: Array, c: Array, d: Array) -> NDArray[np.bool_]:
-    """Whether a crank that swings meets its angles (N, K), from the ground's direction, in order
-    and within one of its ranges: about 0, about pi, or one on either side."""
-    # B is |a - d| from D at angle 0, a + d at pi: beyond what coupler and output span, or too near.
+    """Return the mask of swinging cranks that meet their angles (N, K), from the ground's
+    direction, in order and within one range: about 0, about pi, or one on either side."""
+    # B is |a - d| from D at angle 0, a + d at pi: beyond the span of coupler and output, or too
+    # near.
     no_pi, no_zero = a + d > b + c, np.abs(a - d) < np.abs(b - c)
     turned = np.where(no_zero, angles % (2.0 * np.pi), angles)
     ways = np.diff(turned, axis=0)

@@ -48,13 +48,13 @@ from models.lectures.draft import Draft, bar
 from models.lectures.tasks.positions import QuickReturnTask
 
 PLACES = 24
-"""Places of O2 that are tried on the circles of a time ratio, half on either side."""
+"""Number of tried places of O2 on the circles of a time ratio, half on either side."""
 
 
 @dataclass(frozen=True)
 class SwungRocker:
-    """The rocker about O4 in the origin: its angles in both ends [rad], the places of B there [m],
-    and the circle that O2 lies on."""
+    """Rocker about O4 in the origin: its angles in both ends [rad], the places of B there [m], and
+    the circle that O2 lies on."""
 
     rocker_m: float
     angles: tuple[float, float]
@@ -63,7 +63,7 @@ class SwungRocker:
 
 
 def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
-    """Those of a task whose slow stroke takes half a turn and ``lag`` [rad]."""
+    """Yield the crank-rockers of a task whose slow stroke takes half a turn and ``lag`` [rad]."""
     assert task.rocker_m is not None
     assert task.swing_deg is not None
     half = math.radians(0.5 * task.swing_deg)
@@ -83,7 +83,7 @@ def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
 def _crank_rocker(
     task: QuickReturnTask, swung: SwungRocker, pivot: complex, lag: float
 ) -> Proposal | None:
-    """That with O2 at a place of the circle; None as near to B1 as to B2."""
+    """Return the one with O2 at a place of the circle; None as near to B1 as to B2."""
     far, near = sorted(swung.ends, key=lambda end: -abs(end - pivot))
     crank = 0.5 * (abs(far - pivot) - abs(near - pivot))
     coupler = 0.5 * (abs(far - pivot) + abs(near - pivot))
@@ -109,7 +109,7 @@ def _crank_rocker(
 def _rocker_steps(
     swung: SwungRocker, turn: DrawnCircle, pin: complex, lag: float
 ) -> Iterator[DrawingStep]:
-    """Both ends, the circle they are seen from, and that of the crank, its pin in position 1."""
+    """Yield both ends, the circle they are seen from, and that of the crank, pin in position 1."""
     pivot, ends = turn.centre, swung.ends
     yield DrawingStep(
         "the rocker O4 B in its end positions",
@@ -138,13 +138,13 @@ def _rocker_steps(
 
 O2, O4, PIN, END, RAM = "O2", "O4", "A", "B", "C"
 LONGER = 1.25
-"""Of the crank and the distance of the pivots together: a lever that its block stays on."""
+"""Lever over the sum of crank and pivot distance: its block stays on it."""
 ROD = 2.0
-"""Where a task is silent: of the ram's stroke."""
+"""Default rod, over the ram's stroke."""
 
 
 def quick_return_proposals(task: QuickReturnTask) -> tuple[list[Proposal], int]:
-    """The mechanisms of a task, and how many there are."""
+    """Return the mechanisms of a task, and their number."""
     lag = lag_of(task.time_ratio)
     if task.mechanism == "crank-rocker":
         found = list(crank_rockers(task, lag))
@@ -155,7 +155,7 @@ def quick_return_proposals(task: QuickReturnTask) -> tuple[list[Proposal], int]:
 
 
 def _slotted_lever(task: QuickReturnTask, lag: float) -> Proposal:
-    """O4 at the origin, O2 above it; the lever swings by a about the y-axis."""
+    """Return the lever with O4 at the origin, O2 above it; it swings by a about the y-axis."""
     share = math.sin(0.5 * lag)
     if task.stroke_m is not None:  # of the lever's end
         lever = 0.5 * task.stroke_m / share
@@ -186,7 +186,7 @@ def _slotted_lever(task: QuickReturnTask, lag: float) -> Proposal:
 
 
 def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
-    """O4 at the origin, O2 above it; the guide turns, its end B moves a ram along the x-axis."""
+    """Return the guide with O4 at the origin, O2 above; its end B moves a ram on the x-axis."""
     share = math.sin(0.5 * lag)
     crank = (
         task.crank_m or (task.pivots_m / share if task.pivots_m else 0.0) or (task.stroke_m or 0.0)
@@ -222,8 +222,8 @@ def _add_ram(
     ends: list[complex],
     height: float,
 ) -> list[float]:
-    """Put a rod and a ram at the end of a lever, the ram on a level line to the right; its places
-    with the lever's ``ends``, counted from the nearest."""
+    """Put a rod and a ram at the end of a lever, the ram on a level line to the right; return its
+    places with the lever's ``ends``, counted from the nearest."""
     stroke = abs(ends[0].real - ends[1].real)
     rod = task.rod_m or ROD * stroke
     least = abs(ends[0].imag - height)
@@ -242,7 +242,7 @@ def _add_ram(
 def _steps(
     pivot: complex, crank: float, angles: tuple[float, float], ends: list[complex], lag: float
 ) -> Iterator[DrawingStep]:
-    """The limits of a lever or guide about O4, and the crank's angles there [rad]."""
+    """Yield the limits of a lever or guide about O4, and the crank's angles there [rad]."""
     yield DrawingStep(
         f"the limits of the guide about O4, and O2 above it by {pivot.imag:.6g} m",
         (

@@ -1,4 +1,4 @@
-"""A crank-rocker for a rocker's swing: by its angle, or between two positions of a body on it."""
+"""Crank-rocker for a rocker's swing: by its angle, or between two positions of a body on it."""
 
 import cmath
 import math
@@ -35,9 +35,8 @@ O2, O4 = "O2", "O4"
 
 @dataclass(frozen=True)
 class Swung:
-    """A rocker in two positions: its pivot, its pin in both, its own angles, the points of it in
-    its own frame (O4 at its origin), how it is drawn; ``pin`` is the point that is the pin, if one
-    is."""
+    """Rocker in two positions: its pivot, its pin in both, its own angles, its points in its own
+    frame (O4 at its origin), its drawing; ``pin`` is the named point at the pin, if any."""
 
     pivot: complex
     ends: tuple[complex, complex]
@@ -48,7 +47,7 @@ class Swung:
 
 
 def rocker_proposals(task: RockerTask) -> tuple[list[Proposal], int]:
-    """The crank-rockers of a task, and how many there are.
+    """Return the crank-rockers of a task, and their number.
 
     Raises
     ------
@@ -66,7 +65,7 @@ def rocker_proposals(task: RockerTask) -> tuple[list[Proposal], int]:
 
 
 def _by_angle(task: RockerTask) -> Swung:
-    """O4 at the origin, the rocker's ends on either side of the y-axis."""
+    """Return the rocker with O4 at the origin, its ends on either side of the y-axis."""
     assert task.swing_deg is not None
     assert task.rocker_m is not None
     half = math.radians(0.5 * task.swing_deg)
@@ -87,7 +86,7 @@ def _by_angle(task: RockerTask) -> Swung:
 
 
 def _by_positions(task: RockerTask) -> Swung:
-    """The rotopole of the two positions is O4; B lies on the line from it to the first point."""
+    """Return the rocker with O4 in the rotopole; B lies on the line from it to the first point."""
     first, second = (PlanePose(point, angle) for point, angle in task.body.poses)
     own = task.body.own_points
     size = abs(second.point - first.point) + max(map(abs, own.values()))
@@ -107,7 +106,7 @@ def _by_positions(task: RockerTask) -> Swung:
             f"{task.name}: {', '.join(own)} is the pole, and so the rocker's pivot O4: give "
             "rocker_m, how far its pin is from there"
         )
-    # Of a body whose one point is the pole, the pin lies along its own x-axis.
+    # If the only point of a body is the pole, the pin lies along its own x-axis.
     letter = off_pole[0] if off_pole else ""
     towards = first.at(own[letter]) - pivot if letter else cmath.exp(1j * first.angle)
     arm_m, arm = abs(towards), towards / abs(towards)
@@ -129,7 +128,7 @@ def _by_positions(task: RockerTask) -> Swung:
 def _pole_steps(
     places: tuple[PlanePose, PlanePose], own: Mapping[str, complex], pivot: complex
 ) -> Iterator[DrawingStep]:
-    """The body in its positions, and the bisectors that meet in the pole."""
+    """Yield the body in its positions, and the bisectors that meet in the pole."""
     elements: list[Element] = [
         Dot(pose.at(each), f"{name}{number}", "given")
         for number, pose in enumerate(places, 1)
@@ -152,7 +151,7 @@ def _pole_steps(
 
 
 def _pin_step(pivot: complex, ends: tuple[complex, complex], pin: str, letter: str) -> DrawingStep:
-    """The rocker's pin in both positions."""
+    """Return the rocker's pin in both positions."""
     words = f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2"
     return DrawingStep(
         words if letter else f"{pin} at its distance from O4, in both positions",
@@ -165,7 +164,7 @@ def _pin_step(pivot: complex, ends: tuple[complex, complex], pin: str, letter: s
 
 
 def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) -> Proposal:
-    """The crank-rocker with O2 so far from the chord's middle, beyond B1 or B2."""
+    """Return the crank-rocker with O2 at a distance from the chord's middle, beyond B1 or B2."""
     found = ToAndFro.of(*swung.ends, distance_m, beyond=beyond)
     crank_pin, free = letters_beside(swung.points, 2)
     rocker_pin = swung.pin or free

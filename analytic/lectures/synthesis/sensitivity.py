@@ -1,7 +1,7 @@
-"""What tolerances of lengths and clearances of joints do to the positions that are asked.
+"""Effects of tolerances of lengths and clearances of joints on the required positions.
 
 A scene is varied and solved again by the reference, its driver at the same angles. Derivatives are
-central differences, of steps that leave some nine digits.
+central differences, good to some nine digits.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,16 +21,16 @@ from models.lectures.draft import Draft, plate
 from models.scene import Scene
 
 SINGULAR = 1e-3
-"""A least sine of transmission below which differences say nothing."""
+"""Least sine of transmission below which differences are meaningless."""
 STEP = 1e-5
-"""Of the longest link: a difference is off by the square of it, and by rounding over it."""
+"""Step of a difference, over the longest link: the error is its square, and rounding over it."""
 ON_THE_WAY = 49
-"""Looks at the driver's way of a mechanism that is drawn at random."""
+"""Samples of the driver's way for a random mechanism."""
 
 
 @dataclass(frozen=True)
 class TolerancedDimension:
-    """A number of a scene: a coordinate of a point on a body (0 along x, 1 along y)."""
+    """Number of a scene: a coordinate of a point on a body (0 along x, 1 along y)."""
 
     body: str
     point: str
@@ -38,14 +38,14 @@ class TolerancedDimension:
 
     @property
     def words(self) -> str:
-        """What a table calls it."""
+        """Name in a table."""
         return f"{self.body} {self.point} {'xy'[self.axis]}"
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """``slopes`` (P, N): by how much each thing that is asked (P, over the positions) changes with
-    each dimension (N) [m/m or rad/m]; ``asked`` with the number of its position."""
+    """Slopes ``slopes`` (P, N) of each required value (P, over the positions) by each dimension (N)
+    [m/m or rad/m]; ``asked`` with the number of its position."""
 
     examined: Examined
     asked: tuple[tuple[int, Asked], ...]
@@ -53,22 +53,22 @@ class Sensitivity:
     slopes: Array
 
     def worst(self, tolerance_m: float) -> Array:
-        """The largest change of each thing where every dimension may be off by so much (P,)."""
+        """Return the largest change of each value for errors up to a tolerance (P,)."""
         return np.asarray(np.abs(self._lengths).sum(axis=1) * tolerance_m)
 
     def usual(self, tolerance_m: float) -> Array:
-        """The root of the sum of squares (P,), of dimensions that are off independently."""
+        """Return the root of the sum of squares (P,), for independent errors of dimensions."""
         return np.asarray(np.sqrt(np.square(self._lengths).sum(axis=1)) * tolerance_m)
 
     @property
     def _lengths(self) -> Array:
-        """The slopes of what is measured on a drawing."""
+        """Slopes of the dimensions on a drawing."""
         keep = [is_measured(self.examined, one) for one in self.dimensions]
         return np.asarray(self.slopes[:, np.array(keep)])
 
     def largest_clearance(self, limits: Sequence[float]) -> tuple[float, int]:
-        """The radial clearance of all joints [m] with which everything asked stays within its limit
-        (P,), the pins free to lie to any side; and which of them sets it."""
+        """Return the radial clearance of all joints [m] that keeps every required value within its
+        limit (P,), the pins free to lie to any side; and the number of the one that sets it."""
         joints: dict[str, list[int]] = {}
         pins = pinned(self.examined.scene)
         for k, one in enumerate(self.dimensions):
@@ -76,7 +76,7 @@ class Sensitivity:
                 joints.setdefault(one.point, []).append(k)
         effect = np.zeros(len(self.asked))
         for rows in joints.values():
-            # The pin moves against one of its two bodies, whichever that is: the first, by x and y.
+            # The pin moves against one of its two bodies, no matter which: the first, by x and y.
             effect += np.hypot(self.slopes[:, rows[0]], self.slopes[:, rows[1]])
         with np.errstate(divide="ignore"):
             allowed = np.asarray(limits) / effect
@@ -86,8 +86,8 @@ class Sensitivity:
 
 @dataclass(frozen=True)
 class Spread:
-    """What a Monte Carlo gave: of each thing asked the largest change (P,), and the share of the
-    mechanisms that met everything; ``lost`` could not be assembled."""
+    """Result of a Monte Carlo: the largest change of each required value (P,), and the share of
+    mechanisms within all limits; ``lost`` could not be assembled."""
 
     largest: Array
     share_within: float
@@ -96,12 +96,12 @@ class Spread:
 
 
 def sensitivity(examined: Examined) -> Sensitivity:
-    """The slopes of a mechanism that meets its positions.
+    """Compute the slopes of a mechanism that meets its positions.
 
     Raises
     ------
     CrankcheckError
-        A mechanism that passes a change point, or a dead one: next to it there are no slopes.
+        A mechanism that passes a change point, or a dead point: next to it there are no slopes.
     """
     if examined.least_sine < SINGULAR:
         raise CrankcheckError(
@@ -128,8 +128,8 @@ def sensitivity(examined: Examined) -> Sensitivity:
 def monte_carlo(
     examined: Examined, tolerance_m: float, limits: Sequence[float], count: int, seed: int = 19
 ) -> Spread:
-    """So many mechanisms whose dimensions are off by up to a tolerance [m], evenly and each by
-    itself; ``limits`` (P,) of what is asked [m, rad]. Those that can not be assembled all along the
+    """Draw so many mechanisms with uniform, independent errors of dimensions up to a tolerance [m];
+    ``limits`` (P,) of the required values [m, rad]. Those that can not be assembled all along the
     driver's way are lost."""
     draft, draw = as_plates(examined), np.random.default_rng(seed)
     dimensions = [one for one in _dimensions(draft) if is_measured(examined, one)]
@@ -151,14 +151,14 @@ def monte_carlo(
 
 
 def pinned(scene: Scene) -> set[str]:
-    """The points in which two bodies meet, a slider's block one of them."""
+    """Return the points in which two bodies meet, a slider's block one of them."""
     shared = {name for name, bodies in scene.pins.items() if len(bodies) > 1}
     return shared | {slider.point for slider in scene.sliders.values()}
 
 
 def is_measured(examined: Examined, one: TolerancedDimension) -> bool:
-    """Whether a dimension is one of a drawing: of a bar its length, and not where a point lies that
-    is asked for and holds nothing."""
+    """True if a dimension is on a drawing: of a bar its length, but not the place of a required
+    point that holds nothing."""
     if one.body == "ground":
         return True
     if one.point not in pinned(examined.scene):
@@ -168,13 +168,13 @@ def is_measured(examined: Examined, one: TolerancedDimension) -> bool:
 
 
 def as_plates(examined: Examined) -> Draft:
-    """The draft that the examined scene was read from, every bar as a link of points."""
+    """Return the draft of the examined scene, every bar as a link of points."""
     links = {name: plate(_points_of(link)) for name, link in examined.draft.links.items()}
     return replace(examined.draft, links=links)
 
 
 def _points_of(link: Table) -> dict[str, complex]:
-    """The points of a link's table in its own frame."""
+    """Return the points of a link's table in its own frame."""
     if "bar" in link:
         (one, other), length = cast(Sequence[str], link["bar"]), cast(float, link["length_m"])
         return {one: 0j, other: complex(length)}
@@ -183,7 +183,7 @@ def _points_of(link: Table) -> dict[str, complex]:
 
 
 def _dimensions(draft: Draft) -> Iterator[TolerancedDimension]:
-    """The coordinates of all points of the ground and of the links."""
+    """Yield the coordinates of all points of the ground and of the links."""
     for body, points in (("ground", draft.ground), *_bodies(draft)):
         yield from (TolerancedDimension(body, point, axis) for point in points for axis in (0, 1))
 
@@ -193,7 +193,7 @@ def _bodies(draft: Draft) -> list[tuple[str, dict[str, complex]]]:
 
 
 def _varied(draft: Draft, by: Mapping[TolerancedDimension, float]) -> Draft:
-    """The draft with dimensions changed [m]."""
+    """Return the draft with dimensions changed [m]."""
     ground, links = dict(draft.ground), dict(_bodies(draft))
     for one, delta in by.items():
         points = ground if one.body == "ground" else links[one.body]
@@ -204,7 +204,7 @@ def _varied(draft: Draft, by: Mapping[TolerancedDimension, float]) -> Draft:
 
 
 def _values(examined: Examined, scene: Scene) -> NDArray[np.complex128]:
-    """What is asked, as it is at the positions' driver angles (P,): places, turns exp(i angle)."""
+    """Return the required values at the positions (P,): places, or turns exp(i angle)."""
     motion = asked_motion(scene, examined.positions)
     return np.array(
         [

@@ -1,7 +1,7 @@
-"""The solutions of a task: what every proposal is worth.
+"""Solutions of a task: all proposals, examined.
 
-A ram on a rod that is too short goes further than the ends of its lever ask for, and turns back in
-other times: two positions that are met tell nothing of it. The reference follows it over a turn.
+A ram on too short a rod goes beyond the ends of its lever, and turns back at other times: two met
+positions do not show it. The reference follows it over a turn.
 """
 
 import math
@@ -29,7 +29,7 @@ from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, Rocker
 
 
 def function_task(table: FunctionTable) -> FunctionTask:
-    """Raises CrankcheckError for a function or ranges that make no task."""
+    """Return the task of a function. Raises CrankcheckError for an invalid function or ranges."""
     if table.formula is not None:
         function = GivenFunction.of_formula(table.formula)
     else:
@@ -54,7 +54,7 @@ def function_task(table: FunctionTable) -> FunctionTask:
 
 
 def path_task(table: PathTable) -> PathTask:
-    """Raises CrankcheckError for points that make no path."""
+    """Return the task of a path. Raises CrankcheckError for invalid points."""
     angles = None if table.crank_deg is None else tuple(map(math.radians, table.crank_deg))
     return PathTask(tuple(complex(*place) for place in table.points_m), angles, table.closed)
 
@@ -64,7 +64,7 @@ def _radians(degrees: float | None) -> float | None:
 
 
 def straight_line_of(table: StraightLineTable) -> Proposal:
-    """The linkage of a straight line. Raises CrankcheckError for what none has."""
+    """Return the linkage of a straight line. Raises CrankcheckError for an impossible task."""
     start, direction = complex(*table.start_m), math.radians(table.direction_deg)
     if table.linkage == "peaucellier":
         return peaucellier(table.length_m, start=start, direction_rad=direction)
@@ -87,17 +87,17 @@ def straight_line_of(table: StraightLineTable) -> Proposal:
 
 
 STROKE = 1e-9
-"""Of a stroke or swing: what it is longer than asked is none of rounding beyond it."""
+"""Excess of a stroke or swing by rounding, over it."""
 RATIO = 1e-6
-"""Of a time ratio: limit positions are roots, and lose half of the digits where they are flat."""
+"""Tolerance of a time ratio: flat limit positions are roots, and lose half of the digits."""
 FLAT = 1e-6
-"""A least sine of transmission below which there is a change point on the way."""
+"""Least sine of transmission below which there is a change point on the way."""
 
 
 def held_to_its_limits(one: Examined) -> Examined:
-    """A mechanism with what its output does over a turn of the crank told; with a fault where that
-    is not what the two positions ask for. Where the way comes too near to a singular position to
-    have limits, that is told."""
+    """Return a mechanism with a note on its output over a turn of the crank; with a fault if it
+    differs from the two positions. A note says where the way is too near to a singular position to
+    have limits."""
     name = one.proposal.turns_back
     if not name or one.defects or not one.turns_fully or one.least_sine < FLAT:
         return one
@@ -114,8 +114,8 @@ def held_to_its_limits(one: Examined) -> Examined:
 
 
 def _asked(positions: tuple[PrecisionPosition, ...], name: str) -> tuple[float, float]:
-    """The stroke [m] or swing [rad] between the two positions, and the ratio of the crank's turns
-    between them."""
+    """Return the stroke [m] or swing [rad] between the two positions, and the ratio of the crank's
+    turns between them."""
     first, second = (_of(position, name) for position in positions)
     if isinstance(first, AskedAngle) and isinstance(second, AskedAngle):
         stroke = abs(math.remainder(second.angle - first.angle, math.tau))
@@ -129,7 +129,7 @@ def _asked(positions: tuple[PrecisionPosition, ...], name: str) -> tuple[float, 
 
 
 def _of(position: PrecisionPosition, name: str) -> AskedAngle | AskedSlide:
-    """What a position asks of a link or slider."""
+    """Return the requirement of a position on a link or slider."""
     for each in position.asked:
         if isinstance(each, AskedAngle) and each.link == name:
             return each
@@ -139,7 +139,7 @@ def _of(position: PrecisionPosition, name: str) -> AskedAngle | AskedSlide:
 
 
 def _told(one: Examined, found: Travel) -> str:
-    """Stroke and time ratio over a turn, in words."""
+    """Return stroke and time ratio over a turn, in words."""
     if one.proposal.turns_back in one.scene.sliders:
         goes = f"goes {found.stroke:.6g} m"
     else:
@@ -150,13 +150,13 @@ def _told(one: Examined, found: Travel) -> str:
 LONGEST_NAME = 34
 """Letters of a task's name that go on to its scenes, which have 40 with their numbers."""
 MOST_PATHS = 10
-"""Mechanisms that a path is searched for."""
+"""Number of mechanisms that a path is searched for."""
 
 
 @dataclass(frozen=True)
 class Solutions:
-    """Every proposal examined, the best first; ``looked`` is how many were looked at to choose
-    them, and ``refused`` says of those that are no mechanism why."""
+    """All proposals examined, the best first; ``looked`` is the number considered for the choice,
+    and ``refused`` has the reasons of those that are no mechanism."""
 
     task: TaskTable
     examined: tuple[Examined, ...]
@@ -165,12 +165,12 @@ class Solutions:
 
     @property
     def sound(self) -> list[Examined]:
-        """Those without a defect."""
+        """Proposals without a defect."""
         return [one for one in self.examined if not one.defects]
 
 
 def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions:
-    """Propose and examine; a search tells ``progress`` the share that is done, and how near it is.
+    """Propose and examine; a search calls ``progress`` with the finished share and its distance.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
 
 
 def unfulfilled(one: Examined, task: TaskTable) -> list[str]:
-    """What a task wishes and a mechanism does not have, in words."""
+    """Return the unfulfilled wishes of a task, in words."""
     least, region = task.least_transmission_deg, task.pivots_in
     told = []
     if least is not None and math.degrees(one.least_transmission_rad) < least:
@@ -213,13 +213,13 @@ def unfulfilled(one: Examined, task: TaskTable) -> list[str]:
 
 
 def _named(one: Examined, number: int) -> Examined:
-    """A solution whose scene has a name of its own among those of its task."""
+    """Return a solution whose scene has a name of its own among those of its task."""
     name = f"{one.scene.name[:LONGEST_NAME]}-{number}"
     return replace(one, draft=replace(one.draft, name=name), scene=replace(one.scene, name=name))
 
 
 def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposal], int]:
-    """What is proposed for a task, and how many were looked at to choose them."""
+    """Return the proposals for a task, and the number considered for the choice."""
     if isinstance(task, CouplerTask):
         return coupler_proposals(task)
     if isinstance(task, RockerTask):
@@ -238,7 +238,7 @@ def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposa
 
 
 def _paths(task: PathTable, progress: Progress | None) -> tuple[list[Proposal], int]:
-    """What least squares found, from so many starts."""
+    """Return the results of least squares, from so many starts."""
     search = generate(
         path_task(task),
         name=task.name,
@@ -253,8 +253,8 @@ def _paths(task: PathTable, progress: Progress | None) -> tuple[list[Proposal], 
 
 
 def followed(one: Examined) -> Examined:
-    """An examined generator with its structural error, worked out by the reference over the whole
-    range; what can not be assembled there has a fault. What only comes near misses as much."""
+    """Return an examined generator with its structural error by the reference over the whole range;
+    a fault if it can not be assembled there. Approximate mechanisms miss the allowed error."""
     if not isinstance(one.proposal, FunctionProposal) or one.defects:
         return held_to_its_limits(replace(one, misses=one.proposal.allowed))
     try:

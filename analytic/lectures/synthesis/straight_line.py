@@ -1,4 +1,4 @@
-r"""Four-bars with a coupler point that goes nearly straight, from the length of the straight part.
+r"""Four-bars with a nearly straight way of a coupler point, from the length of the straight part.
 
 ::
 
@@ -13,8 +13,8 @@ r"""Four-bars with a coupler point that goes nearly straight, from the length of
 The driver is the link O2-A.
 
 Source: R. L. Norton, Design of Machinery, section 3.8, figure 3-29 (proportions of Watt, Roberts
-and Chebyshev); of Evans the rule that O2-A times A-P is A-B squared, with which P goes straight
-where B does: I. I. Artobolevskii, Mechanisms in Modern Engineering Design, volume 1 (approximate
+and Chebyshev); for Evans the rule that O2-A times A-P is A-B squared, with which P goes straight if
+B does: I. I. Artobolevskii, Mechanisms in Modern Engineering Design, volume 1 (approximate
 straight-line mechanisms of Evans). And Hoeken's, with a crank that turns::
 
             P           With the ground g over the crank, coupler and rocker are (3 g - 1)/2, and P
@@ -46,8 +46,8 @@ Kind = Literal["chebyshev", "watt", "roberts", "evans"]
 
 @dataclass(frozen=True)
 class Textbook:
-    """A linkage in the textbook's numbers, its crank's angle in the middle of the straight part
-    [rad], and the deviation over the length that its part has unless another is asked for."""
+    """Linkage in the textbook's numbers, its crank's angle in the middle of the straight part
+    [rad], and the default deviation over the length of its part."""
 
     four_bar: CouplerCurve
     centre_rad: float
@@ -93,19 +93,19 @@ def straight_line(
     start: complex = 0j,
     direction_rad: float = 0.0,
 ) -> StraightLinkage:
-    """A textbook's linkage of which a part of a length [m] is straight.
+    """Return a textbook's linkage with a straight part of a length [m].
 
     Parameters
     ----------
     kind
         The linkage.
     length_m
-        Of the straight part, along the line [m].
+        Length of the straight part, along the line [m].
     deviation
         The largest distance from the line, over the length, to either side: the longest part that
         keeps it is taken. None takes that of `TEXTBOOK`.
     start, direction_rad
-        Where the line begins [m], and its direction [rad].
+        Start of the line [m], and its direction [rad].
 
     Raises
     ------
@@ -120,11 +120,11 @@ def straight_line(
 
 
 Even = Literal["line", "speed"]
-"""What the proportions are the best for: a straight line, or an even speed along it."""
+"""Aim of the proportions: a straight line, or an even speed along it."""
 LEAST_SHARE, MOST_SHARE = 0.02, 0.5
-"""Of the crank's turn, of Hoeken's straight part: below, its deviation is rounding."""
+"""Share of Hoeken's straight part in the crank's turn: below, its deviation is rounding."""
 GROUNDS = (1.05, 3.2)
-"""Hoeken's ground over its crank: with less, it is no crank; beyond 3, the line is curved more."""
+"""Hoeken's ground over its crank: with less, it is no crank; beyond 3, the line curves more."""
 
 
 def hoeken(
@@ -136,22 +136,22 @@ def hoeken(
     start: complex = 0j,
     direction_rad: float = 0.0,
 ) -> StraightLinkage:
-    """Hoeken's crank-rocker, its ground chosen for the narrowest band about the line, or for the
-    evenest speed along it.
+    """Return Hoeken's crank-rocker, its ground chosen for the narrowest band about the line, or for
+    the evenest speed along it.
 
     Parameters
     ----------
     length_m
-        Of the straight part [m].
+        Length of the straight part [m].
     share
-        Of the crank's turn, `LEAST_SHARE` to `MOST_SHARE`.
+        Share of the crank's turn, `LEAST_SHARE` to `MOST_SHARE`.
     deviation
         Instead of a share: the largest distance from the line over the length; the largest share
         with which the proportions keep it is taken. Without either, the share is `MOST_SHARE`.
     even
-        Whether the line or the speed is to be the best.
+        Aim: the best line or the most even speed.
     start, direction_rad
-        Where the line begins [m], and its direction [rad].
+        Start of the line [m], and its direction [rad].
 
     Raises
     ------
@@ -178,13 +178,13 @@ def hoeken(
 
 
 def hoeken_of(ground: float) -> CouplerCurve:
-    """Hoeken's proportions for a ground over the crank: straight on the far side of the ground."""
+    """Return Hoeken's proportions for a ground over the crank: straight beyond the ground."""
     side = 0.5 * (3.0 * ground - 1.0)
     return CouplerCurve(0j, complex(ground), 1.0, side, side, complex(2.0 * side), 1)
 
 
 def best_hoeken(share: float, even: Even) -> tuple[CouplerCurve, StraightPart]:
-    """The proportions that are the best over a share of the crank's turn, and their part."""
+    """Return the best proportions over a share of the crank's turn, and their part."""
     half = math.pi * share
 
     def part(ground: float) -> StraightPart:
@@ -199,7 +199,7 @@ def best_hoeken(share: float, even: Even) -> tuple[CouplerCurve, StraightPart]:
 
 
 def _share_of(deviation: float, even: Even) -> float:
-    """The largest share of a turn over which the best proportions keep a deviation."""
+    """Return the largest share of a turn over which the best proportions keep a deviation."""
 
     def keeps(share: float) -> bool:
         _, part = best_hoeken(share, even)

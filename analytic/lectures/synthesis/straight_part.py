@@ -1,4 +1,4 @@
-"""The part of a coupler curve that is nearly straight, its line, and how far it is from that."""
+"""Nearly straight part of a coupler curve, its line, and its deviation from that."""
 
 import math
 from dataclasses import dataclass
@@ -13,23 +13,23 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 LOOKS = 2401
-"""Crank angles that a part is measured at: between two of them the deviation changes by less than
+"""Crank angles at which a part is measured: between two of them the deviation changes by less than
 a millionth of its own size."""
 TRIALS, HALVINGS = 120, 30
 STEP = math.radians(0.25)
-"""Between the crank's angles at which its way is looked along."""
+"""Step of the crank's angle along its way."""
 CLEAR = math.radians(2.0)
-"""What a part keeps clear of the crank's limit positions, where its speed is boundless."""
+"""Distance from the crank's limit positions, where its speed is boundless."""
 
 
 @dataclass(frozen=True)
 class StraightPart:
-    """A nearly straight part of a coupler curve, and the line that is nearest to it everywhere.
+    """Nearly straight part of a coupler curve, and the line that is nearest to it everywhere.
 
     ``crank_rad`` are the crank's angles at its ends [rad], ``start`` and ``along`` the line's first
     point [m] and its direction. ``length_m`` is its length along the line, ``deviation_m`` the
     largest distance of the curve from the line, to either side. ``uneven`` is the change of the
-    speed along the line, over its mean, of a crank at constant speed.
+    speed along the line, over its mean, with a crank at constant speed.
     """
 
     crank_rad: tuple[float, float]
@@ -41,17 +41,17 @@ class StraightPart:
 
     @property
     def share(self) -> float:
-        """Of a turn of the crank."""
+        """Share of a turn of the crank."""
         return abs(self.crank_rad[1] - self.crank_rad[0]) / math.tau
 
     def off(self, places: Complexes) -> Array:
-        """How far places are to the left of the line [m]."""
+        """Return the distance of places to the left of the line [m]."""
         return np.asarray(((places - self.start) * self.along.conjugate()).imag)
 
 
 def measured(four_bar: CouplerCurve, low: float, high: float) -> StraightPart:
-    """The part between two angles of the crank [rad], and its line: of all lines that whose largest
-    distance is the least (Chebyshev's)."""
+    """Measure the part between two angles of the crank [rad], and its line: that of the least
+    largest distance (Chebyshev's)."""
     angles = np.linspace(low, high, LOOKS)
     places = four_bar.at(angles)
     chord = complex(places[-1] - places[0])
@@ -73,7 +73,7 @@ def measured(four_bar: CouplerCurve, low: float, high: float) -> StraightPart:
 
 
 def _slope(own: Complexes) -> float:
-    """The slope for which the band along a chord is the narrowest: a convex function of it."""
+    """Return the slope with the narrowest band along a chord: its width is a convex function."""
     steepest = 2.0 * float(np.ptp(own.imag) / np.ptp(own.real))
     if steepest < 1e-12:
         return 0.0
@@ -87,10 +87,10 @@ def _slope(own: Complexes) -> float:
 
 
 def longest(four_bar: CouplerCurve, centre_rad: float, deviation: float) -> StraightPart:
-    """The longest part about an angle of the crank [rad] that deviates by a share of its length.
+    """Find the longest part about a crank angle [rad] that deviates by a share of its length.
 
-    Its ends are equally far from the place at its centre. Raises CrankcheckError where the least
-    part that is looked at deviates more.
+    Its ends are equally far from the place at its centre. Raises CrankcheckError where the shortest
+    tried part deviates more.
     """
     angles, far = _both_ways(four_bar, centre_rad)
     ways = [(angle, np.maximum.accumulate(each)) for angle, each in zip(angles, far, strict=True)]
@@ -121,8 +121,8 @@ def longest(four_bar: CouplerCurve, centre_rad: float, deviation: float) -> Stra
 
 
 def _both_ways(four_bar: CouplerCurve, centre: float) -> tuple[tuple[Array, Array], list[Array]]:
-    """The crank's angles from a centre down and up, as far as the curve leads away from it within
-    half a turn, and how far it is there [m]."""
+    """Return the crank's angles from a centre down and up, as far as the curve leads away from it
+    within half a turn, and its distances there [m]."""
     steps = np.arange(0.0, math.pi, STEP)
     angles, far = [], []
     for sense in (-1.0, 1.0):
@@ -138,7 +138,7 @@ def _both_ways(four_bar: CouplerCurve, centre: float) -> tuple[tuple[Array, Arra
 
 
 def on_line(four_bar: CouplerCurve, part: StraightPart) -> list[float]:
-    """The angles of the crank [rad] at which the curve crosses the line of a part."""
+    """Return the angles of the crank [rad] at which the curve crosses the line of a part."""
 
     def off(angle: float) -> float:
         return float(part.off(four_bar.at(np.array([angle])))[0])

@@ -41,12 +41,12 @@ from models.lectures.tasks.positions import StrokeTask
 
 O2, PIN, SLIDER = "O2", "A", "B"
 RODS = (2.0, 3.0, 4.0, 5.0)
-"""Where a task is silent: rods, over half the stroke."""
+"""Default rods, over half the stroke."""
 SQUARE = math.radians(0.1)
-"""Nearer to a = 90 deg the rod of every O2 stands square to the slider's line, but for less than
-this, at the inner end: there the crank is as good as locked."""
+"""Distance of a from 90 deg, below which the rod of every O2 is square to the slider's line to
+within this, at the inner end: there the crank is all but locked."""
 PLACES = 12
-"""Where a task leaves O2 free on the circle of a time ratio: so many places of it."""
+"""Number of default places of O2 on the circle of a time ratio."""
 
 
 @dataclass(frozen=True)
@@ -60,14 +60,14 @@ class Ends:
 
     @staticmethod
     def beside(crank: float, rod: float, offset: float, *, over: bool = False) -> Ends:
-        """Of an offset; ``over`` O2 the one end is as far as the other."""
+        """Make the ends for an offset; ``over`` O2 the one end is as far as the other."""
         outer = math.sqrt((rod + crank) ** 2 - offset**2)
         inner = -outer if over else math.sqrt(max((rod - crank) ** 2 - offset**2, 0.0))
         return Ends(crank, rod, complex(inner, -offset), complex(outer, -offset))
 
     @staticmethod
     def seen_under(stroke: float, lag: float, at_far: float) -> Ends:
-        """Of the angles a = B1 O2 B2 and b = O2 B2 B1 [rad]."""
+        """Make the ends for the angles a = B1 O2 B2 and b = O2 B2 B1 [rad]."""
         twice = stroke / math.sin(lag)
         near, far = twice * math.sin(at_far), twice * math.sin(lag + at_far)
         first = cmath.rect(near, -(lag + at_far))
@@ -75,29 +75,29 @@ class Ends:
 
     @property
     def offset(self) -> float:
-        """The distance of O2 from the slider's line [m]."""
+        """Distance of O2 from the slider's line [m]."""
         return abs(self.first.imag)
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Of the crank in both ends [rad]: folded it points away from the slider."""
+        """Crank's angles in both ends [rad]: folded it points away from the slider."""
         folded = cmath.phase(-self.first) if self.rod > self.crank else math.pi
         return folded, cmath.phase(self.second)
 
 
 def stroke_proposals(task: StrokeTask) -> tuple[list[Proposal], int]:
-    """The slider-cranks of a task. Raises CrankcheckError for what no such mechanism has."""
+    """Return the slider-cranks of a task. Raises CrankcheckError for an impossible task."""
     found = [_proposal(task, ends) for ends in _ends(task)]
     return found, len(found)
 
 
 def lag_of(time_ratio: float) -> float:
-    """The angle a [rad] of Q = (180 + a) / (180 - a)."""
+    """Return the angle a [rad] of Q = (180 + a) / (180 - a)."""
     return math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
 
 
 def ratio_of(lag: float) -> float:
-    """The time ratio of an angle a [rad]."""
+    """Return the time ratio of an angle a [rad]."""
     return (math.pi + lag) / (math.pi - lag)
 
 
@@ -117,7 +117,7 @@ def _ends(task: StrokeTask) -> Iterator[Ends]:
 
 
 def crank_of(stroke: float, rod: float, offset: float) -> float:
-    """The crank [m] of a stroke: with u, v = sqrt((l +- r)^2 - e^2) and u - v = s, u + v is
+    """Return the crank [m] of a stroke: with u, v = sqrt((l +- r)^2 - e^2) and u - v = s, u + v is
     4 l r / s, and r^2 = s^2 (4 l^2 - 4 e^2 - s^2) / (4 (4 l^2 - s^2)).
 
     Raises
@@ -138,7 +138,7 @@ def crank_of(stroke: float, rod: float, offset: float) -> float:
 
 
 def _by_time_ratio(task: StrokeTask, lag: float) -> Iterator[float]:
-    """The angles b of O2 on the circle of the angle a, beside the stroke's inner end."""
+    """Yield the angles b of O2 on the circle of the angle a, beside the stroke's inner end."""
     most = 0.5 * math.pi - SQUARE
     if lag > most:
         raise CrankcheckError(
@@ -155,7 +155,7 @@ def _by_time_ratio(task: StrokeTask, lag: float) -> Iterator[float]:
 
 
 def _beside(task: StrokeTask, lag: float, offset: float) -> float:
-    """The angle b of an offset, 2 R sin(a + b) sin(b): with t = tan(b) and k = e / R it is
+    """Return the angle b of an offset, 2 R sin(a + b) sin(b): with t = tan(b) and k = e / R it is
     (2 cos a - k) t^2 + 2 t sin a = k."""
     over = 2.0 * offset * math.sin(lag) / task.stroke_m
     least = 2.0 * math.cos(lag) - over
@@ -170,7 +170,7 @@ def _beside(task: StrokeTask, lag: float, offset: float) -> float:
 
 
 def _with_rod(task: StrokeTask, lag: float, rod: float) -> float:
-    """The angle b of a rod, the mean of O2 B1 and O2 B2: 2 R sin(b + a / 2) cos(a / 2)."""
+    """Return the angle b of a rod, the mean of O2 B1 and O2 B2: 2 R sin(b + a / 2) cos(a / 2)."""
     most = task.stroke_m * math.cos(0.5 * lag) / math.sin(lag)
     at_far = math.asin(rod / most) - 0.5 * lag if rod < most else math.nan
     if not 0.0 < at_far < 0.5 * math.pi - lag:
@@ -183,7 +183,7 @@ def _with_rod(task: StrokeTask, lag: float, rod: float) -> float:
 
 
 def _proposal(task: StrokeTask, ends: Ends) -> Proposal:
-    """The slider-crank; its displacement counts from the inner end of the stroke."""
+    """Return the slider-crank; its displacement counts from the inner end of the stroke."""
     through = [ends.first.real, ends.first.imag]
     draft = Draft(
         task.name,
@@ -207,7 +207,7 @@ def _proposal(task: StrokeTask, ends: Ends) -> Proposal:
 
 
 def _steps(task: StrokeTask, ends: Ends) -> Iterator[DrawingStep]:
-    """The construction in the plane of the scene."""
+    """Yield the construction in the plane of the scene."""
     first, second = ends.first, ends.second
     yield DrawingStep(
         f"the stroke, {task.stroke_m:g} m on the slider's line",

@@ -1,18 +1,18 @@
-"""Whether a periodic motion of elastic links is stable, and at which orders they vibrate about it.
+"""Stability of a periodic motion of elastic links, and orders of their vibration about it.
 
 A deviation from the periodic motion is multiplied by Phi in every period. An eigenvalue of it,
-exp((s + i p) 2 pi), says by how much a mode grows, and that it vibrates p times in a period, but
-for a whole number: which one, the natural frequency of the mechanism held still tells. Where p is
-whole, the periodic force resonates with the mode; where p of one mode is a half, or those of two
-make a whole number, the turning of the mechanism may feed the vibration itself (parametric
-resonance). Source: Thesis on vibration of planar mechanisms with elastic links (2018), chapter 4;
-A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, chapter 5.
+exp((s + i p) 2 pi), gives the growth of a mode, and its p vibrations in a period, but for a whole
+number, which the natural frequency of the mechanism held still decides. The periodic force
+resonates with the mode if p is whole; if p of one mode is a half, or those of two make a whole
+number, the turning of the mechanism may feed the vibration itself (parametric resonance). Source:
+Thesis on vibration of planar mechanisms with elastic links (2018), chapter 4; A. H. Nayfeh, D. T.
+Mook, Nonlinear Oscillations, chapter 5.
 
-For M y'' + C y' + K y = h with coefficients that come back after T, the state x = (y, y') goes from
-x(0) to Phi x(0) + p in a period. Its periodic motion starts at x0 = (I - Phi)^-1 p. Deviations grow
-in a period as the eigenvalues of Phi: the motion is stable where none is larger than 1; where one
-is 1 and h goes on pushing there is none (a resonance). Source: Thesis on vibration of planar
-mechanisms with elastic links (2018), chapter 4.
+For M y'' + C y' + K y = h with coefficients of period T, the state x = (y, y') goes from x(0) to
+Phi x(0) + p in a period. Its periodic motion starts at x0 = (I - Phi)^-1 p. Deviations grow in a
+period as the eigenvalues of Phi: the motion is stable if none is larger than 1; if one is 1 and h
+acts on it there is none (a resonance). Source: Thesis on vibration of planar mechanisms with
+elastic links (2018), chapter 4.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from models.array import Array, Mask
 
 NODES = 8
 NEWMARK_GAMMA, NEWMARK_BETA = 0.5, 0.25
-"""The mean acceleration over a step: stable at any, of order 2, and nothing is damped by it."""
+"""Mean acceleration over a step: stable at any step, of order 2, without damping."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Monodromy:
 
     @property
     def from_resonance(self) -> float:
-        """How near a multiplier comes to 1."""
+        """Smallest distance of a multiplier from 1."""
         return float(np.abs(self.multipliers - 1.0).min())
 
     @property
@@ -62,7 +62,7 @@ class Monodromy:
 
 @dataclass(frozen=True)
 class Windows:
-    """What each of W windows of a period makes of the state x at its start, and of forces at its
+    """Maps of W windows of a period from the state x at their start, and from forces at their
     NODES: ``carry`` (W, 2 m, 2 m) and ``push`` (W, 2 m, NODES m). By Gauss' collocation, of order
     16."""
 
@@ -72,7 +72,7 @@ class Windows:
 
     @staticmethod
     def of(form: LinearForm, period_s: float, count: int) -> Windows:
-        """Those of linearised equations, ``count`` to a period."""
+        """Make the windows of linearised equations, ``count`` to a period."""
         rule, h, m = gauss(NODES), period_s / count, form.force.shape[1]
         mass, damping, stiffness = (
             at_nodes(own, count) for own in (form.mass, form.damping, form.stiffness)
@@ -93,7 +93,7 @@ class Windows:
         return Windows(period_s, carry, push)
 
     def over(self, force: Array) -> Monodromy:
-        """What a period makes of a state with forces (N, m), at N instants of the period."""
+        """Return the map of a period with forces (N, m), at N instants of the period."""
         pushed = self._pushed(force)
         matrix, particular = np.eye(self.carry.shape[1]), np.zeros(self.carry.shape[1])
         for carry, own in zip(self.carry, pushed, strict=True):
@@ -101,7 +101,7 @@ class Windows:
         return Monodromy(matrix, particular)
 
     def periodic(self, force: Array, monodromy: Monodromy) -> Array:
-        """The deflections at the start of every window (W, m) that come back with these forces,
+        """Return the periodic deflections at the start of every window (W, m) under these forces,
         whose `over` is ``monodromy``."""
         x = np.concatenate(monodromy.start)
         found = []
@@ -117,12 +117,12 @@ class Windows:
 
 
 def by_collocation(form: LinearForm, period_s: float, windows: int) -> Monodromy:
-    """By Gauss' collocation in so many windows of a period."""
+    """Integrate by Gauss' collocation in so many windows of a period."""
     return Windows.of(form, period_s, windows).over(form.force)
 
 
 def by_newmark(form: LinearForm, period_s: float, steps: int) -> Monodromy:
-    """By Newmark's method in so many steps of a period, of order 2, as in the thesis."""
+    """Integrate by Newmark's method in so many steps of a period, of order 2, as in the thesis."""
     h, m = period_s / steps, form.force.shape[1]
     shares = np.linspace(0.0, 1.0, steps + 1)
     mass, damping, stiffness, force = (
@@ -145,15 +145,15 @@ def by_newmark(form: LinearForm, period_s: float, steps: int) -> Monodromy:
 
 
 def at_nodes(own: Array, windows: int) -> Array:
-    """What is known at an odd number of instants of a period, (N, ...), at the nodes of so many
-    windows of it, (W, NODES, ...), by its Fourier series."""
+    """Return values at an odd number of instants of a period, (N, ...), at the nodes of so many
+    windows of it, (W, NODES, ...), by their Fourier series."""
     shares = (np.arange(windows)[:, None] + gauss(NODES).places) / windows
     return _between(own, shares)
 
 
 def _between(own: Array, shares: Array) -> Array:
-    """The same at shares of the period (W, ...): in rows of W, as the threads of a product of large
-    matrices cost more than they gain."""
+    """Return the same at shares of the period (W, ...): in rows of W, as the threads of a product
+    of large matrices cost more than they gain."""
     count = len(own)
     series = np.fft.rfft(own.reshape(count, -1), axis=0) / count
     series[1:] *= 2.0
@@ -163,18 +163,18 @@ def _between(own: Array, shares: Array) -> Array:
 
 
 STABLE = 1e-6
-"""What a multiplier may be larger than 1 by: derivatives are differences, and windows round."""
+"""Allowed excess of a multiplier over 1: derivatives are differences, and windows round."""
 RADIANS = 3.0
-"""What the fastest mode turns in a window of the integration."""
+"""Angle of the fastest mode in a window of the integration."""
 FEWEST, MOST = 24, 480
-"""Windows of a period. Modes that are too fast for them are integrated, and not told of."""
+"""Windows of a period. Modes that are too fast for them are integrated, and not shown."""
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """A pair of multipliers: those of ``mode``, counted from 1 by its natural frequency. ``order``
-    is how often it vibrates in a period, NaN where it is too fast to be told, ``natural`` that of
-    the mechanism held still, in the mean."""
+    """Pair of multipliers of ``mode``, counted from 1 by its natural frequency. ``order`` is the
+    number of its vibrations in a period, NaN where it is too fast, ``natural`` that of the
+    mechanism held still, in the mean."""
 
     mode: int
     multiplier: complex
@@ -183,26 +183,25 @@ class Deviation:
 
     @property
     def size(self) -> float:
-        """What a period multiplies it by."""
+        """Growth in a period."""
         return abs(self.multiplier)
 
     @property
     def from_whole(self) -> float:
-        """How far the order is from a whole number."""
+        """Distance of the order from a whole number."""
         return abs(self.order - round(self.order)) if math.isfinite(self.order) else math.nan
 
 
 @dataclass(frozen=True)
 class Stability:
-    """All deviations of a periodic motion, the lowest mode first, and what a period makes of
-    them."""
+    """All deviations of a periodic motion, the lowest mode first, and the map of a period."""
 
     deviations: tuple[Deviation, ...]
     monodromy: Monodromy
 
     @property
     def largest(self) -> float:
-        """The largest multiplier's size."""
+        """Size of the largest multiplier."""
         return float(np.abs(self.monodromy.multipliers).max(initial=0.0))
 
     @property
@@ -211,7 +210,7 @@ class Stability:
 
 
 def stability_of(form: ReducedForm, motion: PeriodicMotion) -> Stability:
-    """The stability of a periodic motion, unlinearised as it is."""
+    """Return the stability of a periodic motion of the full equations."""
     time_s = motion.time_s
     scale = 1e-2 * float(np.abs(motion.z).max()) or 1e-6 * form.assembly.scene.longest_m
     linear = linearise(form, time_s, scale, motion.at(time_s))
@@ -219,15 +218,15 @@ def stability_of(form: ReducedForm, motion: PeriodicMotion) -> Stability:
 
 
 def stability(linear: LinearForm, period_s: float, highest: float = math.inf) -> Stability:
-    """That of linearised equations at an odd number of instants of a period; modes of orders above
-    ``highest`` need not be told."""
+    """Return the stability of linearised equations at an odd number of instants of a period; modes
+    of orders above ``highest`` need no order."""
     modes = natural_modes(linear.mass, linear.stiffness)
     windows = window_count(modes, period_s, highest)
     return looked_at(by_collocation(linear, period_s, windows), windows, linear, modes, period_s)
 
 
 def window_count(modes: NaturalModes, period_s: float, highest: float) -> int:
-    """How many windows of a period do for modes up to an order."""
+    """Return the sufficient number of windows of a period for modes up to an order."""
     fastest = min(float(modes.mean_rad_s.max()) * period_s / math.tau, highest)
     return min(max(math.ceil(fastest * math.tau / RADIANS), FEWEST), MOST)
 
@@ -235,8 +234,8 @@ def window_count(modes: NaturalModes, period_s: float, highest: float) -> int:
 def looked_at(
     monodromy: Monodromy, windows: int, linear: LinearForm, modes: NaturalModes, period_s: float
 ) -> Stability:
-    """The stability that a monodromy matrix of linearised equations tells of, which so many windows
-    of a period made, and modes of which are known."""
+    """Return the stability from a monodromy matrix of linearised equations, by so many windows of a
+    period, with known modes."""
     orders = modes.mean_rad_s * period_s / math.tau
     resolved = orders * math.tau <= 1.5 * RADIANS * windows
     found = _deviations(monodromy, modes, linear.mass[0], orders, resolved)
@@ -246,7 +245,7 @@ def looked_at(
 def _deviations(
     monodromy: Monodromy, modes: NaturalModes, mass: Array, orders: Array, resolved: Mask
 ) -> list[Deviation]:
-    """Pairs of multipliers by the mode that most of their energy is in as a period begins."""
+    """Return pairs of multipliers by the mode with most of their energy as a period begins."""
     m = len(orders)
     multipliers, vectors = np.linalg.eig(monodromy.matrix)
     upper = _pairs(multipliers)
@@ -264,8 +263,7 @@ def _deviations(
 
 
 def _pairs(multipliers: Array) -> list[int]:
-    """One of each pair: of those that are not real the upper, of the real ones every second by
-    size."""
+    """Return one of each pair: the upper of complex ones, every second of the real ones by size."""
     real = np.flatnonzero(np.abs(multipliers.imag) <= 1e-12 * np.abs(multipliers))
     real = real[np.argsort(-np.abs(multipliers[real]), kind="stable")]
     above = np.flatnonzero(multipliers.imag > 1e-12 * np.abs(multipliers))
@@ -274,7 +272,7 @@ def _pairs(multipliers: Array) -> list[int]:
 
 
 def _unwrapped(multiplier: complex, near: float) -> float:
-    """How often it vibrates in a period: its angle but for whole turns and its sign."""
+    """Return the vibrations in a period: its angle but for whole turns and its sign."""
     part = abs(np.angle(multiplier)) / math.tau
     whole = math.floor(near)
     every = [n + sign * part for n in (whole - 1, whole, whole + 1, whole + 2) for sign in (1, -1)]

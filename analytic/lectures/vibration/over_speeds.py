@@ -1,11 +1,11 @@
 """Vibration over the speed of the driver: deflection, spectrum, multipliers, critical speeds.
 
-By the linearised equations, stiffness that links gain by being pulled included: next to a resonance
-they tell where it is, and not how far links bend there.
+The linearised equations include the stiffness of pulled links: next to a resonance they show its
+place, and not the deflection there.
 
-What a coupler moves sets how hard it is pulled and pushed in a turn, and so its stiffness: with a
-heavy rocker the turning feeds the vibration itself. Source: Thesis on vibration of planar
-mechanisms with elastic links (2018), chapter 4.
+The mass that a coupler moves sets its pull and push in a turn, and so its stiffness: with a heavy
+rocker the turning feeds the vibration itself. Source: Thesis on vibration of planar mechanisms with
+elastic links (2018), chapter 4.
 """
 
 import math
@@ -41,17 +41,16 @@ from models.errors import CrankcheckError, cut
 from models.scene import Scene
 
 HIGHEST = 24
-"""Orders up to which critical speeds are told: what is higher the driver hardly excites."""
+"""Highest order of critical speeds: the driver hardly excites higher ones."""
 ASIDE, ROUNDS = 1e-3, 4
-"""How far off a critical speed it is looked at how strong the resonance is; rounds until one is
-found to less than that."""
+"""Distance from a critical speed at which the strength of the resonance is taken; rounds until one
+is found to less than that."""
 
 
 @dataclass(frozen=True)
 class AtSpeed:
-    """Vibration at a speed [rad/s]: how the links swing, what a period makes of deviations, how the
-    motion hangs on stiffness. ``ratio`` is the lowest natural frequency of a link over the
-    speed."""
+    """Vibration at a speed [rad/s]: swings of the links, map of deviations over a period,
+    sensitivity to stiffness. ``ratio`` is the lowest natural frequency of a link over the speed."""
 
     speed_rad_s: float
     ratio: float
@@ -65,14 +64,14 @@ class AtSpeed:
 
     @property
     def share(self) -> float:
-        """The largest deflection of a link over its length."""
+        """Largest deflection of a link over its length."""
         return max(swing.share for swing in self.swings.values())
 
 
 @dataclass(frozen=True)
 class CriticalSpeed:
-    """A speed at which the driver meets an order of a mode, and how far off it, as a share, the
-    motion hangs on stiffness too much to be told (`resonance.MOST`)."""
+    """Speed at which the driver meets an order of a mode, and the relative distance from it up to
+    which the motion is too sensitive to stiffness (`natural.MOST`)."""
 
     speed_rad_s: float
     ratio: float
@@ -83,7 +82,7 @@ class CriticalSpeed:
 
 @dataclass(frozen=True)
 class OverSpeeds:
-    """The vibration of a scene at ascending speeds."""
+    """Vibration of a scene at ascending speeds."""
 
     every: AnySpeed
     form: ReducedForm
@@ -95,12 +94,12 @@ class OverSpeeds:
 
     @property
     def speeds(self) -> Array:
-        """[rad/s], (S,)."""
+        """Speeds [rad/s], (S,)."""
         return np.array([point.speed_rad_s for point in self.points])
 
     @cached_property
     def critical(self) -> list[CriticalSpeed]:
-        """The speeds within them at which a mode resonates that the driver excites, the widest band
+        """Critical speeds between them at which an excited mode resonates, the widest band
         first."""
         found = []
         for one, other in pairwise(self.points):
@@ -117,7 +116,7 @@ class OverSpeeds:
     def _met(
         self, k: int, order: int, low: tuple[AtSpeed, float], high: tuple[AtSpeed, float]
     ) -> float:
-        """The speed between two, each with the order of a mode, at which that is whole."""
+        """Return the speed between two, each with the order of a mode, at which that is whole."""
         (a, before), (b, after) = ((at.speed_rad_s, own - order) for at, own in (low, high))
         speed = b
         for _ in range(ROUNDS):
@@ -141,9 +140,9 @@ class OverSpeeds:
 def _solved(
     form: ReducedForm, linear: LinearForm, period_s: float
 ) -> tuple[Array, Stability, FrequencySensitivity]:
-    """The coefficients at the instants of linearised equations (N, m), and what is told of them.
+    """Return coefficients at the instants of linearised equations (N, m), stability, sensitivity.
 
-    By windows, each with matrices of its own: the one large matrix of harmonic balance
+    Windows have matrices of their own: the one large matrix of harmonic balance
     (`periodic.linear_motion`) takes ten times as long where processors are busy.
     """
     count = len(linear.force)
@@ -160,7 +159,7 @@ def _solved(
 
 
 def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
-    """The vibration at ascending speeds [rad/s], (S,), all above 0.
+    """Compute the vibration at ascending speeds [rad/s], (S,), all above 0.
 
     Raises
     ------
@@ -177,21 +176,21 @@ def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
 
 
 def _between(before: float, after: float) -> Iterator[int]:
-    """The whole orders between two."""
+    """Yield the whole orders between two."""
     if math.isfinite(before) and math.isfinite(after):
         low, high = min(before, after), max(before, after)
         yield from range(max(math.ceil(low), 1), min(math.floor(high), HIGHEST) + 1)
 
 
 def spectra(over: OverSpeeds, link: str) -> Array:
-    """The amplitudes of a link over its length at all speeds and orders, (S, orders)."""
+    """Return the amplitudes of a link over its length at all speeds and orders, (S, orders)."""
     each = [point.swings[link] for point in over.points]
     return np.array([swing.amplitudes / swing.length_m for swing in each])
 
 
 @dataclass(frozen=True)
 class InertiaMap:
-    """The vibration with a ``link`` that is ``factors`` (F,) times as heavy, over speeds each."""
+    """Vibration with a ``link`` that is ``factors`` (F,) times as heavy, over speeds each."""
 
     link: str
     factors: Array
@@ -199,7 +198,7 @@ class InertiaMap:
 
     @property
     def scene(self) -> Scene:
-        """As it is heaviest."""
+        """Scene with the heaviest link."""
         return self.over[-1].scene
 
     @property
@@ -208,17 +207,17 @@ class InertiaMap:
 
     @property
     def shares(self) -> Array:
-        """The largest deflection over the length, (F, S)."""
+        """Largest deflection over the length, (F, S)."""
         return np.array([[point.share for point in one.points] for one in self.over])
 
     @property
     def multipliers(self) -> Array:
-        """The largest multiplier's size, (F, S)."""
+        """Size of the largest multiplier, (F, S)."""
         return np.array([[point.stability.largest for point in one.points] for one in self.over])
 
 
 def with_inertia(scene: Scene, body: str, factor: float) -> Scene:
-    """The scene with a rigid link, or the block of a slider, so many times as heavy.
+    """Return the scene with a rigid link, or the block of a slider, so many times as heavy.
 
     Raises
     ------
@@ -246,7 +245,7 @@ def with_inertia(scene: Scene, body: str, factor: float) -> Scene:
 
 
 def _unchanged(scene: Scene, body: str) -> str:
-    """Why the inertia of a body is not to be changed."""
+    """Return the reason why the inertia of a body can not be changed."""
     if body in scene.elastic:
         return "it is elastic, and its own mass is that of the beam"
     if body == scene.driver.link:
@@ -257,7 +256,7 @@ def _unchanged(scene: Scene, body: str) -> str:
 
 
 def over_inertia(scene: Scene, by: Modes, speeds: Array, link: str, factors: Array) -> InertiaMap:
-    """The vibration with a link so many times as heavy, for each factor at all speeds. Raises
-    CrankcheckError as `with_inertia` and `over_speeds`."""
+    """Compute the vibration with a link so many times as heavy, for each factor at all speeds.
+    Raises CrankcheckError as `with_inertia` and `over_speeds`."""
     heavier = [with_inertia(scene, link, float(factor)) for factor in factors]
     return InertiaMap(link, factors, tuple(over_speeds(each, by, speeds) for each in heavier))

@@ -1,9 +1,9 @@
-"""The vibration of elastic links that a driver of constant speed keeps up, with all that is asked
-of it: natural frequencies, the periodic motion and the linear theories beside it, its stability.
+"""Vibration of elastic links under a driver of constant speed: natural frequencies, the periodic
+motion, the linear theories for comparison, its stability.
 
 At the same angles of the driver M does not change with its speed, C and K and h are polynomials of
 it, of the second degree where no load depends on speeds otherwise. So the equations at hundreds of
-speeds follow from those at three, which is looked at in a fourth.
+speeds follow from those at three, checked at a fourth.
 """
 
 import math
@@ -34,14 +34,14 @@ from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 
 INSTANTS = 65
-"""Of a turn: orders up to half as many are told apart."""
+"""Instants of a turn: orders up to half as many are distinct."""
 SAME = 1e-6
-"""What the polynomials may be off at a speed that they were not made of, over the largest entry."""
+"""Error of the polynomials at another speed than their own, over the largest entry."""
 PARTS = ("mass", "damping", "stiffness", "force")
 
 
 def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
-    """The scene with its driver at another speed, the way round that it has.
+    """Return the scene with its driver at another speed, in its own sense of rotation.
 
     Raises
     ------
@@ -60,8 +60,7 @@ def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
 
 @dataclass(frozen=True)
 class AnySpeed:
-    """A scene with elastic links at speeds from ``slowest`` to ``fastest`` [rad/s], both above
-    0."""
+    """Scene with elastic links at speeds from ``slowest`` to ``fastest`` [rad/s], both above 0."""
 
     scene: Scene
     by: Discretisation
@@ -70,19 +69,19 @@ class AnySpeed:
     stiffened: bool = True
 
     def form(self, speed_rad_s: float) -> ReducedForm:
-        """The equations of motion at a speed."""
+        """Return the equations of motion at a speed."""
         scene = at_speed(self.scene, speed_rad_s)
         return DrivenElasticMotion(scene, 1.0, self.by, "periodic", self.stiffened).form
 
     def linear(self, speed_rad_s: float) -> LinearForm:
-        """The linearised equations at a speed."""
+        """Return the linearised equations at a speed."""
         if self._series is None:
             return self._direct(speed_rad_s)
         return self._summed(self._series, speed_rad_s)
 
     def still(self) -> tuple[Array, Array]:
-        """M and K (N, m, m) with the driver held still at the same angles: without what its turning
-        adds."""
+        """Return M and K (N, m, m) with the driver held still at the same angles: without the
+        effect of its turning."""
         some = self.linear(self.slowest)
         if self._series is not None:
             return some.mass, self._series["stiffness"][0]
@@ -90,7 +89,7 @@ class AnySpeed:
 
     @cached_property
     def _series(self) -> Mapping[str, Array] | None:
-        """Coefficients of the polynomials (3, N, ...), or None where they are none."""
+        """Coefficients of the polynomials (3, N, ...), or None where these do not hold."""
         low, high = self.slowest, self.fastest
         if high - low < 0.2 * high:  # too near each other to make polynomials of
             low, high = 0.8 * high, 1.2 * high
@@ -119,8 +118,8 @@ class AnySpeed:
 
 
 def apart(one: LinearForm, other: LinearForm) -> float:
-    """What linearised equations differ by, each part over its largest entry; damping over what
-    would be critical where it is but rounding."""
+    """Return the difference of linearised equations, each part over its largest entry; damping over
+    the critical one where it is but rounding."""
     largest = {part: float(np.abs(vars(other)[part]).max()) for part in PARTS}
     critical = math.sqrt(largest["mass"] * largest["stiffness"])
     largest["damping"] = max(largest["damping"], 1e-3 * critical)
@@ -131,16 +130,15 @@ def apart(one: LinearForm, other: LinearForm) -> float:
 
 
 PLACES = 41
-"""Along a link, where the largest deflection is looked for."""
+"""Number of places along a link where the largest deflection is looked for."""
 
 
 @dataclass(frozen=True)
 class VibrationSwing:
-    """A link at N instants of a period: the deflection of its middle and its extension [m], (N,).
+    """Swing of a link at N instants of a period: deflection of its middle and extension [m], (N,).
 
     ``largest_m`` is the largest deflection of any place on a link that bends, ``place_m`` from its
-    first pin, at the instant ``when``; of one that only stretches the largest extension, at its
-    end.
+    first pin, at the instant ``when``; for a link that only stretches, the extension at its end.
     """
 
     link: str
@@ -154,23 +152,23 @@ class VibrationSwing:
 
     @property
     def series(self) -> Array:
-        """What its spectrum is of [m], (N,): the deflection of the middle, or the extension of a
+        """Series of its spectrum [m], (N,): the deflection of the middle, or the extension of a
         link that does not bend."""
         return self.middle if self.bends else self.extension
 
     @property
     def share(self) -> float:
-        """The largest over the length."""
+        """Largest deflection over the length."""
         return self.largest_m / self.length_m
 
     @property
     def amplitudes(self) -> Array:
-        """Of `series` at orders 0, 1, 2, ... of the period [m]."""
+        """Amplitudes of `series` at orders 0, 1, 2, ... of the period [m]."""
         return spectrum(self.series)
 
 
 def swings(form: ReducedForm, z: Array) -> dict[str, VibrationSwing]:
-    """How the elastic links swing with coefficients (N, m) over a period, by name."""
+    """Return the swings of the elastic links with coefficients (N, m) over a period, by name."""
     found, every = {}, form.about_origin(z)
     for name, (body, own) in form.assembly.elastic.items():
         q = every[:, own]
@@ -187,7 +185,7 @@ def swings(form: ReducedForm, z: Array) -> dict[str, VibrationSwing]:
 
 
 def spectrum(series: Array) -> Array:
-    """The amplitudes of what is periodic (N,), N odd, at orders 0 to N // 2 of its period."""
+    """Return amplitudes of a periodic series (N,), N odd, at orders 0 to N // 2 of its period."""
     amplitudes = np.abs(np.fft.rfft(series)) / len(series)
     amplitudes[1:] *= 2.0
     return np.asarray(amplitudes)
@@ -195,15 +193,15 @@ def spectrum(series: Array) -> Array:
 
 @dataclass(frozen=True)
 class SteadyVibration:
-    """A scene with elastic links on its periodic motion. Each raises CrankcheckError where there is
-    none."""
+    """Scene with elastic links on its periodic motion. Each property raises CrankcheckError where
+    there is none."""
 
     scene: Scene
     by: Modes
 
     @cached_property
     def form(self) -> ReducedForm:
-        """The equations of motion."""
+        """Equations of motion."""
         return self._form(stiffened=True)
 
     def _form(self, *, stiffened: bool) -> ReducedForm:
@@ -211,12 +209,12 @@ class SteadyVibration:
 
     @property
     def speed_rad_s(self) -> float:
-        """Of the driver, as a size."""
+        """Size of the driver's speed."""
         return self.scene.driver.law.peak_speed_rad_s
 
     @cached_property
     def motion(self) -> PeriodicMotion:
-        """The periodic motion, unlinearised."""
+        """Periodic motion of the full equations."""
         return periodic_motion(self.form)
 
     @cached_property
@@ -225,12 +223,12 @@ class SteadyVibration:
 
     @cached_property
     def swings(self) -> dict[str, VibrationSwing]:
-        """How each link swings."""
+        """Swing of each link."""
         return swings(self.form, self.motion.z)
 
     @cached_property
     def theories(self) -> dict[str, dict[str, VibrationSwing]]:
-        """The same by equations that are linear in the deflections: with the stiffness that links
+        """Swings by equations that are linear in the deflections: with the stiffness that links
         gain by being pulled, and without, as in the thesis."""
         found = {}
         for name, stiffened in (("linear", True), ("linear, not stiffened", False)):
@@ -248,12 +246,12 @@ class SteadyVibration:
 
     @property
     def angles(self) -> Array:
-        """Of the driver at the instants of the motion [rad], (N,)."""
+        """Driver's angles at the instants of the motion [rad], (N,)."""
         return np.asarray(self.scene.driver.law.at(self.motion.time_s)[0])
 
 
 def steady_vibration(scene: Scene, by: Modes) -> SteadyVibration:
-    """The vibration of a scene that may have one.
+    """Return the vibration of a scene that may have one.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""From a task of function generation to mechanisms: all that meet its precision points."""
+"""Mechanisms for a task of function generation: all that meet its precision points."""
 
 import cmath
 import itertools
@@ -41,7 +41,7 @@ SOURCE = (
 def proposed(
     task: FunctionTask, generator: Generator, x: Array, chosen: Mapping[str, str], doubt: str
 ) -> FunctionProposal:
-    """The proposal of a generator that meets a task's function at x (n,)."""
+    """Return the proposal of a generator that meets a task's function at x (n,)."""
     phi = generator.input_start + task.input_turn(x)
     ends = (generator.input_start, generator.input_start + task.input_range_rad)
     output = task.output_scale * generator.output_start + task.output_way(x)
@@ -70,7 +70,7 @@ def _asked(task: FunctionTask, output: float) -> Asked:
 
 
 def _draft(task: FunctionTask, generator: Generator, x: Array) -> Draft:
-    """The tables of the scene: lengths in m."""
+    """Return the tables of the scene: lengths in m."""
     lengths = [task.scale_m * length for length in generator.lengths]
     links = {
         INPUT: bar(PIVOTS[0], PINS[0], lengths[0]),
@@ -92,7 +92,7 @@ def _draft(task: FunctionTask, generator: Generator, x: Array) -> Draft:
 def _places(
     task: FunctionTask, generator: Generator, phi: Array, output: Array
 ) -> list[tuple[complex, complex]]:
-    """The pins A and B in each precision position [m]."""
+    """Return the pins A and B in each precision position [m]."""
     a, *_, last = (task.scale_m * length for length in generator.lengths)
     pins = []
     for angle, of in zip(phi.tolist(), output.tolist(), strict=True):
@@ -107,7 +107,7 @@ def _places(
 def _steps(
     task: FunctionTask, generator: Generator, x: Array, places: list[tuple[complex, complex]]
 ) -> tuple[DrawingStep, ...]:
-    """The maps, what the points ask of input and output, and the links that do it."""
+    """Return the steps: maps, required input and output of the points, resulting links."""
     slides = isinstance(generator, SliderCrankGenerator)
     pivot = None if slides else complex(task.ground_m)
     frame: tuple[Element, ...] = (Dot(0j, PIVOTS[0], "given", fixed=True),)
@@ -133,7 +133,7 @@ def _steps(
 
 
 def _asked_lines(places: list[tuple[complex, complex]], pivot: complex | None) -> Iterator[Element]:
-    """The input and the output as the points ask for them: of a slider its line."""
+    """Yield the required input and output of the points; for a slider its line."""
     for number, (pin, end) in enumerate(places, 1):
         yield Segment(0j, pin)
         yield Dot(pin, f"{PINS[0]}{number}")
@@ -150,15 +150,15 @@ def _degrees(angle: float) -> str:
 
 
 COARSE, FINE = 12, 24
-"""Starts over half a turn that are tried where two are open, and where one is: the other half has
-the same mechanisms, as a negative length turns a start by 180 degrees."""
+"""Starts over half a turn that are tried if two are open, and if one is: the other half has the
+same mechanisms, as a negative length turns a start by 180 degrees."""
 MIDDLES = np.linspace(-3.0, 3.0, 13)
-"""Where the middle of a slider's range is tried, in ranges from the foot of the input's pivot."""
+"""Tried middles of a slider's range, in ranges from the foot of the input's pivot."""
 
 
 @dataclass(frozen=True)
 class Starts:
-    """What one try takes for given [rad, of a slider scales]; ``tried`` are those of a grid."""
+    """Given starts of one try [rad, for a slider scales]; ``tried`` are those of a grid."""
 
     input: float | None
     output: float | None
@@ -166,17 +166,17 @@ class Starts:
 
     @property
     def free(self) -> tuple[str, ...]:
-        """Those that are found."""
+        """Starts that the points determine."""
         return tuple(name for name in STARTS if getattr(self, name) is None)
 
 
 def function_designs(task: FunctionTask) -> list[FunctionProposal]:
-    """All mechanisms that meet the precision points of a task, in no order.
+    """Return all mechanisms that meet the precision points of a task, in no order.
 
-    Where fewer points are asked for than leave every start found, an open start is tried on a grid:
-    every 15 degrees, every 7.5 where only one is, and a slider's in half ranges up to three ranges
-    from the foot. With equal ripples the points are moved; a mechanism of which that fails keeps
-    Chebyshev's spacing, and says why in its `doubt`.
+    Starts that too few points leave open are tried on a grid: every 15 degrees, every 7.5 for a
+    single one, and a slider's in half ranges up to three ranges from the foot. With equal ripples
+    the points are moved; a mechanism without them keeps Chebyshev's spacing, with the reason in its
+    `doubt`.
 
     Returns
     -------
@@ -208,14 +208,14 @@ def function_designs(task: FunctionTask) -> list[FunctionProposal]:
 
 
 def starts_of(task: FunctionTask) -> Iterator[Starts]:
-    """The starts that are tried: those given, those that the points find, and a grid of others."""
+    """Yield the starts to try: the given ones, those that the points find, and a grid of others."""
     given: Mapping[str, float | None] = {
         "input": task.input_start_rad,
         "output": None if task.output_start is None else task.output_start / task.output_scale,
     }
     opened = [name for name in STARTS if given[name] is None]
     finds = task.count - 3
-    # Four points with both open: the output's start is found.
+    # Four points with both open find the output's start.
     tried = tuple(opened[: len(opened) - finds])
     grids = [_grid(task, name, FINE if len(tried) == 1 else COARSE) for name in tried]
     for values in itertools.product(*grids):
@@ -224,14 +224,14 @@ def starts_of(task: FunctionTask) -> Iterator[Starts]:
 
 
 def _grid(task: FunctionTask, name: str, count: int) -> list[float]:
-    """The starts that are tried of the input or the output [rad or scales]."""
+    """Return the starts to try for the input or the output [rad or scales]."""
     if name == "output" and task.mechanism == "slider-crank":
         return [float(middle) - 0.5 * math.copysign(1.0, task.output_range) for middle in MIDDLES]
     return [math.pi * k / count for k in range(count)]
 
 
 def _solved(task: FunctionTask, x: Array, starts: Starts) -> list[Generator]:
-    """The mechanisms that meet the points at x with these starts, to rounding."""
+    """Return the mechanisms that meet the points at x with these starts, to rounding."""
     turns, ways = task.input_turn(x), task.output_scales(x)
     solve = fourbars if task.mechanism == "fourbar" else slider_cranks
     found = solve(turns, ways, starts.input, starts.output)
@@ -239,7 +239,7 @@ def _solved(task: FunctionTask, x: Array, starts: Starts) -> list[Generator]:
 
 
 def _refined(task: FunctionTask, starts: Starts, generator: Generator) -> FunctionProposal:
-    """The proposal of a mechanism, with equal ripples where they are asked for."""
+    """Return the proposal of a mechanism, with equal ripples if requested."""
     x, spacing = task.x_points, "as given"
     doubts: list[str] = []
     if isinstance(task.points, int):
@@ -264,7 +264,7 @@ def _start_in_words(task: FunctionTask, name: str, start: float) -> str:
 
 
 def _turned(task: FunctionTask, generator: Generator) -> list[str]:
-    """What is said of starts that were given, and are not kept."""
+    """Return the text on given starts that are not kept."""
     given = {"input": task.input_start_rad, "output": task.output_start}
     return [
         f"the {name} starts 180 degrees from the start that was given: its length came out negative"
@@ -274,7 +274,7 @@ def _turned(task: FunctionTask, generator: Generator) -> list[str]:
 
 
 def _gap(task: FunctionTask, generator: Generator) -> list[str]:
-    """What is said of a mechanism that does not close over the whole range."""
+    """Return the text on a mechanism that does not close over the whole range."""
     x = np.linspace(task.x_low, task.x_high, 1001)
     opened = generator.discriminant(generator.input_start + task.input_turn(x)) < 0.0
     if not opened.any():

@@ -32,19 +32,19 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 LOOKS = 1201
-"""Looks at the error over the range; its tips lie on parabolas through three of them."""
+"""Samples of the error over the range; its tips lie on parabolas through three of them."""
 STEPS = 60
 HALVINGS = 12
-"""Of a step that makes the largest error larger, or that leaves a mechanism that does not close."""
+"""Halvings of a step that enlarges the largest error, or opens the mechanism."""
 EVEN = 1e-7
-"""Of the level: ripples that differ by less are equal. What parabolas leave of a tip is below."""
+"""Difference of equal ripples, over the level. The error of parabolas at a tip is below it."""
 ROUNDING = 1e-13
-"""Of the scale: ripples that differ by less differ by rounding."""
+"""Difference of ripples that is rounding, over the scale."""
 
 
 @dataclass(frozen=True)
 class Ripples:
-    """A generator with the tips of its error: their x and sizes with sign (n + 1,), in order; the
+    """Generator with the tips of its error: their x and sizes with sign (n + 1,), in order; the
     ``largest`` error over the range [rad or scales] may be beside them."""
 
     generator: Generator
@@ -55,14 +55,14 @@ class Ripples:
 
     @property
     def unevenness(self) -> float:
-        """By how much the smallest tip is below the largest error."""
+        """Largest error less the smallest tip."""
         return self.largest - float(np.min(np.abs(self.tips)))
 
 
 @dataclass(frozen=True)
 class EqualRipple:
-    """A refined generator, its precision points (n,) and its level [rad or scales]; ``before`` is
-    the largest error that the refinement began with."""
+    """Refined generator, its precision points (n,) and its level [rad or scales]; ``before`` is the
+    largest error before the refinement."""
 
     generator: Generator
     x_points: Array
@@ -71,16 +71,16 @@ class EqualRipple:
 
 
 def equal_ripple(task: FunctionTask, start: Generator, varied: Sequence[str]) -> EqualRipple:
-    """The generator with equal ripples near one that meets the task's precision points.
+    """Find the generator with equal ripples near one that meets the task's precision points.
 
     Parameters
     ----------
     task : FunctionTask
         The function and its maps.
     start : Generator
-        One that meets n points in one assembly.
+        A generator that meets n points in one assembly.
     varied : sequence of str
-        Which of the starts may be moved: n - 3 of "input" and "output".
+        The movable starts: n - 3 of "input" and "output".
 
     Raises
     ------
@@ -108,7 +108,7 @@ def equal_ripple(task: FunctionTask, start: Generator, varied: Sequence[str]) ->
 
 
 def _one_sign(start: Generator, task: FunctionTask) -> float:
-    """The assembly of all precision points."""
+    """Return the assembly of all precision points."""
     x = task.x_points
     signs = start.signs(task.input_turn(x), task.output_scales(x))
     if np.ptp(signs) > 0.0:
@@ -119,8 +119,8 @@ def _one_sign(start: Generator, task: FunctionTask) -> float:
 
 
 def _stepped(course: _Course, now: Ripples, varied: Sequence[str]) -> Ripples:
-    """A step that makes the largest error smaller: Newton's for equal tips, or where that leads
-    nowhere the best of linear errors; each halved until it does."""
+    """Return a step that makes the largest error smaller: Newton's for equal tips, or else the best
+    for linear errors; each halved until it does."""
     for propose in (_newton, _linear):
         step = propose(course, now, varied)
         for _ in range(HALVINGS):
@@ -137,7 +137,7 @@ def _stepped(course: _Course, now: Ripples, varied: Sequence[str]) -> Ripples:
 
 
 def _newton(course: _Course, now: Ripples, varied: Sequence[str]) -> Array:
-    """The step after which the tips, were they linear and in place, were equal."""
+    """Return the step that makes the tips equal, if linear and in place."""
     turns, ways = course.at(now.x)
     gradient = now.generator.gradient(turns, now.sign, varied)
     system = np.column_stack([gradient, -np.sign(now.tips)])
@@ -149,7 +149,7 @@ def _newton(course: _Course, now: Ripples, varied: Sequence[str]) -> Array:
 
 
 def _linear(course: _Course, now: Ripples, varied: Sequence[str]) -> Array:
-    """The step after which the largest error of many looks, were they linear, is least."""
+    """Return the step with the least largest error of many samples, if linear."""
     x = np.concatenate([course.x[::8], now.x])
     turns, ways = course.at(x)
     gradient = now.generator.gradient(turns, now.sign, varied)
@@ -166,7 +166,7 @@ def _linear(course: _Course, now: Ripples, varied: Sequence[str]) -> Array:
 
 
 def _better(after: Ripples, now: Ripples) -> bool:
-    """Whether the largest error is smaller, or near its least the tips are more even."""
+    """True if the largest error is smaller, or near its least the tips are more even."""
     slack = EVEN * now.largest + ROUNDING
     return after.largest < now.largest or (
         after.largest <= now.largest + slack and after.unevenness < now.unevenness
@@ -175,7 +175,7 @@ def _better(after: Ripples, now: Ripples) -> bool:
 
 @dataclass(frozen=True)
 class _Course:
-    """A task looked at: x, the input's turns and the output's ways (T,)."""
+    """Samples of a task: x, the input's turns and the output's ways (T,)."""
 
     task: FunctionTask
     x: Array
@@ -188,11 +188,11 @@ class _Course:
         return _Course(task, x, task.input_turn(x), task.output_scales(x))
 
     def at(self, x: Array) -> tuple[Array, Array]:
-        """The input's turns and the output's ways at other x."""
+        """Return the input's turns and the output's ways at other x."""
         return self.task.input_turn(x), self.task.output_scales(x)
 
     def ripples(self, generator: Generator, sign: float, count: int) -> Ripples | str:
-        """The largest tip between each two changes of sign, ``count`` of them; what is wrong where
+        """Return the largest tip between each two changes of sign, ``count`` of them; a text where
         these are fewer."""
         error = generator.error(self.turns, self.ways, sign)
         if np.isnan(error).any():
@@ -207,14 +207,14 @@ class _Course:
         x = np.array([self._tip(error, part) for part in parts])
         tips = generator.error(*self.at(x), sign)
         largest = float(np.max(np.abs(tips)))
-        # Of more tips than are wanted, those side by side whose smallest is largest.
+        # Of too many tips, adjacent ones whose smallest is largest.
         starts = range(len(parts) - count + 1)
         first = max(starts, key=lambda k: float(np.min(np.abs(tips[k : k + count]))))
         own = slice(first, first + count)
         return Ripples(generator, sign, x[own], tips[own], largest)
 
     def _tip(self, error: Array, part: NDArray[np.intp]) -> float:
-        """The x of the largest error of a part of the looks, by a parabola."""
+        """Return the x of the largest error of a part of the samples, by a parabola."""
         k = int(part[np.argmax(np.abs(error[part]))])
         if k in (0, LOOKS - 1):
             return float(self.x[k])
@@ -224,7 +224,7 @@ class _Course:
         return float(self.x[k] + np.clip(off, -1.0, 1.0) * (self.x[1] - self.x[0]))
 
     def zeros(self, ripples: Ripples) -> Array:
-        """The x between each two tips where the error is nothing."""
+        """Return the x between each two tips where the error is zero."""
 
         def error(x: float) -> float:
             turns, ways = self.at(np.array([x]))

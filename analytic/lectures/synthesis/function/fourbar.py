@@ -32,7 +32,7 @@ from analytic.lectures.synthesis.function.generator import (
 from models.array import Array
 
 NOTHING = 1e-14
-"""Of a vector: an end of it that is shorter is none, and the lengths over it are without end."""
+"""Length of a vanishing end of a vector, over the vector: lengths over it are infinite."""
 Numbers = tuple[float, float, float]
 Found = tuple[Numbers, float, float]
 """k1, k2, k3 with their signs, and the starts of input and output [rad]."""
@@ -40,11 +40,11 @@ Found = tuple[Numbers, float, float]
 
 @dataclass(frozen=True)
 class FourBarGenerator(Generator):
-    """A four-bar in units of its ground d."""
+    """Four-bar in units of its ground d."""
 
     @property
     def positive(self) -> FourBarGenerator:
-        """In Freudenstein's equation k3 changes its sign with that of either length."""
+        """The four-bar with positive lengths: k3 changes its sign with that of either length."""
         k1, k2, k3 = self.k
         return FourBarGenerator(
             (abs(k1), abs(k2), k3 if k1 * k2 > 0.0 else -k3),
@@ -55,7 +55,7 @@ class FourBarGenerator(Generator):
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """a, b and c."""
+        """Lengths a, b and c."""
         k1, k2, k3 = self.k
         if k1 == 0.0 or k2 == 0.0:
             return math.inf, math.inf, math.inf
@@ -63,7 +63,7 @@ class FourBarGenerator(Generator):
         return abs(a), math.sqrt(max(a**2 + c**2 + 1.0 - 2.0 * a * c * k3, 0.0)), abs(c)
 
     def _sides(self, phi: Array) -> tuple[Array, Array, Array]:
-        """Those of p cos psi + q sin psi = r."""
+        """Return p, q, r of p cos psi + q sin psi = r."""
         k1, k2, k3 = self.k
         return k1 - np.cos(phi), -np.sin(phi), k2 * np.cos(phi) - k3
 
@@ -92,20 +92,20 @@ class FourBarGenerator(Generator):
 def fourbars(
     turns: Array, ways: Array, input_start: float | None = None, output_start: float | None = None
 ) -> list[Generator]:
-    """All four-bars whose input and output go through precision points.
+    """Return all four-bars whose input and output go through precision points.
 
     Parameters
     ----------
     turns, ways : Array
         The angles of input and output from their starts [rad], (n,).
     input_start, output_start : float or None
-        The starts [rad]: both of three points, one of four, none of five; the others are found.
+        The starts [rad]: both for three points, one for four, none for five; the others are found.
 
     Returns
     -------
     list of Generator
-        At most one of three points, two of four, three of five; none with an infinite length, or
-        without one. That a start was turned is told only of a given one.
+        At most one for three points, two for four, three for five; none with an infinite length, or
+        without one. Only turns of given starts are noted.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def fourbars(
 
 
 def _of_both(turns: Array, ways: Array, phi0: float, psi0: float) -> Found:
-    """Linear in k1, k2, k3."""
+    """Solve the equations, linear in k1, k2, k3."""
     phi, psi = phi0 + turns, psi0 + ways
     rows = np.stack([np.cos(psi), -np.cos(phi), np.ones_like(phi), -np.cos(phi - psi)], axis=1)
     x = one_vector(rows)
@@ -132,7 +132,7 @@ def _of_both(turns: Array, ways: Array, phi0: float, psi0: float) -> Found:
 
 
 def _of_input(turns: Array, ways: Array, phi0: float) -> list[Found]:
-    """Linear in k1 (cos, sin) psi0, k2, k3 and (cos, sin) psi0."""
+    """Solve the equations, linear in k1 (cos, sin) psi0, k2, k3 and (cos, sin) psi0."""
     phi = phi0 + turns
     left = [np.cos(ways), -np.sin(ways), -np.cos(phi), np.ones_like(phi)]
     rows = np.stack([*left, -np.cos(phi - ways), -np.sin(phi - ways)], axis=1)
@@ -146,21 +146,21 @@ def _of_input(turns: Array, ways: Array, phi0: float) -> list[Found]:
 
 
 def _of_output(turns: Array, ways: Array, psi0: float) -> list[Found]:
-    """Seen from the other side, the output half a turn on is the input of the same equation, and
+    """Solve from the other side: the output half a turn on is the input of the same equation, and
     k1 and k2 change their places."""
     changed = _of_input(ways, turns, opposite(psi0))
     return [((k2, k1, k3), opposite(phi0), psi0) for (k1, k2, k3), _, phi0 in changed]
 
 
 def _of_none(turns: Array, ways: Array) -> list[Found]:
-    """Linear in k1 (cos, sin) psi0, k2 (cos, sin) phi0, k3 and (cos, sin)(phi0 - psi0): that these
-    angles belong together is a cubic."""
+    """Solve the equations, linear in k1 (cos, sin) psi0, k2 (cos, sin) phi0, k3 and (cos, sin)(phi0
+    - psi0): the relation of these angles is a cubic."""
     left = [np.cos(ways), -np.sin(ways), -np.cos(turns), np.sin(turns), np.ones_like(turns)]
     rows = np.stack([*left, -np.cos(turns - ways), np.sin(turns - ways)], axis=1)
     found = []
     for x in vectors_of(rows, _belonging, 3):
         of_psi, of_phi, between = _ends(x)
-        # Of the two signs of the vector, that with which both lengths are positive.
+        # The sign of the vector with which both lengths are positive.
         sign = math.copysign(1.0, (of_phi * (of_psi * between).conjugate()).real)
         k = over((abs(of_psi), abs(of_phi), sign * x[4]), abs(between))
         found.append((k, cmath.phase(sign * of_phi), cmath.phase(sign * of_psi)))
@@ -168,18 +168,18 @@ def _of_none(turns: Array, ways: Array) -> list[Found]:
 
 
 def _belonging(x: Array) -> float:
-    """The sine of the angle between two directions that are one, times three sizes."""
+    """Return the sine of the angle between two directions that are one, times three sizes."""
     of_psi, of_phi, between = _ends(x)
     return (of_phi * (of_psi * between).conjugate()).imag
 
 
 def _ends(x: Array) -> tuple[complex, complex, complex]:
-    """k1 exp(i psi0), k2 exp(i phi0) and exp(i (phi0 - psi0)), times one number."""
+    """Return k1 exp(i psi0), k2 exp(i phi0) and exp(i (phi0 - psi0)), times one number."""
     return complex(x[0], x[1]), complex(x[2], x[3]), complex(x[5], x[6])
 
 
 def over(k: Numbers, size: float) -> Numbers:
-    """Numbers over one that may be nothing: then they are infinite."""
+    """Return numbers over one that may be zero: then they are infinite."""
     if abs(size) <= NOTHING * max(map(abs, k)):
         return math.inf, math.inf, math.inf
     k1, k2, k3 = (float(each / size) for each in k)

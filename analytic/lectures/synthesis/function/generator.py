@@ -1,16 +1,16 @@
-"""A function generator: a mechanism of three numbers and two starts, its output in closed form.
+"""Function generator: a mechanism of three numbers and two starts, its output in closed form.
 
-The numbers k1, k2, k3 are those of Freudenstein's equation. What is worked out here leads a search;
-what a mechanism is said to do is asked of the reference.
+The numbers k1, k2, k3 are those of Freudenstein's equation. The output here leads a search; the
+stated output of a mechanism comes from the reference.
 
 n points give n linear equations in products of lengths and starts. Three points have four such
-products: one vector fits, up to its length. Where starts are found there are two more products than
-equations, and x = u p + v q fits for all u, v; that the products belong together is one equation
-more, homogeneous, quadratic in u, v of four points, cubic of five. So there are at most two
-solutions and at most three, and the roots of one polynomial are all of them.
+products: one vector fits, up to its length. To find starts there are two more products than
+equations, and x = u p + v q fits for all u, v; the relation of the products is one equation more,
+homogeneous, quadratic in u, v for four points, cubic for five. So there are at most two solutions,
+or three, and the roots of one polynomial are all of them.
 
-Source: lecture "Tong hop co cau" (synthesis), structural error E(x) = f(x) - F(x), F what the
-mechanism generates.
+Source: lecture "Tong hop co cau" (synthesis), structural error E(x) = f(x) - F(x), F the generated
+function.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ from models.errors import CrankcheckError, ReachError
 from models.scene import Scene
 
 WIDEST = 1e4
-"""A length that is so many times larger or smaller than the scale is none of a mechanism."""
+"""Largest ratio, either way, of a length to the scale."""
 POLISHES = 4
-"""Newton's steps after a solution of Freudenstein's equation: each squares what rounding left."""
+"""Newton's steps after a solution of Freudenstein's equation: each squares the rounding."""
 
 
 @dataclass(frozen=True)
 class Generator(ABC):
-    """A mechanism in units of its scale; a search may lead through negative lengths.
+    """Mechanism in units of its scale; a search may lead through negative lengths.
 
-    ``input_start`` [rad] and ``output_start`` [rad, or scales] are where the input and the output
-    are at the start of their ranges. ``turned`` names the starts that a negative length turned by
-    180 degrees: a link of length -a at an angle is one of length a at the opposite angle.
+    ``input_start`` [rad] and ``output_start`` [rad, or scales] are the input and the output at the
+    start of their ranges. ``turned`` names the starts that a negative length turned by 180 degrees:
+    a link of length -a at an angle is one of length a at the opposite angle.
     """
 
     k: tuple[float, float, float]
@@ -53,49 +53,49 @@ class Generator(ABC):
     @property
     @abstractmethod
     def positive(self) -> Generator:
-        """The same mechanism with positive lengths, and starts that are turned for that."""
+        """Same mechanism with positive lengths, and starts that are turned for that."""
 
     @property
     @abstractmethod
     def lengths(self) -> tuple[float, ...]:
-        """The sizes of its lengths in scales."""
+        """Sizes of its lengths in scales."""
 
     @abstractmethod
     def discriminant(self, phi: Array) -> Array:
-        """Of the equation for the output at input angles [rad], (T,): negative where the mechanism
-        can not be assembled."""
+        """Return the discriminant of the equation for the output at input angles [rad], (T,):
+        negative where the mechanism can not be assembled."""
 
     @abstractmethod
     def output(self, phi: Array, sign: float | Array) -> Array:
-        """The output at input angles [rad], in one of two assemblies (T,); nan where there is
-        none."""
+        """Return the output at input angles [rad], in one of two assemblies (T,); nan where there
+        is none."""
 
     @abstractmethod
     def slopes(self, phi: Array, output: Array) -> Array:
-        """The derivatives of the output by k1, k2, k3 and the input angle (4, T)."""
+        """Return the derivatives of the output by k1, k2, k3 and the input angle (4, T)."""
 
     @abstractmethod
     def apart(self, asked: Array, output: Array) -> Array:
-        """What is asked of the output less what it is, whole turns of an angle left out (T,)."""
+        """Return the required output less the actual one, without whole turns of an angle (T,)."""
 
     @property
     def sound(self) -> bool:
-        """Whether it is a mechanism: finite lengths, and none of them nothing."""
+        """True if it is a mechanism: finite lengths, and none of them zero."""
         return all(1.0 / WIDEST < length < WIDEST for length in self.lengths)
 
     def error(self, turns: Array, ways: Array, sign: float | Array) -> Array:
-        """Its structural error where its input has turned from its start [rad] and its output is to
-        have gone a way from its own (T,): asked less had."""
+        """Return its structural error for turns of the input [rad] and required ways of the output
+        from their starts (T,): required less actual."""
         output = self.output(self.input_start + turns, sign)
         return self.apart(self.output_start + ways, output)
 
     def signs(self, turns: Array, ways: Array) -> Array:
-        """The assembly that is nearer to what is asked, for each (T,)."""
+        """Return the assembly nearer to the required output, for each (T,)."""
         plus, minus = (np.abs(self.error(turns, ways, sign)) for sign in (1.0, -1.0))
         return np.where(np.nan_to_num(plus, nan=np.inf) <= minus, 1.0, -1.0)
 
     def gradient(self, turns: Array, sign: float | Array, varied: Sequence[str]) -> Array:
-        """The derivatives of the error by k1, k2, k3 and the free starts (T, 3 + varied)."""
+        """Return the derivatives of the error by k1, k2, k3 and the free starts (T, 3 + varied)."""
         phi = self.input_start + turns
         slopes = self.slopes(phi, self.output(phi, sign))
         columns = [-slopes[0], -slopes[1], -slopes[2]]
@@ -103,7 +103,7 @@ class Generator(ABC):
         return np.stack(columns, axis=1)
 
     def moved(self, step: Array, varied: Sequence[str]) -> Self:
-        """That with its numbers and its free starts moved, in the order of `gradient`."""
+        """Return it with its numbers and its free starts moved, in the order of `gradient`."""
         starts = {
             f"{name}_start": getattr(self, f"{name}_start") + float(by)
             for name, by in zip([n for n in STARTS if n in varied], step[3:], strict=True)
@@ -112,8 +112,8 @@ class Generator(ABC):
         return replace(self, k=(k1, k2, k3), **starts)
 
     def polished(self, turns: Array, ways: Array, varied: Sequence[str]) -> Self:
-        """That of which the errors in precision points (n,) are rounding: Newton's method, as long
-        as it helps."""
+        """Return the generator with errors of rounding in precision points (n,): by Newton's
+        method, as long as it helps."""
         best, signs = self, self.signs(turns, ways)
         error = best.error(turns, ways, signs)
         for _ in range(POLISHES):
@@ -135,39 +135,39 @@ STARTS = ("input", "output")
 
 
 def opposite(angle: float) -> float:
-    """An angle half a turn on [rad]."""
+    """Return an angle half a turn on [rad]."""
     return float(angle + np.pi)
 
 
 def toggled(turned: tuple[str, ...], now: tuple[str, ...]) -> tuple[str, ...]:
-    """The starts that are turned after another turn of some: twice is not at all."""
+    """Return the turned starts after another turn of some: twice is not at all."""
     return tuple(name for name in STARTS if (name in turned) != (name in now))
 
 
 RANK = 1e-13
-"""Of the largest singular value: equations that are nearer to each other are one."""
+"""Share of the largest singular value, below which equations coincide."""
 REAL = 1e-7
-"""A root with a smaller imaginary part is a double one: its two parts are that far apart by
-rounding. Roots that are nearer are one."""
+"""Imaginary part below which a root is a double one, its two parts separated by rounding. Roots
+that are nearer are one."""
 LOOKS = 24
-"""Directions among which the one is chosen that a root is furthest from."""
+"""Directions among which the one furthest from a root is chosen."""
 
 Form = Callable[[Array], float]
 
 
 def one_vector(equations: Array) -> Array:
-    """The unit vector that n equations (n, n + 1) leave. Raises CrankcheckError for several."""
+    """Return the unit vector of n equations (n, n + 1). Raises CrankcheckError for several."""
     return np.asarray(_null_space(equations, 1)[0])
 
 
 def vectors_of(equations: Array, form: Form, degree: int) -> list[Array]:
-    """The vectors, up to their length, that n equations (n, n + 2) leave and a homogeneous form of
-    a degree vanishes at: all of them, at most as many as the degree.
+    """Return all vectors, up to their length, that n equations (n, n + 2) leave and at which a
+    homogeneous form of a degree vanishes: at most as many as the degree.
 
     Raises
     ------
     CrankcheckError
-        Equations of which some are one, or a form that vanishes at every vector.
+        Coincident equations, or a form that vanishes at every vector.
     """
     p, q = _null_space(equations, 2)
     turns = np.pi * np.arange(LOOKS) / LOOKS
@@ -184,7 +184,7 @@ def vectors_of(equations: Array, form: Form, degree: int) -> list[Array]:
 
 
 def _null_space(equations: Array, dimension: int) -> Array:
-    """An orthonormal basis of what equations leave (dimension, m)."""
+    """Return an orthonormal basis of the kernel of equations (dimension, m)."""
     scaled = equations / np.linalg.norm(equations, axis=1, keepdims=True)
     _, sizes, rows = np.linalg.svd(scaled)
     if sizes[-1] <= RANK * sizes[0]:
@@ -193,7 +193,7 @@ def _null_space(equations: Array, dimension: int) -> Array:
 
 
 def _real_roots(polynomial: Array) -> list[float]:
-    """Those of a polynomial, double ones once, in order."""
+    """Return the real roots of a polynomial, double ones once, in order."""
     roots: list[float] = []
     for root in sorted(np.roots(polynomial), key=lambda each: float(each.real)):
         near = REAL * (1.0 + abs(root))
@@ -211,33 +211,33 @@ def _special() -> CrankcheckError:
 
 SAMPLES = 721
 ZOOMS, FINER = 4, 17
-"""How often the largest error is looked for closer, and in how many places."""
+"""Number of refinements of the largest error, and of places in each."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FunctionProposal(Proposal):
-    """A proposal with the task that it is for, its generator, and the x of its precision points."""
+    """Proposal with its task, its generator, and the x of its precision points."""
 
     task: FunctionTask
     generator: Generator
     x_points: tuple[float, ...]
 
     def input_rad(self, x: Array) -> Array:
-        """The angle of the driver at x [rad], (T,)."""
+        """Return the angle of the driver at x [rad], (T,)."""
         return np.asarray(self.generator.input_start + self.task.input_turn(x))
 
     def asked(self, x: Array) -> Array:
-        """What is asked of the output [rad or m], (T,)."""
+        """Return the required output [rad or m], (T,)."""
         start = self.generator.output_start * self.task.output_scale
         return np.asarray(start + self.task.output_way(x))
 
 
 @dataclass(frozen=True)
 class StructuralError:
-    """Asked less had at x: of the output [rad, of a slider m], and in units of y, (T,).
+    """Required less actual output at x [rad, for a slider m], and in units of y, (T,).
 
-    ``largest`` is the largest size of it, at ``x_largest``; ``rms`` its root mean square over x.
-    ``y_scale`` is what y changes by per rad or m of the output.
+    ``largest`` is its largest size, at ``x_largest``; ``rms`` its root mean square over x.
+    ``y_scale`` is the change of y per rad or m of the output.
     """
 
     x: Array
@@ -250,21 +250,21 @@ class StructuralError:
 
     @property
     def largest_y(self) -> float:
-        """The largest in units of y."""
+        """Largest error in units of y."""
         return self.largest * abs(self.y_scale)
 
 
 def structural_error(
     proposal: FunctionProposal, examined: Examined, count: int = SAMPLES
 ) -> StructuralError:
-    """The error over the range of x, on the branch that the scene is examined on.
+    """Return the error over the range of x, on the examined branch of the scene.
 
     Parameters
     ----------
     proposal, examined : FunctionProposal, Examined
         A proposal of `function_designs`, and `examine` of it.
     count : int
-        Looks at the range, its ends included; the largest error is looked for closer.
+        Samples of the range, its ends included; the largest error is refined.
 
     Raises
     ------
@@ -291,7 +291,7 @@ def structural_error(
 
 
 def _error(proposal: FunctionProposal, scene: Scene, x: Array) -> Array:
-    """Asked less had [rad or m]: the output of the scene, driven to where x is."""
+    """Return required less actual output [rad or m], the scene driven to x."""
     turns = proposal.task.mechanism == "fourbar"
     try:
         motion = solve_driven(

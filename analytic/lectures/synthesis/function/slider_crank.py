@@ -34,11 +34,11 @@ from models.array import Array
 
 @dataclass(frozen=True)
 class SliderCrankGenerator(Generator):
-    """A slider-crank in units of the slider's range."""
+    """Slider-crank in units of the slider's range."""
 
     @property
     def positive(self) -> SliderCrankGenerator:
-        """With a positive crank: both k1 and k2 change their signs."""
+        """The slider-crank with a positive crank: both k1 and k2 change their signs."""
         k1, k2, k3 = self.k
         if k1 > 0.0:
             return self
@@ -49,7 +49,7 @@ class SliderCrankGenerator(Generator):
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """a and b."""
+        """Lengths a and b."""
         k1, _, k3 = self.k
         if k1 == 0.0:
             return math.inf, math.inf
@@ -58,7 +58,7 @@ class SliderCrankGenerator(Generator):
 
     @property
     def offset(self) -> float:
-        """e: how far the line lies above the input's pivot."""
+        """Distance e of the line above the input's pivot."""
         return self.k[1] / self.k[0]
 
     def discriminant(self, phi: Array) -> Array:
@@ -84,7 +84,7 @@ class SliderCrankGenerator(Generator):
 def slider_cranks(
     turns: Array, ways: Array, input_start: float | None = None, output_start: float | None = None
 ) -> list[Generator]:
-    """All slider-cranks whose input and slider go through precision points.
+    """Return all slider-cranks whose input and slider go through precision points.
 
     Parameters
     ----------
@@ -92,13 +92,13 @@ def slider_cranks(
         The angles of the input [rad] and the displacements of the slider [scales] from their
         starts, (n,).
     input_start, output_start : float or None
-        The starts [rad and scales]: both of three points, one of four, none of five; the others are
-        found.
+        The starts [rad and scales]: both for three points, one for four, none for five; the others
+        are found.
 
     Returns
     -------
     list of Generator
-        At most one of three points, two of four, three of five; none with an infinite length.
+        At most one for three points, two for four, three for five; none with an infinite length.
 
     Raises
     ------
@@ -117,13 +117,13 @@ def slider_cranks(
 
 
 def _of_both(phi: Array, s: Array, phi0: float, s0: float) -> Found:
-    """Linear in k1, k2, k3."""
+    """Solve the equations, linear in k1, k2, k3."""
     x = one_vector(np.stack([s * np.cos(phi), np.sin(phi), np.ones_like(phi), -(s**2)], axis=1))
     return over((x[0], x[1], x[2]), x[3]), phi0, s0
 
 
 def _of_input(phi: Array, ways: Array, phi0: float) -> list[Found]:
-    """Linear in k1, k1 s0, k2, k3 - s0^2 and s0."""
+    """Solve the equations, linear in k1, k1 s0, k2, k3 - s0^2 and s0."""
     left = [ways * np.cos(phi), np.cos(phi), np.sin(phi), np.ones_like(phi)]
     rows = np.stack([*left, -2.0 * ways, -(ways**2)], axis=1)
     found = []
@@ -135,7 +135,7 @@ def _of_input(phi: Array, ways: Array, phi0: float) -> list[Found]:
 
 
 def _of_output(turns: Array, s: Array, s0: float) -> list[Found]:
-    """Linear in k1 (cos, sin) phi0, k2 (sin, cos) phi0 and k3."""
+    """Solve the equations, linear in k1 (cos, sin) phi0, k2 (sin, cos) phi0 and k3."""
     of_phi = [np.cos(turns), np.sin(turns)]
     left = [s * of_phi[0], -s * of_phi[1], *of_phi, np.ones_like(s)]
     found = []
@@ -150,8 +150,8 @@ def _of_output(turns: Array, s: Array, s0: float) -> list[Found]:
 
 
 def _of_none(turns: Array, ways: Array) -> list[Found]:
-    """Linear in k1 (cos, sin) phi0, in (k1 s0 + i k2) exp(-i phi0), k3 - s0^2 and s0: that the same
-    s0 stands in two of them is a cubic."""
+    """Solve the equations, linear in k1 (cos, sin) phi0, in (k1 s0 + i k2) exp(-i phi0), k3 - s0^2
+    and s0: the same s0 in two of them gives a cubic."""
     of_phi = [np.cos(turns), np.sin(turns)]
     left = [ways * of_phi[0], -ways * of_phi[1], *of_phi, np.ones_like(turns)]
     rows = np.stack([*left, -2.0 * ways, -(ways**2)], axis=1)
@@ -167,6 +167,6 @@ def _of_none(turns: Array, ways: Array) -> list[Found]:
 
 
 def _belonging(x: Array) -> float:
-    """k1 times k1 s0, as two of the products have it, less k1^2 times s0."""
+    """Return k1 times k1 s0, from two of the products, less k1^2 times s0."""
     first, second = complex(x[0], x[1]), complex(x[2], x[3])
     return float((first * second).real * x[6] - abs(first) ** 2 * x[5])

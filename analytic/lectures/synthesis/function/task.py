@@ -1,4 +1,4 @@
-"""A task of function generation: x is mapped onto the input, y onto the output, both linearly."""
+"""Task of function generation: x is mapped onto the input, y onto the output, both linearly."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from models.scene.tabulated import Tabulated
 
 
 def chebyshev_spacing(count: int, low: float, high: float) -> Array:
-    """So many precision points between two ends, in order, (count,).
+    """Return so many precision points between two ends, in order, (count,).
 
     They are the roots of Chebyshev's polynomial: the structural error of a function that they
     interpolate by a polynomial is then as even over the range as its next derivative is.
@@ -31,21 +31,21 @@ def chebyshev_spacing(count: int, low: float, high: float) -> Array:
 
 
 LOOKS = 2001
-"""Looks at a function over its range."""
+"""Samples of a function over its range."""
 HALVINGS = 45
-"""Of the widest step between two looks, in search of a jump: a root, the steepest of what is
-continuous, rises by 2e-7 of that step over what is left of it."""
+"""Halvings of the widest step between two samples, in search of a jump: a root, the steepest
+continuous function, rises by 2e-7 of that step over its last part."""
 JUMP = 1e-3
-"""Of the range of y: what is left of the widest step at a jump."""
+"""Rest of the widest step at a jump, over the range of y."""
 FLAT = 1e-12
-"""Of the largest value: a function that changes by less is constant."""
+"""Change of a constant function, over the largest value."""
 
 
 @dataclass(frozen=True)
 class GivenFunction:
-    """A function by its name; ``at`` gives its values (T,) at x (T,), no numbers where it has none.
+    """Function by its name; ``at`` gives its values (T,) at x (T,), NaN where it has none.
 
-    ``rows`` is the range of x that a table has.
+    ``rows`` is the range of x of a table.
     """
 
     name: str
@@ -54,13 +54,13 @@ class GivenFunction:
 
     @staticmethod
     def of_formula(text: str) -> GivenFunction:
-        """That of a text such as ``x^1.6``. Raises CrankcheckError for what is no formula."""
+        """Make the function of a text such as ``x^1.6``. Raises CrankcheckError for another."""
         formula = parse_formula(text)
         return GivenFunction(f"y = {formula.text}", formula.at)
 
     @staticmethod
     def of_table(x: Sequence[float], y: Sequence[float], name: str = "a table") -> GivenFunction:
-        """That of rows, with cubics between them that rise and fall where the rows do.
+        """Make the function of rows, with cubics between them that rise and fall as the rows do.
 
         Raises CrankcheckError for fewer than two rows, places that do not increase, and values that
         are no numbers.
@@ -76,18 +76,18 @@ class GivenFunction:
 
     @staticmethod
     def of_callable(function: Callable[[float], float], name: str = "y = f(x)") -> GivenFunction:
-        """That of a Python function of one number, which may raise where it is not defined."""
+        """Make it from a Python function of one number, which may raise where it is not defined."""
         return GivenFunction(
             name, lambda x: np.array([_value(function, one) for one in x.tolist()])
         )
 
     def extremes(self, low: float, high: float) -> tuple[float, float]:
-        """The least and the largest y between two x.
+        """Return the least and the largest y between two x.
 
         Raises
         ------
         CrankcheckError
-            A range that is none; one on which the function is not defined, jumps or is constant.
+            An invalid range; one on which the function is not defined, jumps or is constant.
         """
         if not (np.isfinite([low, high]).all() and low < high):
             raise CrankcheckError(
@@ -111,7 +111,7 @@ class GivenFunction:
         return min(least, self._tip(x, y, -1.0)), max(most, self._tip(x, y, 1.0))
 
     def _defined(self, x: Array) -> Array:
-        """The values; raises CrankcheckError that names the first x without one."""
+        """Return the values; raises CrankcheckError that names the first x without one."""
         y = self.at(x)
         bad = ~np.isfinite(y)
         if bad.any():
@@ -122,7 +122,7 @@ class GivenFunction:
         return y
 
     def _refuse_jump(self, x: Array, y: Array, span: float) -> None:
-        """Halve the widest step: what is continuous gets flat."""
+        """Halve the widest step: continuous ones get flat. Raises CrankcheckError at a jump."""
         k = int(np.argmax(np.abs(np.diff(y))))
         ends, values = x[k : k + 2], y[k : k + 2]
         for _ in range(HALVINGS):
@@ -136,7 +136,7 @@ class GivenFunction:
             )
 
     def _tip(self, x: Array, y: Array, sign: float) -> float:
-        """The largest value, with sign -1 the least, looked for closer about the largest look."""
+        """Return the largest value, with sign -1 the least, refined about the largest sample."""
         k = int(np.argmax(sign * y))
         low, high = x[max(k - 1, 0)], x[min(k + 1, len(x) - 1)]
         best = sign * y[k]
@@ -150,7 +150,7 @@ class GivenFunction:
 
 
 def _value(function: Callable[[float], float], x: float) -> float:
-    """Of a Python function; nan where it raises what arithmetic raises, or gives no real number."""
+    """Return a Python function's value; nan at arithmetic errors, or without a real number."""
     try:
         y = function(x)
         return float("nan") if isinstance(y, complex) else float(y)
@@ -160,15 +160,15 @@ def _value(function: Callable[[float], float], x: float) -> float:
 
 MechanismKind = Literal["fourbar", "slider-crank"]
 COUNTS = (3, 4, 5)
-"""Precision points that a mechanism can be asked to meet: it has as many numbers to choose, lengths
-over a scale and starts."""
+"""Possible numbers of precision points: a mechanism has as many free numbers, lengths over a scale
+and starts."""
 COINCIDING = 1e-6
-"""Of the range: precision points that are nearer are one."""
+"""Distance of coincident precision points, over the range."""
 
 
 @dataclass(frozen=True)
 class FunctionTask:
-    """What is asked.
+    """Task of function generation.
 
     Parameters
     ----------
@@ -177,28 +177,26 @@ class FunctionTask:
     x_low, x_high : float
         The range of x.
     input_range_rad, output_range : float
-        What the input and the output go through while x goes through its range, and y through its
-        own: angles [rad], of a slider's output a displacement [m]. Negative is clockwise, or back
-        along the line.
+        The ranges of the input and the output over those of x and y: angles [rad], for a slider's
+        output a displacement [m]. Negative is clockwise, or back along the line.
     mechanism : "fourbar" or "slider-crank"
-        The input of both is a link; the output of the one a link, of the other a slider.
+        The input of both is a link; the output is a link, or a slider.
     points : int or tuple of float
-        How many precision points, 3 to 5, in Chebyshev's spacing; or their x.
+        Number of precision points, 3 to 5, in Chebyshev's spacing; or their x.
     input_start_rad, output_start : float or None
         The input's angle [rad] at ``x_low``, and the output's [rad], or [m] from the foot of the
         input's pivot on the line, where y is at the end of its range that f(x_low) is nearer to;
         None leaves them open. Five points find both. Four find one, and take one, three take both:
-        what they take and is left open is looked for on a grid.
+        open ones among those taken are tried on a grid.
     ground_m : float
         The distance of the pivots [m]. A slider-crank has its size by ``output_range``.
     equal_ripple : bool
-        Whether the points are moved until the error has equal ripples.
+        Move the points until the error has equal ripples.
 
     Raises
     ------
     CrankcheckError
-        Ranges, points and starts that make no task; a function that is not defined, jumps or is
-        constant.
+        Invalid ranges, points and starts; a function that is not defined, jumps or is constant.
     """
 
     function: GivenFunction
@@ -226,50 +224,49 @@ class FunctionTask:
 
     @cached_property
     def y_ends(self) -> tuple[float, float]:
-        """The ends of y's range: first that which f(x_low) is nearer to."""
+        """Ends of y's range: first the one nearer to f(x_low)."""
         least, most = self.function.extremes(self.x_low, self.x_high)
         first = float(self.function.at(np.array([self.x_low]))[0])
         return (least, most) if first - least <= most - first else (most, least)
 
     @property
     def count(self) -> int:
-        """How many precision points."""
+        """Number of precision points."""
         return self.points if isinstance(self.points, int) else len(self.points)
 
     @property
     def x_points(self) -> Array:
-        """The x of the precision points, in order (n,): those given, or Chebyshev's."""
+        """The x of the precision points, in order (n,): the given ones, or Chebyshev's."""
         if isinstance(self.points, int):
             return chebyshev_spacing(self.points, self.x_low, self.x_high)
         return np.array(sorted(self.points), dtype=np.float64)
 
     @property
     def y_scale(self) -> float:
-        """What y changes by per rad, or m, of the output."""
+        """Change of y per rad, or m, of the output."""
         first, last = self.y_ends
         return (last - first) / self.output_range
 
     def input_turn(self, x: Array) -> Array:
-        """The angle of the input from its start [rad], (T,)."""
+        """Return the angle of the input from its start [rad], (T,)."""
         return np.asarray(self.input_range_rad * (x - self.x_low) / (self.x_high - self.x_low))
 
     def output_way(self, x: Array) -> Array:
-        """What is asked of the output, from its start [rad or m], (T,)."""
+        """Return the required output, from its start [rad or m], (T,)."""
         return np.asarray((self.function.at(x) - self.y_ends[0]) / self.y_scale)
 
     @property
     def scale_m(self) -> float:
-        """What the lengths of a generator are in: the ground, of a slider-crank the slider's
-        range [m]."""
+        """Unit of a generator's lengths: the ground, for a slider-crank the slider's range [m]."""
         return self.ground_m if self.mechanism == "fourbar" else abs(self.output_range)
 
     @property
     def output_scale(self) -> float:
-        """What the output of a generator is in: 1 rad, of a slider `scale_m`."""
+        """Unit of a generator's output: 1 rad, for a slider `scale_m`."""
         return 1.0 if self.mechanism == "fourbar" else self.scale_m
 
     def output_scales(self, x: Array) -> Array:
-        """`output_way` as generators have it [rad or scales], (T,)."""
+        """Return `output_way` in the units of generators [rad or scales], (T,)."""
         return self.output_way(x) / self.output_scale
 
     def _check_ranges(self) -> None:

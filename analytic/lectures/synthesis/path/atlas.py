@@ -1,8 +1,8 @@
-"""The atlas of coupler curves: which four-bars draw a closed curve like a given one.
+"""Atlas of coupler curves: four-bars that draw a closed curve like a given one.
 
-It is generated when it is first asked for, from numbers spread evenly over the shapes of four-bars
-with a crank and over places in their couplers, and kept while the process lives. Only curves of one
-assembly are kept: those of the other one are their mirror images, for which a curve is mirrored.
+It is generated on first use, from numbers spread evenly over the shapes of four-bars with a crank
+and over places in their couplers, and kept while the process lives. Only curves of one assembly are
+kept: those of the other one are their mirror images, for which the given curve is mirrored.
 
 Source of the idea: J. A. Hrones and G. L. Nelson, Analysis of the Four-Bar Linkage (1951).
 
@@ -44,11 +44,11 @@ from analytic.lectures.synthesis.path.unit_four_bar import (
 from models.array import Array
 
 FINE = 32
-"""Chords to which each piece of a spline is cut, to measure it."""
+"""Number of chords of each piece of a spline, for its length."""
 
 
 def shares(curves: Complexes) -> Array:
-    """Which share of the whole length is drawn at each point of curves (E, M), from 0 to 1."""
+    """Return the share of the whole length drawn at each point of curves (E, M), from 0 to 1."""
     steps = np.abs(np.diff(curves, axis=1))
     total = np.cumsum(steps, axis=1)
     share = np.concatenate([np.zeros((len(curves), 1)), total], axis=1)
@@ -56,7 +56,7 @@ def shares(curves: Complexes) -> Array:
 
 
 def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complexes | Array:
-    """Values (E, M) between their own shares, at wanted shares (E, W), each within 0 to 1.
+    """Interpolate values (E, M) at their own shares to wanted shares (E, W), each within 0 to 1.
 
     All rows at once: each is moved by its number, so that they follow each other on one axis.
     """
@@ -73,7 +73,7 @@ def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complex
 
 
 def smooth(points: Complexes, closed: bool) -> tuple[Complexes, Array]:
-    """A fine curve through points, in order, and the shares of its length in them, (N,).
+    """Return a fine curve through points, in order, and the shares of its length in them, (N,).
 
     It is a cubic spline over the length of the chords; a closed curve ends where it starts, and
     the shares are below 1.
@@ -89,36 +89,36 @@ def smooth(points: Complexes, closed: bool) -> tuple[Complexes, Array]:
 
 
 HARMONICS = 10
-"""Coefficients on either side: of a four-bar's coupler curve the rest is below a hundredth."""
+"""Coefficients on either side: the rest of a four-bar's coupler curve is below a hundredth."""
 SAMPLES = 64
-"""Places on a curve that they are found from."""
+"""Number of places on a curve for its coefficients."""
 STARTS = 128
-"""That are compared."""
+"""Number of starts that are compared."""
 ORDERS = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
 
 
 @dataclass(frozen=True)
 class Match:
-    """How well a curve meets each of others: the similarity, (E,), and the start [share of the
-    length], (E,), to which the curve's own start belongs on them."""
+    """Match of a curve with each of others: the similarity, (E,), and the start [share of the
+    length], (E,), that the curve's own start has on them."""
 
     similarity: Array
     start: Array
 
 
 def descriptors(curves: Complexes) -> Complexes:
-    """Those of closed curves (E, M), whose last point is the first again, (E, 2 HARMONICS)."""
+    """Return the descriptors of closed curves (E, M), last point as the first, (E, 2 HARMONICS)."""
     even = np.tile(np.arange(SAMPLES) / SAMPLES, (len(curves), 1))
     drawn = at_shares(shares(curves), curves, even)
     every = np.fft.fft(drawn, axis=1)
     every[:, 0] = 0.0
-    # With the size of all that a curve has, one of finer waves than are kept is like none.
+    # Over the size of all coefficients, a curve of finer waves than are kept is like none.
     size = np.sqrt(np.sum(np.abs(every) ** 2, axis=1, keepdims=True))
     return np.asarray(every[:, ORDERS] / np.maximum(size, np.finfo(np.float64).tiny))
 
 
 def match(one: Complexes, others: Complexes) -> Match:
-    """One descriptor (2 HARMONICS,) beside others (E, 2 HARMONICS), over all starts."""
+    """Match one descriptor (2 HARMONICS,) with others (E, 2 HARMONICS), over all starts."""
     product = np.zeros((len(others), STARTS), dtype=np.complex64)
     product[:, ORDERS] = one.conj() * others
     # The inverse transform sums the products at all starts at once.
@@ -128,7 +128,7 @@ def match(one: Complexes, others: Complexes) -> Match:
 
 
 def spread(count: int, dimensions: int, seed: int) -> Array:
-    """So many points of the unit box, (count, dimensions): multiples of irrational numbers.
+    """Return so many points of the unit box, (count, dimensions): multiples of irrational numbers.
 
     Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences (2018): powers of
     the root of x^(d+1) = x + 1; the seed moves all points by one random vector.
@@ -142,16 +142,16 @@ def spread(count: int, dimensions: int, seed: int) -> Array:
 
 
 def between(share: Array, bounds: tuple[tuple[float, float], ...]) -> Array:
-    """Shares of a box (count, d) as numbers within bounds, (d, count)."""
+    """Return shares of a box (count, d) as numbers within bounds, (d, count)."""
     low, high = (np.array(side)[:, None] for side in zip(*bounds, strict=True))
     return np.asarray(low + (high - low) * share.T)
 
 
 ENTRIES: dict[Family, int] = {"crank-rocker": 9000, "double-crank": 4000}
 LOOKS = 96
-"""Crank angles at which a curve of the atlas is drawn."""
+"""Number of crank angles at which a curve of the atlas is drawn."""
 REACH = 2.2
-"""How far a coupler point is from the middle of the coupler, over its length, at most."""
+"""Largest distance of a coupler point from the middle of the coupler, over its length."""
 PLACES = ((0.0, 1.0), (0.0, 1.0))
 
 
@@ -168,8 +168,8 @@ class Atlas:
 
 @dataclass(frozen=True)
 class Similar:
-    """A four-bar of the atlas, put over a curve as well as it fits, and how similar [0 to 1] the
-    two curves are in shape."""
+    """Four-bar of the atlas, put over a curve as well as it fits, and the similarity [0 to 1] of
+    the two curves' shapes."""
 
     similarity: float
     four_bar: CouplerCurve
@@ -177,7 +177,7 @@ class Similar:
 
 @cache
 def atlas(family: Family) -> Atlas:
-    """The entries of a family: some thousands in a fraction of a second."""
+    """Return the entries of a family: some thousands in a fraction of a second."""
     share = spread(ENTRIES[family], 5, seed=0)
     x = between(share[:, :3], BOUNDS[family])
     arm = arms(lengths(family, x)[1], share[:, 3:])
@@ -185,14 +185,14 @@ def atlas(family: Family) -> Atlas:
 
 
 def arms(coupler: Array, share: Array) -> Complexes:
-    """Coupler points spread over a disc about the middle of the coupler, (E,)."""
+    """Return coupler points spread over a disc about the middle of the coupler, (E,)."""
     radius = REACH * np.sqrt(share[:, 0])
     return np.asarray(coupler * (0.5 + radius * np.exp(2j * np.pi * share[:, 1])))
 
 
 def curves(family: Family, x: Array, arm: Complexes, phi: Array | None = None) -> Complexes:
-    """The coupler curves of shapes (3, E), on a ground from 0 to 1: over a turn, or at the crank's
-    angles [rad], (E, M)."""
+    """Return the coupler curves of shapes (3, E), on a ground from 0 to 1: over a turn, or at the
+    crank's angles [rad], (E, M)."""
     a, b, c = (each[:, None] for each in lengths(family, x))
     angles = np.linspace(0.0, math.tau, LOOKS + 1)[None] if phi is None else phi
     u, _ = direction((a, b, c), angles)
@@ -200,13 +200,13 @@ def curves(family: Family, x: Array, arm: Complexes, phi: Array | None = None) -
 
 
 def closed_starts(path: UnitPath, count: int) -> list[Fitted]:
-    """The most similar four-bars of the atlas, put over a closed path in either sense of turning
-    and in either assembly, the best first."""
+    """Return the most similar four-bars of the atlas, put over a closed path in either sense of
+    turning and in either assembly, the best first."""
     return [fit for _, fit in _ranked(path, count)]
 
 
 def _ranked(path: UnitPath, count: int) -> list[tuple[float, Fitted]]:
-    """The same with their similarity."""
+    """Return the same with their similarity."""
     found: list[tuple[float, Fitted]] = []
     for mirrored in (False, True):
         own = path.mirrored if mirrored else path
@@ -220,7 +220,7 @@ def _ranked(path: UnitPath, count: int) -> list[tuple[float, Fitted]]:
 def _over(
     points: Complexes, count: int, *, mirrored: bool, back: bool
 ) -> list[tuple[float, Fitted]]:
-    """The most similar entries for points drawn forwards, with their similarity."""
+    """Return the most similar entries for points drawn forwards, with their similarity."""
     curve, share = smooth(points, closed=True)
     own = descriptors(curve[None])[0]
     found: list[tuple[float, Fitted]] = []
@@ -239,7 +239,7 @@ def _over(
 
 
 def _crank_angles(family: Family, x: Array, arm: Complexes, share: Array) -> Array:
-    """The crank's angles [rad] where shares of an entry's curve are drawn, on through the turns."""
+    """Return the crank's angles [rad] at shares of an entry's curve, on through the turns."""
     drawn = shares(curves(family, x[:, None], arm))
     angles = np.linspace(0.0, math.tau, LOOKS + 1)[None]
     turns = np.floor(share)
@@ -248,20 +248,20 @@ def _crank_angles(family: Family, x: Array, arm: Complexes, share: Array) -> Arr
 
 
 def similar(points: Sequence[complex], count: int = 10) -> list[Similar]:
-    """The four-bars of the atlas whose coupler curves are most like a closed curve, the most
+    """Return the four-bars of the atlas whose coupler curves are most like a closed curve, the most
     similar first.
 
     Parameters
     ----------
     points
-        Points of the curve in order [m], as many as there are, the first one listed once.
+        Points of the curve in order [m], any number, the first one listed once.
     count
-        How many.
+        Number of four-bars.
 
     Raises
     ------
     CrankcheckError
-        Points that are no path: fewer than four, or some that coincide with the next one.
+        An invalid path: fewer than four points, or some that coincide with the next one.
     """
     refuse_points(points, closed=True)
     unit, middle, radius = UnitPath.of(np.array(points, dtype=np.complex128))

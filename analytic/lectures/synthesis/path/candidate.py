@@ -1,4 +1,4 @@
-"""Four-bars that lead through a path, as fits leave them: sorted out, and with their cognates."""
+"""Four-bars that lead through a path, from fits: sorted out, and with their cognates."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ from models.array import Array
 from models.lectures.draft import SPEED_RAD_S, Draft, bar, plate
 
 APART = 0.02
-"""Of its size: two mechanisms that differ by less, in each of their lengths and places, are one."""
+"""Largest difference of equal mechanisms in each length and place, over their size."""
 STEP = 1e-6
-"""The crank's angle [rad] between points that are nearest to one place of the curve, or change
-their order there, as noisy points do."""
+"""Crank angle [rad] between points that are nearest to one place of the curve, or change their
+order there, as noisy points do."""
 EQUAL = 6
-"""Decimals of the error over the path's radius in which candidates are told apart."""
+"""Decimals of the error over the path's radius in which candidates are compared."""
 
 
 @dataclass(frozen=True)
 class FourBarCandidate:
-    """A four-bar, its crank's angles in the points [rad], and their distances from them [m]."""
+    """Four-bar, its crank's angles in the points [rad], and their distances from them [m]."""
 
     four_bar: CouplerCurve
     crank_rad: Array
@@ -50,7 +50,7 @@ class FourBarCandidate:
 
     @property
     def rms_m(self) -> float:
-        """The root of the mean square of the distances [m]."""
+        """Root of the mean square of the distances [m]."""
         return float(np.sqrt(np.mean(self.off_m**2)))
 
     @property
@@ -60,7 +60,7 @@ class FourBarCandidate:
 
     @property
     def least_sine(self) -> float:
-        """The least sine of the transmission angle: over a turn, or between the angles."""
+        """Least sine of the transmission angle: over a turn, or between the angles."""
         four_bar = self.four_bar
         phi = self.crank_rad - cmath.phase(four_bar.o4 - four_bar.o2)
         low, high = float(np.min(phi)), float(np.max(phi))
@@ -69,14 +69,14 @@ class FourBarCandidate:
         return least_sine(four_bar.shape, low, high)
 
     def same_as(self, other: FourBarCandidate) -> bool:
-        """Whether two are one mechanism, driven at the same pivot."""
+        """True if two are one mechanism, driven at the same pivot."""
         one, two = _numbers(self.four_bar), _numbers(other.four_bar)
         near = bool(np.max(np.abs(one - two)) < APART * max(np.max(np.abs(one[2:])), 1e-300))
         return near and self.four_bar.sign == other.four_bar.sign
 
 
 def _numbers(one: CouplerCurve) -> Array:
-    """Its places, from the pivot, and its lengths [m]."""
+    """Return its places, from the pivot, and its lengths [m]."""
     return np.array(
         [
             one.o2.real,
@@ -93,8 +93,8 @@ def _numbers(one: CouplerCurve) -> Array:
 
 
 def candidates(fits: Iterable[Fitted], task: PathTask) -> list[FourBarCandidate]:
-    """The distinct four-bars of fits whose crank leads through the points in their order, and those
-    of their cognates that do; the nearest to the points first, of equal ones that of the better
+    """Return the distinct four-bars of fits whose crank leads through the points in their order,
+    and such cognates of them; the nearest to the points first, of equal ones that of the better
     transmission angle."""
     own = [each for fit in fits for each in _of_fit(fit, task)]
     every = [each for one in distinct(own, task) for each in (one, *_cognates(one, task))]
@@ -102,7 +102,7 @@ def candidates(fits: Iterable[Fitted], task: PathTask) -> list[FourBarCandidate]
 
 
 def distinct(every: Sequence[FourBarCandidate], task: PathTask) -> list[FourBarCandidate]:
-    """Each mechanism once, in order."""
+    """Return each mechanism once, in order."""
     kept: list[FourBarCandidate] = []
 
     def order(one: FourBarCandidate) -> tuple[float, float]:
@@ -115,15 +115,15 @@ def distinct(every: Sequence[FourBarCandidate], task: PathTask) -> list[FourBarC
 
 
 def _of_fit(fit: Fitted, task: PathTask) -> Iterator[FourBarCandidate]:
-    """The four-bar of a fit, if its crank leads through the points."""
+    """Yield the four-bar of a fit, if its crank leads through the points."""
     four_bar, angles = real_size(fit)
     own = four_bar.moved(complex(task.radius_m), task.middle)
     yield from _leading(own, angles if task.is_timed else in_order(angles), task)
 
 
 def _cognates(one: FourBarCandidate, task: PathTask) -> Iterator[FourBarCandidate]:
-    """Its cognates, driven at either pivot, whose crank leads through the points; with timing, by
-    the same angles."""
+    """Yield its cognates, driven at either pivot, whose crank leads through the points; with
+    timing, by the same angles."""
     at = [cognates(one.four_bar, angle) for angle in one.crank_rad.tolist()]
     for way in zip(*at, strict=True):
         angles = np.unwrap(np.array([angle for _, angle in way]))
@@ -133,7 +133,7 @@ def _cognates(one: FourBarCandidate, task: PathTask) -> Iterator[FourBarCandidat
 
 
 def _leading(four_bar: CouplerCurve, angles: Array, task: PathTask) -> Iterator[FourBarCandidate]:
-    """A four-bar, unless its crank does not lead through its angles, or it is far too large."""
+    """Yield a four-bar if its crank leads through its angles, and it is not far too large."""
     small = math.isfinite(four_bar.size) and four_bar.size <= TOO_LARGE * task.radius_m
     if not small or not four_bar.leads_through(angles):
         return
@@ -143,8 +143,8 @@ def _leading(four_bar: CouplerCurve, angles: Array, task: PathTask) -> Iterator[
 
 
 def in_order(angles: Array) -> Array:
-    """Angles [rad] that grow, or fall, throughout: the nearest ones of least squares, each a little
-    after the one before."""
+    """Return angles [rad] that grow, or fall, throughout: the nearest ones of least squares, each a
+    little after the one before."""
     sense = 1.0 if angles[-1] >= angles[0] else -1.0
     apart = STEP * np.arange(len(angles))
     ordered = isotonic_regression(sense * angles - apart).x
@@ -153,13 +153,13 @@ def in_order(angles: Array) -> Array:
 
 POINT = "P"
 LOOKS = 180
-"""Places at which a coupler curve is drawn."""
+"""Number of places at which a coupler curve is drawn."""
 ROUNDING = 1e-9
-"""Of the longest link: by how much more than the fit the reference may be off."""
+"""Allowed error of the reference beyond that of the fit, over the longest link."""
 
 
 def drafted(name: str, source: str, four_bar: CouplerCurve, note: str = "") -> Draft:
-    """The draft of a four-bar with its coupler point."""
+    """Return the draft of a four-bar with its coupler point."""
     places = {PINS[0]: 0j, PINS[1]: complex(four_bar.coupler), POINT: four_bar.arm}
     return Draft(
         name,
@@ -176,7 +176,7 @@ def drafted(name: str, source: str, four_bar: CouplerCurve, note: str = "") -> D
 
 
 def proposed(name: str, source: str, candidate: FourBarCandidate, task: PathTask) -> Proposal:
-    """A candidate as a proposal: its crank's angles are those that fit the points best."""
+    """Return a candidate as a proposal: its crank's angles are those that fit the points best."""
     four_bar = candidate.four_bar
     draft = drafted(name, source, four_bar)
     positions = tuple(
@@ -194,7 +194,7 @@ def proposed(name: str, source: str, candidate: FourBarCandidate, task: PathTask
 
 
 def _steps(candidate: FourBarCandidate, task: PathTask) -> tuple[DrawingStep, ...]:
-    """The points, the curve that goes through them, and the links that draw it."""
+    """Return the points, the curve through them, and the links that draw it."""
     four_bar = candidate.four_bar
     angles = candidate.crank_rad
     first, second = (pin[0] for pin in four_bar.pins(angles[:1]))
@@ -217,7 +217,7 @@ def _steps(candidate: FourBarCandidate, task: PathTask) -> tuple[DrawingStep, ..
 
 
 def _curve(four_bar: CouplerCurve, angles: Array) -> DrawnCurve:
-    """The coupler curve: over a turn, or between the outermost angles."""
+    """Return the coupler curve: over a turn, or between the outermost angles."""
     low, high = float(np.min(angles)), float(np.max(angles))
     if four_bar.family != "limited":
         high = low + math.tau

@@ -1,4 +1,4 @@
-"""A four-bar of real size with a point of its coupler, and its cognates.
+"""Four-bar of real size with a point of its coupler, and its cognates.
 
 ::
 
@@ -31,7 +31,7 @@ from models.array import Array
 
 @dataclass(frozen=True)
 class CouplerCurve:
-    """A four-bar driven at O2: its pivots, lengths and coupler point [m]."""
+    """Four-bar driven at O2: its pivots, lengths and coupler point [m]."""
 
     o2: complex
     o4: complex
@@ -43,7 +43,7 @@ class CouplerCurve:
 
     @property
     def ground(self) -> float:
-        """The distance of the pivots [m]."""
+        """Distance of the pivots [m]."""
         return abs(self.o4 - self.o2)
 
     @property
@@ -53,17 +53,17 @@ class CouplerCurve:
 
     @property
     def family(self) -> Family:
-        """Whether its crank turns fully."""
+        """Family by the rotation of its crank."""
         return family_of(*self.shape)
 
     @property
     def size(self) -> float:
-        """The longest of its links, the ground and the arms of P [m]."""
+        """Longest of its links, the ground and the arms of P [m]."""
         arms = abs(self.arm), abs(self.arm - self.coupler)
         return max(self.ground, self.crank, self.coupler, self.rocker, *arms)
 
     def pins(self, crank_rad: Array) -> tuple[Complexes, Complexes]:
-        """Where A and B are at angles of the crank [rad]; the dyad stretched where it is open."""
+        """Return A and B at angles of the crank [rad]; the dyad stretched where it is open."""
         toward = (self.o4 - self.o2) / self.ground
         phi = self.sign * (crank_rad - cmath.phase(toward))
         a, b, c = (np.array(each) for each in self.shape)
@@ -73,12 +73,12 @@ class CouplerCurve:
         return at, at + self.coupler * turned
 
     def at(self, crank_rad: Array) -> Complexes:
-        """Where P is at angles of the crank [rad]."""
+        """Return P at angles of the crank [rad]."""
         first, second = self.pins(crank_rad)
         return np.asarray(first + self.arm / self.coupler * (second - first))
 
     def leads_through(self, crank_rad: Array) -> bool:
-        """Whether the crank leads through its angles [rad], in order and within one turn."""
+        """True if the crank leads through its angles [rad], in order and within one turn."""
         steps = np.diff(crank_rad)
         one_way = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
         if not one_way or abs(float(np.sum(steps))) >= math.tau:
@@ -89,7 +89,7 @@ class CouplerCurve:
         return closes_between(self.shape, float(np.min(phi)), float(np.max(phi)))
 
     def moved(self, by: complex, onto: complex) -> CouplerCurve:
-        """The same turned and scaled by one complex number, then moved by another [m]."""
+        """Return it turned and scaled by one complex number, then moved by another [m]."""
         size = abs(by)
         return CouplerCurve(
             by * self.o2 + onto,
@@ -103,7 +103,7 @@ class CouplerCurve:
 
 
 def real_size(fit: Fitted) -> tuple[CouplerCurve, Array]:
-    """The four-bar of a fit, in the unit of its path, and the crank's angles [rad]."""
+    """Return the four-bar of a fit, in the unit of its path, and the crank's angles [rad]."""
     a, b, c = (float(each) for each in lengths(fit.family, fit.x))
     origin, ground, arm = (complex(each) for each in fit.placing)
     length, turn = abs(ground), cmath.phase(ground)
@@ -128,7 +128,7 @@ def real_size(fit: Fitted) -> tuple[CouplerCurve, Array]:
 def assembled(
     o2: complex, a: complex, b: complex, o4: complex, p: complex
 ) -> tuple[CouplerCurve, float]:
-    """The four-bar whose pins and coupler point are at places [m], and its crank's angle [rad]."""
+    """Return the four-bar of given pins and coupler point [m], and its crank's angle [rad]."""
     along = (b - a) / abs(b - a)
     left = ((o4 - a).conjugate() * (b - a)).imag > 0.0
     lengths_m = abs(a - o2), abs(b - a), abs(o4 - b)
@@ -137,8 +137,8 @@ def assembled(
 
 
 def cognates(one: CouplerCurve, crank_rad: float) -> list[tuple[CouplerCurve, float]]:
-    """The four-bars that draw the same curve, driven at each of their pivots, with their crank's
-    angles [rad] where that of the given one has an angle: five, and the one driven at O4.
+    """Return the four-bars that draw the same curve, driven at each of their pivots, with their
+    crank's angles [rad] at an angle of the given one's crank: five, and the one driven at O4.
 
     With p = AP/AB the third pivot is at O2 + p (O4 - O2), and every link of a cognate is a link of
     the given one, or one turned and scaled by p or 1 - p. Empty where P is on A or on B, for which

@@ -1,9 +1,9 @@
-"""The least-squares fit of a coupler curve to points, from a start on.
+"""Least-squares fit of a coupler curve to points, from a start on.
 
 The unknowns are the three numbers of a shape, the three complex numbers that place it, and the
 crank's angles: one in all with timing, one for each point without. Then the residuals are those to
 the nearest points of the curve, which is an orthogonal fit. Derivatives are exact. Each number but
-the angles stays in its box, as the sine of an unknown: so a crank that turns fully goes on to.
+the angles stays in its box, as the sine of an unknown: so a fully turning crank keeps turning.
 
 Source: G. H. Golub and V. Pereyra, SIAM Journal on Numerical Analysis 10 (1973) (that the placing
 numbers, in which the curve is linear, follow from the others, gives the starts here); S. J. Ahn,
@@ -31,26 +31,26 @@ from analytic.lectures.synthesis.path.unit_four_bar import (
 from models.array import Array
 
 LARGEST = 12.0
-"""Of the placing numbers, over the radius of the path."""
+"""Largest placing numbers, over the radius of the path."""
 TOO_LARGE = 2.0 * LARGEST
-"""Of a link, over the radius of the path: larger mechanisms are of no use."""
+"""Largest link of a useful mechanism, over the radius of the path."""
 PENALTY = 3.0
-"""The weight of a dyad that does not close, over the radius of the path."""
+"""Weight of a dyad that does not close, over the radius of the path."""
 STRICT = 20.0
-"""The weight of a transmission angle that is too small, over that of all points."""
+"""Weight of a transmission angle that is too small, over that of all points."""
 INSIDE = 0.999
-"""Of the half width of the box, a start is at most: at its wall the sine does not change."""
+"""Largest offset of a start, over half the box: at its wall the sine does not change."""
 BOXED = slice(0, 9)
-"""The unknowns in a box: three numbers of a shape, and three complex numbers that place it."""
+"""Unknowns in a box: three numbers of a shape, and three complex numbers that place it."""
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """A four-bar near the points of a unit path: numbers of its shape, placing numbers O, G, Q,
-    and the crank's angles [rad] from the ground on.
+    """Four-bar near the points of a unit path: numbers of its shape, placing numbers O, G, Q, and
+    the crank's angles [rad] from the ground on.
 
-    ``cost`` is the mean square of the distances, ``mirrored`` whether they are from the mirror
-    image of the points.
+    ``cost`` is the mean square of the distances, ``mirrored`` is True for the mirror image of the
+    points.
     """
 
     family: Family
@@ -62,7 +62,7 @@ class Fitted:
 
     @property
     def size(self) -> float:
-        """The longest of its links, over the radius of the path."""
+        """Longest of its links, over the radius of the path."""
         _, ground, arm = self.placing
         shape = lengths(self.family, self.x)
         far = np.abs([arm, arm - ground * shape[1]])
@@ -70,15 +70,15 @@ class Fitted:
 
 
 def placed(lengths_of: tuple[Array, Array, Array], phi: Array, points: Complexes) -> Complexes:
-    """The placing numbers O, G, Q that fit points best, by linear least squares, (3,)."""
+    """Return the placing numbers O, G, Q that fit points best, by linear least squares, (3,)."""
     u, _ = direction(lengths_of, phi)
     columns = np.stack([np.ones_like(u), lengths_of[0] * np.exp(1j * phi), u], axis=1)
     return np.asarray(np.linalg.lstsq(columns, points, rcond=1e-9)[0])
 
 
 def refit(start: Fitted, path: UnitPath, evaluations: int, transmission_rad: float = 0.0) -> Fitted:
-    """The four-bar of least squares near a start: after so many evaluations, at most; of a crank
-    that turns fully with a transmission angle of no less than one [rad], or little less."""
+    """Return the four-bar of least squares near a start, after so many evaluations at most; a crank
+    that turns fully keeps a least transmission angle [rad], or little less."""
     problem = _Problem(start.family, path, transmission_rad)
     result = least_squares(
         problem.residuals,
@@ -108,13 +108,13 @@ class _Problem:
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """The middle and the half width of shape and placing numbers, (9,)."""
+        """Middle and half width of shape and placing numbers, (9,)."""
         low, high = (np.array(side) for side in zip(*BOUNDS[self.family], strict=True))
         middle = np.concatenate([0.5 * (low + high), np.zeros(6)])
         return middle, np.concatenate([0.5 * (high - low), np.full(6, LARGEST)])
 
     def packed(self, fit: Fitted) -> Array:
-        """The unknowns of a four-bar: what lies in a box as the arc sine of its share of it."""
+        """Return the unknowns of a four-bar: numbers in a box as the arc sine of their share."""
         placing = np.stack([fit.placing.real, fit.placing.imag], axis=1).ravel()
         angles = fit.phi if self.path.turned is None else fit.phi[:1]
         middle, half = self.box
@@ -122,14 +122,14 @@ class _Problem:
         return np.concatenate([np.arcsin(np.clip(share, -INSIDE, INSIDE)), angles])
 
     def unpacked(self, z: Array) -> Fitted:
-        """The four-bar of unknowns."""
+        """Return the four-bar of unknowns."""
         middle, half = self.box
         inner = middle + half * np.sin(z[BOXED])
         placing = inner[3::2] + 1j * inner[4::2]
         return Fitted(self.family, inner[:3], placing, self._phi(z), 0.0)
 
     def residuals(self, z: Array) -> Array:
-        """The distances from the points, then how far the dyad is open where it may be."""
+        """Return the distances from the points, then the gap of the dyad where it may be open."""
         fit = self.unpacked(z)
         a, b, c = (float(each) for each in lengths(self.family, fit.x))
         at = turn((a, b, c), fit.phi)
@@ -140,7 +140,7 @@ class _Problem:
         return np.concatenate([off.real, off.imag, *opened, *strained, np.zeros(self._spare)])
 
     def jacobian(self, z: Array) -> Array:
-        """Their derivatives, (residuals, unknowns)."""
+        """Return their derivatives, (residuals, unknowns)."""
         fit = self.unpacked(z)
         a, b, c = (float(each) for each in lengths(self.family, fit.x))
         at = turn((a, b, c), fit.phi)
@@ -171,22 +171,22 @@ class _Problem:
 
     @property
     def _angles(self) -> int:
-        """The crank's angles among the unknowns."""
+        """Number of the crank's angles among the unknowns."""
         return len(self.path.points) if self.path.turned is None else 1
 
     @property
     def _spare(self) -> int:
-        """Residuals of 0 that few points need: the library wants as many as there are unknowns."""
+        """Number of zero residuals for few points: the library wants as many as unknowns."""
         return max(0, 9 + self._angles - 2 * len(self.path.points))
 
     @property
     def _is_strict(self) -> bool:
-        """Whether the transmission angle counts: with limits, it is small at these in any case."""
+        """True if the transmission angle counts: with limits, it is small at these in any case."""
         return self.transmission_rad > 0.0 and self.family != "limited"
 
     def _strained(self, shape: tuple[float, float, float]) -> tuple[Array, Array]:
-        """By how much the cosines of the transmission angle, where A is nearest to O4 and farthest,
-        are beyond what is allowed, (2,), and the changes of that with a, b, c, (2, 3)."""
+        """Return the excess of the cosines of the transmission angle, where A is nearest to O4 and
+        farthest, over the allowed one, (2,), and its changes with a, b, c, (2, 3)."""
         a, b, c = shape
         rho, by_a = np.array([abs(1.0 - a), 1.0 + a]), np.array([math.copysign(1.0, a - 1.0), 1.0])
         cosine = (b**2 + c**2 - rho**2) / (2.0 * b * c)
@@ -200,14 +200,14 @@ class _Problem:
         return z[9:].copy() if turned is None else np.asarray(z[9] + turned)
 
     def _spread(self, column: Complexes) -> Complexes:
-        """A derivative by each point's own angle, or by the one that all share."""
+        """Return a derivative by each point's own angle, or by the one that all share."""
         return np.diag(column) if self.path.turned is None else column[:, None]
 
 
 Progress = Callable[[float, float], None]
-"""Is told the share that is done [0 to 1] and the least RMS distance by then [m]."""
+"""Callback with the finished share [0 to 1] and the least RMS distance by then [m]."""
 APART = 0.02
-"""Of the box of shapes: fits that are nearer go the same way."""
+"""Distance in the box of shapes, below which fits go the same way."""
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ class Round:
     evaluations: int
 
     def count(self, starts: int) -> int:
-        """How many fits it has."""
+        """Return its number of fits."""
         return max(1, math.ceil(self.share * starts))
 
 
@@ -229,8 +229,8 @@ ROUNDS = (Round(1.0, 14, 60), Round(0.4, MOST, 120), Round(0.17, MOST, 1500))
 
 @dataclass
 class SearchClock:
-    """How far a search is: ``until`` is when no further fit is begun [s of the monotonic clock],
-    ``unit_m`` the path's radius."""
+    """Progress of a search: ``until`` is the time after which no further fit is begun [s of the
+    monotonic clock], ``unit_m`` the path's radius."""
 
     starts: int
     until: float
@@ -242,11 +242,11 @@ class SearchClock:
 
     @property
     def is_over(self) -> bool:
-        """Whether the time is used up."""
+        """True if the time is used up."""
         return time.monotonic() >= self.until
 
     def fitted(self, one: Round, fit: Fitted) -> None:
-        """A fit was made."""
+        """Count a fit."""
         self.work += one.evaluations * one.points
         if one.points >= MOST:  # fits of some of the points say little of all
             self.best = min(self.best, self.unit_m * math.sqrt(fit.cost))
@@ -254,7 +254,7 @@ class SearchClock:
         self.tell(min(0.99, self.work / whole))
 
     def tell(self, share: float) -> None:
-        """Tell whom it concerns."""
+        """Call the progress callback."""
         if self.progress is not None:
             self.progress(share, self.best)
 
@@ -262,8 +262,8 @@ class SearchClock:
 def fitted(
     starts: Sequence[Fitted], path: UnitPath, clock: SearchClock, transmission_rad: float = 0.0
 ) -> list[Fitted]:
-    """The fits of the last round that was begun, the best first; with those of the round before for
-    which the time did not last. One fit is made in any case."""
+    """Return the fits of the last round that was begun, the best first, with those of the round
+    before for which the time ran out. One fit is made in any case."""
     current = list(starts)
     for number, each in enumerate(ROUNDS):
         current = current[: each.count(len(starts))]
@@ -282,8 +282,8 @@ def fitted(
 
 
 def _fit(start: Fitted, path: UnitPath, each: Round, transmission_rad: float) -> Fitted:
-    """A fit over some of the points, with the crank's angles in all of them; the start, where the
-    fit grows too large."""
+    """Return a fit over some of the points, with the crank's angles in all of them; the start, if
+    the fit grows too large."""
     own = path.mirrored if start.mirrored else path
     keep = np.arange(len(own.points)) if each.points >= len(own.points) else own.kept(each.points)
     fit = refit(
@@ -295,7 +295,7 @@ def _fit(start: Fitted, path: UnitPath, each: Round, transmission_rad: float) ->
 
 
 def _apart(fits: Sequence[Fitted]) -> list[Fitted]:
-    """Fits without those that come near a better one: they would end in the same mechanism."""
+    """Return fits without those near a better one: they would end in the same mechanism."""
     kept: list[Fitted] = []
     for fit in fits:
         low, high = (np.array(side) for side in zip(*BOUNDS[fit.family], strict=True))

@@ -1,4 +1,4 @@
-"""Pieces of coupler curves: which four-bars draw an open path like a given one.
+"""Pieces of coupler curves: four-bars that draw an open path like a given one.
 
 An open path has no Fourier descriptor. Pieces are compared by places at even shares of their
 length, about their middle and over their size: the similarity of two is |sum of conj(z_i) w_i|,
@@ -27,13 +27,13 @@ from models.array import Array
 
 ENTRIES: dict[Family, int] = {"crank-rocker": 60000, "double-crank": 30000, "limited": 40000}
 LOOKS = 24
-"""Crank angles at which a piece is drawn."""
+"""Number of crank angles at which a piece is drawn."""
 PLACES = 12
-"""At which pieces are compared."""
+"""Number of places at which pieces are compared."""
 SPAN = (math.radians(25.0), math.radians(355.0))
-"""Of a crank that turns fully."""
+"""Span of a crank that turns fully."""
 NARROW = math.radians(8.0)
-"""Of one with limits: the least."""
+"""Least span of a crank with limits."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Pieces:
 
 @cache
 def pieces(family: Family) -> Pieces:
-    """The pieces of a family, drawn by growing angles of the crank."""
+    """Return the pieces of a family, drawn by growing angles of the crank."""
     share = spread(ENTRIES[family], 7, seed=0)
     x = between(share[:, :3], BOUNDS[family])
     arm = arms(lengths(family, x)[1], share[:, 3:5])
@@ -67,17 +67,16 @@ def pieces(family: Family) -> Pieces:
 
 
 def _angles(ends: Array) -> Array:
-    """Angles from end to end, (E, LOOKS)."""
+    """Return angles from end to end, (E, LOOKS)."""
     return np.asarray(
         ends[0][:, None] + (ends[1] - ends[0])[:, None] * np.linspace(0.0, 1.0, LOOKS)
     )
 
 
 def _within_limits(shape: tuple[Array, Array, Array], share: Array) -> Array:
-    """Ends of pieces between the limits of cranks, (2, E); two equal ones where none closes.
+    """Return ends of pieces between the limits of cranks, (2, E); two equal ones where none closes.
 
-    A is |1 - a exp(i phi)| from O4, which the cosine of phi tells, and has to be within |b - c| to
-    b + c.
+    A is |1 - a exp(i phi)| from O4, by the cosine of phi, and has to be within |b - c| to b + c.
     """
     a, b, c = shape
     high, low = (
@@ -93,15 +92,15 @@ def _within_limits(shape: tuple[Array, Array, Array], share: Array) -> Array:
 
 
 def standard(places: Complexes | Array) -> Complexes:
-    """Places (E, W) about their middles, with a sum of squares of 1."""
+    """Return places (E, W) about their middles, with a sum of squares of 1."""
     own = places - np.mean(places, axis=1, keepdims=True)
     size = np.sqrt(np.sum(np.abs(own) ** 2, axis=1, keepdims=True))
     return np.asarray(own / np.maximum(size, np.finfo(np.float64).tiny))
 
 
 def open_starts(path: UnitPath, count: int) -> list[Fitted]:
-    """The most similar pieces, put over an open path in either sense of turning and in either
-    assembly, the best first."""
+    """Return the most similar pieces, put over an open path in either sense of turning and in
+    either assembly, the best first."""
     found: list[tuple[float, Fitted]] = []
     for mirrored in (False, True):
         own = path.mirrored if mirrored else path
@@ -115,7 +114,7 @@ def open_starts(path: UnitPath, count: int) -> list[Fitted]:
 def _over(
     points: Complexes, count: int, *, mirrored: bool, back: bool
 ) -> list[tuple[float, Fitted]]:
-    """The most similar pieces for points drawn forwards, with their similarity."""
+    """Return the most similar pieces for points drawn forwards, with their similarity."""
     curve, share = smooth(points, closed=False)
     even = np.linspace(0.0, 1.0, PLACES)[None]
     own = standard(at_shares(shares(curve[None]), curve[None], even))[0]

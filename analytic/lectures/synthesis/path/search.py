@@ -1,14 +1,14 @@
-"""Path generation: the four-bars whose coupler curves go nearest to given points.
+"""Path generation: four-bars whose coupler curves go nearest to given points.
 
-Starts come from looks at tens of thousands of four-bars: with timing at what they leave of the
-points, without it at the shapes of their curves. Least squares then goes on from the best ones, in
-rounds that take more of the points, fewer of the starts, and longer. What is left is sorted out,
-given its cognates, and examined by the reference: a mechanism with a defect is not returned.
+Starts come from tens of thousands of four-bars: with timing by their residuals, without it by the
+shapes of their curves. Least squares then goes on from the best ones, in rounds that take more of
+the points, fewer of the starts, and longer. The results are sorted out, given their cognates, and
+examined by the reference: a mechanism with a defect is not returned.
 
 Of P_j = O + G a exp(i phi_j) + Q u(phi_j) the first two terms span the same plane for all
-four-bars, as the angles phi_j are given but for their start. What they leave of the points, y, and
-of the coupler's direction, w, tells the rest: the least sum of squares is |y|^2 - |w* y|^2 / |w|^2.
-That is one product for a shape and a start of the crank, so that tens of thousands are looked at.
+four-bars, as the angles phi_j are given but for their start. With the residuals of the points, y,
+and of the coupler's direction, w, the least sum of squares is |y|^2 - |w* y|^2 / |w|^2. It takes
+one product for a shape and a start of the crank, so that tens of thousands can be compared.
 """
 
 import itertools
@@ -46,16 +46,16 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 LOOKS = 16000
-"""Shapes, each with a start of the crank, of a family and an assembly."""
+"""Number of shapes, each with a start of the crank, of a family and an assembly."""
 BLOCK = 4000
-"""That are looked at together."""
+"""Number of shapes that are computed together."""
 APART = 0.12
-"""Of the box of shapes and starts: starts that are nearer lead to the same fit, mostly."""
+"""Distance in the box of shapes and starts, below which starts mostly lead to the same fit."""
 
 
 def timed_starts(path: UnitPath, count: int, seed: int, *, limited: bool) -> list[Fitted]:
-    """The best shapes of either assembly for points with timing, the best first; with ``limited``
-    also those whose crank does not turn fully."""
+    """Return the best shapes of either assembly for points with timing, the best first; with
+    ``limited`` also those whose crank does not turn fully."""
     families = (*FULL, "limited") if limited else FULL
     found = [
         each
@@ -68,7 +68,7 @@ def timed_starts(path: UnitPath, count: int, seed: int, *, limited: bool) -> lis
 
 
 def _best(path: UnitPath, family: Family, count: int, seed: int, mirrored: bool) -> list[Fitted]:
-    """Those of one family, spread over its box."""
+    """Return those of one family, spread over its box."""
     share = spread(LOOKS, 4, seed)
     x, start = between(share[:, :3], BOUNDS[family]), math.tau * share[:, 3]
     cost = np.concatenate(
@@ -89,7 +89,7 @@ def _best(path: UnitPath, family: Family, count: int, seed: int, mirrored: bool)
 
 
 def _costs(path: UnitPath, family: Family, x: Array, start: Array) -> Array:
-    """The least sums of squares, inf where the mechanism is too large or does not close."""
+    """Return the least sums of squares, inf where the mechanism is too large or does not close."""
     assert path.turned is not None
     crank = np.exp(1j * path.turned)
     common, triangle = np.linalg.qr(np.stack([np.ones_like(crank), crank], axis=1))
@@ -110,7 +110,7 @@ def _costs(path: UnitPath, family: Family, x: Array, start: Array) -> Array:
 
 
 def _left(rows: Complexes, common: Complexes) -> Complexes:
-    """What is left of rows (E, N) outside the plane of two columns (N, 2)."""
+    """Return the residuals of rows (E, N) outside the plane of two columns (N, 2)."""
     return np.asarray(rows - (rows @ common.conj()) @ common.T)
 
 
@@ -125,18 +125,18 @@ def _start(
 STARTS = 48
 SOURCE = "Crankcheck: path generation by least squares"
 STRAYED = 0.12
-"""Of the box of shapes: how far those starts are, at most, from an entry that are not one."""
+"""Largest distance of strayed starts from their entries, in the box of shapes."""
 MOST_TRANSMISSION, MARGIN = math.radians(60.0), math.radians(1.0)
-"""The largest least transmission angle, of which few four-bars keep more, and by how much more of
-it least squares asks for, which gives way a little."""
+"""Largest least transmission angle, which few four-bars exceed, and the margin required in least
+squares, which gives way a little."""
 OWN = 0.7
-"""The share of starts without timing that are entries themselves; the rest strays from them."""
+"""Share of starts without timing that are entries themselves; the others stray from them."""
 
 
 @dataclass(frozen=True)
 class PathFit:
-    """A four-bar that goes through a path as well as it can: where its crank is in the points
-    [rad], how far it is from them [m], and what the reference says of it."""
+    """Four-bar of a path: its crank's angles in the points [rad], its distances from them [m], and
+    its examination by the reference."""
 
     four_bar: CouplerCurve
     crank_rad: Array
@@ -152,8 +152,8 @@ class PathFit:
 
 @dataclass(frozen=True)
 class PathSearch:
-    """The mechanisms that a search found, the nearest to the points first; ``complete`` is whether
-    it came to its end within its time."""
+    """Mechanisms of a search, the nearest to the points first; ``complete`` is True if it ended
+    within its time."""
 
     fits: tuple[PathFit, ...]
     complete: bool
@@ -170,24 +170,24 @@ def generate(
     progress: Progress | None = None,
     least_transmission_rad: float = 0.0,
 ) -> PathSearch:
-    """Four-bars whose coupler point goes through the points of a task, or as near as they can.
+    """Find four-bars whose coupler point goes through the points of a task, or as near as possible.
 
     Parameters
     ----------
     task
-        The points [m], and the crank's angles if they are given.
+        The points [m], and the crank's angles if given.
     name
-        Of the scenes; a number is put after it.
+        Name of the scenes; a number is added.
     count
         The largest number of mechanisms.
     starts
-        From which least squares goes on. The same starts and seed give the same answer.
+        Number of starts of least squares. The same starts and seed give the same answer.
     seed
-        Of the starts.
+        Seed of the starts.
     time_s
-        After which no further fit is begun [s]; those found by then are returned.
+        Time after which no further fit is begun [s]; the results by then are returned.
     progress
-        Is told, after each fit, the share that is done, and the least RMS distance by then [m].
+        Callback after each fit, with the finished share and the least RMS distance by then [m].
     least_transmission_rad
         The least transmission angle of a mechanism over its way [rad]. Without one, the nearest
         mechanisms to a path that none follows well are often near a dead centre.
@@ -196,12 +196,12 @@ def generate(
     -------
     PathSearch
         Distinct four-bars without a branch, circuit or order defect, cognates among them; by their
-        RMS distance from the points, and where these are equal by transmission angle.
+        RMS distance from the points, and for equal ones by transmission angle.
 
     Raises
     ------
     CrankcheckError
-        No start, or no mechanism asked for; no mechanism found that leads through the points.
+        No start, or no mechanism requested; no mechanism found that leads through the points.
     """
     if starts < 1 or count < 1:
         raise CrankcheckError(
@@ -241,7 +241,7 @@ def generate(
 
 
 def _starts(task: PathTask, count: int, seed: int) -> Iterator[Fitted]:
-    """Where least squares begins, the most promising first."""
+    """Yield the starts of least squares, the most promising first."""
     if task.is_timed:
         yield from timed_starts(task.unit, count, seed, limited=not task.closed)
         return
@@ -253,7 +253,7 @@ def _starts(task: PathTask, count: int, seed: int) -> Iterator[Fitted]:
 
 
 def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
-    """A start beside an entry: another shape, put over the points anew."""
+    """Return a start beside an entry: another shape, put over the points anew."""
     low, high = (np.array(side) for side in zip(*BOUNDS[entry.family], strict=True))
     off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)
     x = np.clip(entry.x + off, low, high)
@@ -262,7 +262,7 @@ def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
 
 
 def _examined(name: str, candidate: FourBarCandidate, task: PathTask) -> PathFit | str:
-    """A candidate that the reference finds no defect in, or why it is none."""
+    """Return a candidate without a defect by the reference, or the text of its defects."""
     try:
         examined = examine(proposed(name, SOURCE, candidate, task))
     except CrankcheckError as error:

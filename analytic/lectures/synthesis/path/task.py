@@ -1,4 +1,4 @@
-"""The task of path generation: the points of a path, with or without the crank's angles."""
+"""Task of path generation: the points of a path, with or without the crank's angles."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 LEAST, MOST = 4, 50
-"""Points of a path. Through three, any four-bar can be scaled and moved; beyond fifty, a fit of
-least squares tells no more, and takes longer."""
+"""Numbers of points of a path. Through three, any four-bar can be scaled and moved; beyond fifty, a
+fit of least squares gains nothing, and takes longer."""
 SAME = 1e-9
-"""Of the size of the path: points that are nearer are one."""
+"""Distance of coincident points, over the size of the path."""
 DETERMINED = {True: 5, False: 9}
-"""Points, with the crank's angles and without, that leave a four-bar no freedom.
+"""Numbers of points, with the crank's angles and without, that leave a four-bar no freedom.
 
 Source: A. G. Erdman and G. N. Sandor, Mechanism Design, volume 1, table 8.1 (5 with prescribed
 timing); C. W. Wampler, A. P. Morgan and A. J. Sommese, Journal of Mechanical Design 114 (1992) (9).
@@ -36,22 +36,22 @@ class UnitPath:
 
     @staticmethod
     def of(points: Complexes, turned: Array | None = None) -> tuple[UnitPath, complex, float]:
-        """The unit path of points [m], their middle and their radius [m]."""
+        """Return the unit path of points [m], their middle and their radius [m]."""
         middle = complex(np.mean(points))
         radius = float(np.sqrt(np.mean(np.abs(points - middle) ** 2)))
         return UnitPath((points - middle) / radius, turned), middle, radius
 
     @property
     def mirrored(self) -> UnitPath:
-        """The mirror image, that a mechanism of the other assembly draws."""
+        """Mirror image, drawn by a mechanism of the other assembly."""
         return UnitPath(self.points.conj(), None if self.turned is None else -self.turned)
 
     def kept(self, most: int) -> NDArray[np.intp]:
-        """The numbers of so many of the points, spread evenly."""
+        """Return the numbers of so many of the points, spread evenly."""
         return np.unique(np.round(np.linspace(0, len(self.points) - 1, most)).astype(np.intp))
 
     def only(self, keep: NDArray[np.intp]) -> UnitPath:
-        """Those of the points."""
+        """Return some of the points."""
         return UnitPath(self.points[keep], None if self.turned is None else self.turned[keep])
 
 
@@ -87,38 +87,38 @@ class PathTask:
 
     @property
     def is_timed(self) -> bool:
-        """Whether the crank's angles are given."""
+        """True if the crank's angles are given."""
         return self.crank_rad is not None
 
     @property
     def turned_rad(self) -> Array | None:
-        """The crank's angles from the first point on [rad], (N,); None without timing."""
+        """Crank's angles from the first point on [rad], (N,); None without timing."""
         return None if self.crank_rad is None else np.array(self.crank_rad) - self.crank_rad[0]
 
     @property
     def middle(self) -> complex:
-        """The mean of the points [m]."""
+        """Mean of the points [m]."""
         return UnitPath.of(self.array)[1]
 
     @property
     def radius_m(self) -> float:
-        """The root of the mean square of their distances from the middle [m]."""
+        """Root of the mean square of their distances from the middle [m]."""
         return UnitPath.of(self.array)[2]
 
     @property
     def unit(self) -> UnitPath:
-        """The path about its middle, over its radius."""
+        """Path about its middle, over its radius."""
         return UnitPath.of(self.array, self.turned_rad)[0]
 
     @property
     def freedom(self) -> int:
-        """How many numbers of a four-bar the path leaves open; negative of one met only nearly."""
+        """Number of a four-bar's values that the path leaves open; negative if nearly met."""
         free = DETERMINED[self.is_timed] - len(self.points)
         return 2 * free if self.is_timed else free
 
 
 def refuse_points(points: Sequence[complex], *, closed: bool, most: float = math.inf) -> None:
-    """Raise CrankcheckError for points [m] that are no path, or more than so many."""
+    """Refuse an invalid path of points [m], or more than so many. Raises CrankcheckError."""
     count = len(points)
     if not LEAST <= count <= most:
         range_ = f"{LEAST} to {most}" if math.isfinite(most) else f"{LEAST} or more"
@@ -139,7 +139,7 @@ def refuse_points(points: Sequence[complex], *, closed: bool, most: float = math
 
 
 def _refuse_angles(angles: Sequence[float], count: int) -> None:
-    """Raise CrankcheckError for angles [rad] that no turn of a crank goes through."""
+    """Refuse angles [rad] that no turn of a crank goes through. Raises CrankcheckError."""
     if len(angles) != count:
         raise CrankcheckError(
             f"{len(angles)} angles of the crank were given for {count} points; give one for each, "

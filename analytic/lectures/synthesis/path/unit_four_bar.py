@@ -1,4 +1,4 @@
-"""Four-bars of ground length 1, and how their coupler turns with the crank.
+"""Four-bars of ground length 1, and the direction of their coupler over the crank's angle.
 
 ::
 
@@ -8,7 +8,7 @@
      a /            \\       u(phi), the direction of the coupler, is to the left of A-O4
     O2 ------------- O4
 
-A coupler point of any four-bar of this shape, however large and wherever it stands, is at
+A coupler point of any four-bar of this shape, of any size and place, is at
 
     P = O + G a exp(i phi) + Q u(phi)
 
@@ -27,7 +27,7 @@ from models.array import Array
 
 Complexes = NDArray[np.complex128]
 Family = Literal["crank-rocker", "double-crank", "limited"]
-"""Whether the crank turns fully, being shorter than the ground or longer; or has limits."""
+"""Families: the crank turns fully, shorter than the ground or longer; or has limits."""
 FULL: tuple[Family, ...] = ("crank-rocker", "double-crank")
 
 BOUNDS: dict[Family, tuple[tuple[float, float], ...]] = {
@@ -43,15 +43,15 @@ BOUNDS: dict[Family, tuple[tuple[float, float], ...]] = {
     ),
     "limited": ((math.log(0.08), math.log(12.0)),) * 3,
 }
-"""Of the three numbers of a shape: see `lengths`."""
+"""Bounds of the three numbers of a shape: see `lengths`."""
 DEAD = 1e-6
-"""The least sine of the angle at A that a derivative is taken with: at a limit it is infinite."""
+"""Least sine of the angle at A for a derivative: at a limit it is infinite."""
 
 
 @dataclass(frozen=True)
 class Turn:
-    """The coupler's direction at crank angles, (..., N); ``excess`` is by how much the cosine of
-    the angle at A is beyond 1, where the dyad does not close: it is 0 where it does.
+    """Coupler's direction at crank angles, (..., N); ``excess`` is that of the cosine of the angle
+    at A over 1, where the dyad does not close, else 0.
 
     ``d_phi`` is the change of the direction with the crank's angle; ``d_shape`` and
     ``d_excess`` (3, ..., N), those of direction and excess with a, b, c, and ``d_excess_phi``.
@@ -66,7 +66,7 @@ class Turn:
 
 
 def direction(lengths: tuple[Array, Array, Array], phi: Array) -> tuple[Complexes, Array]:
-    """The coupler's direction alone, and the cosine of the angle at A, for many shapes at once."""
+    """Return the coupler's direction alone, and the cosine of the angle at A, for many shapes."""
     a, b, c = lengths
     r = 1.0 - a * np.exp(1j * phi)
     rho = np.abs(r)
@@ -76,7 +76,7 @@ def direction(lengths: tuple[Array, Array, Array], phi: Array) -> tuple[Complexe
 
 
 def turn(lengths: tuple[float, float, float], phi: Array) -> Turn:
-    """The coupler's direction and its derivatives, by the cosine law in the triangle A B O4."""
+    """Return the coupler's direction and derivatives, by the cosine law in triangle A B O4."""
     a, b, c = lengths
     crank = np.exp(1j * phi)
     r = 1.0 - a * crank
@@ -108,9 +108,9 @@ def turn(lengths: tuple[float, float, float], phi: Array) -> Turn:
 
 
 def lengths(family: Family, x: Array) -> tuple[Array, Array, Array]:
-    """The lengths a, b, c over the ground from the three numbers of a shape, (3, ...).
+    """Return the lengths a, b, c over the ground from the three numbers of a shape, (3, ...).
 
-    Of a crank that turns fully A is at distances |1 - a| to 1 + a from O4, within b - c to b + c:
+    With a crank that turns fully A is at distances |1 - a| to 1 + a from O4, within b - c to b + c:
     the numbers are log a, log (b + c)/(1 + a) and (b - c)/|1 - a|, in a box. With limits they are
     the logarithms of a, b and c.
     """
@@ -122,7 +122,7 @@ def lengths(family: Family, x: Array) -> tuple[Array, Array, Array]:
 
 
 def lengths_jacobian(family: Family, x: Array) -> Array:
-    """The changes of a, b, c (columns) with the numbers of a shape (rows), (3, 3)."""
+    """Return the changes of a, b, c (columns) with the numbers of a shape (rows), (3, 3)."""
     a, b, c = lengths(family, x)
     if family == "limited":
         return np.diag([a, b, c])
@@ -132,28 +132,28 @@ def lengths_jacobian(family: Family, x: Array) -> Array:
 
 
 def family_of(a: float, b: float, c: float) -> Family:
-    """The family of a shape, by whether A can be as near to O4, and as far, as it comes."""
+    """Return the family of a shape, by the reachable distances of A from O4."""
     if abs(b - c) < abs(1.0 - a) and b + c > 1.0 + a:
         return "crank-rocker" if a < 1.0 else "double-crank"
     return "limited"
 
 
 def distances(a: float, low: float, high: float) -> Array:
-    """The distances of A from O4 at both ends of crank angles [rad], and where they are extreme."""
+    """Return the distances of A from O4 at both ends of crank angles [rad], and at extremes."""
     turns = np.arange(math.ceil(low / math.pi), math.floor(high / math.pi) + 1)
     phi = np.concatenate([[low, high], math.pi * turns])
     return np.abs(1.0 - a * np.exp(1j * phi))
 
 
 def closes_between(shape: tuple[float, float, float], low: float, high: float) -> bool:
-    """Whether the dyad closes at all crank angles [rad] from one to another."""
+    """True if the dyad closes at all crank angles [rad] from one to another."""
     a, b, c = shape
     rho = distances(a, low, high)
     return bool(np.all((rho > abs(b - c)) & (rho < b + c)))
 
 
 def least_sine(shape: tuple[float, float, float], low: float, high: float) -> float:
-    """The least sine of the transmission angle at B, between crank angles [rad]."""
+    """Return the least sine of the transmission angle at B, between crank angles [rad]."""
     a, b, c = shape
     cosine = (b**2 + c**2 - distances(a, low, high) ** 2) / (2.0 * b * c)
     return float(np.sqrt(np.min(np.maximum(1.0 - cosine**2, 0.0))))
