@@ -26,18 +26,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import linprog  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.schemes.screws import (
-    Vector,
-    across,
-    force,
-    kernel,
-    named_twists,
-    names_of_freedoms,
-    rank,
-    reciprocal,
-    rotation,
-    translation,
-)
+from analytic.lectures.schemes import screws
 from models.array import Array
 from models.errors import StructureError
 from models.lectures.scheme import PLANAR, Place, Scheme, SchemeJoint
@@ -86,41 +75,45 @@ def gear_centres(joint: SchemeJoint) -> tuple[Array, Array]:
 def _contact(joint: SchemeJoint) -> list[Array]:
     tangent = np.cross(UP, joint.axes[0])
     return [
-        translation(tangent) if centre is None else rotation(centre, UP)
+        screws.translation(tangent) if centre is None else screws.rotation(centre, UP)
         for centre in curvature_centres(joint)
     ]
 
 
 def _gear(joint: SchemeJoint) -> list[Array]:
     first, second = gear_centres(joint)
-    return [rotation(first, UP), translation(joint.axes[0]), rotation(second, UP)]
+    return [
+        screws.rotation(first, UP),
+        screws.translation(joint.axes[0]),
+        screws.rotation(second, UP),
+    ]
 
 
 def _turns(joint: SchemeJoint) -> list[Array]:
-    return [rotation(joint.at, axis) for axis in np.eye(3)]
+    return [screws.rotation(joint.at, axis) for axis in np.eye(3)]
 
 
 def _slides(normal: tuple[float, float, float]) -> list[Array]:
-    return [translation(axis) for axis in across(normal)]
+    return [screws.translation(axis) for axis in screws.across(normal)]
 
 
 _KINDS: Mapping[str, Callable[[SchemeJoint], list[Array]]] = {
-    "pin": lambda j: [rotation(j.at, UP)],
-    "slider": lambda j: [translation(j.axes[0])],
+    "pin": lambda j: [screws.rotation(j.at, UP)],
+    "slider": lambda j: [screws.translation(j.axes[0])],
     "contact": _contact,
     "gear": _gear,
-    "revolute": lambda j: [rotation(j.at, j.axes[0])],
-    "prismatic": lambda j: [translation(j.axes[0])],
-    "screw": lambda j: [rotation(j.at, j.axes[0], j.lead / (2.0 * math.pi))],
-    "cylindrical": lambda j: [translation(j.axes[0]), rotation(j.at, j.axes[0])],
-    "universal": lambda j: [rotation(j.at, j.axes[0]), rotation(j.at, j.axes[1])],
+    "revolute": lambda j: [screws.rotation(j.at, j.axes[0])],
+    "prismatic": lambda j: [screws.translation(j.axes[0])],
+    "screw": lambda j: [screws.rotation(j.at, j.axes[0], j.lead / (2.0 * math.pi))],
+    "cylindrical": lambda j: [screws.translation(j.axes[0]), screws.rotation(j.at, j.axes[0])],
+    "universal": lambda j: [screws.rotation(j.at, j.axes[0]), screws.rotation(j.at, j.axes[1])],
     "spherical": _turns,
-    "planar": lambda j: [*_slides(j.axes[0]), rotation(j.at, j.axes[0])],
-    "ball-in-tube": lambda j: [translation(j.axes[0]), *_turns(j)],
+    "planar": lambda j: [*_slides(j.axes[0]), screws.rotation(j.at, j.axes[0])],
+    "ball-in-tube": lambda j: [screws.translation(j.axes[0]), *_turns(j)],
     "cylinder-on-plane": lambda j: [
         *_slides(j.axes[1]),
-        rotation(j.at, j.axes[1]),
-        rotation(j.at, j.axes[0]),
+        screws.rotation(j.at, j.axes[1]),
+        screws.rotation(j.at, j.axes[0]),
     ],
     "ball-on-plane": lambda j: [*_slides(j.axes[0]), *_turns(j)],
 }
@@ -241,10 +234,12 @@ def analyse_joint(touching: Touching) -> JointAnalysis:
         for contact in touching.contacts
     }
     rows = np.vstack(list(loads.values()))
-    twists = named_twists()
+    twists = screws.named_twists()
     guided = {
         name: _class_of(
-            np.vstack([rows, reciprocal(np.array([twists[each] for each in guide.leaves]).T)]),
+            np.vstack(
+                [rows, screws.reciprocal(np.array([twists[each] for each in guide.leaves]).T)]
+            ),
             touching,
             size,
         )
@@ -255,9 +250,9 @@ def analyse_joint(touching: Touching) -> JointAnalysis:
 
 def _class_of(rows: Array, touching: Touching, size: float) -> JointClass:
     """Return the class of wrenches, about the joint's own point and over its size."""
-    free = kernel(rows)
+    free = screws.kernel(rows)
     free[3:] = size * free[3:] + np.cross(np.array(touching.at), free[:3].T).T
-    return JointClass(rank(rows), tuple(names_of_freedoms(free, touching.at)))
+    return JointClass(screws.rank(rows), tuple(screws.names_of_freedoms(free, touching.at)))
 
 
 def _is_kept(loads: Mapping[Contact, Array]) -> bool:
@@ -293,37 +288,37 @@ def _contact_place(contact: Contact, touching: Touching, size: float) -> Array:
 
 def _line(contact: Contact, at: Array, size: float) -> list[Array]:
     ends = (at - np.array(contact.along), at + np.array(contact.along))
-    return [force(end, contact.normal) for end in ends]
+    return [screws.force(end, contact.normal) for end in ends]
 
 
 def _plane(contact: Contact, at: Array, size: float) -> list[Array]:
-    first, second = across(contact.normal)
-    return [force(at + each, contact.normal) for each in (first, second, -first - second)]
+    first, second = screws.across(contact.normal)
+    return [screws.force(at + each, contact.normal) for each in (first, second, -first - second)]
 
 
 def _circle(contact: Contact, at: Array, size: float) -> list[Array]:
-    return [force(at, each) for each in across(contact.axis)]
+    return [screws.force(at, each) for each in screws.across(contact.axis)]
 
 
 def _leaving(*twists: Array) -> list[Array]:
     """Return the wrenches of a joint that leaves some motions, and these alone."""
-    return list(reciprocal(np.array(twists).T))
+    return list(screws.reciprocal(np.array(twists).T))
 
 
-def _thread(contact: Contact, at: Vector, size: float) -> list[Array]:
-    return _leaving(rotation(at, contact.axis, contact.lead / (2.0 * np.pi * size)))
+def _thread(contact: Contact, at: screws.Vector, size: float) -> list[Array]:
+    return _leaving(screws.rotation(at, contact.axis, contact.lead / (2.0 * np.pi * size)))
 
 
 _LOADS: Mapping[str, Callable[[Contact, Array, float], list[Array]]] = {
-    "point": lambda contact, at, _: [force(at, contact.normal)],
+    "point": lambda contact, at, _: [screws.force(at, contact.normal)],
     "line": _line,
     "circle": _circle,
     "plane": _plane,
     "cylinder": lambda contact, at, _: _leaving(
-        rotation(at, contact.axis), translation(contact.axis)
+        screws.rotation(at, contact.axis), screws.translation(contact.axis)
     ),
-    "sphere": lambda _, at, __: [force(at, axis) for axis in np.eye(3)],
-    "revolution": lambda contact, at, _: _leaving(rotation(at, contact.axis)),
-    "prism": lambda contact, _, __: _leaving(translation(contact.axis)),
+    "sphere": lambda _, at, __: [screws.force(at, axis) for axis in np.eye(3)],
+    "revolution": lambda contact, at, _: _leaving(screws.rotation(at, contact.axis)),
+    "prism": lambda contact, _, __: _leaving(screws.translation(contact.axis)),
     "thread": _thread,
 }

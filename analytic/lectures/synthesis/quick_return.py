@@ -30,16 +30,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.design import (
-    AskedAngle,
-    AskedSlide,
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    PrecisionPosition,
-    Proposal,
-    Segment,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.driving_dyad import chord
 from analytic.lectures.synthesis.strokes import lag_of
 from models.errors import CrankcheckError
@@ -59,10 +50,10 @@ class SwungRocker:
     rocker_m: float
     angles: tuple[float, float]
     ends: tuple[complex, complex]
-    seen: DrawnCircle
+    seen: design.DrawnCircle
 
 
-def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
+def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[design.Proposal]:
     """Yield the crank-rockers of a task whose slow stroke takes half a turn and ``lag`` [rad]."""
     assert task.rocker_m is not None
     assert task.swing_deg is not None
@@ -73,7 +64,7 @@ def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
     reach = math.pi - lag
     for side in (1.0, -1.0):
         centre = 0.5 * sum(ends) + side * 1j * radius * math.cos(lag)
-        swung = SwungRocker(task.rocker_m, angles, ends, DrawnCircle(centre, radius))
+        swung = SwungRocker(task.rocker_m, angles, ends, design.DrawnCircle(centre, radius))
         for share in (np.arange(PLACES // 2) + 0.5) / (PLACES // 2):
             pivot = centre + side * 1j * radius * cmath.exp(1j * reach * (2.0 * share - 1.0))
             if (proposal := _crank_rocker(task, swung, pivot, lag)) is not None:
@@ -82,7 +73,7 @@ def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
 
 def _crank_rocker(
     task: QuickReturnTask, swung: SwungRocker, pivot: complex, lag: float
-) -> Proposal | None:
+) -> design.Proposal | None:
     """Return the one with O2 at a place of the circle; None as near to B1 as to B2."""
     far, near = sorted(swung.ends, key=lambda end: -abs(end - pivot))
     crank = 0.5 * (abs(far - pivot) - abs(near - pivot))
@@ -97,41 +88,41 @@ def _crank_rocker(
     }
     draft = Draft(task.name, task.source, {O2: pivot, O4: 0j}, links, {})
     positions = tuple(
-        PrecisionPosition(angle, (AskedAngle("rocker", lever),))
+        design.PrecisionPosition(angle, (design.AskedAngle("rocker", lever),))
         for angle, lever in zip(turned, swung.angles, strict=True)
     )
     told = {"crank": f"{crank:.6g} m", "coupler": f"{coupler:.6g} m"}
     pin = pivot + cmath.rect(crank, turned[0])
-    steps = tuple(_rocker_steps(swung, DrawnCircle(pivot, crank), pin, lag))
-    return Proposal(draft, "crank", positions, told, steps, turns_back="rocker")
+    steps = tuple(_rocker_steps(swung, design.DrawnCircle(pivot, crank), pin, lag))
+    return design.Proposal(draft, "crank", positions, told, steps, turns_back="rocker")
 
 
 def _rocker_steps(
-    swung: SwungRocker, turn: DrawnCircle, pin: complex, lag: float
-) -> Iterator[DrawingStep]:
+    swung: SwungRocker, turn: design.DrawnCircle, pin: complex, lag: float
+) -> Iterator[design.DrawingStep]:
     """Yield both ends, the circle they are seen from, and that of the crank, pin in position 1."""
     pivot, ends = turn.centre, swung.ends
-    yield DrawingStep(
+    yield design.DrawingStep(
         "the rocker O4 B in its end positions",
         (
-            Dot(0j, O4, "given", fixed=True),
-            *(Segment(0j, end, "given") for end in ends),
-            *(Dot(end, f"B{n}", "given") for n, end in enumerate(ends, 1)),
+            design.Dot(0j, O4, "given", fixed=True),
+            *(design.Segment(0j, end, "given") for end in ends),
+            *(design.Dot(end, f"B{n}", "given") for n, end in enumerate(ends, 1)),
         ),
     )
-    yield DrawingStep(
+    yield design.DrawingStep(
         f"the circle from which B1 B2 is seen under a = {math.degrees(lag):.6g} deg, and O2 on it",
-        (swung.seen, Dot(pivot, O2, "result", fixed=True)),
+        (swung.seen, design.Dot(pivot, O2, "result", fixed=True)),
     )
-    yield DrawingStep(
+    yield design.DrawingStep(
         "half the difference of O2 B1 and O2 B2 is the crank, half their sum the coupler",
         (
-            *(Segment(pivot, end) for end in ends),
+            *(design.Segment(pivot, end) for end in ends),
             turn,
-            Segment(pivot, pin, "result"),
-            Segment(pin, ends[0], "result"),
-            Segment(0j, ends[0], "result"),
-            Dot(pin, "A1", "result"),
+            design.Segment(pivot, pin, "result"),
+            design.Segment(pin, ends[0], "result"),
+            design.Segment(0j, ends[0], "result"),
+            design.Dot(pin, "A1", "result"),
         ),
     )
 
@@ -143,7 +134,7 @@ ROD = 2.0
 """Default rod, over the ram's stroke."""
 
 
-def quick_return_proposals(task: QuickReturnTask) -> tuple[list[Proposal], int]:
+def quick_return_proposals(task: QuickReturnTask) -> tuple[list[design.Proposal], int]:
     """Return the mechanisms of a task, and their number."""
     lag = lag_of(task.time_ratio)
     if task.mechanism == "crank-rocker":
@@ -154,7 +145,7 @@ def quick_return_proposals(task: QuickReturnTask) -> tuple[list[Proposal], int]:
     return found, len(found)
 
 
-def _slotted_lever(task: QuickReturnTask, lag: float) -> Proposal:
+def _slotted_lever(task: QuickReturnTask, lag: float) -> design.Proposal:
     """Return the lever with O4 at the origin, O2 above it; it swings by a about the y-axis."""
     share = math.sin(0.5 * lag)
     if task.stroke_m is not None:  # of the lever's end
@@ -170,22 +161,24 @@ def _slotted_lever(task: QuickReturnTask, lag: float) -> Proposal:
     links: dict[str, Table] = {"crank": bar(O2, PIN, crank), "lever": bar(O4, END, lever)}
     sliders: dict[str, Table] = {PIN: {"on": "lever"}}
     ends = [cmath.rect(lever, angle) for angle in levers]
-    asked = [[AskedAngle("lever", angle)] for angle in levers]
+    asked = [[design.AskedAngle("lever", angle)] for angle in levers]
     slides: list[float] = []
     if task.stroke_m is not None:
         slides = _add_ram(task, links, sliders, ends, 0.5 * (lever + ends[0].imag))
     draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
     positions = tuple(
-        PrecisionPosition(angle, (*one, *(AskedSlide(RAM, s) for s in slides[k : k + 1])))
+        design.PrecisionPosition(
+            angle, (*one, *(design.AskedSlide(RAM, s) for s in slides[k : k + 1]))
+        )
         for k, (angle, one) in enumerate(zip(angles, asked, strict=True))
     )
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "swing": _degrees(lag)}
     steps = tuple(_steps(1j * pivots, crank, angles, ends, lag))
     goes = RAM if slides else "lever"
-    return Proposal(draft, "crank", positions, told, steps, turns_back=goes)
+    return design.Proposal(draft, "crank", positions, told, steps, turns_back=goes)
 
 
-def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
+def _whitworth(task: QuickReturnTask, lag: float) -> design.Proposal:
     """Return the guide with O4 at the origin, O2 above; its end B moves a ram on the x-axis."""
     share = math.sin(0.5 * lag)
     crank = (
@@ -207,12 +200,14 @@ def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
     slides = _add_ram(task, links, sliders, ends, 0.0)
     draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
     positions = tuple(
-        PrecisionPosition(angle, (AskedAngle("guide", level), AskedSlide(RAM, slide)))
+        design.PrecisionPosition(
+            angle, (design.AskedAngle("guide", level), design.AskedSlide(RAM, slide))
+        )
         for angle, level, slide in zip(angles, levers, slides, strict=True)
     )
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "stroke": f"{2.0 * arm:.6g} m"}
     steps = tuple(_steps(1j * pivots, crank, angles, ends, lag))
-    return Proposal(draft, "crank", positions, told, steps, turns_back=RAM)
+    return design.Proposal(draft, "crank", positions, told, steps, turns_back=RAM)
 
 
 def _add_ram(
@@ -241,26 +236,26 @@ def _add_ram(
 
 def _steps(
     pivot: complex, crank: float, angles: tuple[float, float], ends: list[complex], lag: float
-) -> Iterator[DrawingStep]:
+) -> Iterator[design.DrawingStep]:
     """Yield the limits of a lever or guide about O4, and the crank's angles there [rad]."""
-    yield DrawingStep(
+    yield design.DrawingStep(
         f"the limits of the guide about O4, and O2 above it by {pivot.imag:.6g} m",
         (
-            Dot(0j, O4, "given", fixed=True),
-            Dot(pivot, O2, "given", fixed=True),
-            *(Segment(0j, end, "given") for end in ends),
+            design.Dot(0j, O4, "given", fixed=True),
+            design.Dot(pivot, O2, "given", fixed=True),
+            *(design.Segment(0j, end, "given") for end in ends),
         ),
     )
     pins = [pivot + cmath.rect(crank, angle) for angle in angles]
-    yield DrawingStep(
+    yield design.DrawingStep(
         f"the crank's circle: its pin is at A1 and A2 there, and 180 deg + {_degrees(lag)} of the "
         "turn lie above them",
         (
-            DrawnCircle(pivot, crank),
-            Segment(pivot, pins[0], "result"),
-            Segment(pivot, pins[1]),
-            Dot(pins[0], "A1", "result"),
-            Dot(pins[1], "A2"),
+            design.DrawnCircle(pivot, crank),
+            design.Segment(pivot, pins[0], "result"),
+            design.Segment(pivot, pins[1]),
+            design.Dot(pins[0], "A1", "result"),
+            design.Dot(pins[1], "A2"),
         ),
     )
 

@@ -5,19 +5,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from analytic.lectures.synthesis.design import (
-    Asked,
-    AskedAngle,
-    AskedPlace,
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    Element,
-    PrecisionPosition,
-    Proposal,
-    Segment,
-    letters_beside,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.driving_dyad import ToAndFro, choices
 from analytic.lectures.synthesis.pose import (
     PlanePose,
@@ -42,11 +30,11 @@ class Swung:
     ends: tuple[complex, complex]
     poses: tuple[PlanePose, PlanePose]
     points: Mapping[str, complex]
-    steps: tuple[DrawingStep, ...]
+    steps: tuple[design.DrawingStep, ...]
     pin: str = ""
 
 
-def rocker_proposals(task: RockerTask) -> tuple[list[Proposal], int]:
+def rocker_proposals(task: RockerTask) -> tuple[list[design.Proposal], int]:
     """Return the crank-rockers of a task, and their number.
 
     Raises
@@ -71,14 +59,14 @@ def _by_angle(task: RockerTask) -> Swung:
     half = math.radians(0.5 * task.swing_deg)
     angles = (0.5 * math.pi + half, 0.5 * math.pi - half)
     one, other = (cmath.rect(task.rocker_m, angle) for angle in angles)
-    step = DrawingStep(
+    step = design.DrawingStep(
         f"the rocker O4 B in its end positions, {task.swing_deg:g} deg apart",
         (
-            Dot(0j, O4, "given", fixed=True),
-            Segment(0j, one, "given"),
-            Segment(0j, other, "given"),
-            Dot(one, "B1", "given"),
-            Dot(other, "B2", "given"),
+            design.Dot(0j, O4, "given", fixed=True),
+            design.Segment(0j, one, "given"),
+            design.Segment(0j, other, "given"),
+            design.Dot(one, "B1", "given"),
+            design.Dot(other, "B2", "given"),
         ),
     )
     poses = (PlanePose(0j, angles[0]), PlanePose(0j, angles[1]))
@@ -112,7 +100,7 @@ def _by_positions(task: RockerTask) -> Swung:
     arm_m, arm = abs(towards), towards / abs(towards)
     radius = task.rocker_m or arm_m
     is_pin = bool(letter) and abs(radius - arm_m) <= 1e-9 * arm_m
-    pin = letter if is_pin else letters_beside(own, 2)[1]
+    pin = letter if is_pin else design.letters_beside(own, 2)[1]
     turn = cmath.exp(1j * turn_between(first, second))
     ends = (pivot + radius * arm, pivot + radius * arm * turn)
     # The rocker's own frame: O4 at its origin, B on its x-axis.
@@ -127,46 +115,51 @@ def _by_positions(task: RockerTask) -> Swung:
 
 def _pole_steps(
     places: tuple[PlanePose, PlanePose], own: Mapping[str, complex], pivot: complex
-) -> Iterator[DrawingStep]:
+) -> Iterator[design.DrawingStep]:
     """Yield the body in its positions, and the bisectors that meet in the pole."""
-    elements: list[Element] = [
-        Dot(pose.at(each), f"{name}{number}", "given")
+    elements: list[design.Element] = [
+        design.Dot(pose.at(each), f"{name}{number}", "given")
         for number, pose in enumerate(places, 1)
         for name, each in own.items()
     ]
     if len(own) > 1:
         one, other = own.values()
-        elements = [*(Segment(pose.at(one), pose.at(other), "given") for pose in places), *elements]
-    yield DrawingStep("the body in its two positions", tuple(elements))
+        elements = [
+            *(design.Segment(pose.at(one), pose.at(other), "given") for pose in places),
+            *elements,
+        ]
+    yield design.DrawingStep("the body in its two positions", tuple(elements))
     ways = [(places[0].at(each), places[1].at(each)) for each in own.values()]
-    yield DrawingStep(
+    yield design.DrawingStep(
         f"the bisectors of {' and '.join(f'{n}1{n}2' for n in own)} meet in the rotopole O4"
         if len(own) > 1
         else "the body turns from one into the other about the rotopole O4",
         (
-            *(Segment(bisector(a, b).middle, pivot, beyond=0.15) for a, b in ways if a != b),
-            Dot(pivot, O4, "result", fixed=True),
+            *(design.Segment(bisector(a, b).middle, pivot, beyond=0.15) for a, b in ways if a != b),
+            design.Dot(pivot, O4, "result", fixed=True),
         ),
     )
 
 
-def _pin_step(pivot: complex, ends: tuple[complex, complex], pin: str, letter: str) -> DrawingStep:
+def _pin_step(
+    pivot: complex, ends: tuple[complex, complex], pin: str, letter: str
+) -> design.DrawingStep:
     """Return the rocker's pin in both positions."""
     words = f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2"
-    return DrawingStep(
+    return design.DrawingStep(
         words if letter else f"{pin} at its distance from O4, in both positions",
         (
-            DrawnCircle(pivot, abs(ends[0] - pivot)),
-            *(Segment(pivot, end) for end in ends),
-            *(Dot(end, f"{pin}{number}") for number, end in enumerate(ends, 1)),
+            design.DrawnCircle(pivot, abs(ends[0] - pivot)),
+            *(design.Segment(pivot, end) for end in ends),
+            *(design.Dot(end, f"{pin}{number}") for number, end in enumerate(ends, 1)),
         ),
     )
 
 
-def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) -> Proposal:
+def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) -> design.Proposal:
     """Return the crank-rocker with O2 at a distance from the chord's middle, beyond B1 or B2."""
     found = ToAndFro.of(*swung.ends, distance_m, beyond=beyond)
-    crank_pin, free = letters_beside(swung.points, 2)
+    crank_pin, free = design.letters_beside(swung.points, 2)
     rocker_pin = swung.pin or free
     radius = abs(swung.ends[0] - swung.pivot)
     own = {O4: 0j, rocker_pin: complex(radius), **swung.points}
@@ -182,15 +175,17 @@ def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) ->
         {},
     )
     positions = tuple(
-        PrecisionPosition(angle, _asked(swung, pose))
+        design.PrecisionPosition(angle, _asked(swung, pose))
         for angle, pose in zip(found.angles, swung.poses, strict=True)
     )
     steps = (*swung.steps, *found.steps(swung.ends, (O2, crank_pin, rocker_pin)))
-    links = DrawingStep("the rocker", (Segment(swung.pivot, swung.ends[0], "result"),))
+    links = design.DrawingStep(
+        "the rocker", (design.Segment(swung.pivot, swung.ends[0], "result"),)
+    )
     told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"{rocker_pin}{beyond}"}
-    return Proposal(draft, "crank", positions, told, (*steps, links), turns_back="rocker")
+    return design.Proposal(draft, "crank", positions, told, (*steps, links), turns_back="rocker")
 
 
-def _asked(swung: Swung, pose: PlanePose) -> tuple[Asked, ...]:
-    places = (AskedPlace(name, pose.at(place)) for name, place in swung.points.items())
-    return (AskedAngle("rocker", pose.angle), *places)
+def _asked(swung: Swung, pose: PlanePose) -> tuple[design.Asked, ...]:
+    places = (design.AskedPlace(name, pose.at(place)) for name, place in swung.points.items())
+    return (design.AskedAngle("rocker", pose.angle), *places)

@@ -13,19 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
+from analytic.elastic import periodic
 from analytic.elastic.discretisation import Discretisation, Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.natural import NaturalModes, natural_modes
-from analytic.elastic.periodic import (
-    FIRST,
-    LinearForm,
-    PeriodicMotion,
-    check_periodic,
-    instants,
-    linear_motion,
-    linearise,
-    periodic_motion,
-)
 from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.floquet import Stability, stability_of
 from models.array import Array
@@ -73,7 +64,7 @@ class AnySpeed:
         scene = at_speed(self.scene, speed_rad_s)
         return DrivenElasticMotion(scene, 1.0, self.by, "periodic", self.stiffened).form
 
-    def linear(self, speed_rad_s: float) -> LinearForm:
+    def linear(self, speed_rad_s: float) -> periodic.LinearForm:
         """Return the linearised equations at a speed."""
         if self._series is None:
             return self._direct(speed_rad_s)
@@ -105,19 +96,19 @@ class AnySpeed:
         off = apart(self._summed(series, between), self._direct(between))
         return None if off > SAME else series
 
-    def _direct(self, speed: float) -> LinearForm:
+    def _direct(self, speed: float) -> periodic.LinearForm:
         form = self.form(speed)
-        check_periodic(form)
-        time_s = instants(INSTANTS, form.period_s)
-        return linearise(form, time_s, FIRST * self.scene.longest_m)
+        periodic.check_periodic(form)
+        time_s = periodic.instants(INSTANTS, form.period_s)
+        return periodic.linearise(form, time_s, periodic.FIRST * self.scene.longest_m)
 
-    def _summed(self, series: Mapping[str, Array], speed: float) -> LinearForm:
+    def _summed(self, series: Mapping[str, Array], speed: float) -> periodic.LinearForm:
         powers = speed ** np.arange(3.0)
         parts = {part: np.tensordot(powers, series[part], 1) for part in PARTS}
-        return LinearForm(instants(INSTANTS, math.tau / speed), **parts)
+        return periodic.LinearForm(periodic.instants(INSTANTS, math.tau / speed), **parts)
 
 
-def apart(one: LinearForm, other: LinearForm) -> float:
+def apart(one: periodic.LinearForm, other: periodic.LinearForm) -> float:
     """Return the difference of linearised equations, each part over its largest entry; damping over
     the critical one where it is but rounding."""
     largest = {part: float(np.abs(vars(other)[part]).max()) for part in PARTS}
@@ -213,9 +204,9 @@ class SteadyVibration:
         return self.scene.driver.law.peak_speed_rad_s
 
     @cached_property
-    def motion(self) -> PeriodicMotion:
+    def motion(self) -> periodic.PeriodicMotion:
         """Periodic motion of the full equations."""
-        return periodic_motion(self.form)
+        return periodic.periodic_motion(self.form)
 
     @cached_property
     def stability(self) -> Stability:
@@ -233,8 +224,10 @@ class SteadyVibration:
         found = {}
         for name, stiffened in (("linear", True), ("linear, not stiffened", False)):
             form = self._form(stiffened=stiffened)
-            scale = FIRST * self.scene.longest_m
-            motion = linear_motion(form, linearise(form, self.motion.time_s, scale))
+            scale = periodic.FIRST * self.scene.longest_m
+            motion = periodic.linear_motion(
+                form, periodic.linearise(form, self.motion.time_s, scale)
+            )
             found[name] = swings(form, motion.z)
         return found
 

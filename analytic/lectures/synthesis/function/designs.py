@@ -8,21 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.design import (
-    COUPLER,
-    INPUT,
-    OUTPUT,
-    PINS,
-    PIVOTS,
-    Asked,
-    AskedAngle,
-    AskedSlide,
-    Dot,
-    DrawingStep,
-    Element,
-    PrecisionPosition,
-    Segment,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.function.equal_ripple import equal_ripple
 from analytic.lectures.synthesis.function.fourbar import fourbars
 from analytic.lectures.synthesis.function.generator import STARTS, FunctionProposal, Generator
@@ -46,12 +32,12 @@ def proposed(
     ends = (generator.input_start, generator.input_start + task.input_range_rad)
     output = task.output_scale * generator.output_start + task.output_way(x)
     positions = tuple(
-        PrecisionPosition(float(angle), (_asked(task, float(of)),))
+        design.PrecisionPosition(float(angle), (_asked(task, float(of)),))
         for angle, of in zip(phi, output, strict=True)
     )
     return FunctionProposal(
         _draft(task, generator, x),
-        INPUT,
+        design.INPUT,
         positions,
         dict(chosen),
         _steps(task, generator, x, _places(task, generator, phi, output)),
@@ -63,18 +49,18 @@ def proposed(
     )
 
 
-def _asked(task: FunctionTask, output: float) -> Asked:
+def _asked(task: FunctionTask, output: float) -> design.Asked:
     if task.mechanism == "fourbar":
-        return AskedAngle(OUTPUT, math.remainder(output, math.tau))
-    return AskedSlide(PINS[1], output)
+        return design.AskedAngle(design.OUTPUT, math.remainder(output, math.tau))
+    return design.AskedSlide(design.PINS[1], output)
 
 
 def _draft(task: FunctionTask, generator: Generator, x: Array) -> Draft:
     """Return the tables of the scene: lengths in m."""
     lengths = [task.scale_m * length for length in generator.lengths]
     links = {
-        INPUT: bar(PIVOTS[0], PINS[0], lengths[0]),
-        COUPLER: bar(PINS[0], PINS[1], lengths[1]),
+        design.INPUT: bar(design.PIVOTS[0], design.PINS[0], lengths[0]),
+        design.COUPLER: bar(design.PINS[0], design.PINS[1], lengths[1]),
     }
     note = f"generates {task.function.name} from x = {task.x_low:g} to {task.x_high:g}, exact at "
     note += f"x = {', '.join(f'{each:.6g}' for each in x)}"
@@ -82,10 +68,10 @@ def _draft(task: FunctionTask, generator: Generator, x: Array) -> Draft:
     if isinstance(generator, SliderCrankGenerator):
         line = (0.0, task.scale_m * generator.offset)
         slider = {"on": "ground", "through_m": line, "direction_deg": 0.0}
-        ground = {PIVOTS[0]: 0j}
-        return Draft(name, SOURCE, ground, links, {}, sliders={PINS[1]: slider}, note=note)
-    links[OUTPUT] = bar(PIVOTS[1], PINS[1], lengths[2])
-    ground = {PIVOTS[0]: 0j, PIVOTS[1]: complex(task.ground_m)}
+        ground = {design.PIVOTS[0]: 0j}
+        return Draft(name, SOURCE, ground, links, {}, sliders={design.PINS[1]: slider}, note=note)
+    links[design.OUTPUT] = bar(design.PIVOTS[1], design.PINS[1], lengths[2])
+    ground = {design.PIVOTS[0]: 0j, design.PIVOTS[1]: complex(task.ground_m)}
     return Draft(name, SOURCE, ground, links, {}, note=note)
 
 
@@ -106,43 +92,49 @@ def _places(
 
 def _steps(
     task: FunctionTask, generator: Generator, x: Array, places: list[tuple[complex, complex]]
-) -> tuple[DrawingStep, ...]:
+) -> tuple[design.DrawingStep, ...]:
     """Return the steps: maps, required input and output of the points, resulting links."""
     slides = isinstance(generator, SliderCrankGenerator)
     pivot = None if slides else complex(task.ground_m)
-    frame: tuple[Element, ...] = (Dot(0j, PIVOTS[0], "given", fixed=True),)
-    frame += () if pivot is None else (Dot(pivot, PIVOTS[1], "given", fixed=True),)
+    frame: tuple[design.Element, ...] = (design.Dot(0j, design.PIVOTS[0], "given", fixed=True),)
+    frame += () if pivot is None else (design.Dot(pivot, design.PIVOTS[1], "given", fixed=True),)
     k1, k2, k3 = generator.k
     first_in, first_out = places[0]
-    links = [Segment(0j, first_in, "result"), Segment(first_in, first_out, "result")]
-    links += [] if pivot is None else [Segment(pivot, first_out, "result")]
+    links = [design.Segment(0j, first_in, "result"), design.Segment(first_in, first_out, "result")]
+    links += [] if pivot is None else [design.Segment(pivot, first_out, "result")]
     unit = f"{abs(task.output_range):.6g} m" if slides else _degrees(task.output_range)
     return (
-        DrawingStep(
+        design.DrawingStep(
             f"x from {task.x_low:g} to {task.x_high:g} turns the input by "
             f"{_degrees(task.input_range_rad)}, y moves the output by {unit}; precision points at "
             f"x = {', '.join(f'{each:.6g}' for each in x)}",
             (*frame, *_asked_lines(places, pivot)),
         ),
-        DrawingStep(
+        design.DrawingStep(
             f"Freudenstein's equation in these points gives k1 = {k1:.6g}, k2 = {k2:.6g}, "
             f"k3 = {k3:.6g}, and with them the lengths",
-            (*links, Dot(first_in, PINS[0], "result"), Dot(first_out, PINS[1], "result")),
+            (
+                *links,
+                design.Dot(first_in, design.PINS[0], "result"),
+                design.Dot(first_out, design.PINS[1], "result"),
+            ),
         ),
     )
 
 
-def _asked_lines(places: list[tuple[complex, complex]], pivot: complex | None) -> Iterator[Element]:
+def _asked_lines(
+    places: list[tuple[complex, complex]], pivot: complex | None
+) -> Iterator[design.Element]:
     """Yield the required input and output of the points; for a slider its line."""
     for number, (pin, end) in enumerate(places, 1):
-        yield Segment(0j, pin)
-        yield Dot(pin, f"{PINS[0]}{number}")
-        yield Dot(end, f"{PINS[1]}{number}")
+        yield design.Segment(0j, pin)
+        yield design.Dot(pin, f"{design.PINS[0]}{number}")
+        yield design.Dot(end, f"{design.PINS[1]}{number}")
         if pivot is not None:
-            yield Segment(pivot, end)
+            yield design.Segment(pivot, end)
     if pivot is None:
         along = sorted((end for _, end in places), key=lambda place: place.real)
-        yield Segment(along[0], along[-1], "given", beyond=0.2)
+        yield design.Segment(along[0], along[-1], "given", beyond=0.2)
 
 
 def _degrees(angle: float) -> str:

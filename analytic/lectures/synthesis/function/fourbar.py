@@ -22,13 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.function.generator import (
-    Generator,
-    one_vector,
-    opposite,
-    toggled,
-    vectors_of,
-)
+from analytic.lectures.synthesis.function import generator
 from models.array import Array
 
 NOTHING = 1e-14
@@ -39,7 +33,7 @@ Found = tuple[Numbers, float, float]
 
 
 @dataclass(frozen=True)
-class FourBarGenerator(Generator):
+class FourBarGenerator(generator.Generator):
     """Four-bar in units of its ground d."""
 
     @property
@@ -48,9 +42,9 @@ class FourBarGenerator(Generator):
         k1, k2, k3 = self.k
         return FourBarGenerator(
             (abs(k1), abs(k2), k3 if k1 * k2 > 0.0 else -k3),
-            opposite(self.input_start) if k1 < 0.0 else self.input_start,
-            opposite(self.output_start) if k2 < 0.0 else self.output_start,
-            toggled(self.turned, ("input",) * (k1 < 0.0) + ("output",) * (k2 < 0.0)),
+            generator.opposite(self.input_start) if k1 < 0.0 else self.input_start,
+            generator.opposite(self.output_start) if k2 < 0.0 else self.output_start,
+            generator.toggled(self.turned, ("input",) * (k1 < 0.0) + ("output",) * (k2 < 0.0)),
         )
 
     @property
@@ -91,7 +85,7 @@ class FourBarGenerator(Generator):
 
 def fourbars(
     turns: Array, ways: Array, input_start: float | None = None, output_start: float | None = None
-) -> list[Generator]:
+) -> list[generator.Generator]:
     """Return all four-bars whose input and output go through precision points.
 
     Parameters
@@ -127,7 +121,7 @@ def _of_both(turns: Array, ways: Array, phi0: float, psi0: float) -> Found:
     """Solve the equations, linear in k1, k2, k3."""
     phi, psi = phi0 + turns, psi0 + ways
     rows = np.stack([np.cos(psi), -np.cos(phi), np.ones_like(phi), -np.cos(phi - psi)], axis=1)
-    x = one_vector(rows)
+    x = generator.one_vector(rows)
     return over((x[0], x[1], x[2]), x[3]), phi0, psi0
 
 
@@ -136,7 +130,7 @@ def _of_input(turns: Array, ways: Array, phi0: float) -> list[Found]:
     phi = phi0 + turns
     left = [np.cos(ways), -np.sin(ways), -np.cos(phi), np.ones_like(phi)]
     rows = np.stack([*left, -np.cos(phi - ways), -np.sin(phi - ways)], axis=1)
-    every = vectors_of(rows, lambda x: float(x[0] * x[5] - x[1] * x[4]), 2)
+    every = generator.vectors_of(rows, lambda x: float(x[0] * x[5] - x[1] * x[4]), 2)
     found = []
     for x in every:
         psi0, size = math.atan2(x[5], x[4]), math.hypot(x[5], x[4])
@@ -148,8 +142,8 @@ def _of_input(turns: Array, ways: Array, phi0: float) -> list[Found]:
 def _of_output(turns: Array, ways: Array, psi0: float) -> list[Found]:
     """Solve from the other side: the output half a turn on is the input of the same equation, and
     k1 and k2 change their places."""
-    changed = _of_input(ways, turns, opposite(psi0))
-    return [((k2, k1, k3), opposite(phi0), psi0) for (k1, k2, k3), _, phi0 in changed]
+    changed = _of_input(ways, turns, generator.opposite(psi0))
+    return [((k2, k1, k3), generator.opposite(phi0), psi0) for (k1, k2, k3), _, phi0 in changed]
 
 
 def _of_none(turns: Array, ways: Array) -> list[Found]:
@@ -158,7 +152,7 @@ def _of_none(turns: Array, ways: Array) -> list[Found]:
     left = [np.cos(ways), -np.sin(ways), -np.cos(turns), np.sin(turns), np.ones_like(turns)]
     rows = np.stack([*left, -np.cos(turns - ways), np.sin(turns - ways)], axis=1)
     found = []
-    for x in vectors_of(rows, _belonging, 3):
+    for x in generator.vectors_of(rows, _belonging, 3):
         of_psi, of_phi, between = _ends(x)
         # The sign of the vector with which both lengths are positive.
         sign = math.copysign(1.0, (of_phi * (of_psi * between).conjugate()).real)

@@ -21,19 +21,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.lectures.synthesis.function import generator
 from analytic.lectures.synthesis.function.fourbar import Found, over
-from analytic.lectures.synthesis.function.generator import (
-    Generator,
-    one_vector,
-    opposite,
-    toggled,
-    vectors_of,
-)
 from models.array import Array
 
 
 @dataclass(frozen=True)
-class SliderCrankGenerator(Generator):
+class SliderCrankGenerator(generator.Generator):
     """Slider-crank in units of the slider's range."""
 
     @property
@@ -42,9 +36,9 @@ class SliderCrankGenerator(Generator):
         k1, k2, k3 = self.k
         if k1 > 0.0:
             return self
-        turned = toggled(self.turned, ("input",))
+        turned = generator.toggled(self.turned, ("input",))
         return SliderCrankGenerator(
-            (-k1, -k2, k3), opposite(self.input_start), self.output_start, turned
+            (-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned
         )
 
     @property
@@ -83,7 +77,7 @@ class SliderCrankGenerator(Generator):
 
 def slider_cranks(
     turns: Array, ways: Array, input_start: float | None = None, output_start: float | None = None
-) -> list[Generator]:
+) -> list[generator.Generator]:
     """Return all slider-cranks whose input and slider go through precision points.
 
     Parameters
@@ -118,7 +112,9 @@ def slider_cranks(
 
 def _of_both(phi: Array, s: Array, phi0: float, s0: float) -> Found:
     """Solve the equations, linear in k1, k2, k3."""
-    x = one_vector(np.stack([s * np.cos(phi), np.sin(phi), np.ones_like(phi), -(s**2)], axis=1))
+    x = generator.one_vector(
+        np.stack([s * np.cos(phi), np.sin(phi), np.ones_like(phi), -(s**2)], axis=1)
+    )
     return over((x[0], x[1], x[2]), x[3]), phi0, s0
 
 
@@ -127,7 +123,7 @@ def _of_input(phi: Array, ways: Array, phi0: float) -> list[Found]:
     left = [ways * np.cos(phi), np.cos(phi), np.sin(phi), np.ones_like(phi)]
     rows = np.stack([*left, -2.0 * ways, -(ways**2)], axis=1)
     found = []
-    for x in vectors_of(rows, lambda x: float(x[1] * x[5] - x[0] * x[4]), 2):
+    for x in generator.vectors_of(rows, lambda x: float(x[1] * x[5] - x[0] * x[4]), 2):
         k1, k2, rest = over((x[0], x[2], x[3]), x[5])
         s0 = over((x[4], 0.0, 0.0), x[5])[0]
         found.append(((k1, k2, rest + s0**2), phi0, s0))
@@ -139,7 +135,7 @@ def _of_output(turns: Array, s: Array, s0: float) -> list[Found]:
     of_phi = [np.cos(turns), np.sin(turns)]
     left = [s * of_phi[0], -s * of_phi[1], *of_phi, np.ones_like(s)]
     found = []
-    for x in vectors_of(
+    for x in generator.vectors_of(
         np.stack([*left, -(s**2)], axis=1), lambda x: float(x[0] * x[2] - x[1] * x[3]), 2
     ):
         first, second = complex(x[0], x[1]), complex(x[3], x[2])
@@ -156,7 +152,7 @@ def _of_none(turns: Array, ways: Array) -> list[Found]:
     left = [ways * of_phi[0], -ways * of_phi[1], *of_phi, np.ones_like(turns)]
     rows = np.stack([*left, -2.0 * ways, -(ways**2)], axis=1)
     found = []
-    for x in vectors_of(rows, _belonging, 3):
+    for x in generator.vectors_of(rows, _belonging, 3):
         first, second = complex(x[0], x[1]), complex(x[2], x[3])
         sign = math.copysign(1.0, x[6])
         k1, s0, rest = over((abs(first), sign * x[5], sign * x[4]), abs(x[6]))

@@ -10,20 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import isotonic_regression  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.synthesis.design import (
-    COUPLER,
-    INPUT,
-    OUTPUT,
-    PINS,
-    PIVOTS,
-    AskedPlace,
-    Dot,
-    DrawingStep,
-    DrawnCurve,
-    PrecisionPosition,
-    Proposal,
-    Segment,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, cognates, real_size
 from analytic.lectures.synthesis.path.fit import TOO_LARGE, Fitted
 from analytic.lectures.synthesis.path.task import PathTask
@@ -160,27 +147,29 @@ ROUNDING = 1e-9
 
 def drafted(name: str, source: str, four_bar: CouplerCurve, note: str = "") -> Draft:
     """Return the draft of a four-bar with its coupler point."""
-    places = {PINS[0]: 0j, PINS[1]: complex(four_bar.coupler), POINT: four_bar.arm}
+    places = {design.PINS[0]: 0j, design.PINS[1]: complex(four_bar.coupler), POINT: four_bar.arm}
     return Draft(
         name,
         source,
-        {PIVOTS[0]: four_bar.o2, PIVOTS[1]: four_bar.o4},
+        {design.PIVOTS[0]: four_bar.o2, design.PIVOTS[1]: four_bar.o4},
         {
-            INPUT: bar(PIVOTS[0], PINS[0], four_bar.crank),
-            COUPLER: plate(places),
-            OUTPUT: bar(PIVOTS[1], PINS[1], four_bar.rocker),
+            design.INPUT: bar(design.PIVOTS[0], design.PINS[0], four_bar.crank),
+            design.COUPLER: plate(places),
+            design.OUTPUT: bar(design.PIVOTS[1], design.PINS[1], four_bar.rocker),
         },
-        {"link": INPUT, "speed_rad_s": SPEED_RAD_S},
+        {"link": design.INPUT, "speed_rad_s": SPEED_RAD_S},
         note=note,
     )
 
 
-def proposed(name: str, source: str, candidate: FourBarCandidate, task: PathTask) -> Proposal:
+def proposed(
+    name: str, source: str, candidate: FourBarCandidate, task: PathTask
+) -> design.Proposal:
     """Return a candidate as a proposal: its crank's angles are those that fit the points best."""
     four_bar = candidate.four_bar
     draft = drafted(name, source, four_bar)
     positions = tuple(
-        PrecisionPosition(angle, (AskedPlace(POINT, place),))
+        design.PrecisionPosition(angle, (design.AskedPlace(POINT, place),))
         for angle, place in zip(candidate.crank_rad.tolist(), task.points, strict=True)
     )
     allowed = candidate.largest_m / draft.scene.longest_m + ROUNDING
@@ -190,35 +179,37 @@ def proposed(name: str, source: str, candidate: FourBarCandidate, task: PathTask
         chosen["crank angles"] = "nearest to each point"
     if task.freedom > 0:
         chosen["freedom"] = f"{task.freedom} numbers of the four-bar, taken from the search"
-    return Proposal(draft, INPUT, positions, chosen, _steps(candidate, task), allowed=allowed)
+    return design.Proposal(
+        draft, design.INPUT, positions, chosen, _steps(candidate, task), allowed=allowed
+    )
 
 
-def _steps(candidate: FourBarCandidate, task: PathTask) -> tuple[DrawingStep, ...]:
+def _steps(candidate: FourBarCandidate, task: PathTask) -> tuple[design.DrawingStep, ...]:
     """Return the points, the curve through them, and the links that draw it."""
     four_bar = candidate.four_bar
     angles = candidate.crank_rad
     first, second = (pin[0] for pin in four_bar.pins(angles[:1]))
-    dots = tuple(Dot(place, str(k + 1), "given") for k, place in enumerate(task.points))
+    dots = tuple(design.Dot(place, str(k + 1), "given") for k, place in enumerate(task.points))
     start = complex(four_bar.at(angles[:1])[0])
     links = (
-        Segment(four_bar.o2, complex(first), "result"),
-        Segment(complex(first), complex(second), "result"),
-        Segment(four_bar.o4, complex(second), "result"),
-        Segment(complex(first), start, "result"),
-        Segment(complex(second), start, "result"),
-        Dot(four_bar.o2, PIVOTS[0], "result", fixed=True),
-        Dot(four_bar.o4, PIVOTS[1], "result", fixed=True),
+        design.Segment(four_bar.o2, complex(first), "result"),
+        design.Segment(complex(first), complex(second), "result"),
+        design.Segment(four_bar.o4, complex(second), "result"),
+        design.Segment(complex(first), start, "result"),
+        design.Segment(complex(second), start, "result"),
+        design.Dot(four_bar.o2, design.PIVOTS[0], "result", fixed=True),
+        design.Dot(four_bar.o4, design.PIVOTS[1], "result", fixed=True),
     )
     return (
-        DrawingStep("the points of the path, in their order", dots),
-        DrawingStep("the coupler curve of least squares", (_curve(four_bar, angles),)),
-        DrawingStep("the four-bar that draws it, in the first point", links),
+        design.DrawingStep("the points of the path, in their order", dots),
+        design.DrawingStep("the coupler curve of least squares", (_curve(four_bar, angles),)),
+        design.DrawingStep("the four-bar that draws it, in the first point", links),
     )
 
 
-def _curve(four_bar: CouplerCurve, angles: Array) -> DrawnCurve:
+def _curve(four_bar: CouplerCurve, angles: Array) -> design.DrawnCurve:
     """Return the coupler curve: over a turn, or between the outermost angles."""
     low, high = float(np.min(angles)), float(np.max(angles))
     if four_bar.family != "limited":
         high = low + math.tau
-    return DrawnCurve((tuple(four_bar.at(np.linspace(low, high, LOOKS + 1)).tolist()),))
+    return design.DrawnCurve((tuple(four_bar.at(np.linspace(low, high, LOOKS + 1)).tolist()),))

@@ -18,16 +18,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.optimize import least_squares  # type: ignore[import-untyped]  # ships no stubs
 
+from analytic.lectures.synthesis.path import unit_four_bar
 from analytic.lectures.synthesis.path.task import MOST, UnitPath
-from analytic.lectures.synthesis.path.unit_four_bar import (
-    BOUNDS,
-    Complexes,
-    Family,
-    direction,
-    lengths,
-    lengths_jacobian,
-    turn,
-)
 from models.array import Array
 
 LARGEST = 12.0
@@ -53,9 +45,9 @@ class Fitted:
     points.
     """
 
-    family: Family
+    family: unit_four_bar.Family
     x: Array
-    placing: Complexes
+    placing: unit_four_bar.Complexes
     phi: Array
     cost: float
     mirrored: bool = False
@@ -64,14 +56,16 @@ class Fitted:
     def size(self) -> float:
         """Longest of its links, over the radius of the path."""
         _, ground, arm = self.placing
-        shape = lengths(self.family, self.x)
+        shape = unit_four_bar.lengths(self.family, self.x)
         far = np.abs([arm, arm - ground * shape[1]])
         return float(max(np.abs(ground) * max(1.0, *(float(each) for each in shape)), *far))
 
 
-def placed(lengths_of: tuple[Array, Array, Array], phi: Array, points: Complexes) -> Complexes:
+def placed(
+    lengths_of: tuple[Array, Array, Array], phi: Array, points: unit_four_bar.Complexes
+) -> unit_four_bar.Complexes:
     """Return the placing numbers O, G, Q that fit points best, by linear least squares, (3,)."""
-    u, _ = direction(lengths_of, phi)
+    u, _ = unit_four_bar.direction(lengths_of, phi)
     columns = np.stack([np.ones_like(u), lengths_of[0] * np.exp(1j * phi), u], axis=1)
     return np.asarray(np.linalg.lstsq(columns, points, rcond=1e-9)[0])
 
@@ -102,14 +96,16 @@ def refit(start: Fitted, path: UnitPath, evaluations: int, transmission_rad: flo
 class _Problem:
     """Residuals over the unknowns, both as real numbers."""
 
-    family: Family
+    family: unit_four_bar.Family
     path: UnitPath
     transmission_rad: float = 0.0
 
     @property
     def box(self) -> tuple[Array, Array]:
         """Middle and half width of shape and placing numbers, (9,)."""
-        low, high = (np.array(side) for side in zip(*BOUNDS[self.family], strict=True))
+        low, high = (
+            np.array(side) for side in zip(*unit_four_bar.BOUNDS[self.family], strict=True)
+        )
         middle = np.concatenate([0.5 * (low + high), np.zeros(6)])
         return middle, np.concatenate([0.5 * (high - low), np.full(6, LARGEST)])
 
@@ -131,8 +127,8 @@ class _Problem:
     def residuals(self, z: Array) -> Array:
         """Return the distances from the points, then the gap of the dyad where it may be open."""
         fit = self.unpacked(z)
-        a, b, c = (float(each) for each in lengths(self.family, fit.x))
-        at = turn((a, b, c), fit.phi)
+        a, b, c = (float(each) for each in unit_four_bar.lengths(self.family, fit.x))
+        at = unit_four_bar.turn((a, b, c), fit.phi)
         origin, ground, arm = fit.placing
         off = origin + ground * a * np.exp(1j * fit.phi) + arm * at.u - self.path.points
         opened = [PENALTY * at.excess] if self.family == "limited" else []
@@ -142,11 +138,11 @@ class _Problem:
     def jacobian(self, z: Array) -> Array:
         """Return their derivatives, (residuals, unknowns)."""
         fit = self.unpacked(z)
-        a, b, c = (float(each) for each in lengths(self.family, fit.x))
-        at = turn((a, b, c), fit.phi)
+        a, b, c = (float(each) for each in unit_four_bar.lengths(self.family, fit.x))
+        at = unit_four_bar.turn((a, b, c), fit.phi)
         _, ground, arm = fit.placing
         e, one = a * np.exp(1j * fit.phi), np.ones_like(at.u)
-        by_shape = lengths_jacobian(self.family, fit.x)
+        by_shape = unit_four_bar.lengths_jacobian(self.family, fit.x)
         by_angle = 1j * ground * e + arm * at.d_phi
         by_lengths = arm * at.d_shape
         by_lengths[0] += ground * e / a
@@ -199,7 +195,7 @@ class _Problem:
         turned = self.path.turned
         return z[9:].copy() if turned is None else np.asarray(z[9] + turned)
 
-    def _spread(self, column: Complexes) -> Complexes:
+    def _spread(self, column: unit_four_bar.Complexes) -> unit_four_bar.Complexes:
         """Return a derivative by each point's own angle, or by the one that all share."""
         return np.diag(column) if self.path.turned is None else column[:, None]
 
@@ -298,7 +294,7 @@ def _apart(fits: Sequence[Fitted]) -> list[Fitted]:
     """Return fits without those near a better one: they would end in the same mechanism."""
     kept: list[Fitted] = []
     for fit in fits:
-        low, high = (np.array(side) for side in zip(*BOUNDS[fit.family], strict=True))
+        low, high = (np.array(side) for side in zip(*unit_four_bar.BOUNDS[fit.family], strict=True))
         near = (
             one.family == fit.family
             and one.mirrored == fit.mirrored

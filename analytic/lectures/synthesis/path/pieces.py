@@ -11,15 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from analytic.lectures.synthesis.path.atlas import (
-    arms,
-    at_shares,
-    between,
-    curves,
-    shares,
-    smooth,
-    spread,
-)
+from analytic.lectures.synthesis.path import atlas
 from analytic.lectures.synthesis.path.fit import Fitted, placed
 from analytic.lectures.synthesis.path.task import UnitPath
 from analytic.lectures.synthesis.path.unit_four_bar import BOUNDS, Complexes, Family, lengths
@@ -51,9 +43,9 @@ class Pieces:
 @cache
 def pieces(family: Family) -> Pieces:
     """Return the pieces of a family, drawn by growing angles of the crank."""
-    share = spread(ENTRIES[family], 7, seed=0)
-    x = between(share[:, :3], BOUNDS[family])
-    arm = arms(lengths(family, x)[1], share[:, 3:5])
+    share = atlas.spread(ENTRIES[family], 7, seed=0)
+    x = atlas.between(share[:, :3], BOUNDS[family])
+    arm = atlas.arms(lengths(family, x)[1], share[:, 3:5])
     if family == "limited":
         ends = _within_limits(lengths(family, x), share[:, 5:])
     else:
@@ -61,9 +53,9 @@ def pieces(family: Family) -> Pieces:
         ends = np.array([start, start + SPAN[0] + (SPAN[1] - SPAN[0]) * share[:, 6]])
     wide = ends[1] - ends[0] > NARROW
     x, arm, ends = x[:, wide], arm[wide], ends[:, wide]
-    drawn = curves(family, x, arm, _angles(ends))
+    drawn = atlas.curves(family, x, arm, _angles(ends))
     even = np.tile(np.linspace(0.0, 1.0, PLACES), (len(drawn), 1))
-    return Pieces(family, x, arm, ends, standard(at_shares(shares(drawn), drawn, even)))
+    return Pieces(family, x, arm, ends, standard(atlas.at_shares(atlas.shares(drawn), drawn, even)))
 
 
 def _angles(ends: Array) -> Array:
@@ -115,17 +107,17 @@ def _over(
     points: Complexes, count: int, *, mirrored: bool, back: bool
 ) -> list[tuple[float, Fitted]]:
     """Return the most similar pieces for points drawn forwards, with their similarity."""
-    curve, share = smooth(points, closed=False)
+    curve, share = atlas.smooth(points, closed=False)
     even = np.linspace(0.0, 1.0, PLACES)[None]
-    own = standard(at_shares(shares(curve[None]), curve[None], even))[0]
+    own = standard(atlas.at_shares(atlas.shares(curve[None]), curve[None], even))[0]
     found: list[tuple[float, Fitted]] = []
     for family in ENTRIES:
         book = pieces(family)
         similarity = np.abs(book.places @ own.conj())
         for k in np.argsort(-similarity, kind="stable")[:count].tolist():
             x, angles = book.x[:, k], _angles(book.ends[:, k : k + 1])
-            drawn = shares(curves(family, x[:, None], book.arm[k : k + 1], angles))
-            phi = np.asarray(at_shares(drawn, angles, share[None])[0].real)
+            drawn = atlas.shares(atlas.curves(family, x[:, None], book.arm[k : k + 1], angles))
+            phi = np.asarray(atlas.at_shares(drawn, angles, share[None])[0].real)
             placing = placed(lengths(family, x), phi, points)
             fit = Fitted(family, x, placing, phi[::-1] if back else phi, math.inf, mirrored)
             found.append((float(similarity[k]), fit))
