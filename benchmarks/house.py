@@ -92,6 +92,21 @@ def docstrings(tree: ast.AST) -> Iterator[str]:
                 yield str(each.value.value)
 
 
+def shared_names(trees: Mapping[str, ast.Module]) -> list[str]:
+    """Return the names that several classes have."""
+    names = Counter(
+        node.name for tree in trees.values() for node in tree.body if isinstance(node, ast.ClassDef)
+    )
+    return sorted(name for name, count in names.items() if count > 1)
+
+
+def share_of_what(trees: Mapping[str, ast.Module]) -> float:
+    """Return how many of 10,000 words of docstrings are "what", which hides the noun."""
+    words = [word.lower() for tree in trees.values() for text in docstrings(tree)
+             for word in re.findall(r"[A-Za-z][A-Za-z'-]*", text)]  # fmt: skip
+    return 1e4 * words.count("what") / len(words)
+
+
 def show(root: Path) -> None:
     """Print them."""
     texts = files(root)
@@ -112,16 +127,11 @@ def show(root: Path) -> None:
         if isinstance(node, ast.Import | ast.ImportFrom)
     )
     print(f"{rows} lines of imports at the top of files, {100.0 * rows / total:.1f} %")
-    names = Counter(
-        node.name for tree in trees.values() for node in tree.body if isinstance(node, ast.ClassDef)
-    )
-    print(f"{sum(count > 1 for count in names.values())} class names that mean several things")
+    print(f"{len(shared_names(trees))} class names that mean several things")
     print(f"{len(circles(arrows))} circles of files")
     short = [file for file, count in lines.items() if 1 < count < LEAST_LINES]
     print(f"{len(short)} files of less than {LEAST_LINES} lines: {', '.join(short)}")
-    words = [word.lower() for tree in trees.values() for text in docstrings(tree)
-             for word in re.findall(r"[A-Za-z][A-Za-z'-]*", text)]  # fmt: skip
-    print(f"{1e4 * words.count('what') / len(words):.0f} of 10,000 words of docstrings are 'what'")
+    print(f"{share_of_what(trees):.0f} of 10,000 words of docstrings are 'what'")
     into = [f"{a} -> {b}" for a in arrows for b in sorted(arrows[a])
             if LECTURES in b.split("/") and LECTURES not in a.split("/")]  # fmt: skip
     print(f"{len(into)} imports of lectures from elsewhere: {', '.join(into)}")

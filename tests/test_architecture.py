@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.house import files, share_of_what, shared_names
 from sim.registry import ENGINES, declaration
 
 ROOT = Path(__file__).parents[1]
@@ -249,6 +250,15 @@ def test_the_house_stands_as_planned_and_engines_are_named_in_their_rooms_alone(
     assert len(found) > 1000
     faults = [*misplaced(), *up_arrows(found), *circles(found), *strangers(found), *namings()]
     assert not faults, "\n".join(faults)
+
+
+def test_no_class_name_means_two_things_and_docstrings_say_nouns() -> None:
+    trees = {file: ast.parse(text) for file, text in files(ROOT).items()}
+    assert not shared_names(trees)
+    assert share_of_what(trees) < 5.0
+    doubled = {name: ast.parse("class Leg:\n    '''What a leg is.'''") for name in ("a", "b")}
+    assert shared_names(doubled) == ["Leg"]
+    assert share_of_what(doubled) == 2500.0
 
 
 @pytest.fixture
