@@ -27,7 +27,7 @@ from models.motion import Motion
 from models.scene import Scene
 from models.scene.cut_scenes import SegmentedScene
 from models.scene.elastic import Shape
-from reports.quantities.by_kind import largest_deflection
+from reports.quantities.free_and_elastic import largest_deflection
 
 FEWER = Polynomials(REFERENCE.across - 2, REFERENCE.along - 1)
 """Polynomials that show how far the reference can be trusted."""

@@ -14,7 +14,7 @@ from models.motion import LinkMotion, Motion
 from reports.compare.beside import Beside
 from reports.compare.errors import Departure
 from reports.compare.free_truth import FreeBeside
-from reports.quantities.by_kind import GEOMETRY
+from reports.quantities.free_and_elastic import GEOMETRY
 
 AWAY_RAD = 0.5
 """Error from which on a link, in a closed loop, may be in the other assembly."""

@@ -20,7 +20,7 @@ from reports.compare.free_truth import FreeBeside
 from reports.compare.hardness import conditioning, uneven
 from reports.compare.tracks import Track, length
 from reports.compare.whole_errors import TWICE, ComparedParts, force_rows, whole_errors
-from reports.quantities.by_kind import GEOMETRY, PHASE
+from reports.quantities.free_and_elastic import GEOMETRY, PHASE
 
 COURSE = 400
 """Instants at which the growth of the errors is kept."""

@@ -15,7 +15,7 @@ from models.scene import GROUND, Scene
 from reports.compare.errors import Error, Errors, MotionFacts
 from reports.compare.free_truth import FreeBeside
 from reports.quantities import named
-from reports.quantities.by_kind import ENERGY, MOMENTUM
+from reports.quantities.free_and_elastic import ENERGY, MOMENTUM
 from reports.quantities.limits import FREE
 from reports.quantities.quantity import Quantity, Tolerance
 

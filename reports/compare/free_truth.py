@@ -16,7 +16,7 @@ from models.scene import Driver, Scene, as_bytes
 from models.scene.driver import LONGEST_S, Released
 from reports.compare.beside import Beside, Truth, first_samples, incomplete
 from reports.compare.tracks import Track
-from reports.quantities.by_kind import PHASE
+from reports.quantities.free_and_elastic import PHASE
 from sim.engine import Run
 
 if TYPE_CHECKING:

@@ -36,7 +36,7 @@ from reports.compare.free_truth import (
     free_truth,
     long_enough_s,
 )
-from reports.quantities.by_kind import PHASE
+from reports.quantities.free_and_elastic import PHASE
 from sim.engine import Run
 
 MOST_EXACT = 32

@@ -1,1 +1,1 @@
-"""The contract of every engine, whoever wrote it: clauses, and their check on an engine."""
+"""The contract of every engine, whoever wrote it: clauses (EC..), and their check on an engine."""

@@ -1,4 +1,5 @@
 """Tolerances: one per quantity, for every engine alike, as pure numbers, each with its reason.
+The numbers stand with each quantity, in `reports.quantities`.
 
 A default is a budget by the step and the scene, from the theory of the error::
 

@@ -5,7 +5,7 @@ A new quantity is an entry here. Its columns, rows, limit, rule and diagrams fol
 
 from collections.abc import Collection
 
-from reports.quantities import by_kind, places
+from reports.quantities import free_and_elastic, places
 from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
 from reports.quantities.quantity import Quantity, Role
 
@@ -22,8 +22,13 @@ QUANTITIES: dict[str, Quantity] = {
             places.ACCELERATION,
         ),
         *(REACTION, NORMAL, MOMENT, TORQUE),
-        *(by_kind.PHASE, by_kind.GEOMETRY, by_kind.ENERGY, by_kind.MOMENTUM),
-        *(by_kind.DEFLECTION, by_kind.SEGMENTS, by_kind.EXTENSION),
+        *(
+            free_and_elastic.PHASE,
+            free_and_elastic.GEOMETRY,
+            free_and_elastic.ENERGY,
+            free_and_elastic.MOMENTUM,
+        ),
+        *(free_and_elastic.DEFLECTION, free_and_elastic.SEGMENTS, free_and_elastic.EXTENSION),
     )
 }
 

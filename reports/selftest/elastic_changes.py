@@ -20,7 +20,7 @@ from models.scene.elastic import Beam, Shape
 from reports.compare.elastic_truth import ChainTruth, ElasticTruth
 from reports.judge.cell import Cell, CellRunner
 from reports.selftest.fault import PROFILE, Items, Plant
-from reports.selftest.logs import WHEN, moved
+from reports.selftest.log_edits import WHEN, moved
 from reports.way.length import Springs
 from reports.way.way import way_of
 from sim.engine import Run

@@ -7,7 +7,7 @@ from models.scene.moved import scaled
 from reports.compare.whole_errors import OF_STEPS
 from reports.selftest import force_changes
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
-from reports.selftest.logs import WHEN, noisy
+from reports.selftest.log_edits import WHEN, noisy
 from sim.registry import engine
 
 SLIDING = (SLIDER, SHAPER)

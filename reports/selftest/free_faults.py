@@ -10,8 +10,8 @@ from analytic.kinematics import solve_driven
 from models.scene import Scene
 from reports.compare.free_truth import free_truth
 from reports.selftest import engines, fault, free_changes
+from reports.selftest.log_edits import last, moved, output, with_link
 from reports.selftest.log_faults import late
-from reports.selftest.logs import last, moved, output, with_link
 from reports.selftest.mechanism import long_coupler
 from sim.engine import Energy, Run
 

@@ -13,7 +13,7 @@ from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from reports.judge.cell import CellRunner
 from reports.selftest import fault
-from reports.selftest.logs import last, moved, noisy, to_digits, with_link
+from reports.selftest.log_edits import last, moved, noisy, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
 

@@ -10,7 +10,7 @@ import numpy as np
 from models.array import Array
 from models.scene import Scene
 from reports.judge.cell import CellRunner
-from reports.selftest import logs
+from reports.selftest import log_edits
 from reports.selftest.fault import FOURBAR, Fault, Plant, in_log, switched
 from sim.engine import Run
 from sim.registry import engine
@@ -25,7 +25,7 @@ def late(size: float) -> CellRunner:
     def runner(*args: Any, steps: int, every: int, **options: Any) -> Run:
         longer = run(*args, steps=steps + samples * every, every=every, **options)
         kept = steps // every + 1
-        return replace(logs.rows(longer, slice(samples, None), slice(kept)), steps=steps)
+        return replace(log_edits.rows(longer, slice(samples, None), slice(kept)), steps=steps)
 
     return runner
 
@@ -35,7 +35,7 @@ def _other_step(share: float) -> CellRunner:
 
     def runner(*args: Any, dt_s: float, **options: Any) -> Run:
         done = run(*args, dt_s=dt_s * (1.0 + share), **options)
-        return replace(logs.with_times(done, lambda t: t / (1.0 + share)), dt_s=dt_s)
+        return replace(log_edits.with_times(done, lambda t: t / (1.0 + share)), dt_s=dt_s)
 
     return runner
 
@@ -47,20 +47,20 @@ def _velocity_late(_: Scene, done: Run, steps: float) -> Run:
 
 def _one_sided(scene: Scene, done: Run, steps: float) -> Run:
     """Take accelerations as backward differences of the logged velocities: half a step late."""
-    omega = logs.output(scene, done).omega
+    omega = log_edits.output(scene, done).omega
     central = np.gradient(omega, done.dt_s * done.every, edge_order=2)
     backward = np.diff(omega, prepend=2.0 * omega[0] - omega[1]) / (done.dt_s * done.every)
-    return logs.with_link(
-        done, logs.last(scene), alpha=central + 2.0 * steps * (backward - central)
+    return log_edits.with_link(
+        done, log_edits.last(scene), alpha=central + 2.0 * steps * (backward - central)
     )
 
 
 def _stretched(_: Scene, done: Run, share: float) -> Run:
-    return logs.with_times(done, lambda time_s: time_s * (1.0 + share))
+    return log_edits.with_times(done, lambda time_s: time_s * (1.0 + share))
 
 
 def _in_float32(_: Scene, done: Run, size: float) -> Run:
-    return logs.with_times(done, lambda time_s: rounded(time_s, size))
+    return log_edits.with_times(done, lambda time_s: rounded(time_s, size))
 
 
 def _summed(_: Scene, done: Run) -> Run:
@@ -69,39 +69,39 @@ def _summed(_: Scene, done: Run) -> Run:
     def summed(time_s: Any) -> Any:
         return time_s[0] + np.cumsum(np.r_[0.0, np.full(len(time_s) - 1, done.dt_s * done.every)])
 
-    return logs.with_times(done, summed)
+    return log_edits.with_times(done, summed)
 
 
 def _row_twice(_: Scene, done: Run) -> Run:
     """Replace one row by the row before."""
-    order = np.arange(logs.moved(done).time_s.size)
-    order[logs.WHEN] -= 1
-    return logs.rows(done, order, slice(None))
+    order = np.arange(log_edits.moved(done).time_s.size)
+    order[log_edits.WHEN] -= 1
+    return log_edits.rows(done, order, slice(None))
 
 
 def _half_the_rows(_: Scene, done: Run) -> Run:
     """Log every second row, twice."""
-    order = np.arange(logs.moved(done).time_s.size) // 2 * 2
-    return logs.rows(done, order, slice(None))
+    order = np.arange(log_edits.moved(done).time_s.size) // 2 * 2
+    return log_edits.rows(done, order, slice(None))
 
 
 def _row_lost(_: Scene, done: Run) -> Run:
-    keep = np.delete(np.arange(logs.moved(done).time_s.size), logs.WHEN)
-    return logs.rows(done, keep, keep)
+    keep = np.delete(np.arange(log_edits.moved(done).time_s.size), log_edits.WHEN)
+    return log_edits.rows(done, keep, keep)
 
 
 def _row_more(_: Scene, done: Run) -> Run:
-    keep = np.insert(np.arange(logs.moved(done).time_s.size), logs.WHEN, logs.WHEN)
-    return logs.rows(done, keep, keep)
+    keep = np.insert(np.arange(log_edits.moved(done).time_s.size), log_edits.WHEN, log_edits.WHEN)
+    return log_edits.rows(done, keep, keep)
 
 
 def _cut(_: Scene, done: Run, samples: float) -> Run:
-    keep = slice(max(logs.moved(done).time_s.size - round(samples), 1))
-    return logs.rows(done, keep, keep)
+    keep = slice(max(log_edits.moved(done).time_s.size - round(samples), 1))
+    return log_edits.rows(done, keep, keep)
 
 
 def _only_one(_: Scene, done: Run) -> Run:
-    return logs.rows(done, slice(1), slice(1))
+    return log_edits.rows(done, slice(1), slice(1))
 
 
 _clock = partial(Fault, "clock")
@@ -140,17 +140,19 @@ CLOCK = (
 
 Distortion = Callable[[Array, float], Array]
 """Change of a series by a size."""
-AFTER = slice(logs.WHEN, None)
+AFTER = slice(log_edits.WHEN, None)
 START = slice(5, 39)
 """Samples of the start, in which an engine takes up its pins."""
 
 
-def _angle(change: Distortion, link: Callable[[Scene], str] = logs.last) -> Plant:
+def _angle(change: Distortion, link: Callable[[Scene], str] = log_edits.last) -> Plant:
     """Change the angle of the last link, or of another."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
         name = link(scene)
-        return logs.with_link(done, name, theta=change(logs.moved(done).links[name].theta, size))
+        return log_edits.with_link(
+            done, name, theta=change(log_edits.moved(done).links[name].theta, size)
+        )
 
     return in_log(changed)
 
@@ -164,20 +166,20 @@ def _omega(change: Distortion) -> Plant:
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
         by_rad_s = size * scene.pace_rad_s
-        return logs.with_link(
-            done, logs.last(scene), omega=change(logs.output(scene, done).omega, by_rad_s)
+        return log_edits.with_link(
+            done, log_edits.last(scene), omega=change(log_edits.output(scene, done).omega, by_rad_s)
         )
 
     return in_log(changed)
 
 
 def _wild(scene: Scene, done: Run, size: float) -> Run:
-    omega = logs.spoilt(logs.output(scene, done).omega, START, 1e6 * size)
-    return logs.with_link(done, logs.last(scene), omega=omega)
+    omega = log_edits.spoilt(log_edits.output(scene, done).omega, START, 1e6 * size)
+    return log_edits.with_link(done, log_edits.last(scene), omega=omega)
 
 
 def _float32(_: Scene, done: Run, size: float) -> Run:
-    return logs.every_series(done, lambda series: rounded(series, size))
+    return log_edits.every_series(done, lambda series: rounded(series, size))
 
 
 def _all_of(change: Callable[[Array], Array]) -> Distortion:
@@ -187,11 +189,11 @@ def _all_of(change: Callable[[Array], Array]) -> Distortion:
 
 def _at(samples: int | slice) -> Distortion:
     """Add the size to some samples."""
-    return lambda series, size: logs.spoilt(series, samples, size)
+    return lambda series, size: log_edits.spoilt(series, samples, size)
 
 
 def _turn_more(theta: Array, size: float) -> Array:
-    return logs.spoilt(theta, logs.WHEN, 2 * np.pi * size)
+    return log_edits.spoilt(theta, log_edits.WHEN, 2 * np.pi * size)
 
 
 def _ramp(theta: Array, size: float) -> Array:
@@ -226,8 +228,10 @@ VALUES = (
         2.0**-24,
         "of it",
     ),
-    _value("rounded-log", "an angle of few digits", "CC114", _angle(logs.to_digits), 1e-5, "rad"),
-    _value("noise", "noise on an angle (normal)", "CC114", _angle(logs.noisy), 1e-5, "rad"),
+    _value(
+        "rounded-log", "an angle of few digits", "CC114", _angle(log_edits.to_digits), 1e-5, "rad"
+    ),
+    _value("noise", "noise on an angle (normal)", "CC114", _angle(log_edits.noisy), 1e-5, "rad"),
     _value("drift", "an angle drifts off", "CC103", _angle(_ramp), 1e-3, "rad"),
     _value(
         "slow-drift",
@@ -238,13 +242,15 @@ VALUES = (
         "rad",
         finer=True,
     ),
-    _value("spike", "an angle is off at one sample", "CC114", _angle(_at(logs.WHEN)), 1e-5, "rad"),
+    _value(
+        "spike", "an angle is off at one sample", "CC114", _angle(_at(log_edits.WHEN)), 1e-5, "rad"
+    ),
     _value("jump", "an angle jumps, and stays", "CC107", _angle(_at(AFTER)), 1e-4, "rad"),
     _value(
         "velocity-spike",
         "a velocity is off at one sample",
         "CC106",
-        _omega(_at(logs.WHEN)),
+        _omega(_at(log_edits.WHEN)),
         1e-2,
         "w",
     ),
@@ -255,33 +261,39 @@ VALUES = (
 
 
 def _end_missing(scene: Scene, done: Run) -> Run:
-    return logs.with_link(
-        done, logs.last(scene), theta=logs.spoilt(logs.output(scene, done).theta, -1, np.nan)
+    return log_edits.with_link(
+        done,
+        log_edits.last(scene),
+        theta=log_edits.spoilt(log_edits.output(scene, done).theta, -1, np.nan),
     )
 
 
 def _infinite(scene: Scene, done: Run) -> Run:
-    return logs.with_link(
-        done, logs.last(scene), omega=logs.spoilt(logs.output(scene, done).omega, logs.WHEN, np.inf)
+    return log_edits.with_link(
+        done,
+        log_edits.last(scene),
+        omega=log_edits.spoilt(log_edits.output(scene, done).omega, log_edits.WHEN, np.inf),
     )
 
 
 def _without_link(scene: Scene, done: Run) -> Run:
-    motion = logs.moved(done)
-    links = {name: part for name, part in motion.links.items() if name != logs.last(scene)}
+    motion = log_edits.moved(done)
+    links = {name: part for name, part in motion.links.items() if name != log_edits.last(scene)}
     return replace(done, motion=replace(motion, links=links))
 
 
 def _without_point(_: Scene, done: Run) -> Run:
-    motion = logs.moved(done)
+    motion = log_edits.moved(done)
     points = {name: part for name, part in motion.points.items() if name != "C"}
     return replace(done, motion=replace(motion, points=points))
 
 
 def _silent(scene: Scene, done: Run) -> Run:
     """Report accelerations, of one link NaN throughout."""
-    alpha = np.full_like(logs.output(scene, done).alpha, np.nan)
-    return replace(logs.with_link(done, logs.last(scene), alpha=alpha), reports_accelerations=True)
+    alpha = np.full_like(log_edits.output(scene, done).alpha, np.nan)
+    return replace(
+        log_edits.with_link(done, log_edits.last(scene), alpha=alpha), reports_accelerations=True
+    )
 
 
 MISSING = tuple(

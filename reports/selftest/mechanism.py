@@ -15,7 +15,7 @@ from models.scene.laws import ConstantSpeed, Law
 from models.scene.moved import scaled
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, Plant, in_log, in_scene, switched
-from reports.selftest.logs import every_series, last, moved, with_points
+from reports.selftest.log_edits import every_series, last, moved, with_points
 from sim.engine import Run
 
 

@@ -12,7 +12,7 @@ from analytic.kinematics import solve
 from models.scene import Scene
 from reports.judge.cell import CellRunner
 from reports.selftest import fault
-from reports.selftest.logs import moved
+from reports.selftest.log_edits import moved
 from sim.engine import Run
 from sim.registry import available, engine, offering
 from sim.run import run, setup

@@ -14,7 +14,7 @@ from reports.selftest.elastic_changes import at_quarter, in_chain_log
 from reports.selftest.engines import after_a_third
 from reports.selftest.fault import Unseen, in_log, in_scene
 from reports.selftest.free_changes import in_free_scene, of_all_matter
-from reports.selftest.logs import last, moved, with_link
+from reports.selftest.log_edits import last, moved, with_link
 from reports.selftest.requests import other_engine
 from reports.selftest.segment_changes import in_chain, segments, springs, stiffer, turning_light
 from sim.engine import Cost, Energy, Run

@@ -1,5 +1,8 @@
 """A verification on the terminal, failures first with their cure, then the tables, then the origin
-of the numbers; and as JUnit XML."""
+of the numbers; and as JUnit XML.
+
+The heads of columns stand in `reports.quantities`, footers and room in ``reports/ways/*/table.py``.
+"""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

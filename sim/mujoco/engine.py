@@ -1,4 +1,8 @@
-"""MuJoCo: hinges and slides as joint coordinates, loops closed by soft `connect` constraints."""
+"""MuJoCo: hinges and slides as joint coordinates, loops closed by soft `connect` constraints.
+
+The crank is driven by its armature, or an actuator (`models.mjcf.options`, `models.mjcf.document`),
+whose control comes from `sim.engine.drive`.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

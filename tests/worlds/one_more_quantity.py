@@ -11,7 +11,8 @@ from dataclasses import replace
 from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion
-from reports.quantities import ACCELERATION, QUANTITIES
+from reports.quantities import QUANTITIES
+from reports.quantities.places import ACCELERATION
 from reports.quantities.quantity import Criterion, Measure, Quantity
 
 MASS_KG = 2.0

@@ -1,4 +1,5 @@
-"""Dimensional synthesis: from the task of a mechanism to its lengths, pivots and assembly.
+"""Dimensional synthesis: from the task of a mechanism to its lengths, pivots and assembly;
+begin at `solutions`.
 
 Every kind of task becomes `Proposal`s: a scene, the precision positions that it is to meet, and the
 steps of its construction. `examine` then runs the scene by the reference and names its defects.

@@ -32,7 +32,7 @@ import numpy as np
 
 from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.driving_dyad import chord
-from analytic.lectures.synthesis.strokes import lag_of
+from analytic.lectures.synthesis.slider_crank_strokes import lag_of
 from models.errors import CrankcheckError
 from models.files.assemble import Table
 from models.lectures.draft import Draft, bar

@@ -19,8 +19,8 @@ from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
 from analytic.lectures.synthesis.quick_return import quick_return_proposals
 from analytic.lectures.synthesis.rocker import rocker_proposals
+from analytic.lectures.synthesis.slider_crank_strokes import stroke_proposals
 from analytic.lectures.synthesis.straight_line import hoeken, straight_line
-from analytic.lectures.synthesis.strokes import stroke_proposals
 from analytic.mechanism.travel import Travel, travel
 from models.errors import CrankcheckError, ReachError
 from models.lectures.shipped_tables import TaskTable

@@ -1,4 +1,8 @@
-"""The rules, by ID. A verdict on a cell consists of their findings alone."""
+"""The rules, by ID. A verdict on a cell consists of their findings alone.
+
+CC101, 109, 115, 117, 119, 124 and 126 stand in `log`, CC110, 118 and 125 in `steps`, CC111, 112 and
+134 in `reference`, CC116 in `limits`; all others with their quantity, in `reports.quantities`.
+"""
 
 from collections.abc import Iterable
 from dataclasses import replace

@@ -1,5 +1,5 @@
 """The hard cases, in groups.
 
-A further case is a `Case` in the tuple of its group; a further group is a tuple and its line in the
-part ``cases`` of a way.
+A further case is a `Case` in the tuple of its group; a further group is a tuple and its line in
+``reports/ways/<kind>/cases.py``.
 """

@@ -22,7 +22,7 @@ from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_limits import EVERY, HeldLog, LogRequest
 from reports.plan.requirements import refuse_unreleased
-from reports.quantities.by_kind import GEOMETRY
+from reports.quantities.free_and_elastic import GEOMETRY
 from sim.engine import Run
 
 LEAST_ROWS = 2

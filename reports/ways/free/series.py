@@ -12,7 +12,7 @@ from reports.compare.branch import free_departure
 from reports.compare.free_facts import window_means
 from reports.compare.free_truth import FreeBeside, FreeTruth, free_truth
 from reports.compare.tracks import Track, length, tracks
-from reports.quantities.by_kind import GEOMETRY, PHASE
+from reports.quantities.free_and_elastic import GEOMETRY, PHASE
 from reports.stability.case import Trial, Yardstick
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
 from reports.stability.other_truths import at_toggle, thrown_motion, thrown_start

@@ -39,7 +39,7 @@ from reports.selftest.free_changes import (
     turned_gravity,
 )
 from reports.selftest.free_faults import FREE_RUNS, PRESS, PULSE, SQUEEZER, SWING
-from reports.selftest.logs import WHEN, moved, output, rows
+from reports.selftest.log_edits import WHEN, moved, output, rows
 from reports.selftest.segment_changes import (
     as_corrected,
     at_its_ends,

@@ -1,11 +1,11 @@
-"""Slider-cranks by their stroke, and by their time ratio.
+r"""Slider-cranks by their stroke, and by their time ratio.
 
 ::
 
             A1                        O2 at the origin, the line below it by e; the slider at B1
-         r /  \\ l                    (crank folded over the rod) and B2 (crank and rod stretched):
-         O2     \\
-          | e     \\                  O2 B1 = l - r,  O2 B2 = l + r,  B1 B2 = stroke
+         r /  \ l                    (crank folded over the rod) and B2 (crank and rod stretched):
+         O2     \
+          | e     \                  O2 B1 = l - r,  O2 B2 = l + r,  B1 B2 = stroke
       ----+---B1---B---B2---
 
 With the angle a = B1 O2 B2 the slow stroke takes 180 + a of the crank's turn, the quick 180 - a.

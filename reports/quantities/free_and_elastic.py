@@ -1,4 +1,5 @@
-"""The quantities of free motion alone: its phase, its geometry, and conserved quantities.
+"""The quantities of free motion alone (phase, geometry, conserved quantities), and of elastic
+links.
 
 Errors are shares of the largest deflection of the reference over the run (``D``), of all links: a
 link that passes through its straight line is as hard on an engine there as elsewhere.
