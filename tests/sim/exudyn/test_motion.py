@@ -26,7 +26,7 @@ from models.scene.elastic import Shape
 from models.scene.laws import ConstantSpeed, Oscillating
 from models.scene.loads import LineSpring, Load, Over, PinSpring, SlideSpring, Spring
 from sim.engine import Run, Settings
-from sim.exudyn import engine
+from sim.exudyn import system
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.loads import StepMeans
 from sim.run import run
@@ -310,9 +310,9 @@ def test_a_beam_that_is_not_that_of_the_scene_is_refused(
     key: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = BeamedScene(load_scene("fourbar-elastic"), 2)
-    held = engine.held_beams
+    held = system.held_beams
     monkeypatch.setattr(
-        engine,
+        system,
         "held_beams",
         lambda *args: {
             name: tuple(replace(one, **{key: getattr(one, key) * 1.001 + 1e-9}) for one in beam)

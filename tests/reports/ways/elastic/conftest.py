@@ -6,7 +6,7 @@ from functools import cache
 import pytest
 
 from models.scene import as_bytes
-from reports.compare import elastic_truth, released_truth
+from reports.compare import elastic_truth
 from reports.compare.beam_theory import BeamTheory, ExactChain
 from tests.worlds.kept_elastic import kept_motions
 
@@ -27,6 +27,5 @@ def chain(own: BeamTheory, count: int, *, corrected: bool = False) -> ExactChain
 def kept() -> Iterator[None]:
     with kept_motions(), pytest.MonkeyPatch.context() as patch:
         patch.setattr(BeamTheory, "chain", chain)
-        for module in (elastic_truth, released_truth):
-            patch.setattr(module, "kept_theory", THEORY)
+        patch.setattr(elastic_truth, "kept_theory", THEORY)
         yield
