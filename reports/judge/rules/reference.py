@@ -5,7 +5,7 @@ import math
 import sys
 from collections.abc import Iterator
 
-from reports.compare.elastic_errors import ElasticFacts
+from reports.compare.elastic_facts import ElasticFacts
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.rules.rule import Evidence, Finding, Level, measure
 from reports.quantities import named
