@@ -39,6 +39,14 @@ def test_importing_it_loads_nothing_else_and_hardly_runs_anything() -> None:
     assert calls < 1000  # 193; what numpy or typer take is a hundred thousand
 
 
+def test_verify_loads_no_lectures_and_nothing_of_scipy() -> None:
+    code = (
+        "import sys\nimport reports.requests.verify\n"
+        "print([name for name in sys.modules if name == 'scipy' or '.lectures' in name])"
+    )
+    assert printed(PYTHON, "-P", "-c", code) == "[]\n"
+
+
 def test_every_name_is_there_and_with_asserting_loads_no_engine_and_no_table() -> None:
     code = (
         "import sys\nfrom crankcheck import *\nimport crankcheck\n"
