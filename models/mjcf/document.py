@@ -16,7 +16,26 @@ tendons (`models.mjcf.forces`).
 from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError
-from models.mjcf import forces, options
+from models.mjcf.forces import (
+    friction_of,
+    load_actuators,
+    load_sites,
+    load_sizes,
+    planned,
+    spring_points,
+    spring_tendons,
+    tendon_lines,
+)
+from models.mjcf.options import (
+    AttributeRow,
+    Attributes,
+    Writing,
+    armature,
+    attributes,
+    commentable,
+    exact,
+    has_control,
+)
 from models.mjcf.tree import Limb, Tree, driven_freedom
 from models.motion import State
 from models.scene import GROUND, Scene
@@ -28,12 +47,12 @@ LEAST_MASS = 1e-15
 
 
 def build(
-    scene: Scene, state: State, writing: options.Writing | None = None, tree: Tree | None = None
+    scene: Scene, state: State, writing: Writing | None = None, tree: Tree | None = None
 ) -> str:
     """Write the MJCF text of ``scene`` assembled at ``state``; the same input gives the same text.
 
-    The default ``writing`` is `options.exact`, which runs as it is in any MuJoCo at constant
-    speed; another law needs its control at each step. ``tree`` is a tree planned before.
+    The default ``writing`` is `exact`, which runs as it is in any MuJoCo at constant speed; another
+    law needs its control at each step. ``tree`` is a tree planned before.
 
     Raises
     ------
@@ -43,18 +62,18 @@ def build(
     """
     _check_masses(scene)
     _check_driver(scene)
-    writing = options.exact(scene) if writing is None else writing
-    tree = tree or forces.planned(scene, state, writing)
+    writing = exact(scene) if writing is None else writing
+    tree = tree or planned(scene, state, writing)
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
-        f"  <!-- {options.commentable(scene.source)} -->",
+        f"  <!-- {commentable(scene.source)} -->",
         "  <!-- Planar: in the x-y plane, hinges turn about z. SI units, angles in rad. -->",
         '  <compiler angle="radian" inertiafromgeom="false"/>',
         *_options(scene, writing),
         *_defaults(scene, writing),
         *_world(scene, tree, writing),
         *_equality(tree),
-        *forces.tendon_lines(scene, forces.spring_tendons(scene, state, tree)),
+        *tendon_lines(scene, spring_tendons(scene, state, tree)),
         *_actuator(scene, tree, writing),
         *_keyframe(scene, state, tree, writing),
         "</mujoco>",
@@ -82,37 +101,31 @@ def _check_driver(scene: Scene) -> None:
         )
 
 
-def _options(scene: Scene, writing: options.Writing) -> list[str]:
+def _options(scene: Scene, writing: Writing) -> list[str]:
     """Write the solver options, always with gravity, as MuJoCo's default is the earth's."""
     gravity = (*scene.gravity_m_s2, 0.0)
-    own = options.attributes({"gravity": gravity} | dict(writing.option))
+    own = attributes({"gravity": gravity} | dict(writing.option))
     if not writing.flag:
         return [f"  <option{own}/>"]
-    return [f"  <option{own}>", f"    <flag{options.attributes(writing.flag)}/>", "  </option>"]
+    return [f"  <option{own}>", f"    <flag{attributes(writing.flag)}/>", "  </option>"]
 
 
-def _defaults(scene: Scene, writing: options.Writing) -> list[str]:
+def _defaults(scene: Scene, writing: Writing) -> list[str]:
     """Write the defaults: hinges about z; capsules without contact and mass."""
     thin = 0.012 * scene.longest_m
-    seen: options.Attributes = {
-        "type": "capsule",
-        "size": thin,
-        "contype": 0,
-        "conaffinity": 0,
-        "mass": 0,
-    }
+    seen: Attributes = {"type": "capsule", "size": thin, "contype": 0, "conaffinity": 0, "mass": 0}
     lines = [
         "  <default>",
-        f'    <geom{options.attributes(seen)} rgba="0.35 0.5 0.65 1"/>',
-        f'    <site{options.attributes({"size": 1.5 * thin})} rgba="0.8 0.3 0.2 1"/>',
+        f'    <geom{attributes(seen)} rgba="0.35 0.5 0.65 1"/>',
+        f'    <site{attributes({"size": 1.5 * thin})} rgba="0.8 0.3 0.2 1"/>',
         '    <joint axis="0 0 1"/>',
     ]
     if writing.connect:
-        lines.append(f"    <equality{options.attributes(writing.connect)}/>")
+        lines.append(f"    <equality{attributes(writing.connect)}/>")
     return [*lines, "  </default>"]
 
 
-def _world(scene: Scene, tree: Tree, writing: options.Writing) -> list[str]:
+def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """Write the bodies, children inside their parents, and the sites of the closing pins."""
     lines = [
         "  <worldbody>",
@@ -125,16 +138,14 @@ def _world(scene: Scene, tree: Tree, writing: options.Writing) -> list[str]:
     return [*lines, "  </worldbody>"]
 
 
-def _children(
-    scene: Scene, tree: Tree, writing: options.Writing, parent: str, pad: str
-) -> list[str]:
+def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str) -> list[str]:
     """Write the child bodies of ``parent``."""
     lines: list[str] = []
     for limb in (limb for limb in tree.limbs if limb.parent == parent):
-        place: options.AttributeRow = {"name": limb.body, "pos": (*limb.offset, 0.0)}
+        place: AttributeRow = {"name": limb.body, "pos": (*limb.offset, 0.0)}
         if limb.angle_rad:
             place["euler"] = (0.0, 0.0, limb.angle_rad)
-        lines.append(f"{pad}<body{options.attributes(place)}>")
+        lines.append(f"{pad}<body{attributes(place)}>")
         lines += _freedoms(scene, tree, limb, writing, pad + "  ")
         lines += _matter(scene, limb.body, pad + "  ")
         lines += _sites(scene, tree, limb.body, pad + "  ")
@@ -143,22 +154,20 @@ def _children(
     return lines
 
 
-def _freedoms(
-    scene: Scene, tree: Tree, limb: Limb, writing: options.Writing, pad: str
-) -> list[str]:
+def _freedoms(scene: Scene, tree: Tree, limb: Limb, writing: Writing, pad: str) -> list[str]:
     """Write the joints of a body; the driven joint carries the flywheel."""
     lines, (driven, _) = [], driven_freedom(scene, tree.limbs)
     for freedom in limb.freedoms:
-        row: options.AttributeRow = {"name": freedom.name}
+        row: AttributeRow = {"name": freedom.name}
         if freedom.kind == "slide":
             row |= {"type": "slide", "axis": (*freedom.axis, 0.0)}
         else:
             row |= {"type": "hinge", "pos": (*freedom.anchor, 0.0)}
         row["ref"] = freedom.ref
         if freedom.name == driven and writing.flywheel:
-            row["armature"] = options.armature(scene, writing)
-        row |= forces.friction_of(scene, limb, freedom, writing)
-        lines.append(f"{pad}<joint{options.attributes(row)}/>")
+            row["armature"] = armature(scene, writing)
+        row |= friction_of(scene, limb, freedom, writing)
+        lines.append(f"{pad}<joint{attributes(row)}/>")
     return lines
 
 
@@ -169,34 +178,27 @@ def _matter(scene: Scene, body: str, pad: str) -> list[str]:
     refuses the flat bodies that would be exact.
     """
     mass, inertia = mass_of(scene, body)
-    row: options.AttributeRow = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
+    row: AttributeRow = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
     row["diaginertia"] = (inertia, inertia, inertia)
-    lines = [f"{pad}<inertial{options.attributes(row)}/>"]
+    lines = [f"{pad}<inertial{attributes(row)}/>"]
     if body not in scene.links:
         side = 0.04 * scene.longest_m
-        return [
-            *lines,
-            f"{pad}<geom{options.attributes({'type': 'box', 'size': (side, side, side)})}/>",
-        ]
+        return [*lines, f"{pad}<geom{attributes({'type': 'box', 'size': (side, side, side)})}/>"]
     points = list(scene.links[body].points.values())
-    bars: list[options.AttributeRow] = [
-        {"fromto": (*points[0], 0.0, *end, 0.0)} for end in points[1:]
-    ]
-    return lines + [f"{pad}<geom{options.attributes(bar)}/>" for bar in bars]
+    bars: list[AttributeRow] = [{"fromto": (*points[0], 0.0, *end, 0.0)} for end in points[1:]]
+    return lines + [f"{pad}<geom{attributes(bar)}/>" for bar in bars]
 
 
 def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
     """Write the sites of a body for loop closures and spring ends, each at the body's own
     coordinates of the point, and for loads."""
     closing = [c.point for c in tree.closures if body in c.bodies]
-    points = dict.fromkeys([*closing, *forces.spring_points(scene, body)])
-    rows: list[options.AttributeRow] = [
+    points = dict.fromkeys([*closing, *spring_points(scene, body)])
+    rows: list[AttributeRow] = [
         {"name": f"{body}.{point}", "pos": (*local_point(scene, body, point), 0.0)}
         for point in points
     ]
-    return [
-        f"{pad}<site{options.attributes(row)}/>" for row in [*rows, *forces.load_sites(scene, body)]
-    ]
+    return [f"{pad}<site{attributes(row)}/>" for row in [*rows, *load_sites(scene, body)]]
 
 
 def _equality(tree: Tree) -> list[str]:
@@ -206,58 +208,57 @@ def _equality(tree: Tree) -> list[str]:
         | {f"site{i}": f"{body}.{c.point}" for i, body in enumerate(c.bodies, start=1)}
         for c in tree.closures
     ]
-    lines = [f"    <connect{options.attributes(row)}/>" for row in rows]
+    lines = [f"    <connect{attributes(row)}/>" for row in rows]
     why = (
         "    <!-- Each loop is closed at one pin, by the copies of the point on its two bodies. -->"
     )
     return ["  <equality>", why, *lines, "  </equality>"] if lines else []
 
 
-def _actuator(scene: Scene, tree: Tree, writing: options.Writing) -> list[str]:
+def _actuator(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """Write the servo, or the motor for a law other than constant speed; then the loads."""
-    lines = [*_drive(scene, tree, writing), *forces.load_actuators(scene)]
+    lines = [*_drive(scene, tree, writing), *load_actuators(scene)]
     return ["  <actuator>", *lines, "  </actuator>"] if lines else []
 
 
-def _drive(scene: Scene, tree: Tree, writing: options.Writing) -> list[str]:
+def _drive(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """Write the actuator of the crank, if any."""
-    if not options.has_control(scene, writing):
+    if not has_control(scene, writing):
         return []
     driven, sense = driven_freedom(scene, tree.limbs)
-    joint: options.AttributeRow = {"name": "drive", "joint": driven}
+    joint: AttributeRow = {"name": "drive", "joint": driven}
     if writing.servo_gain is not None:
         row = joint | {"kv": writing.servo_gain / scene.driver_arm_m**2}
-        backwards: options.AttributeRow = {"gear": sense} if sense < 0.0 else {}
+        backwards: AttributeRow = {"gear": sense} if sense < 0.0 else {}
         what = ("angular velocity of the crank", "rad/s")
         what = what if scene.driver.slider is None else ("speed of the driven slider", "m/s")
         return [
             f"    <!-- control: {what[0]} [{what[1]}] -->",
-            f"    <velocity{options.attributes(row | backwards)}/>",
+            f"    <velocity{attributes(row | backwards)}/>",
         ]
     what = ("angular acceleration of the crank", "rad/s^2")
     what = what if scene.driver.slider is None else ("acceleration of the slider", "m/s^2")
-    gear = sense * options.armature(scene, writing)
     return [
         "    <!-- The driver's law is not in this file: it comes as the control of each -->",
         f"    <!-- step, the {what[0]} [{what[1]}]. Without it the -->",
         "    <!-- crank keeps the acceleration of the start and may leave its range. -->",
-        f"    <motor{options.attributes(joint | {'gear': gear})}/>",
+        f"    <motor{attributes(joint | {'gear': sense * armature(scene, writing)})}/>",
     ]
 
 
-def _keyframe(scene: Scene, state: State, tree: Tree, writing: options.Writing) -> list[str]:
+def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[str]:
     """Write the assembled state; the limbs are in the order in which MuJoCo numbers joints."""
     freedoms = [f for limb in tree.limbs for f in limb.freedoms]
-    row: options.AttributeRow = {
+    row: AttributeRow = {
         "name": "assembled",
         "qpos": tuple(f.ref for f in freedoms),
         "qvel": tuple(f.rate for f in freedoms),
     }
-    controls = forces.load_sizes(scene, state)
-    if options.has_control(scene, writing):
+    controls = load_sizes(scene, state)
+    if has_control(scene, writing):
         speed, acceleration = driver_rates(scene, state)
         servo = writing.servo_gain is not None
         controls = (speed if servo else acceleration, *controls)
     if controls:
         row["ctrl"] = controls
-    return ["  <keyframe>", f"    <key{options.attributes(row)}/>", "  </keyframe>"]
+    return ["  <keyframe>", f"    <key{attributes(row)}/>", "  </keyframe>"]

@@ -7,7 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.elastic import discretisation
+from analytic.elastic.discretisation import (
+    Discretisation,
+    ElasticDoubt,
+    Elements,
+    Modes,
+    Polynomials,
+    Segments,
+)
 from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.released import ReleasedElasticMotion
 from models.array import Array
@@ -34,7 +41,7 @@ STARTS: dict[Shape, str] = {
 }
 
 
-def elastic_facts(scene: Scene, by: discretisation.Discretisation, *, stiffened: bool) -> list[str]:
+def elastic_facts(scene: Scene, by: Discretisation, *, stiffened: bool) -> list[str]:
     """Return one line per elastic link, and one on the description of all of them."""
     lines = [_link(scene, own) for own in scene.elastic.values()]
     short = "with the shortening of bent links" if stiffened else (
@@ -43,26 +50,22 @@ def elastic_facts(scene: Scene, by: discretisation.Discretisation, *, stiffened:
     return [*lines, f"elastic links by {described(scene, by)} each, {short}"]
 
 
-def described(scene: Scene, by: discretisation.Discretisation) -> str:
+def described(scene: Scene, by: Discretisation) -> str:
     """Return the description of elastic links, such as 5 sines across and 2 sines along."""
     bends, stretches = (
         any(getattr(own, kind) for own in scene.elastic.values()) for kind in ("bends", "stretches")
     )
-    if isinstance(by, discretisation.Modes):
+    if isinstance(by, Modes):
         return listed(_across_and_along(by, "sine", bends=bends, stretches=stretches))
-    if isinstance(by, discretisation.Polynomials):
+    if isinstance(by, Polynomials):
         return listed(_across_and_along(by, "polynomial", bends=bends, stretches=stretches))
-    if isinstance(by, discretisation.Elements):
+    if isinstance(by, Elements):
         return count(by.count, "beam element")
     return count(by.count, "rigid segment")
 
 
 def _across_and_along(
-    by: discretisation.Modes | discretisation.Polynomials,
-    noun: str,
-    *,
-    bends: bool,
-    stretches: bool,
+    by: Modes | Polynomials, noun: str, *, bends: bool, stretches: bool
 ) -> list[str]:
     across, along = count(by.across, noun), count(by.along, noun)
     return [f"{across} across"] * bends + [f"{along} along"] * stretches
@@ -138,7 +141,7 @@ class Shares(NamedTuple):
 
 def _shares(one: Motion, other: Motion) -> Shares:
     """Return the distances of motions at the same instants; none is less than rounding."""
-    apart = discretisation.ElasticDoubt.between(one, other)
+    apart = ElasticDoubt.between(one, other)
     bent = [_over(off, other.elastic[name].middle) for name, off in apart.middle_m.items()]
     turned = [float(off.max()) for off in apart.theta_rad.values()]
     acting = other.forces.torque if other.forces is not None else np.zeros(0)
@@ -154,7 +157,7 @@ def _over(off: Array, series: Array) -> float:
 def certainty(motion: ElasticHistory) -> list[str]:
     """Return the uncertainty of a motion, in sentences. Raises CrankcheckError where no other can
     be computed."""
-    if isinstance(motion.by, discretisation.Segments):
+    if isinstance(motion.by, Segments):
         return []  # a model of engines, and not the beam
     time_s = np.linspace(0.0, motion.until_s, SAMPLES)
     own = motion.at(time_s)
@@ -173,9 +176,7 @@ def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
     """Compare with the next finer description; for elements, and for free motion, which take long,
     with one of fewer shapes, whose error is the larger one, if there are any fewer."""
     fewer = coarser(motion.by)
-    slow = isinstance(motion, ReleasedElasticMotion) or isinstance(
-        motion.by, discretisation.Elements
-    )
+    slow = isinstance(motion, ReleasedElasticMotion) or isinstance(motion.by, Elements)
     if not slow or described(motion.scene, fewer) == described(motion.scene, motion.by):
         found = _shares(own, motion.finer.at(time_s))
         told = [
@@ -193,8 +194,8 @@ def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
     )
 
 
-def coarser(by: discretisation.Discretisation) -> discretisation.Discretisation:
+def coarser(by: Discretisation) -> Discretisation:
     """Return about half as many shapes of each kind, and at least one."""
-    if isinstance(by, discretisation.Elements | discretisation.Segments):
+    if isinstance(by, Elements | Segments):
         return replace(by, count=max(1, by.count // 2))
     return replace(by, across=max(1, (by.across + 1) // 2), along=max(1, by.along // 2))

@@ -21,14 +21,24 @@ from models.scene.laws import ConstantSpeed
 from reports.describe.elastic_course import Apart, ElasticCourse
 from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
-from reports.figures import style
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
+from reports.figures.style import (
+    COLUMN_IN,
+    INK,
+    PAGE_IN,
+    QUIET,
+    SMALL,
+    FigureSet,
+    Look,
+    note,
+    shorten,
+)
 from reports.output.numbers import readable
 from reports.way.length import SECONDS, TURNS
 from reports.way.way import way_of
 
-ELASTIC: style.Look = {"color": "#1f5f9e", "linewidth": 1.1}
-RIGID: style.Look = {"color": "#c04a1d", "linewidth": 0.9, "linestyle": (0, (4.0, 2.0))}
+ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}
+RIGID: Look = {"color": "#c04a1d", "linewidth": 0.9, "linestyle": (0, (4.0, 2.0))}
 WITHOUT = RIGID | {"linestyle": "-"}
 """Look of the motion without control."""
 COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a3e9d", "#b97f1f", "#15889a")
@@ -41,7 +51,7 @@ SEEN = 1e-12
 MOST = 8
 """Most links and sliders of one figure: the furthest apart are shown."""
 COLUMNS, ROWS = 3, 2
-GHOST: style.Look = {"color": "#a9b3bd", "linewidth": 1.0, "zorder": 1}
+GHOST: Look = {"color": "#a9b3bd", "linewidth": 1.0, "zorder": 1}
 
 
 @dataclass(frozen=True)
@@ -70,8 +80,8 @@ class CourseAxis:
             axes.xaxis.set_major_locator(MultipleLocator(self.step))
         low, high = axes.get_ylim()
         if low <= 0.0 <= high:
-            axes.axhline(0.0, color=style.QUIET, linewidth=0.5)
-        style.shorten(axes)
+            axes.axhline(0.0, color=QUIET, linewidth=0.5)
+        shorten(axes)
         if labelled:
             axes.set_xlabel(self.label)
         else:
@@ -80,7 +90,7 @@ class CourseAxis:
 
 def _notes(course: ElasticCourse) -> list[str]:
     """Return the notes under each figure."""
-    return [style.note(course.scene, course.words, course.scene.driver.link)]
+    return [note(course.scene, course.words, course.scene.driver.link)]
 
 
 def _beside_rigid() -> list[tuple[Artist, str]]:
@@ -110,13 +120,13 @@ def _extension(course: ElasticCourse) -> Figure | None:
 
 def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, label: str) -> Figure:
     """Draw one panel with a curve for each elastic link, by its text in the legend."""
-    looks: list[style.Look] = [
+    looks: list[Look] = [
         {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k % len(DASHES)]}
         for k in range(len(curves))
     ]
     entries = [(Line2D([], [], **look), each) for each, look in zip(curves, looks, strict=True)]
     axis, title = CourseAxis.of(course), f"{title}: {course.scene.name}"
-    figure, (axes,) = sheet(style.COLUMN_IN, ONE, title, entries, _notes(course))
+    figure, (axes,) = sheet(COLUMN_IN, ONE, title, entries, _notes(course))
     for series, look in zip(curves.values(), looks, strict=True):
         axes.plot(axis.values, series, **look)
     axes.set_ylabel(label)
@@ -133,7 +143,7 @@ def _torque(course: ElasticCourse) -> Figure | None:
     axis = CourseAxis.of(course)
     title = f"Driving torque: {course.scene.name}"
     panels = Panels(2, 1, 1.25, *SIDES, 0.15, between=(0.15, 0.2))
-    figure, (upper, lower) = sheet(style.COLUMN_IN, panels, title, _beside_rigid(), _notes(course))
+    figure, (upper, lower) = sheet(COLUMN_IN, panels, title, _beside_rigid(), _notes(course))
     upper.plot(axis.values, elastic, **ELASTIC)
     upper.plot(axis.values, rigid, **RIGID)
     upper.set_ylabel("torque [N m]")
@@ -154,7 +164,7 @@ def _angles(course: ElasticCourse) -> Figure | None:
     height = 1.5 if len(each) == 1 else 1.15
     panels = Panels(len(each), 2, height, *SIDES, 0.15, between=(0.65, 0.2))
     title = f"Elastic beside rigid links: {course.scene.name}"
-    figure, panes = sheet(style.PAGE_IN, panels, title, _beside_rigid(), _notes(course))
+    figure, panes = sheet(PAGE_IN, panels, title, _beside_rigid(), _notes(course))
     for one, left, right in zip(each, panes[::2], panes[1::2], strict=True):
         scale, unit = (np.degrees(1.0), "deg") if one.unit == "rad" else (1.0, "m")
         left.plot(axis.values, scale * one.elastic, **ELASTIC)
@@ -192,7 +202,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
     low, high = box_of(base)
     low, high = low + 0.5 * MARGIN * size, high - 0.5 * MARGIN * size
     panels = Panels(ROWS, COLUMNS, 1.0, 0.06, 0.06, 0.22, 0.06, between=(0.1, 0.22))
-    wide = (style.PAGE_IN - 0.12 - 2 * panels.between[0]) / COLUMNS
+    wide = (PAGE_IN - 0.12 - 2 * panels.between[0]) / COLUMNS
     height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 0.8, 3.0))
     colours = colours_of(scene)
     entries: list[tuple[Artist, str]] = [
@@ -202,9 +212,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
     ghost, what, turns = BESIDE[way_of(scene).clock]
     entries.append((Line2D([], [], **GHOST), ghost))
     title = f"{what}, magnified {factor:g} times: {scene.name}"
-    figure, panes = sheet(
-        style.PAGE_IN, replace(panels, height=height), title, entries, _notes(course)
-    )
+    figure, panes = sheet(PAGE_IN, replace(panels, height=height), title, entries, _notes(course))
     last = course.time_s.size - 1
     for number, axes in enumerate(panes):
         index = round(number * last / len(panes))
@@ -215,7 +223,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
         when = f"{scene.driver.link} {degrees:.0f} deg"
         if course.turns > turns:
             when += f", {course.time_s[index]:.3g} s"
-        axes.set_title(when, fontsize=style.SMALL, loc="left")
+        axes.set_title(when, fontsize=SMALL, loc="left")
     return figure
 
 
@@ -231,18 +239,12 @@ def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -
     for slider in own.scene.sliders.values():
         place, direction = own.place(slider.point, index), guide_direction(slider, own.rigid, index)
         reach = 0.06 * size_of_motion(own.rigid)
-        axes.plot(
-            *np.array([place - reach * direction, place + reach * direction]).T,
-            color=style.INK,
-            linewidth=3.5,
-            alpha=0.5,
-            solid_capstyle="butt",
-            zorder=2,
-        )
+        axes.plot(*np.array([place - reach * direction, place + reach * direction]).T,
+                  color=INK, linewidth=3.5, alpha=0.5, solid_capstyle="butt", zorder=2)  # fmt: skip
     pins = np.array([own.place(name, index) for name in own.rigid.points])
-    axes.plot(*pins.T, "o", markersize=3.0, color="white", markeredgecolor=style.INK, zorder=5)
+    axes.plot(*pins.T, "o", markersize=3.0, color="white", markeredgecolor=INK, zorder=5)
     grounded = np.array(list(own.scene.ground.values())).reshape(-1, 2)
-    axes.plot(*grounded.T, "^", markersize=5.0, color=style.INK, alpha=0.7, zorder=2)
+    axes.plot(*grounded.T, "^", markersize=5.0, color=INK, alpha=0.7, zorder=2)
 
 
 def _control(course: ElasticCourse) -> Figure | None:
@@ -258,11 +260,11 @@ def _control(course: ElasticCourse) -> Figure | None:
     ]
     title = f"With and without control: {course.scene.name}"
     panels = Panels(3, 1, 1.15, *SIDES, 0.15, between=(0.15, 0.2))
-    figure, panes = sheet(style.COLUMN_IN, panels, title, entries, _notes(course))
+    figure, panes = sheet(COLUMN_IN, panels, title, entries, _notes(course))
     for motion, look in ((course.uncontrolled, WITHOUT), (course.motion, ELASTIC)):
         _controlled(panes, course, motion, look)
     driver = course.scene.driver.link
-    panes[1].axhline(law.speed_rad_s, color=style.QUIET, linewidth=0.5)
+    panes[1].axhline(law.speed_rad_s, color=QUIET, linewidth=0.5)
     panes[0].set_ylabel("deflection [mm]")
     panes[1].set_ylabel(f"speed of {driver} [rad/s]")
     panes[2].set_ylabel(f"{driver} ahead by [deg]")
@@ -272,7 +274,7 @@ def _control(course: ElasticCourse) -> Figure | None:
     return figure
 
 
-def _controlled(panes: list[Axes], course: ElasticCourse, motion: Motion, look: style.Look) -> None:
+def _controlled(panes: list[Axes], course: ElasticCourse, motion: Motion, look: Look) -> None:
     """Draw one of the two motions in all panels; several elastic links differ in their dashes."""
     driver, time_s = course.scene.driver, course.time_s
     bending = [name for name, own in course.scene.elastic.items() if own.bends]
@@ -283,7 +285,7 @@ def _controlled(panes: list[Axes], course: ElasticCourse, motion: Motion, look: 
     panes[2].plot(time_s, np.degrees(own.theta - driver.law.at(time_s)[0]), **look)
 
 
-ELASTIC_FIGURES: style.FigureSet[ElasticCourse] = style.FigureSet(
+ELASTIC_FIGURES: FigureSet[ElasticCourse] = FigureSet(
     "elastic links",
     {
         "deflection": _deflection,

@@ -24,9 +24,21 @@ from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import goes_round
 from reports.drawing.shape import PATH_SAMPLES, Label, clear_of_locking, colours_of, place, turn_of
-from reports.figures import style
 from reports.figures.mechanism import mechanism_at
 from reports.figures.sheet import Panels, sheet
+from reports.figures.style import (
+    INK,
+    PAGE_IN,
+    POINTS,
+    QUIET,
+    SMALL,
+    TINY,
+    cut,
+    loads_told,
+    note,
+    shorten,
+    width_in,
+)
 from reports.output.numbers import readable
 
 
@@ -53,7 +65,7 @@ class ForceTurn:
     def mark_axis(self, axes: Axes) -> None:
         """Set limits and ticks of the horizontal axis; short numbers on the other."""
         axes.set_xlim(*self.ends)
-        style.shorten(axes)
+        shorten(axes)
         if self.label.endswith("[deg]"):
             axes.xaxis.set_major_locator(MultipleLocator(60.0))
 
@@ -66,7 +78,7 @@ class ForceTurn:
     def notes(self) -> list[str]:
         """Notes under each figure."""
         scene = self.scene
-        notes = [style.note(scene, "closed form", "driver", style.loads_told(scene))]
+        notes = [note(scene, "closed form", "driver", loads_told(scene))]
         notes += force_notes(scene, self.motion)
         if self.acting.has_equilibria(0).any():
             left = "" if self.has_forces else ", which is all of the turn"
@@ -129,21 +141,21 @@ def hodographs(turn: ForceTurn) -> Figure | None:
     columns = 2 if len(pins) == 4 else min(COLUMNS, len(pins))
     rows = math.ceil(len(pins) / columns)
     left, right, across = 0.5, 0.1, 0.55
-    side = (style.PAGE_IN - left - right - across * (COLUMNS - 1)) / COLUMNS
+    side = (PAGE_IN - left - right - across * (COLUMNS - 1)) / COLUMNS
     width = left + right + side * columns + across * (columns - 1)
     panels = Panels(rows, columns, side, left, right, 0.2, 0.36, (across, 0.52))
     title = f"Reactions of the pins: {turn.scene.name}"
-    entries = [(Line2D([], [], color=style.INK, marker="+", linestyle="none"), "no force")]
+    entries = [(Line2D([], [], color=INK, marker="+", linestyle="none"), "no force")]
     if _dots(turn):
-        dot = Line2D([], [], color=style.INK, marker="o", markersize=3.0, linestyle="none")
+        dot = Line2D([], [], color=INK, marker="o", markersize=3.0, linestyle="none")
         words = f"every {EVERY_DEG} deg of {turn.scene.driver.joint}, numbers in deg"
         entries.append((dot, words))
     figure, axes = sheet(width, panels, title, entries, turn.notes)
     colours = colours_of(turn.scene)
     for (point, body, source, force), one in zip(pins, axes, strict=False):
         words = f"{point}, of {source} on {body}" if source != "pin" else f"{point} on {body}"
-        one.set_title(style.cut(words, side, style.SMALL))
-        _panel(one, turn, force, colours.get(body, style.INK), side)
+        one.set_title(cut(words, side, SMALL))
+        _panel(one, turn, force, colours.get(body, INK), side)
     for one in axes[len(pins) :]:
         one.remove()
     return figure
@@ -159,7 +171,7 @@ def _panel(axes: Axes, turn: ForceTurn, force: Array, colour: str, side: float) 
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     axes.set_aspect("equal", adjustable="box")
     axes.plot(*force.T, color=colour)
-    axes.plot(0.0, 0.0, marker="+", color=style.INK, markersize=6.0, zorder=4)
+    axes.plot(0.0, 0.0, marker="+", color=INK, markersize=6.0, zorder=4)
     axes.xaxis.set_major_locator(MaxNLocator(5))
     axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.set_xlabel("x [N]")
@@ -179,14 +191,9 @@ def _numbers(
         (k, deg) for k, deg in dots.items() if deg % NAMED_DEG == 0 and np.isfinite(force[k]).all()
     ]
     curve = (force[np.isfinite(force).all(axis=1)] - low) * per_n
-    height = 0.8 * style.TINY / style.POINTS
+    height = 0.8 * TINY / POINTS
     labels = [
-        Label(
-            str(deg),
-            (style.width_in(str(deg), style.TINY), height),
-            (force[k] - low)[None] * per_n,
-            0.02,
-        )
+        Label(str(deg), (width_in(str(deg), TINY), height), (force[k] - low)[None] * per_n, 0.02)
         for k, deg in named
     ]
     if not labels:
@@ -196,12 +203,7 @@ def _numbers(
     centres = place(labels, np.vstack([heavy, cross]), curve[:0], (side, side))
     for label, (x, y) in zip(labels, centres, strict=True):
         right, up = (float(each) for each in low + np.array([x, y]) / per_n)
-        look: dict[str, Any] = {
-            "size": style.TINY,
-            "color": style.QUIET,
-            "ha": "center",
-            "va": "center",
-        }
+        look: dict[str, Any] = {"size": TINY, "color": QUIET, "ha": "center", "va": "center"}
         axes.text(right, up, label.text, zorder=5, **look)
 
 

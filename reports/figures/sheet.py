@@ -20,7 +20,18 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reports.figures import style
+from reports.figures.style import (
+    LARGE,
+    PAGE_IN,
+    POINTS,
+    QUIET,
+    SIZE,
+    SMALL,
+    TINY,
+    Look,
+    cut,
+    width_in,
+)
 
 EDGE = 0.04
 """Room at the edges of the sheet [inch]."""
@@ -67,10 +78,10 @@ def sheet(
     room = width - 2 * EDGE
     number = columns or _columns([text for _, text in entries], room)
     in_rows = math.ceil(len(entries) / number)
-    legend = in_rows * style.SMALL * 1.38 / style.POINTS + (0.05 if entries else 0.0)
+    legend = in_rows * SMALL * 1.38 / POINTS + (0.05 if entries else 0.0)
     lines = [line for note in notes for line in folded(note, room)]
-    foot = len(lines) * style.TINY * 1.25 / style.POINTS
-    head = style.LARGE * 1.5 / style.POINTS if title else 0.0
+    foot = len(lines) * TINY * 1.25 / POINTS
+    head = LARGE * 1.5 / POINTS if title else 0.0
     across, down = panels.between
     inner = (width - panels.left - panels.right - across * (panels.columns - 1)) / panels.columns
     grid = panels.rows * panels.height + (panels.rows - 1) * down
@@ -83,25 +94,18 @@ def sheet(
         figure.add_axes((left / width, bottom / height, inner / width, panels.height / height))
     edge = EDGE / width
     if title:
-        figure.text(
-            edge, 1 - EDGE / height, style.cut(title, room, style.LARGE), size=style.LARGE, va="top"
-        )
+        figure.text(edge, 1 - EDGE / height, cut(title, room, LARGE), size=LARGE, va="top")
     if entries:
         _legend(figure, entries, number, (edge, (EDGE + foot + legend) / height), room)
     if lines:
-        look: dict[str, Any] = {
-            "size": style.TINY,
-            "color": style.QUIET,
-            "va": "bottom",
-            "linespacing": 1.25,
-        }
+        look: dict[str, Any] = {"size": TINY, "color": QUIET, "va": "bottom", "linespacing": 1.25}
         figure.text(edge, EDGE / height, "\n".join(lines), **look)
     return figure, figure.axes
 
 
 def _columns(labels: Sequence[str], room: float) -> int:
     """Return how many columns of the widest label have room."""
-    widest = max((style.width_in(text) for text in labels), default=0.0) + HANDLE + GAP
+    widest = max((width_in(text) for text in labels), default=0.0) + HANDLE + GAP
     return max(1, min(int((room + GAP) / widest), len(labels) or 1))
 
 
@@ -116,31 +120,31 @@ def _legend(
     each = (room + GAP) / columns - GAP - HANDLE
     figure.legend(
         handles=[artist for artist, _ in entries],
-        labels=[style.cut(text, each) for _, text in entries],
+        labels=[cut(text, each) for _, text in entries],
         loc="upper left",
         bbox_to_anchor=corner,
         ncols=columns,
         frameon=False,
         borderaxespad=0.0,
         borderpad=0.0,
-        handlelength=(HANDLE - 0.05) * style.POINTS / style.SMALL,
-        handletextpad=0.05 * style.POINTS / style.SMALL,
-        columnspacing=GAP * style.POINTS / style.SMALL,
+        handlelength=(HANDLE - 0.05) * POINTS / SMALL,
+        handletextpad=0.05 * POINTS / SMALL,
+        columnspacing=GAP * POINTS / SMALL,
         labelspacing=0.35,
         numpoints=1,
     )
 
 
-def folded(text: str, room: float, size: float = style.TINY) -> list[str]:
+def folded(text: str, room: float, size: float = TINY) -> list[str]:
     """Return a text in lines that have room; a word that has none alone is cut."""
     room *= FITTED
     lines: list[str] = []
     for word in text.split():
         longer = f"{lines[-1]} {word}" if lines else word
-        if lines and style.width_in(longer, size) <= room:
+        if lines and width_in(longer, size) <= room:
             lines[-1] = longer
         else:
-            lines.append(style.cut(word, room, size))
+            lines.append(cut(word, room, size))
     return lines
 
 
@@ -164,13 +168,13 @@ def grid(
     rows = math.ceil(len(names) / columns)
     height *= 1.0 if columns > 2 else 1.5
     across, down = 0.28 if apart else 0.12, 0.2
-    upright = folded(labels[1], rows * height + (rows - 1) * down, style.SIZE)
+    upright = folded(labels[1], rows * height + (rows - 1) * down, SIZE)
     left = 0.35 + 0.115 * len(upright)
     panels = Panels(rows, columns, height, left, 0.1, 0.16, 0.31, (across, down))
-    figure, axes = sheet(style.PAGE_IN, panels, title, entries, notes)
+    figure, axes = sheet(PAGE_IN, panels, title, entries, notes)
     box = axes[0].get_position()
     for at, (name, one) in enumerate(zip(names, axes, strict=False)):
-        one.set_title(style.cut(name, box.width * style.PAGE_IN, style.SMALL))
+        one.set_title(cut(name, box.width * PAGE_IN, SMALL))
         one.tick_params(
             labelbottom=at + columns >= len(names), labelleft=apart or at % columns == 0
         )
@@ -178,8 +182,8 @@ def grid(
     under = low - 0.15 / figure.get_figheight()
     figure.text((box.x0 + right) / 2, under, labels[0], ha="center", va="top")
     middle = (low + box.y1) / 2
-    words: style.Look = {"rotation": 90, "va": "center", "multialignment": "center"}
-    figure.text(EDGE / style.PAGE_IN, middle, "\n".join(upright), **words)
+    words: Look = {"rotation": 90, "va": "center", "multialignment": "center"}
+    figure.text(EDGE / PAGE_IN, middle, "\n".join(upright), **words)
     for one in axes[len(names) :]:
         one.remove()
     return figure, axes[: len(names)]
@@ -195,11 +199,6 @@ def corner_words(axes: Axes, room: float, left: str, right: str) -> None:
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + room * (high - low))
     paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind
-    words: style.Look = {
-        "va": "top",
-        "size": style.TINY,
-        "transform": axes.transAxes,
-        "bbox": paper,
-    }
+    words: Look = {"va": "top", "size": TINY, "transform": axes.transAxes, "bbox": paper}
     axes.text(0.03, 0.96, left, ha="left", **words)
     axes.text(0.97, 0.96, right, ha="right", **words)

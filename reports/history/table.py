@@ -8,8 +8,15 @@ from math import isinf
 from rich.console import Console
 from rich.text import Text
 
-from reports.history import version_changes
 from reports.history.verification import FOLLOWED, VersionResult, errors_of, overview, profiles_of
+from reports.history.version_changes import (
+    FollowedChange,
+    by_cell,
+    headlines,
+    largest,
+    steps,
+    times,
+)
 from reports.output.console import hanging, plain_table
 from reports.output.formats import plain, table
 from reports.quantities import QUANTITIES, named
@@ -51,9 +58,7 @@ def _versions(console: Console, results: Sequence[VersionResult]) -> None:
 def _headlines(console: Console, results: Sequence[VersionResult]) -> None:
     """Print the headlines between the versions."""
     styles = {True: "green", False: "bold red", None: ""}
-    lines = [
-        line for step in version_changes.steps(results) for line in version_changes.headlines(step)
-    ]
+    lines = [line for step in steps(results) for line in headlines(step)]
     lines.sort(key=lambda line: line.good is not False)  # changes for the worse go first
     for line in lines[:HEADLINES]:
         hanging(console, "* ", line.text, styles[line.good])
@@ -73,7 +78,7 @@ def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) 
         for cell in result.cells
         if cell.name.variant == profile
     }
-    changes = {key: each for key, each in version_changes.by_cell(measured).items() if key in cells}
+    changes = {key: each for key, each in by_cell(measured).items() if key in cells}
     changed = [change for each in changes.values() for change in each]
     ranked = ranking(list(dict.fromkeys(name for _, name in cells)), changed)
     shown = ranked[: max(1, LINES // max(1, len(measured)))]
@@ -93,9 +98,7 @@ def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) 
     console.print(table, "")
 
 
-def ranking(
-    names: Sequence[CellName], changes: Sequence[version_changes.FollowedChange]
-) -> list[CellName]:
+def ranking(names: Sequence[CellName], changes: Sequence[FollowedChange]) -> list[CellName]:
     """Return the cells: worsened ones first, then by the largest factor of any error; the largest
     errors first where nothing changed."""
 
@@ -110,9 +113,7 @@ def ranking(
 
 
 def _part(
-    shown: Sequence[CellName],
-    ranked: Sequence[CellName],
-    changes: Sequence[version_changes.FollowedChange],
+    shown: Sequence[CellName], ranked: Sequence[CellName], changes: Sequence[FollowedChange]
 ) -> str:
     """Say which of the scenes a table shows."""
     if len(shown) == len(ranked):
@@ -122,10 +123,7 @@ def _part(
 
 
 def _row(
-    cell: StoredCell | None,
-    changes: Sequence[version_changes.FollowedChange],
-    heads: Sequence[str],
-    later: bool,
+    cell: StoredCell | None, changes: Sequence[FollowedChange], heads: Sequence[str], later: bool
 ) -> list[Text]:
     """Return the numbers of a version, changed ones coloured, and the largest change in words."""
     if cell is None:
@@ -133,29 +131,27 @@ def _row(
     errors, numbers = errors_of(cell), []
     for head in heads:
         values = [errors[name] for name in COLUMNS[head] if name in errors]
-        top = version_changes.largest(
-            change for change in changes if change.quantity in COLUMNS[head]
-        )
+        top = largest(change for change in changes if change.quantity in COLUMNS[head])
         numbers.append(Text(f"{max(values):.1e}" if values else "-", _style(top)))
     if not cell.ok:
         return [*numbers, Text(cell.status, "red")]
     return [*numbers, compared(changes) if later else Text("")]
 
 
-def compared(changes: Sequence[version_changes.FollowedChange]) -> Text:
+def compared(changes: Sequence[FollowedChange]) -> Text:
     """Return the largest change of a cell in two or three words."""
-    top = version_changes.largest(change for change in changes if not change.about.rate)
-    top = top if top and top.changed else version_changes.largest(changes)
+    top = largest(change for change in changes if not change.about.rate)
+    top = top if top and top.changed else largest(changes)
     if top is None:
         return Text("")
     if not top.changed:
         return Text("same", "dim")
-    factor = "" if isinf(top.factor) else f"{version_changes.times(top.factor)} x "
+    factor = "" if isinf(top.factor) else f"{times(top.factor)} x "
     quantity = top.quantity.removeprefix("pin ").removeprefix("slider ")
     return Text(f"{factor}{top.word()} ({quantity})", _style(top))
 
 
-def _style(change: version_changes.FollowedChange | None) -> str:
+def _style(change: FollowedChange | None) -> str:
     """Return green or red for a change that stands out."""
     if change is None or not change.stands_out:
         return ""
@@ -181,7 +177,7 @@ FILE_COLUMNS = (
 def table_text(results: Sequence[VersionResult]) -> str:
     """Return history.csv: one line per version, scene, profile and quantity; a version without a
     result and a cell without errors are one line each, with the reason."""
-    changes = version_changes.by_cell(results)
+    changes = by_cell(results)
     buffer = io.StringIO()
     writer = csv.DictWriter(buffer, FILE_COLUMNS, lineterminator="\n")
     writer.writeheader()
@@ -202,9 +198,7 @@ def table_text(results: Sequence[VersionResult]) -> str:
     return buffer.getvalue()
 
 
-def _lines(
-    cell: StoredCell, changes: Sequence[version_changes.FollowedChange]
-) -> Iterator[dict[str, object]]:
+def _lines(cell: StoredCell, changes: Sequence[FollowedChange]) -> Iterator[dict[str, object]]:
     """Yield the columns of each error of one cell."""
     errors = errors_of(cell)
     changed = {change.quantity: change for change in changes}
@@ -221,10 +215,10 @@ def page(results: Sequence[VersionResult], footer: str) -> str:
     heads, rows = overview(results)
     parts = [f"# {results[0].asked.engine} {', '.join(result.version for result in results)}", ""]
     parts.append(table([" ".join(head.split()) for head in heads], rows))
-    for step in version_changes.steps(results):
+    for step in steps(results):
         parts += ["", f"## {step.after.version} against {step.before.version}", ""]
-        parts += [f"- {plain(line.text)}" for line in version_changes.headlines(step)]
-    changes = version_changes.by_cell(results)
+        parts += [f"- {plain(line.text)}" for line in headlines(step)]
+    changes = by_cell(results)
     names = [f"{name} [{error.unit}]" for name, error in FOLLOWED.items()]
     for profile in profiles_of(results):
         cells = [(r, c) for r in results for c in r.cells if c.name.variant == profile]
@@ -249,6 +243,6 @@ def _numbers(cell: StoredCell) -> list[str]:
     return [f"{errors[name]:.2e}" if name in errors else "-" for name in FOLLOWED]
 
 
-def _last(cell: StoredCell, changes: Sequence[version_changes.FollowedChange]) -> str:
+def _last(cell: StoredCell, changes: Sequence[FollowedChange]) -> str:
     """Return the largest change of a cell, or its ending."""
     return compared(changes).plain if cell.ok else f"{cell.status}: {cell.reason}"

@@ -5,8 +5,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from models.files.inputs import UnreadableError
-from reports.logs import text_lines
 from reports.logs.kinds import spelled_unit
+from reports.logs.text_lines import (
+    LOOK,
+    Beginning,
+    are_numbers,
+    fields_of,
+    is_number,
+    is_remark,
+    refuse_columns,
+    separator_of,
+)
 
 EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
 """The line that sets the separator in Excel."""
@@ -31,10 +40,10 @@ def marked_rows(names: Sequence[str], separator: str, wanted: Callable[[str], bo
     the first in an unwanted column, such as #1."""
     if not names or wanted(names[0]):
         return lambda line: False
-    return lambda line: len(text_lines.fields_of(line, separator)) == len(names)
+    return lambda line: len(fields_of(line, separator)) == len(names)
 
 
-def header_of(text: text_lines.Beginning, separator: str, wanted: Callable[[str], bool]) -> Header:
+def header_of(text: Beginning, separator: str, wanted: Callable[[str], bool]) -> Header:
     """Return the header of a text; a ``separator`` "" is found here. Raises UnreadableError for a
     header without names, and where no row follows."""
     lines = text.lines
@@ -46,9 +55,9 @@ def header_of(text: text_lines.Beginning, separator: str, wanted: Callable[[str]
     header, units = in_remarks or (lines[at], "")
     below = at if in_remarks else _next(lines, at + 1)
     row = "" if below is None else lines[below]
-    separator = separator or text_lines.separator_of(header, row)
-    names = text_lines.fields_of(header, separator)
-    text_lines.refuse_columns(len(names))
+    separator = separator or separator_of(header, row)
+    names = fields_of(header, separator)
+    refuse_columns(len(names))
     # Some programs end all lines, the header as well, in a separator.
     ends = len(names) > 1 and not names[-1] and row.rstrip(" ").endswith(separator)
     _check_names(header, names[:-1] if ends else names, at, separator)
@@ -57,11 +66,11 @@ def header_of(text: text_lines.Beginning, separator: str, wanted: Callable[[str]
         below = _required(text, at + 1, "a header and no rows", is_row)
         units = _units_remark(lines[at + 1 : below], len(names), separator)
     assert below is not None
-    units_told = units_below(text_lines.fields_of(lines[below], separator), len(names))
+    units_told = units_below(fields_of(lines[below], separator), len(names))
     if units_told:
         below = _required(text, below + 1, "a header and units, and no rows", is_row)
     elif units:
-        units_told = units_below(text_lines.fields_of(units, separator), len(names))
+        units_told = units_below(fields_of(units, separator), len(names))
     _check_words(lines, at, below, separator)
     return Header(with_units(names, units_told), separator, below, ends)
 
@@ -79,11 +88,7 @@ def units_below(fields: Sequence[str], columns: int) -> list[str]:
     none for another row."""
     bare = [field.strip("[]() ") for field in fields]
     words = [field for field in bare if field not in UNITLESS]
-    if (
-        len(bare) != columns
-        or not any(map(spelled_unit, words))
-        or any(map(text_lines.is_number, words))
-    ):
+    if len(bare) != columns or not any(map(spelled_unit, words)) or any(map(is_number, words)):
         return []
     return ["" if field in UNITLESS else field for field in bare]
 
@@ -91,20 +96,18 @@ def units_below(fields: Sequence[str], columns: int) -> list[str]:
 def _next(lines: Sequence[str], at: int, is_row: IsRow = lambda line: False) -> int | None:
     """Return the first line from there on that is neither blank nor a remark."""
     for n in range(at, len(lines)):
-        if lines[n].strip() and (not text_lines.is_remark(lines[n]) or is_row(lines[n])):
+        if lines[n].strip() and (not is_remark(lines[n]) or is_row(lines[n])):
             return n
     return None
 
 
-def _required(
-    text: text_lines.Beginning, at: int, found: str, is_row: IsRow = lambda line: False
-) -> int:
+def _required(text: Beginning, at: int, found: str, is_row: IsRow = lambda line: False) -> int:
     """Return the next line of the log from there on. Raises UnreadableError where there is none."""
     below = _next(text.lines, at, is_row)
     if below is None and not text.whole:
         raise UnreadableError(
-            f"{found} within the first {text_lines.LOOK} bytes; the header and a row have to stand "
-            "there: leave out remarks, or columns"
+            f"{found} within the first {LOOK} bytes; the header and a row have to stand there: "
+            "leave out remarks, or columns"
         )
     if below is None:
         raise UnreadableError(f"{found}; a log has a header and rows of numbers")
@@ -113,7 +116,7 @@ def _required(
 
 def _remarks(lines: Sequence[str]) -> list[str]:
     """Return the text of the remarks of some lines, the last one first."""
-    return [line.lstrip("#%/ \t") for line in reversed(lines) if text_lines.is_remark(line)]
+    return [line.lstrip("#%/ \t") for line in reversed(lines) if is_remark(line)]
 
 
 def _are_units(fields: Sequence[str]) -> bool:
@@ -127,11 +130,11 @@ def _header_in_remarks(lines: Sequence[str], at: int, separator: str) -> tuple[s
     the units in a remark below it, "" for none; None for no such remark."""
     units = ""
     for text in _remarks(lines[:at]):
-        mark = separator or text_lines.separator_of(text, lines[at])
-        names, fields = text_lines.fields_of(text, mark), text_lines.fields_of(lines[at], mark)
-        if len(names) != len(fields) or not all(names) or text_lines.are_numbers(names):
+        mark = separator or separator_of(text, lines[at])
+        names, fields = fields_of(text, mark), fields_of(lines[at], mark)
+        if len(names) != len(fields) or not all(names) or are_numbers(names):
             continue
-        if not text_lines.are_numbers(fields):
+        if not are_numbers(fields):
             return None
         if units or not _are_units(names):
             return text, units
@@ -142,7 +145,7 @@ def _header_in_remarks(lines: Sequence[str], at: int, separator: str) -> tuple[s
 def _units_remark(lines: Sequence[str], columns: int, separator: str) -> str:
     """Return the remark between the header and the rows that has the units, "" for none."""
     for text in _remarks(lines):
-        fields = text_lines.fields_of(text, separator)
+        fields = fields_of(text, separator)
         if len(fields) == columns and _are_units(fields):
             return text
     return ""
@@ -150,7 +153,7 @@ def _units_remark(lines: Sequence[str], columns: int, separator: str) -> str:
 
 def _check_names(header: str, names: Sequence[str], at: int, separator: str) -> None:
     """Refuse a header without names. Raises UnreadableError."""
-    if text_lines.are_numbers(names):
+    if are_numbers(names):
         raise UnreadableError(
             f"line {at + 1} holds numbers and no names; put a header above them, such as "
             "time_s,rocker_deg"
@@ -168,14 +171,14 @@ def _check_names(header: str, names: Sequence[str], at: int, separator: str) -> 
 def _check_words(lines: Sequence[str], at: int, below: int, separator: str) -> None:
     """Refuse a second line of names, and numbers with only spaces between. Raises
     UnreadableError."""
-    fields = [field for field in text_lines.fields_of(lines[below], separator) if field]
-    if fields and all(field[0].isalpha() and not text_lines.is_number(field) for field in fields):
+    fields = [field for field in fields_of(lines[below], separator) if field]
+    if fields and all(field[0].isalpha() and not is_number(field) for field in fields):
         raise UnreadableError(
             f"line {below + 1} holds words and no numbers, below the names in line {at + 1}: a log "
             f"has one line of names, and below it one of units at most; join them, or {TITLE}"
         )
     parts = lines[below].split()
-    if len(fields) == 1 and len(parts) > 1 and text_lines.are_numbers(parts):
+    if len(fields) == 1 and len(parts) > 1 and are_numbers(parts):
         raise UnreadableError(
             f"line {below + 1} has {len(parts)} numbers between spaces, and line {at + 1} not as "
             "many names between spaces; separate both by commas"

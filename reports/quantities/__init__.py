@@ -5,30 +5,34 @@ A new quantity is an entry here. Its columns, rows, limit, rule and diagrams fol
 
 from collections.abc import Collection
 
-from reports.quantities import free_and_elastic, places
 from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
+from reports.quantities.free_and_elastic import (
+    DEFLECTION,
+    ENERGY,
+    EXTENSION,
+    GEOMETRY,
+    MOMENTUM,
+    PHASE,
+    SEGMENTS,
+)
+from reports.quantities.places import (
+    ACCELERATION,
+    ANGLE,
+    DISPLACEMENT,
+    DRIVE,
+    GAP,
+    POSITION,
+    VELOCITY,
+)
 from reports.quantities.quantity import Quantity, Role
 
 QUANTITIES: dict[str, Quantity] = {
     entry.name: entry
     for entry in (
-        *(
-            places.DRIVE,
-            places.ANGLE,
-            places.DISPLACEMENT,
-            places.POSITION,
-            places.GAP,
-            places.VELOCITY,
-            places.ACCELERATION,
-        ),
+        *(DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION),
         *(REACTION, NORMAL, MOMENT, TORQUE),
-        *(
-            free_and_elastic.PHASE,
-            free_and_elastic.GEOMETRY,
-            free_and_elastic.ENERGY,
-            free_and_elastic.MOMENTUM,
-        ),
-        *(free_and_elastic.DEFLECTION, free_and_elastic.SEGMENTS, free_and_elastic.EXTENSION),
+        *(PHASE, GEOMETRY, ENERGY, MOMENTUM),
+        *(DEFLECTION, SEGMENTS, EXTENSION),
     )
 }
 

@@ -9,11 +9,19 @@ from models.motion import Motion
 from models.scene import Scene
 from models.scene.driver import driver_place
 from models.scene.joints import joints
-from reports.quantities import quantity
+from reports.quantities.quantity import (
+    BodyKind,
+    Criterion,
+    Measure,
+    Quantity,
+    Series,
+    Tolerance,
+    moving,
+)
 from sim.engine import Run
 
 EPSILON = float(np.finfo(np.float64).eps)
-WITHIN_A_STEP = quantity.Tolerance(
+WITHIN_A_STEP = Tolerance(
     "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
     "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle. To close it "
     "an engine sets its bodies off by the jolt times step^2; twice that where it is more.",
@@ -25,7 +33,7 @@ WITHIN_A_STEP = quantity.Tolerance(
 )
 
 
-FREE_PLACE = quantity.Tolerance(
+FREE_PLACE = Tolerance(
     "As the phase, which the mechanism passes on to its places as their rates say, and the arc of "
     "a step.",
     cap=0.1,
@@ -37,22 +45,22 @@ FREE_PLACE = quantity.Tolerance(
 )
 
 
-def _commanded(scene: Scene, reference: Motion) -> quantity.Series:
+def _commanded(scene: Scene, reference: Motion) -> Series:
     """Return its angle; for a slider its displacement over the longest length."""
     commanded = scene.driver.law.at(reference.time_s)[0]
     return {scene.driver.name: commanded / scene.driver_arm_m}
 
 
-def _crank(scene: Scene, run: Run) -> quantity.Series:
+def _crank(scene: Scene, run: Run) -> Series:
     course = driver_place(scene, run.motion) if run.motion else None
     return {} if course is None else {scene.driver.name: course / scene.driver_arm_m}
 
 
-DRIVE = quantity.Quantity(
+DRIVE = Quantity(
     name="drive",
     role="drive",
     measures=(
-        quantity.Measure(
+        Measure(
             body_kind="driver",
             column="drive_error_rad",
             unit="rad",
@@ -66,7 +74,7 @@ DRIVE = quantity.Quantity(
         ),
     ),
     criteria=(
-        quantity.Criterion(
+        Criterion(
             "CC102",
             "drive",
             "Everything is compared at the commanded time: a crank that lags or leads spoils "
@@ -74,7 +82,7 @@ DRIVE = quantity.Quantity(
             "Drive with --drive prescribed; a servo needs a higher gain, or a shorter step.",
             short="drive",
             diagram="drive: the crank's angle",
-            tolerance=quantity.Tolerance(
+            tolerance=Tolerance(
                 "Prescribed means prescribed: what rounding makes of an angle that is added up "
                 "step by step, and room for a flywheel that the mechanism slows by a part in 1e12.",
                 floor=1e-9,
@@ -85,24 +93,18 @@ DRIVE = quantity.Quantity(
 
 
 def _place(
-    name: str,
-    measure: quantity.Measure,
-    head: str,
-    rule: str,
-    short: str,
-    explanation: str,
-    cure: str,
-) -> quantity.Quantity:
+    name: str, measure: Measure, head: str, rule: str, short: str, explanation: str, cure: str
+) -> Quantity:
     """Return a quantity of the positions of one kind of bodies; its rule has its name."""
-    criterion = quantity.Criterion(
+    criterion = Criterion(
         rule, name, explanation, cure, short, WITHIN_A_STEP, free_motion=FREE_PLACE
     )
-    return quantity.Quantity(name, "place", (measure,), (criterion,), head)
+    return Quantity(name, "place", (measure,), (criterion,), head)
 
 
 ANGLE = _place(
     "angle",
-    quantity.moving("link", 0, "angle_error_rad"),
+    moving("link", 0, "angle_error_rad"),
     "angle\nrad",
     "CC103",
     "ang",
@@ -112,7 +114,7 @@ ANGLE = _place(
 )
 DISPLACEMENT = _place(
     "displacement",
-    quantity.moving("slider", 0, "displacement_error_m"),
+    moving("slider", 0, "displacement_error_m"),
     "place\n/ L",
     "CC104",
     "disp",
@@ -121,7 +123,7 @@ DISPLACEMENT = _place(
 )
 POSITION = _place(
     "position",
-    quantity.moving("point", 0, "position_error_m"),
+    moving("point", 0, "position_error_m"),
     "place\n/ L",
     "CC113",
     "pos",
@@ -130,15 +132,15 @@ POSITION = _place(
 )
 
 
-def _gap(kind: quantity.BodyKind, column: str) -> quantity.Measure:
+def _gap(kind: BodyKind, column: str) -> Measure:
     """Return the measure of the gap at a shared pin or slider, which is 0 in the reference."""
 
-    def truth(scene: Scene, reference: Motion) -> quantity.Series:
+    def truth(scene: Scene, reference: Motion) -> Series:
         shared = (*(pin.point for pin in joints(scene).pins), *scene.sliders)
         chosen = (name for name in shared if (name in scene.sliders) == (kind == "slider"))
         return dict.fromkeys(chosen, np.zeros_like(reference.time_s))
 
-    return quantity.Measure(
+    return Measure(
         body_kind=kind,
         column=column,
         unit="m",
@@ -149,13 +151,13 @@ def _gap(kind: quantity.BodyKind, column: str) -> quantity.Measure:
     )
 
 
-GAP = quantity.Quantity(
+GAP = Quantity(
     name="gap",
     role="closure",
     head="gap\n/ L",
     measures=(_gap("point", "pin_gap_m"), _gap("slider", "slider_gap_m")),
     criteria=(
-        quantity.Criterion(
+        Criterion(
             "CC105",
             "pin gap",
             "Two bodies that share a pin or a slider must not come apart: an open loop is "
@@ -181,7 +183,7 @@ OPEN_SHARE = 1e-3
 LOAD_SHARE = 5e-3
 """Twice the observed response of MuJoCo's tuned constraints, of three steps' time constant, to the
 change of loads on their bodies from step to step: 0.7e-3 to 2.5e-3, at 90 to 1440 steps a turn."""
-SECOND_ORDER = quantity.Tolerance(
+SECOND_ORDER = Tolerance(
     "Second order, with the third derivative of the motion, about curvature^1.5; as reported, "
     "with the share of an acceleration that soft constraints keep open, over a step.",
     cap=5e-2,  # a twentieth of the driver's speed; twice the worst at 90 steps a turn
@@ -194,7 +196,7 @@ SECOND_ORDER = quantity.Tolerance(
     rate=1,
     jump=1.0,
 )
-TWICE_DERIVED = quantity.Tolerance(
+TWICE_DERIVED = Tolerance(
     "Second order, with the fourth derivative of the motion, about curvature^2; as reported, "
     "engines with soft constraints keep a share of it open at every step.",
     cap=0.5,  # twice the worst at 90 steps a turn, where second differences are coarse
@@ -206,7 +208,7 @@ TWICE_DERIVED = quantity.Tolerance(
     rate=2,
     parts=True,
 )
-FREE_RATE = quantity.Tolerance(
+FREE_RATE = Tolerance(
     "As the phase, which the mechanism passes on to its velocities as their rates say.",
     cap=0.2,
     coefficient=14.0,
@@ -219,18 +221,18 @@ FREE_RATE = quantity.Tolerance(
     rate=1,
     jump=1.0,
 )
-VELOCITY = quantity.Quantity(
+VELOCITY = Quantity(
     name="velocity",
     role="derived",
     head="veloc.\n/ w",
     measures=(
-        quantity.moving("link", 1, "angular_velocity_error_rad_s"),
-        quantity.moving("slider", 1, "slider_speed_error_m_s"),
-        quantity.moving("point", 1, "velocity_error_m_s"),
+        moving("link", 1, "angular_velocity_error_rad_s"),
+        moving("slider", 1, "slider_speed_error_m_s"),
+        moving("point", 1, "velocity_error_m_s"),
     ),
     instants=lambda run: run.velocity_time_s,
     criteria=(
-        quantity.Criterion(
+        Criterion(
             "CC106",
             "velocity, reported",
             "The velocities that the engine reports, against the closed form at the instants "
@@ -241,7 +243,7 @@ VELOCITY = quantity.Quantity(
             tolerance=SECOND_ORDER,
             free_motion=FREE_RATE,
         ),
-        quantity.Criterion(
+        Criterion(
             "CC107",
             "velocity, differenced",
             "The error of the velocities that central differences of the logged positions give.",
@@ -260,19 +262,19 @@ VELOCITY = quantity.Quantity(
         ),
     ),
 )
-ACCELERATION = quantity.Quantity(
+ACCELERATION = Quantity(
     name="acceleration",
     role="derived",
     head="accel.\n/ w^2",
     measures=(
-        quantity.moving("link", 2, "angular_acceleration_error_rad_s2"),
-        quantity.moving("slider", 2, "slider_acceleration_error_m_s2"),
-        quantity.moving("point", 2, "acceleration_error_m_s2"),
+        moving("link", 2, "angular_acceleration_error_rad_s2"),
+        moving("slider", 2, "slider_acceleration_error_m_s2"),
+        moving("point", 2, "acceleration_error_m_s2"),
     ),
     instants=lambda run: run.acceleration_time_s,
     silent=lambda run: not run.reports_accelerations,
     criteria=(
-        quantity.Criterion(
+        Criterion(
             "CC108",
             "acceleration, reported",
             "The accelerations that the engine reports, against the closed form at the instants "
@@ -282,7 +284,7 @@ ACCELERATION = quantity.Quantity(
             diagram="acceleration, as reported",
             tolerance=TWICE_DERIVED,
         ),
-        quantity.Criterion(
+        Criterion(
             "CC114",
             "acceleration, differenced",
             "The error of the accelerations that second differences of the logged positions give.",

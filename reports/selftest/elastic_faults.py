@@ -8,15 +8,56 @@ from functools import partial
 
 import numpy as np
 
-from reports.selftest import elastic_changes, engines, segment_changes
+from reports.selftest.elastic_changes import (
+    BENT,
+    ELASTIC_RUNS,
+    LOOSE,
+    at_next_node,
+    begun,
+    bent_by,
+    damped_beam,
+    heavier_beam,
+    in_beam,
+    in_chain_log,
+    of_beam,
+    of_exact_chain,
+    stiffer_beam,
+    stretchier,
+)
+from reports.selftest.engines import (
+    TIMES,
+    after_a_third,
+    after_look,
+    done_to,
+    explicit,
+    now_and_then,
+)
 from reports.selftest.fault import Fault, Plant
 from reports.selftest.free_changes import later, of_load, reversed_load
 from reports.selftest.log_faults import late
+from reports.selftest.segment_changes import (
+    as_corrected,
+    at_its_ends,
+    damped,
+    heavier,
+    heavy_rocker,
+    in_chain,
+    in_elastic_scene,
+    longer,
+    middle_spring,
+    modulus_and_mass,
+    node_moved,
+    of_as_many_springs,
+    prebent,
+    reversed_spring,
+    segments,
+    springs,
+    started,
+    stiffer,
+)
 from sim.registry import engine
 
-_STEP_S = (
-    elastic_changes.ELASTIC_RUNS[elastic_changes.LOOSE].lasts_s or 0.0
-) / elastic_changes.ELASTIC_RUNS[elastic_changes.LOOSE].steps
+_STEP_S = (ELASTIC_RUNS[LOOSE].lasts_s or 0.0) / ELASTIC_RUNS[LOOSE].steps
 
 
 def _fault(
@@ -28,7 +69,7 @@ def _fault(
     unit: str = "",
     *,
     rule: str = "CC132",
-    scene: str = elastic_changes.BENT,
+    scene: str = BENT,
     needs: Callable[[str], bool] = lambda _: True,
     whole: bool = False,
 ) -> Fault:
@@ -42,212 +83,127 @@ _chain = partial(_fault, "segments")
 _inside = partial(_fault, "vibration")
 _log = partial(_fault, "deflection")
 _beam = partial(_fault, "beam", rule="CC131", needs=lambda name: engine(name).applies_beams)
-_loose = partial(_fault, "segments", scene=elastic_changes.LOOSE)
+_loose = partial(_fault, "segments", scene=LOOSE)
 FAULTS = (
     _chain(
         "springs-of-fewer",
         "springs as of n - 1 segments, not n",
-        segment_changes.in_chain(segment_changes.springs(segment_changes.of_as_many_springs)),
+        in_chain(springs(of_as_many_springs)),
     ),
     _chain(
-        "springs-corrected",
-        "corrected springs, not plain ones",
-        segment_changes.in_chain(segment_changes.springs(segment_changes.as_corrected)),
+        "springs-corrected", "corrected springs, not plain ones", in_chain(springs(as_corrected))
     ),
-    _chain(
-        "modulus-off",
-        "the modulus is too large",
-        segment_changes.in_chain(segment_changes.springs(segment_changes.stiffer)),
-        1e-2,
-        "of it",
-    ),
+    _chain("modulus-off", "the modulus is too large", in_chain(springs(stiffer)), 1e-2, "of it"),
     _chain(
         "spring-missing",
         "the middle spring is soft, or gone",
-        segment_changes.in_chain(
-            segment_changes.middle_spring(
-                lambda one, n, share: segment_changes.stiffer(one, n, -share)
-            )
-        ),
+        in_chain(middle_spring(lambda one, n, share: stiffer(one, n, -share))),
         1.0,
         "of it",
     ),
-    _chain(
-        "bending-reversed",
-        "it pushes the wrong way",
-        segment_changes.in_chain(segment_changes.middle_spring(segment_changes.reversed_spring)),
-    ),
+    _chain("bending-reversed", "it pushes the wrong way", in_chain(middle_spring(reversed_spring))),
     _chain(
         "spring-prebent",
         "it is slack at another angle",
-        segment_changes.in_chain(segment_changes.middle_spring(segment_changes.prebent)),
+        in_chain(middle_spring(prebent)),
         1e-3,
         "rad",
     ),
-    _chain(
-        "spring-damping",
-        "the springs damp",
-        segment_changes.in_chain(segment_changes.springs(segment_changes.damped)),
-        1e-3,
-        "s",
-    ),
+    _chain("spring-damping", "the springs damp", in_chain(springs(damped)), 1e-3, "s"),
     _chain(
         "inertia-at-ends",
         "segments' mass is at their ends",
-        segment_changes.in_chain(segment_changes.segments(segment_changes.at_its_ends)),
+        in_chain(segments(at_its_ends)),
         1.0,
         "of it",
     ),
-    _chain(
-        "segments-heavy",
-        "segments are too heavy",
-        segment_changes.in_chain(segment_changes.segments(segment_changes.heavier)),
-        1e-2,
-        "of it",
-    ),
-    _chain(
-        "rocker-heavy",
-        "what it moves is too heavy",
-        segment_changes.in_chain(segment_changes.heavy_rocker),
-        10.0,
-        "of it",
-    ),
-    _chain(
-        "node-moved", "a node is elsewhere on the link", segment_changes.node_moved, 0.1, "of it"
-    ),
+    _chain("segments-heavy", "segments are too heavy", in_chain(segments(heavier)), 1e-2, "of it"),
+    _chain("rocker-heavy", "what it moves is too heavy", in_chain(heavy_rocker), 10.0, "of it"),
+    _chain("node-moved", "a node is elsewhere on the link", node_moved, 0.1, "of it"),
     _chain(
         "elastic-other",
         "softer, heavier, moves as it should",
-        segment_changes.in_elastic_scene(segment_changes.modulus_and_mass),
+        in_elastic_scene(modulus_and_mass),
         1e-2,
         "of it",
     ),
     _chain(
         "elastic-long",
         "the elastic link is too long",
-        segment_changes.in_elastic_scene(segment_changes.longer),
+        in_elastic_scene(longer),
         1e-2,
         "of it",
         rule="CC103",
     ),
-    _chain("start-straight", "starts straight, and rings", segment_changes.started("straight")),
-    _chain(
-        "start-unswung", "starts as if it did not swing", segment_changes.started("quasi-static")
-    ),
+    _chain("start-straight", "starts straight, and rings", started("straight")),
+    _chain("start-unswung", "starts as if it did not swing", started("quasi-static")),
     _inside(
         "vibration-damped",
         "something damps all joints",
-        engines.after_look(lambda tools: tools.damp),
+        after_look(lambda tools: tools.damp),
         1.0,
         "1/s",
     ),
-    _inside("bending-explicit", "explicit steps: it is flung out", engines.explicit, 1.0, "of it"),
+    _inside("bending-explicit", "explicit steps: it is flung out", explicit, 1.0, "of it"),
     _inside(
         "vibration-fed",
-        f"speeds made larger, {engines.TIMES} times",
-        engines.done_to(lambda tools: tools.quicken, engines.now_and_then),
+        f"speeds made larger, {TIMES} times",
+        done_to(lambda tools: tools.quicken, now_and_then),
         1e-2,
         "of it",
     ),
     _inside(
         "weight-later",
         "gravity is switched on in mid-run",
-        engines.after_a_third(lambda tools: tools.pull),
+        after_a_third(lambda tools: tools.pull),
         1.0,
         "m/s^2",
     ),
     _log(
         "deflection-sign",
         "the deflection has the other sign",
-        elastic_changes.in_chain_log(elastic_changes.bent_by(lambda off, _: np.negative(off))),
+        in_chain_log(bent_by(lambda off, _: np.negative(off))),
     ),
     _log(
         "deflection-scaled",
         "the deflection is too large",
-        elastic_changes.in_chain_log(
-            elastic_changes.bent_by(lambda off, share: (1.0 + share) * off)
-        ),
+        in_chain_log(bent_by(lambda off, share: (1.0 + share) * off)),
         1e-2,
         "of it",
     ),
-    _log(
-        "other-node",
-        "the next node's deflection",
-        elastic_changes.in_chain_log(elastic_changes.at_next_node),
-    ),
+    _log("other-node", "the next node's deflection", in_chain_log(at_next_node)),
     _log(
         "bend-later", "every sample is a later one", late, 1.0, "sample", whole=True, rule="CC102"
     ),
-    _log(
-        "linear-given",
-        "the linear theory, handed in",
-        elastic_changes.in_chain_log(elastic_changes.of_beam(stiffened=False)),
-    ),
-    _log(
-        "beam-given",
-        "the beam, handed back",
-        elastic_changes.in_chain_log(elastic_changes.of_beam(stiffened=True)),
-    ),
-    _log(
-        "chain-given",
-        "the exact chain, handed back",
-        elastic_changes.in_chain_log(elastic_changes.of_exact_chain),
-        rule="CC111",
-    ),
-    _beam(
-        "beam-modulus",
-        "the modulus is too large",
-        elastic_changes.in_beam(elastic_changes.stiffer_beam),
-        1e-2,
-        "of it",
-    ),
-    _beam(
-        "beam-mass",
-        "the beam is too heavy",
-        elastic_changes.in_beam(elastic_changes.heavier_beam),
-        1e-2,
-        "of it",
-    ),
-    _beam(
-        "beam-damping",
-        "the beam damps",
-        elastic_changes.in_beam(elastic_changes.damped_beam),
-        1e-3,
-        "s",
-    ),
-    _beam(
-        "beam-stretches",
-        "EA is that many times too small",
-        elastic_changes.in_beam(elastic_changes.stretchier),
-        1e4,
-        "times",
-    ),
-    _beam("beam-straight", "starts straight, and rings", elastic_changes.begun("straight")),
-    _beam("beam-unswung", "starts as if it did not swing", elastic_changes.begun("quasi-static")),
+    _log("linear-given", "the linear theory, handed in", in_chain_log(of_beam(stiffened=False))),
+    _log("beam-given", "the beam, handed back", in_chain_log(of_beam(stiffened=True))),
+    _log("chain-given", "the exact chain, handed back", in_chain_log(of_exact_chain), rule="CC111"),
+    _beam("beam-modulus", "the modulus is too large", in_beam(stiffer_beam), 1e-2, "of it"),
+    _beam("beam-mass", "the beam is too heavy", in_beam(heavier_beam), 1e-2, "of it"),
+    _beam("beam-damping", "the beam damps", in_beam(damped_beam), 1e-3, "s"),
+    _beam("beam-stretches", "EA is that many times too small", in_beam(stretchier), 1e4, "times"),
+    _beam("beam-straight", "starts straight, and rings", begun("straight")),
+    _beam("beam-unswung", "starts as if it did not swing", begun("quasi-static")),
     _beam(
         "beam-bend-scaled",
         "the deflection is too large",
-        elastic_changes.in_chain_log(
-            elastic_changes.bent_by(lambda off, share: (1.0 + share) * off)
-        ),
+        in_chain_log(bent_by(lambda off, share: (1.0 + share) * off)),
         1e-2,
         "of it",
     ),
     _beam(
-        "beam-linear-given",
-        "the linear theory, handed in",
-        elastic_changes.in_chain_log(elastic_changes.of_beam(stiffened=False)),
+        "beam-linear-given", "the linear theory, handed in", in_chain_log(of_beam(stiffened=False))
     ),
     _beam(
         "beam-theory-given",
         "the beam, handed back",
-        elastic_changes.in_chain_log(elastic_changes.of_beam(stiffened=True)),
+        in_chain_log(of_beam(stiffened=True)),
         rule="CC111",
     ),
     _loose(
         "loose-torque-late",
         "let go: the torque acts late",
-        segment_changes.in_chain(of_load("pulse", later(_STEP_S))),
+        in_chain(of_load("pulse", later(_STEP_S))),
         1.0,
         "steps",
         rule="CC127",
@@ -255,27 +211,21 @@ FAULTS = (
     _loose(
         "loose-torque-back",
         "let go: it turns the other way",
-        segment_changes.in_chain(of_load("pulse", reversed_load)),
+        in_chain(of_load("pulse", reversed_load)),
         rule="CC127",
     ),
     _loose(
         "loose-modulus-off",
         "let go: the modulus is too large",
-        segment_changes.in_chain(segment_changes.springs(segment_changes.stiffer)),
+        in_chain(springs(stiffer)),
         1e-2,
         "of it",
     ),
-    _loose(
-        "loose-damping",
-        "let go: the springs damp",
-        segment_changes.in_chain(segment_changes.springs(segment_changes.damped)),
-        1e-3,
-        "s",
-    ),
+    _loose("loose-damping", "let go: the springs damp", in_chain(springs(damped)), 1e-3, "s"),
     _loose(
         "loose-rocker-heavy",
         "let go: what it moves is too heavy",
-        segment_changes.in_chain(segment_changes.heavy_rocker),
+        in_chain(heavy_rocker),
         1e-2,
         "of it",
         rule="CC127",
@@ -283,10 +233,10 @@ FAULTS = (
     _inside(
         "loose-damped",
         "let go: something damps all joints",
-        engines.after_look(lambda tools: tools.damp),
+        after_look(lambda tools: tools.damp),
         1.0,
         "1/s",
-        scene=elastic_changes.LOOSE,
+        scene=LOOSE,
         rule="CC129",
     ),
 )

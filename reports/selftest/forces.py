@@ -5,76 +5,65 @@ from functools import partial
 
 from models.scene.moved import scaled
 from reports.compare.whole_errors import OF_STEPS
-from reports.selftest import force_changes
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
+from reports.selftest.force_changes import (
+    about_another_point,
+    dropped,
+    each_force,
+    each_slider,
+    gives,
+    in_body_frame,
+    in_forces,
+    in_torque,
+    largest_n,
+    lighter,
+    load_in_body,
+    load_late,
+    nan_at_end,
+    of_another,
+    of_load,
+    of_reference,
+    of_the_giver,
+    one_sided,
+    pins_swapped,
+    rows_late,
+    smoothed,
+    spoilt_pin,
+    stamped,
+    turned_aside,
+    turning_lighter,
+    weighed,
+    without_last_pin,
+)
 from reports.selftest.log_edits import WHEN, noisy
 from sim.registry import engine
 
 SLIDING = (SLIDER, SHAPER)
 START = slice(5, 39)
 """Samples of the start, in which an engine takes up its pins."""
-_fault = partial(Fault, "force", needs=force_changes.gives)
+_fault = partial(Fault, "force", needs=gives)
 FAULTS = (
-    _fault(
-        "force-sign",
-        "all forces have the other sign",
-        "CC120",
-        force_changes.each_force(lambda x, _: -x),
-    ),
-    _fault(
-        "force-giver",
-        "a pin's force said of the other body",
-        "CC120",
-        force_changes.in_forces(force_changes.of_the_giver),
-    ),
-    _fault(
-        "force-body-frame",
-        "vectors in the bodies' frames",
-        "CC120",
-        force_changes.in_forces(force_changes.in_body_frame),
-    ),
-    _fault(
-        "force-turned",
-        "x for y: a quarter of a turn",
-        "CC120",
-        force_changes.in_forces(force_changes.turned_aside),
-    ),
-    _fault(
-        "force-half-step",
-        "stamped too late",
-        "CC120",
-        force_changes.in_forces(force_changes.stamped),
-        0.5,
-        "steps",
-    ),
+    _fault("force-sign", "all forces have the other sign", "CC120", each_force(lambda x, _: -x)),
+    _fault("force-giver", "a pin's force said of the other body", "CC120", in_forces(of_the_giver)),
+    _fault("force-body-frame", "vectors in the bodies' frames", "CC120", in_forces(in_body_frame)),
+    _fault("force-turned", "x for y: a quarter of a turn", "CC120", in_forces(turned_aside)),
+    _fault("force-half-step", "stamped too late", "CC120", in_forces(stamped), 0.5, "steps"),
     _fault(
         "force-late",
         "a row has the forces of a row before",
         "CC120",
-        force_changes.in_forces(force_changes.rows_late),
+        in_forces(rows_late),
         1.0,
         "sample",
         whole=True,
     ),
-    _fault(
-        "force-far",
-        "stamped far from its sample",
-        "CC115",
-        force_changes.in_forces(force_changes.stamped),
-        2.0,
-        "steps",
-    ),
-    _fault(
-        "pins-swapped",
-        "two pins have each other's forces",
-        "CC120",
-        force_changes.in_forces(force_changes.pins_swapped),
-    ),
+    _fault("force-far", "stamped far from its sample", "CC115", in_forces(stamped), 2.0, "steps"),
+    _fault("pins-swapped", "two pins have each other's forces", "CC120", in_forces(pins_swapped)),
     _fault(
         "no-inertia",
         "mass and inertia of a link left out",
         "CC120",
-        force_changes.in_forces(force_changes.of_another(force_changes.lighter)),
+        in_forces(of_another(lighter)),
         1.0,
         "of it",
     ),
@@ -82,7 +71,7 @@ FAULTS = (
         "no-turning-inertia",
         "a link's inertia left out",
         "CC123",
-        force_changes.in_forces(force_changes.of_another(force_changes.turning_lighter)),
+        in_forces(of_another(turning_lighter)),
         1.0,
         "of it",
     ),
@@ -90,7 +79,7 @@ FAULTS = (
         "weight-added",
         "forces of a gravity that is not there",
         "CC120",
-        force_changes.in_forces(force_changes.of_another(force_changes.weighed)),
+        in_forces(of_another(weighed)),
         9.81,
         "m/s^2",
     ),
@@ -98,29 +87,19 @@ FAULTS = (
         "load-late",
         "a load over time is felt late",
         "CC120",
-        force_changes.in_forces(force_changes.of_load(force_changes.load_late)),
+        in_forces(of_load(load_late)),
         1.0,
         "steps",
     ),
     _fault(
-        "load-in-body",
-        "a load felt in the body's frame",
-        "CC120",
-        force_changes.in_forces(force_changes.of_load(force_changes.load_in_body)),
+        "load-in-body", "a load felt in the body's frame", "CC120", in_forces(of_load(load_in_body))
     ),
-    _fault(
-        "load-left-out",
-        "a load is not felt",
-        "CC120",
-        force_changes.in_forces(force_changes.of_load(lambda *_: None)),
-    ),
+    _fault("load-left-out", "a load is not felt", "CC120", in_forces(of_load(lambda *_: None))),
     _fault(
         "other-scene-forces",
         "forces of a larger scene",
         "CC120",
-        force_changes.in_forces(
-            force_changes.of_another(lambda scene, share: scaled(scene, 1.0 + share))
-        ),
+        in_forces(of_another(lambda scene, share: scaled(scene, 1.0 + share))),
         1e-2,
         "longer",
     ),
@@ -128,18 +107,16 @@ FAULTS = (
         "force-doubled",
         "all forces twice",
         "CC120",
-        force_changes.each_force(lambda x, by: x * (1.0 + by)),
+        each_force(lambda x, by: x * (1.0 + by)),
         1.0,
         "of it",
     ),
-    _fault(
-        "force-of-kgf", "forces in kgf", "CC120", force_changes.each_force(lambda x, _: x / 9.80665)
-    ),
+    _fault("force-of-kgf", "forces in kgf", "CC120", each_force(lambda x, _: x / 9.80665)),
     _fault(
         "pin-open",
         "a pin's forces do not add up to 0",
         "CC124",
-        force_changes.in_forces(force_changes.one_sided),
+        in_forces(one_sided),
         1e-6,
         "of it",
     ),
@@ -147,10 +124,8 @@ FAULTS = (
         "normal-sign",
         "normal forces have the other sign",
         "CC121",
-        force_changes.in_forces(
-            lambda s, d, own, _: force_changes.each_slider(
-                own, lambda one: replace(one, normal=-one.normal)
-            )
+        in_forces(
+            lambda s, d, own, _: each_slider(own, lambda one: replace(one, normal=-one.normal))
         ),
         scenes=SLIDING,
     ),
@@ -158,7 +133,7 @@ FAULTS = (
         "moment-elsewhere",
         "moments about another point",
         "CC122",
-        force_changes.in_forces(force_changes.about_another_point),
+        in_forces(about_another_point),
         1e-1,
         "L off",
         scenes=SLIDING,
@@ -167,7 +142,7 @@ FAULTS = (
         "flywheel-in",
         "the flywheel's share is in the torque",
         "CC123",
-        force_changes.in_torque(lambda torque, share: torque * (1.0 - share)),
+        in_torque(lambda torque, share: torque * (1.0 - share)),
         1.0,
         "of it",
     ),
@@ -175,21 +150,18 @@ FAULTS = (
         "torque-off",
         "a torque of too much power",
         "CC123",
-        force_changes.in_torque(lambda torque, share: torque * (1.0 + share)),
+        in_torque(lambda torque, share: torque * (1.0 + share)),
         1e-2,
         "of it",
     ),
     _fault(
-        "torque-sign",
-        "what the driver exerts on the drive",
-        "CC123",
-        force_changes.in_torque(lambda x, _: -x),
+        "torque-sign", "what the driver exerts on the drive", "CC123", in_torque(lambda x, _: -x)
     ),
     _fault(
         "force-smoothed",
         "the mean over some samples",
         "CC120",
-        force_changes.each_force(force_changes.smoothed),
+        each_force(smoothed),
         41.0,
         "samples",
         whole=True,
@@ -198,27 +170,18 @@ FAULTS = (
         "force-noise",
         "noise on all forces (normal)",
         "CC120",
-        force_changes.in_forces(
-            lambda s, d, own, x: own.each_series(
-                lambda f: noisy(f, x * force_changes.largest_n(own))
-            )
-        ),
+        in_forces(lambda s, d, own, x: own.each_series(lambda f: noisy(f, x * largest_n(own)))),
         1e-2,
         "F",
     ),
     _fault(
-        "force-spike",
-        "a reaction off at a sample",
-        "CC120",
-        force_changes.in_forces(force_changes.spoilt_pin(WHEN)),
-        1e-2,
-        "F",
+        "force-spike", "a reaction off at a sample", "CC120", in_forces(spoilt_pin(WHEN)), 1e-2, "F"
     ),
     _fault(
         "force-start",
         "reactions off at the start",
         "CC116",
-        force_changes.in_forces(force_changes.spoilt_pin(START)),
+        in_forces(spoilt_pin(START)),
         0.5,
         "F",
         needs=lambda name: engine(name).forces_of == "states",
@@ -227,7 +190,7 @@ FAULTS = (
         "force-first-steps",
         "reactions off in the first steps",
         "CC116",
-        force_changes.in_forces(force_changes.spoilt_pin(slice(1, OF_STEPS))),
+        in_forces(spoilt_pin(slice(1, OF_STEPS))),
         2.0,
         "F",
         needs=lambda name: engine(name).forces_of == "steps",
@@ -236,7 +199,7 @@ FAULTS = (
         "force-rings",
         "reactions off after the first steps",
         "CC120",
-        force_changes.in_forces(force_changes.spoilt_pin(slice(OF_STEPS + 1, 39))),
+        in_forces(spoilt_pin(slice(OF_STEPS + 1, 39))),
         1e-2,
         "F",
         needs=lambda name: engine(name).forces_of == "steps",
@@ -245,29 +208,14 @@ FAULTS = (
         "force-floor",
         "a reaction off, within the limit",
         "CC125",
-        force_changes.in_forces(force_changes.spoilt_pin(slice(None))),
+        in_forces(spoilt_pin(slice(None))),
         1e-3,
         "F",
         scenes=(FOURBAR,),
         finer=True,
     ),
-    _fault(
-        "forces-copied",
-        "forces of the reference",
-        "CC111",
-        force_changes.in_forces(force_changes.of_reference),
-    ),
-    _fault(
-        "force-nan",
-        "a reaction not a number at the end",
-        "CC109",
-        force_changes.in_forces(force_changes.nan_at_end),
-    ),
-    _fault(
-        "pin-missing",
-        "a pin is not in the log",
-        "CC109",
-        force_changes.in_forces(force_changes.without_last_pin),
-    ),
-    _fault("forces-missing", "no force is in the log", "CC109", in_log(force_changes.dropped)),
+    _fault("forces-copied", "forces of the reference", "CC111", in_forces(of_reference)),
+    _fault("force-nan", "a reaction not a number at the end", "CC109", in_forces(nan_at_end)),
+    _fault("pin-missing", "a pin is not in the log", "CC109", in_forces(without_last_pin)),
+    _fault("forces-missing", "no force is in the log", "CC109", in_log(dropped)),
 )

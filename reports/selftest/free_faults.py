@@ -9,7 +9,42 @@ import numpy as np
 from analytic.kinematics import solve_driven
 from models.scene import Scene
 from reports.compare.free_truth import free_truth
-from reports.selftest import engines, fault, free_changes
+from reports.selftest.engines import (
+    TIMES,
+    after_a_third,
+    after_look,
+    done_to,
+    explicit,
+    now_and_then,
+)
+from reports.selftest.fault import (
+    REFUSED,
+    Fault,
+    can_set,
+    in_log,
+    in_settings,
+    switched,
+)
+from reports.selftest.free_changes import (
+    about_pin,
+    along_lines,
+    faster_start,
+    heavier,
+    held_at_start,
+    in_free_scene,
+    lasting,
+    later,
+    of_coupler,
+    of_load,
+    of_spring,
+    off_centre,
+    on_last_link,
+    reversed_load,
+    spring_elsewhere,
+    stronger_gravity,
+    turned_gravity,
+    without_flywheel,
+)
 from reports.selftest.log_edits import last, moved, output, with_link
 from reports.selftest.log_faults import late
 from reports.selftest.mechanism import long_coupler
@@ -40,61 +75,34 @@ def _fault(
     scene: str = SWING,
     rule: str = "CC127",
     finer: bool = False,
-) -> fault.Fault:
+) -> Fault:
     """Return a fault of the machine that the engine is given in the place of a scene."""
-    plant = free_changes.in_free_scene(change)
-    return fault.Fault(
-        "dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer
-    )
+    plant = in_free_scene(change)
+    return Fault("dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer)
 
 
 DYNAMICS = (
+    _fault("mass-wrong", "a link is too heavy", of_coupler(heavier), 0.1, "of it"),
     _fault(
-        "mass-wrong",
-        "a link is too heavy",
-        free_changes.of_coupler(free_changes.heavier),
-        0.1,
-        "of it",
+        "inertia-at-pin", "inertia about a pin, not the centre", of_coupler(about_pin), 1.0, "m d^2"
     ),
-    _fault(
-        "inertia-at-pin",
-        "inertia about a pin, not the centre",
-        free_changes.of_coupler(free_changes.about_pin),
-        1.0,
-        "m d^2",
-    ),
-    _fault(
-        "centre-moved",
-        "a centre of mass is elsewhere",
-        free_changes.of_coupler(free_changes.off_centre),
-        0.1,
-        "of it",
-    ),
-    _fault("gravity-scaled", "gravity is too strong", free_changes.stronger_gravity, 1e-3, "of it"),
+    _fault("centre-moved", "a centre of mass is elsewhere", of_coupler(off_centre), 0.1, "of it"),
+    _fault("gravity-scaled", "gravity is too strong", stronger_gravity, 1e-3, "of it"),
     _fault(
         "gravity-hardly",
         "the same, within this step's limit",
-        free_changes.stronger_gravity,
+        stronger_gravity,
         1e-4,
         "of it",
         rule="CC110",
         finer=True,
     ),
-    _fault(
-        "gravity-turned", "gravity is not straight down", free_changes.turned_gravity, 1e-2, "rad"
-    ),
-    _fault(
-        "start-faster",
-        "the driver starts too fast",
-        free_changes.faster_start,
-        1e-2,
-        "w",
-        scene=SPRING,
-    ),
+    _fault("gravity-turned", "gravity is not straight down", turned_gravity, 1e-2, "rad"),
+    _fault("start-faster", "the driver starts too fast", faster_start, 1e-2, "w", scene=SPRING),
     _fault(
         "torque-late",
         "a torque over time acts late",
-        free_changes.of_load("pulse", free_changes.later(_STEP_S)),
+        of_load("pulse", later(_STEP_S)),
         1.0,
         "steps",
         scene=PULSE,
@@ -102,7 +110,7 @@ DYNAMICS = (
     _fault(
         "torque-lasts",
         "a torque over time ends late",
-        free_changes.of_load("pulse", free_changes.lasting(_STEP_S)),
+        of_load("pulse", lasting(_STEP_S)),
         1.0,
         "steps",
         scene=PULSE,
@@ -110,39 +118,31 @@ DYNAMICS = (
     _fault(
         "torque-reversed",
         "a torque turns the other way",
-        free_changes.of_load("pulse", free_changes.reversed_load),
+        of_load("pulse", reversed_load),
         scene=PULSE,
     ),
     _fault(
         "torque-elsewhere",
         "a torque acts on another link",
-        free_changes.of_load("pulse", free_changes.on_last_link),
+        of_load("pulse", on_last_link),
         scene=PULSE,
     ),
     _fault(
-        "motor-held",
-        "a motor keeps its first torque",
-        free_changes.of_load("motor", free_changes.held_at_start),
-        scene=PRESS,
+        "motor-held", "a motor keeps its first torque", of_load("motor", held_at_start), scene=PRESS
     ),
     _fault(
         "table-in-lines",
         "a table read along straight lines",
-        free_changes.of_load("work", free_changes.along_lines),
+        of_load("work", along_lines),
         scene=PRESS,
     ),
     _fault(
-        "flywheel-lost",
-        "the flywheel is forgotten",
-        free_changes.without_flywheel,
-        0.9,
-        "of it",
-        scene=PRESS,
+        "flywheel-lost", "the flywheel is forgotten", without_flywheel, 0.9, "of it", scene=PRESS
     ),
     _fault(
         "spring-stiff",
         "a spring is too stiff",
-        free_changes.of_spring(lambda one, share, _: replace(one, rate=(1.0 + share) * one.rate)),
+        of_spring(lambda one, share, _: replace(one, rate=(1.0 + share) * one.rate)),
         0.1,
         "of it",
         scene=SPRING,
@@ -150,15 +150,13 @@ DYNAMICS = (
     _fault(
         "spring-reversed",
         "a spring pushes where it should pull",
-        free_changes.of_spring(
-            lambda one, swap, _: replace(one, rate=(1.0 - 2.0 * swap) * one.rate)
-        ),
+        of_spring(lambda one, swap, _: replace(one, rate=(1.0 - 2.0 * swap) * one.rate)),
         scene=SPRING,
     ),
     _fault(
         "spring-long",
         "a spring is slack elsewhere",
-        free_changes.of_spring(lambda one, _, off_m: replace(one, free=one.free + off_m)),
+        of_spring(lambda one, _, off_m: replace(one, free=one.free + off_m)),
         0.1,
         "L",
         scene=SPRING,
@@ -166,7 +164,7 @@ DYNAMICS = (
     _fault(
         "spring-elsewhere",
         "a spring pulls at another point",
-        free_changes.spring_elsewhere,
+        spring_elsewhere,
         1e-2,
         "m",
         scene=SQUEEZER,
@@ -174,9 +172,7 @@ DYNAMICS = (
     _fault(
         "damper-lost",
         "a damper is forgotten",
-        free_changes.of_spring(
-            lambda one, share, _: replace(one, damping=(1.0 - share) * one.damping)
-        ),
+        of_spring(lambda one, share, _: replace(one, damping=(1.0 - share) * one.damping)),
         1.0,
         "of it",
         scene=SPRING,
@@ -184,9 +180,7 @@ DYNAMICS = (
     _fault(
         "damper-reversed",
         "a damper drives",
-        free_changes.of_spring(
-            lambda one, swap, _: replace(one, damping=(1.0 - 2.0 * swap) * one.damping)
-        ),
+        of_spring(lambda one, swap, _: replace(one, damping=(1.0 - 2.0 * swap) * one.damping)),
         scene=SPRING,
         rule="CC129",
     ),
@@ -194,13 +188,13 @@ DYNAMICS = (
 )
 
 
-_stepping = partial(fault.Fault, "stepping", scenes=(SWING,))
+_stepping = partial(Fault, "stepping", scenes=(SWING,))
 STEPPING = (
     _stepping(
         "damping-left-on",
         "something damps all joints",
         "CC129",
-        engines.after_look(lambda tools: tools.damp),
+        after_look(lambda tools: tools.damp),
         0.1,
         "1/s",
     ),
@@ -208,7 +202,7 @@ STEPPING = (
         "armature-left-on",
         "the last joint is slow to turn",
         "CC127",
-        engines.after_look(lambda tools: tools.slow),
+        after_look(lambda tools: tools.slow),
         1.0,
         "of it",
     ),
@@ -216,7 +210,7 @@ STEPPING = (
         "mass-later",
         "a body becomes heavier",
         "CC127",
-        engines.after_a_third(lambda tools: tools.load),
+        after_a_third(lambda tools: tools.load),
         1.0,
         "of it",
     ),
@@ -224,7 +218,7 @@ STEPPING = (
         "gravity-later",
         "more gravity in mid-run",
         "CC127",
-        engines.after_a_third(lambda tools: tools.pull),
+        after_a_third(lambda tools: tools.pull),
         1.0,
         "m/s^2",
     ),
@@ -232,19 +226,17 @@ STEPPING = (
         "start-contradicts",
         "a link starts at a speed of its own",
         "CC101",
-        engines.done_to(lambda tools: tools.spin),
+        done_to(lambda tools: tools.spin),
         1e-3,
         "rad/s",
-        says=(fault.REFUSED, "turns at"),
+        says=(REFUSED, "turns at"),
     ),
-    _stepping(
-        "explicit-euler", "explicit steps: energy grows", "CC129", engines.explicit, 1.0, "of it"
-    ),
+    _stepping("explicit-euler", "explicit steps: energy grows", "CC129", explicit, 1.0, "of it"),
     _stepping(
         "energy-fed",
-        f"speeds made larger, {engines.TIMES} times",
+        f"speeds made larger, {TIMES} times",
         "CC129",
-        engines.done_to(lambda tools: tools.quicken, engines.now_and_then),
+        done_to(lambda tools: tools.quicken, now_and_then),
         1e-3,
         "of it",
     ),
@@ -252,7 +244,7 @@ STEPPING = (
         "loop-slips",
         "a joint slips on its link in mid-run",
         "CC128",
-        engines.after_a_third(lambda tools: tools.slip),
+        after_a_third(lambda tools: tools.slip),
         1e-3,
         "m",
     ),
@@ -260,15 +252,15 @@ STEPPING = (
         "semi-implicit",
         "semi-implicit Euler for RK4",
         "CC127",
-        fault.in_settings("semi-implicit"),
-        needs=fault.can_set("semi-implicit"),
+        in_settings("semi-implicit"),
+        needs=can_set("semi-implicit"),
     ),
     _stepping(
         "bias-left-on",
         "gaps closed slowly: first order",
         "CC129",
-        fault.in_settings("first-order"),
-        needs=fault.can_set("first-order"),
+        in_settings("first-order"),
+        needs=can_set("first-order"),
     ),
 )
 
@@ -321,27 +313,20 @@ def _leaking(_: Scene, done: Run, share: float) -> Run:
     return replace(done, energy=Energy(kinetic, potential - lost))
 
 
-_record = partial(fault.Fault, "record", scenes=(SWING,))
+_record = partial(Fault, "record", scenes=(SWING,))
 RECORD = (
     _record("row-later", "every sample is a later one", "CC127", late, 1.0, "sample", whole=True),
+    _record("rate-off", "a logged velocity is too large", "CC106", in_log(_quick), 0.1, "of it"),
+    _record("energy-leaks", "energy that is lost evenly", "CC129", in_log(_leaking), 1e-2, "T"),
     _record(
-        "rate-off", "a logged velocity is too large", "CC106", fault.in_log(_quick), 0.1, "of it"
+        "other-assembly", "the other assembly is logged", "CC101", switched(_in_other_assembly)
     ),
-    _record(
-        "energy-leaks", "energy that is lost evenly", "CC129", fault.in_log(_leaking), 1e-2, "T"
-    ),
-    _record(
-        "other-assembly",
-        "the other assembly is logged",
-        "CC101",
-        fault.switched(_in_other_assembly),
-    ),
-    _record("energy-missing", "no energy is in the log", "CC109", fault.switched(_without_energy)),
+    _record("energy-missing", "no energy is in the log", "CC109", switched(_without_energy)),
     _record(
         "free-copied",
         "the reference, handed back",
         "CC111",
-        fault.switched(_copied),
+        switched(_copied),
         scenes=(SWING, SPRING),
     ),
 )

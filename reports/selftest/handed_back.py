@@ -12,7 +12,16 @@ from models.array import Array
 from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from reports.judge.cell import CellRunner
-from reports.selftest import fault
+from reports.selftest.fault import (
+    FOURBAR,
+    SHAPER,
+    SLIDER,
+    Fault,
+    Plant,
+    in_log,
+    integrates,
+    switched,
+)
 from reports.selftest.log_edits import last, moved, noisy, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
@@ -24,14 +33,14 @@ def _handed_back(scene: Scene, done: Run) -> Run:
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
-def _each(change: Callable[[Motion], Motion]) -> fault.Plant:
+def _each(change: Callable[[Motion], Motion]) -> Plant:
     """Return the closed form, changed a little."""
 
     def changed(scene: Scene, done: Run) -> Run:
         back = _handed_back(scene, done)
         return replace(back, motion=change(moved(back)))
 
-    return fault.switched(changed)
+    return switched(changed)
 
 
 def _through_degrees(motion: Motion) -> Motion:
@@ -49,7 +58,7 @@ def _next_floats(motion: Motion) -> Motion:
     return motion.each_series(lambda series: np.asarray(np.nextafter(series, np.inf)))
 
 
-def _spoilt(change: Callable[[Array, float], Array]) -> fault.Plant:
+def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
     """Return the closed form, with its places changed by a size, in radians and longest links."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
@@ -62,7 +71,7 @@ def _spoilt(change: Callable[[Array, float], Array]) -> fault.Plant:
         motion = replace(own, links=links, points=points)
         return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
-    return fault.in_log(changed)
+    return in_log(changed)
 
 
 def _one_link(scene: Scene, done: Run) -> Run:
@@ -135,40 +144,28 @@ def _finer_handed_back(size: float) -> CellRunner:
     return runner
 
 
-_fault = partial(fault.Fault, "reference", scenes=(fault.FOURBAR, fault.SLIDER, fault.SHAPER))
+_fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
 FAULTS = (
-    _fault("too-good", "the reference, handed back", "CC111", fault.switched(_handed_back)),
+    _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
     _fault("too-good-degrees", "through degrees and back", "CC111", _each(_through_degrees)),
     _fault("too-good-next", "every number the next float", "CC111", _each(_next_floats)),
-    _fault("too-good-link", "of one link only", "CC111", fault.switched(_one_link)),
-    _fault("too-good-point", "of one point only", "CC111", fault.switched(_one_point)),
+    _fault("too-good-link", "of one link only", "CC111", switched(_one_link)),
+    _fault("too-good-point", "of one point only", "CC111", switched(_one_point)),
     _fault(
         "too-good-slider",
         "of one slider only",
         "CC111",
-        fault.switched(_one_slider),
-        scenes=(fault.SLIDER, fault.SHAPER),
+        switched(_one_slider),
+        scenes=(SLIDER, SHAPER),
     ),
     _fault(
-        "too-good-velocity",
-        "of one velocity only",
-        "CC111",
-        fault.switched(_velocity),
-        needs=fault.integrates,
+        "too-good-velocity", "of one velocity only", "CC111", switched(_velocity), needs=integrates
     ),
     _fault(
-        "too-good-speeds",
-        "of all points and sliders",
-        "CC111",
-        fault.switched(_speeds),
-        needs=fault.integrates,
+        "too-good-speeds", "of all points and sliders", "CC111", switched(_speeds), needs=integrates
     ),
     _fault(
-        "too-good-gaps",
-        "every gap is 0, as in truth",
-        "CC111",
-        fault.switched(_shut),
-        needs=fault.integrates,
+        "too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut), needs=integrates
     ),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(noisy), 1e-7, "rad, L"),
@@ -176,8 +173,8 @@ FAULTS = (
         "too-good-crank",
         "at the logged crank angle",
         "CC111",
-        fault.switched(_at_the_crank),
-        needs=fault.integrates,
+        switched(_at_the_crank),
+        needs=integrates,
     ),
     _fault(
         "too-good-finer",
@@ -186,6 +183,6 @@ FAULTS = (
         _finer_handed_back,
         says=("which no step of that size allows",),
         finer=True,
-        needs=fault.integrates,
+        needs=integrates,
     ),
 )

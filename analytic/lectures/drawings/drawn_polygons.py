@@ -12,13 +12,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from analytic.lectures.drawings import placed_mechanism
 from analytic.lectures.drawings.dyad_polygon import (
     DyadPolygon,
     Known,
     NodeMotion,
     Origin,
     dyad_polygon,
+)
+from analytic.lectures.drawings.placed_mechanism import (
+    STILL,
+    BodyRates,
+    DriverState,
+    PlacedMechanism,
+    quarter_turn,
 )
 from analytic.lectures.drawings.polygon import (
     FLAT,
@@ -51,10 +57,10 @@ class DrawnPolygons:
     directions hardly cross, with angles.
     """
 
-    placement: placed_mechanism.PlacedMechanism
+    placement: PlacedMechanism
     velocity: Polygon
     acceleration: Polygon
-    rates: Mapping[str, placed_mechanism.BodyRates]
+    rates: Mapping[str, BodyRates]
     flat: tuple[str, ...] = ()
 
     @property
@@ -62,17 +68,17 @@ class DrawnPolygons:
         return self.velocity.undetermined
 
 
-def draw_polygons(scene: Scene, driver: placed_mechanism.DriverState) -> DrawnPolygons:
+def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
     """Draw the velocity and the acceleration polygon of a scene with its driver in a state.
 
     Where two directions of a group are parallel (a limit position, a change point) it and later
     groups on it are left out and named. Raises as `analytic.kinematics.solve`, and CrankcheckError
     where the driver is no crank or a group is of class III.
     """
-    return polygons_of(placed_mechanism.PlacedMechanism.of(scene, driver))
+    return polygons_of(PlacedMechanism.of(scene, driver))
 
 
-def polygons_of(placement: placed_mechanism.PlacedMechanism) -> DrawnPolygons:
+def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
     """Draw as `draw_polygons`, from a placed mechanism."""
     refuse_other_than_cranked(placement.scene, "a vector polygon", placement.structure)
     table = _Table(placement)
@@ -98,10 +104,8 @@ def polygons_of(placement: placed_mechanism.PlacedMechanism) -> DrawnPolygons:
 class _Table:
     """Drawing table: the steps of both polygons, and the known bodies."""
 
-    placement: placed_mechanism.PlacedMechanism
-    rates: dict[str, placed_mechanism.BodyRates] = field(
-        default_factory=lambda: {GROUND: placed_mechanism.STILL}
-    )
+    placement: PlacedMechanism
+    rates: dict[str, BodyRates] = field(default_factory=lambda: {GROUND: STILL})
     steps: dict[Quantity, list[PolygonStep]] = field(
         default_factory=lambda: {q: [] for q in QUANTITIES}
     )
@@ -113,19 +117,17 @@ class _Table:
         link, pivot = scene.driver.link, scene.driver_pivot
         place = self.placement.points[pivot]
         still = np.zeros(2)
-        self.rates[link] = placed_mechanism.BodyRates(place, still, still, state.omega, state.alpha)
+        self.rates[link] = BodyRates(place, still, still, state.omega, state.alpha)
         velocity, acceleration, nodes = [], [], {}
         for point in scene.links[link].points:
             if point in scene.ground:
                 continue
             arm = self.placement.points[point] - place
             subscript = point + pivot
-            whole = Term(subscript, "rotation", state.omega * placed_mechanism.quarter_turn(arm))
+            whole = Term(subscript, "rotation", state.omega * quarter_turn(arm))
             parts = [Term(subscript, "normal", -(state.omega**2) * arm)]
             if state.alpha:
-                parts.append(
-                    Term(subscript, "tangential", state.alpha * placed_mechanism.quarter_turn(arm))
-                )
+                parts.append(Term(subscript, "tangential", state.alpha * quarter_turn(arm)))
             velocity += _laid("velocity", still, [whole])
             acceleration += _laid("acceleration", still, parts)
             nodes[point] = place + arm
@@ -181,7 +183,7 @@ class _Table:
     def _is_new(self, quantity: Quantity, origin: Origin) -> bool:
         """True if a point has no image yet; the ground's is the pole."""
         drawn = any(origin.name in step.nodes for step in self.steps[quantity])
-        return not drawn and origin.body is not placed_mechanism.STILL
+        return not drawn and origin.body is not STILL
 
     def _missing(self, part: Group | Bridge) -> str:
         """Return an unknown body that a part needs."""
@@ -200,9 +202,9 @@ class _Table:
         """Draw a redundant link, by two of its pins."""
         known = Known(self.placement, self.rates)
         one, other = [known.pin(pin) for pin in part.pins if known.has(pin)][:2]
-        across = placed_mechanism.quarter_turn(other.place - one.place)
+        across = quarter_turn(other.place - one.place)
         size = float(across @ across)
-        self.rates[part.link] = placed_mechanism.BodyRates(
+        self.rates[part.link] = BodyRates(
             one.place,
             one.velocity,
             one.acceleration,
@@ -284,7 +286,7 @@ def _is_rounding(drawn: DrawnPolygons, link: str, quantity: Quantity, scale: flo
     return scale * reach <= POINT * polygon.largest
 
 
-def _factor(body: placed_mechanism.BodyRates, quantity: Quantity) -> complex:
+def _factor(body: BodyRates, quantity: Quantity) -> complex:
     """Return the factor of the link, x + iy being its places."""
     if quantity == "velocity":
         return 1j * body.omega

@@ -11,8 +11,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from analytic.lectures.regulation import periodic_solution
 from analytic.lectures.regulation.angle_cells import AngleCells, breaks, rated_breaks
+from analytic.lectures.regulation.periodic_solution import (
+    PeriodicSolution,
+    WantedSpeed,
+    repeated,
+    resolved,
+)
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.array import Array
@@ -139,7 +144,7 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
     scene = machine.scene
     law_speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
     if scene.is_free and machine.is_rated:
-        wanted = periodic_solution.WantedSpeed(None)
+        wanted = WantedSpeed(None)
         speed = settled_speed(machine)
     elif law_speed == 0.0:
         raise CrankcheckError(
@@ -148,21 +153,19 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
             "a load over the speed, such as that of a motor"
         )
     else:
-        wanted, speed = periodic_solution.WantedSpeed(law_speed), law_speed
-    solution = periodic_solution.repeated(machine, cells, flywheel_kg_m2, speed, wanted)
+        wanted, speed = WantedSpeed(law_speed), law_speed
+    solution = repeated(machine, cells, flywheel_kg_m2, speed, wanted)
     if scene.is_free:
         _check_closed(solution)
     if machine.is_rated:
         # Rows of tables over the speed are passed somewhere on the way: cut there.
         more = rated_breaks(machine, solution.speed_at)
         cells = AngleCells.of(machine.cycle_rad, np.concatenate([cells.borders, more]))
-        solution = periodic_solution.repeated(machine, cells, flywheel_kg_m2, solution, wanted)
-    return _with_extremes(periodic_solution.resolved(solution, wanted), wanted)
+        solution = repeated(machine, cells, flywheel_kg_m2, solution, wanted)
+    return _with_extremes(resolved(solution, wanted), wanted)
 
 
-def _with_extremes(
-    solution: periodic_solution.PeriodicSolution, wanted: periodic_solution.WantedSpeed
-) -> SteadyCycle:
+def _with_extremes(solution: PeriodicSolution, wanted: WantedSpeed) -> SteadyCycle:
     """Return the solution with the mean speed right to rounding, and the places of its largest and
     smallest speed."""
     mean = wanted.mean_rad_s
@@ -172,14 +175,12 @@ def _with_extremes(
         rough = SteadyCycle(solution, *_extremes(solution, ROUGHLY))
         if abs(rough.mean_rad_s / mean - 1.0) <= 1e-14:
             break
-        wanted = periodic_solution.WantedSpeed(mean, (rough.fastest, rough.slowest))
-        solution = periodic_solution.repeated(
-            solution.machine, solution.cells, solution.flywheel, solution, wanted
-        )
+        wanted = WantedSpeed(mean, (rough.fastest, rough.slowest))
+        solution = repeated(solution.machine, solution.cells, solution.flywheel, solution, wanted)
     return SteadyCycle(solution, *_extremes(solution, CLOSELY))
 
 
-def _extremes(solution: periodic_solution.PeriodicSolution, halvings: int) -> tuple[float, float]:
+def _extremes(solution: PeriodicSolution, halvings: int) -> tuple[float, float]:
     """Return the angles u at which the speed is largest and smallest, where its slope is 0."""
     u = np.sort(np.concatenate([solution.cells.borders, solution.cells.nodes.ravel()]))
     speed = solution.speed_at(u)
@@ -196,7 +197,7 @@ def _extremes(solution: periodic_solution.PeriodicSolution, halvings: int) -> tu
     return float(best[0]), float(best[1])
 
 
-def _pull(solution: periodic_solution.PeriodicSolution, u: Array) -> Array:
+def _pull(solution: PeriodicSolution, u: Array) -> Array:
     """Return J w dw/du: the torque that changes the speed [N m]."""
     inertia, slope = solution.machine.inertia(u)
     speed = np.sqrt(2.0 * solution.energy_at(u) / (inertia + solution.flywheel))
@@ -204,7 +205,7 @@ def _pull(solution: periodic_solution.PeriodicSolution, u: Array) -> Array:
     return np.asarray(torque - 0.5 * slope * speed**2)
 
 
-def _check_closed(solution: periodic_solution.PeriodicSolution) -> None:
+def _check_closed(solution: PeriodicSolution) -> None:
     """Refuse loads that follow no speed and do not balance over the cycle."""
     machine = solution.machine
     whole = machine.cycle_rad

@@ -13,7 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.regulation import angle_cells
+from analytic.lectures.regulation.angle_cells import (
+    INSIDE,
+    LEGENDRE,
+    WHOLE,
+    AngleCells,
+    integrals_to,
+    rated_breaks,
+)
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.array import Array
 from models.errors import CrankcheckError
@@ -30,7 +37,7 @@ class PeriodicSolution:
     a cycle."""
 
     machine: TurningMachine
-    cells: angle_cells.AngleCells
+    cells: AngleCells
     flywheel: float
     inertia: Array
     inertia_at_borders: Array
@@ -50,7 +57,7 @@ class PeriodicSolution:
         """Energy in the highest polynomial of the torque in a cell, over the largest energy, (C,):
         the truncation is less. If a wave has none of that polynomial the one before counts, as if
         each had the same share of the one before it."""
-        parts = np.abs(self.torque @ angle_cells.LEGENDRE)
+        parts = np.abs(self.torque @ LEGENDRE)
         size = np.maximum(parts.max(axis=1), np.finfo(float).tiny)
         last = np.maximum(parts[:, -1], size * (parts[:, -2] / size) ** (4.0 / 3.0))
         return np.asarray(self.cells.widths * last / float(np.max(self.energy)))
@@ -59,7 +66,7 @@ class PeriodicSolution:
         """Return T at angles (T,) [J]."""
         cell, share = self.cells.places(u)
         torque = self.torque[cell] + self.drive
-        inner = np.sum(angle_cells.integrals_to(share) * torque, axis=1)
+        inner = np.sum(integrals_to(share) * torque, axis=1)
         return np.asarray(self.at_borders[cell] + self.cells.widths[cell] * inner)
 
     def inertia_at(self, u: Array) -> Array:
@@ -93,7 +100,7 @@ NUDGE = 1e-6
 
 def repeated(
     machine: TurningMachine,
-    cells: angle_cells.AngleCells,
+    cells: AngleCells,
     flywheel: float,
     guess: PeriodicSolution | float,
     wanted: WantedSpeed,
@@ -111,11 +118,7 @@ class _Newton:
     """Newton's method for a solution that repeats."""
 
     def __init__(
-        self,
-        machine: TurningMachine,
-        cells: angle_cells.AngleCells,
-        flywheel: float,
-        wanted: WantedSpeed,
+        self, machine: TurningMachine, cells: AngleCells, flywheel: float, wanted: WantedSpeed
     ) -> None:
         self.machine, self.cells, self.flywheel, self.wanted = machine, cells, flywheel, wanted
         self.inertia = machine.inertia(cells.nodes)[0] + flywheel
@@ -214,18 +217,15 @@ class _Newton:
         """Solve the equation that is linear about a solution."""
         slope, wide = self._slope(solution), self.cells.widths[:, None]
         left = solution.torque - slope * solution.energy  # M = left + slope T
-        matrix = (
-            np.eye(angle_cells.INSIDE.shape[0])
-            - wide[:, :, None] * angle_cells.INSIDE * slope[:, None, :]
-        )
-        right = np.stack([np.ones_like(left), wide * (left @ angle_cells.INSIDE.T),
-                          wide * (np.ones_like(left) @ angle_cells.INSIDE.T)], axis=2)  # fmt: skip
+        matrix = np.eye(INSIDE.shape[0]) - wide[:, :, None] * INSIDE * slope[:, None, :]
+        right = np.stack([np.ones_like(left), wide * (left @ INSIDE.T),
+                          wide * (np.ones_like(left) @ INSIDE.T)], axis=2)  # fmt: skip
         # T at the nodes of a cell, from T at its first border, from the rest, and from D.
         within = np.linalg.solve(matrix, right)
         torques = slope[:, :, None] * within
         torques[:, :, 1] += left
         torques[:, :, 2] += 1.0
-        over = wide * np.einsum("j,cjk->ck", angle_cells.WHOLE, torques)
+        over = wide * np.einsum("j,cjk->ck", WHOLE, torques)
         start = np.zeros((len(over) + 1, 3))
         start[0, 0] = 1.0  # T at the borders, from T(0), from what is left, and from D
         for k, row in enumerate(over):
@@ -266,9 +266,7 @@ class _Newton:
     def _weights(self, u: float, start: Array, torques: Array) -> Array:
         """Return T at an angle, from T(0), from the rest, and from D."""
         cell, share = (each[0] for each in self.cells.places(np.array([u])))
-        inner = self.cells.widths[cell] * (
-            angle_cells.integrals_to(np.array(share)) @ torques[cell]
-        )
+        inner = self.cells.widths[cell] * (integrals_to(np.array(share)) @ torques[cell])
         found = start[cell] * (1.0 + inner[0])
         found[1:] += inner[1:]
         return np.asarray(found)
@@ -320,8 +318,8 @@ def resolved(solution: PeriodicSolution, wanted: WantedSpeed) -> PeriodicSolutio
         own = solution.cells
         more = [own.borders, own.borders[rough] + 0.5 * own.widths[rough]]
         if machine.is_rated:
-            more.append(angle_cells.rated_breaks(machine, solution.speed_at))
-        cells = angle_cells.AngleCells.of(machine.cycle_rad, np.concatenate(more))
+            more.append(rated_breaks(machine, solution.speed_at))
+        cells = AngleCells.of(machine.cycle_rad, np.concatenate(more))
         solution = repeated(machine, cells, solution.flywheel, solution, wanted)
     where = machine.theta(solution.cells.borders[np.argmax(solution.roughness)])
     raise CrankcheckError(

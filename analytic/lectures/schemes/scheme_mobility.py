@@ -22,7 +22,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.schemes import scheme_loops
+from analytic.lectures.schemes.scheme_loops import (
+    IN_PLANE,
+    DrawingFrame,
+    Loops,
+    Neighbourhood,
+    neighbourhood,
+)
 from analytic.lectures.schemes.screws import (
     DEPENDENT,
     axis_in_words,
@@ -47,7 +53,7 @@ class Idle:
         return f"{' with '.join(self.links)}: {self.motion}"
 
 
-def idle_freedoms(loops: scheme_loops.Loops, q: Array) -> list[Idle]:
+def idle_freedoms(loops: Loops, q: Array) -> list[Idle]:
     """Find the idle freedoms of a scheme next to its drawn position, at ``q`` (f,)."""
     scheme = loops.scheme
     next_to = loops.joint_twists(q)
@@ -90,9 +96,7 @@ def _common(twists: Mapping[str, Array], joints: list[SchemeJoint]) -> Array:
     return kernel(np.vstack([reciprocal(twists[joint.name]) for joint in joints]))
 
 
-def _words(
-    motions: Array, freedoms: int, outer: list[SchemeJoint], frame: scheme_loops.DrawingFrame
-) -> str:
+def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: DrawingFrame) -> str:
     """Return the motion in words, by the joints' names where its axis goes through both."""
     if freedoms > 1 or motions.shape[1] != 1:
         return f"{freedoms} freedoms of its own"
@@ -140,7 +144,7 @@ class Passive:
         return "; ".join(parts)
 
 
-def passive_constraints(loops: scheme_loops.Loops, q: Array, idle: Iterable[Idle]) -> Passive:
+def passive_constraints(loops: Loops, q: Array, idle: Iterable[Idle]) -> Passive:
     """Name the passive constraints of a scheme next to its drawn position, at ``q`` (f,)."""
     whole, place = loops, q
     own = {link: each.freedoms for each in idle for link in each.links}
@@ -167,9 +171,7 @@ def passive_constraints(loops: scheme_loops.Loops, q: Array, idle: Iterable[Idle
     return Passive(tuple(links), tuple(also), tuple(joints), tuple(_singles(loops, q)))
 
 
-def _without_link(
-    loops: scheme_loops.Loops, q: Array, link: str, idle: int
-) -> tuple[scheme_loops.Loops, Array] | None:
+def _without_link(loops: Loops, q: Array, link: str, idle: int) -> tuple[Loops, Array] | None:
     """Return the scheme without a link, where the others move the same and passive constraints go.
     Without any loop left the link was no spare one, but half of the mechanism."""
     scheme = loops.scheme.without_links(link)
@@ -178,9 +180,7 @@ def _without_link(
     return _same_moves(loops, q, scheme, idle)
 
 
-def _same_moves(
-    loops: scheme_loops.Loops, q: Array, fewer: Scheme, idle: int
-) -> tuple[scheme_loops.Loops, Array] | None:
+def _same_moves(loops: Loops, q: Array, fewer: Scheme, idle: int) -> tuple[Loops, Array] | None:
     """Return the scheme with fewer joints, if it has the same motions, except idle ones."""
     part, at = loops.part(fewer, q)
     own, others = loops.moves(q).shape[1] - idle, part.moves(at).shape[1]
@@ -188,7 +188,7 @@ def _same_moves(
     return (part, at) if own == others and gone > 0 else None
 
 
-def _singles(loops: scheme_loops.Loops, q: Array) -> Iterable[tuple[str, str]]:
+def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
     """Yield single constraints of joints, each named by the motion that it takes.
 
     A motion more in a joint is a column more: if it is outside the span of the others, the loops
@@ -197,7 +197,7 @@ def _singles(loops: scheme_loops.Loops, q: Array) -> Iterable[tuple[str, str]]:
     slope = loops.closure(q)[1]
     links = loops.placed(q)
     planar = loops.scheme.dimension == 3
-    rows = scheme_loops.IN_PLANE if planar else list(range(6))
+    rows = IN_PLANE if planar else list(range(6))
     used = 0
     spare = slope.shape[0] - rank(slope)
     for joint in loops.scheme.joints:
@@ -213,7 +213,7 @@ def _singles(loops: scheme_loops.Loops, q: Array) -> Iterable[tuple[str, str]]:
                 yield joint.name, name
 
 
-def effect_of(loops: scheme_loops.Loops, joint: SchemeJoint) -> Array:
+def effect_of(loops: Loops, joint: SchemeJoint) -> Array:
     """Return the loops' opening by a joint's twist (second link against first): (k, 3 or 6)."""
     size = loops.scheme.dimension
     blocks = [np.zeros((0, size))]
@@ -228,7 +228,7 @@ def effect_of(loops: scheme_loops.Loops, joint: SchemeJoint) -> Array:
     return np.vstack(blocks)
 
 
-def _passes(loops: scheme_loops.Loops, joint: SchemeJoint, link: str) -> int:
+def _passes(loops: Loops, joint: SchemeJoint, link: str) -> int:
     """Return 1 if the tree's way to a link goes forward through a joint, -1 backward, else 0."""
     above = {placed: (by, known) for by, known, placed in loops.tree}
     while link in above:
@@ -252,7 +252,7 @@ class SchemeMobility:
     """Number of motions of a scheme, and the reasons for its difference from the count."""
 
     scheme: Scheme
-    near: scheme_loops.Neighbourhood
+    near: Neighbourhood
     passive: Passive
     idle: tuple[Idle, ...]
 
@@ -294,8 +294,8 @@ class SchemeMobility:
 
 def scheme_mobility(scheme: Scheme) -> SchemeMobility:
     """Count the motions of a scheme. Raises StructureError for an unconnected link."""
-    loops = scheme_loops.Loops.of(scheme)
-    near = scheme_loops.neighbourhood(loops)
+    loops = Loops.of(scheme)
+    near = neighbourhood(loops)
     idle = tuple(idle_freedoms(loops, near.at))
     regular = near.finite == near.moves.shape[1]
     spare = regular and near.finite > scheme.count

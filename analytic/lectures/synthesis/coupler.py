@@ -3,8 +3,18 @@
 import itertools
 from collections.abc import Iterator, Sequence
 
-from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.burmester import five_positions, four_positions
+from analytic.lectures.synthesis.design import (
+    PIVOTS,
+    CarriedBody,
+    Dot,
+    DrawingStep,
+    DrawnCircle,
+    DrawnCurve,
+    Element,
+    Proposal,
+    Segment,
+)
 from analytic.lectures.synthesis.driving_dyad import swings_little, with_driving_dyad
 from analytic.lectures.synthesis.pose import (
     PlanePose,
@@ -24,12 +34,10 @@ BEYOND = 0.15
 """Extension of a drawn bisector, over its length."""
 
 
-def guiding_steps(
-    body: design.CarriedBody, pair: Pair, *, inverted: bool
-) -> Iterator[design.DrawingStep]:
+def guiding_steps(body: CarriedBody, pair: Pair, *, inverted: bool) -> Iterator[DrawingStep]:
     """Yield the construction: the body's places, bisectors or circles, and the links."""
     yield given_positions(body)
-    for which, (dyad, pivot) in enumerate(zip(pair, design.PIVOTS, strict=True)):
+    for which, (dyad, pivot) in enumerate(zip(pair, PIVOTS, strict=True)):
         letter = body.letter(dyad.moving, which)
         if inverted:
             yield _inverted(body, dyad, pivot, letter)
@@ -37,104 +45,93 @@ def guiding_steps(
             yield _bisected(body, dyad, pivot, letter)
         else:
             words = f"{letter} is a circle point of all {len(body.poses)} positions, {pivot} the "
-            circle = design.DrawnCircle(dyad.fixed, dyad.radius(body.poses))
-            dot = design.Dot(dyad.fixed, pivot, "result", fixed=True)
-            yield design.DrawingStep(words + "middle of its circle", (circle, dot))
+            circle = DrawnCircle(dyad.fixed, dyad.radius(body.poses))
+            dot = Dot(dyad.fixed, pivot, "result", fixed=True)
+            yield DrawingStep(words + "middle of its circle", (circle, dot))
     yield links(body, pair)
 
 
-def given_positions(body: design.CarriedBody) -> design.DrawingStep:
+def given_positions(body: CarriedBody) -> DrawingStep:
     """Draw the body in its positions: the line between two points of it, or a short one along its
     own x-axis."""
-    elements: list[design.Element] = []
+    elements: list[Element] = []
     (name, start), *others = body.points.items()
     span = max(abs(b.point - a.point) for a, b in itertools.combinations(body.poses, 2))
     second, end = others[0] if others else ("", start + 0.25 * span)
     for number, pose in enumerate(body.poses, 1):
-        elements.append(design.Segment(pose.at(start), pose.at(end), "given"))
-        elements.append(design.Dot(pose.at(start), f"{name}{number}", "given"))
+        elements.append(Segment(pose.at(start), pose.at(end), "given"))
+        elements.append(Dot(pose.at(start), f"{name}{number}", "given"))
         if second:
-            elements.append(design.Dot(pose.at(end), f"{second}{number}", "given"))
-    return design.DrawingStep(f"{name}{second} in its {len(body.poses)} positions", tuple(elements))
+            elements.append(Dot(pose.at(end), f"{second}{number}", "given"))
+    return DrawingStep(f"{name}{second} in its {len(body.poses)} positions", tuple(elements))
 
 
-def _bisected(
-    body: design.CarriedBody, dyad: PoseDyad, pivot: str, letter: str
-) -> design.DrawingStep:
+def _bisected(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> DrawingStep:
     """Draw the fixed pivot on the bisectors between the places of a moving one."""
     places = [pose.at(dyad.moving) for pose in body.poses]
-    elements: list[design.Element] = []
+    elements: list[Element] = []
     for first, second in itertools.pairwise(places):
         middle = bisector(first, second).middle
-        elements.append(design.Segment(first, second))
-        elements.append(design.Segment(middle, dyad.fixed, beyond=BEYOND))
-    elements.append(design.Dot(dyad.fixed, pivot, "result", fixed=True))
+        elements.append(Segment(first, second))
+        elements.append(Segment(middle, dyad.fixed, beyond=BEYOND))
+    elements.append(Dot(dyad.fixed, pivot, "result", fixed=True))
     names = [f"{letter}{number}" for number in range(1, len(places) + 1)]
     if len(places) == 2:
         words = f"{pivot} anywhere on the bisector of {names[0]}{names[1]}"
     else:
-        elements.append(design.DrawnCircle(dyad.fixed, dyad.radius(body.poses)))
+        elements.append(DrawnCircle(dyad.fixed, dyad.radius(body.poses)))
         words = (
             f"the bisectors of {names[0]}{names[1]} and {names[1]}{names[2]} meet in {pivot}, the "
             f"middle of the circle through {', '.join(names)}"
         )
-    return design.DrawingStep(words, tuple(elements))
+    return DrawingStep(words, tuple(elements))
 
 
-def _inverted(
-    body: design.CarriedBody, dyad: PoseDyad, pivot: str, letter: str
-) -> design.DrawingStep:
+def _inverted(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> DrawingStep:
     """Draw the moving pivot from the places of a fixed one, seen from the body in position 1."""
     first = body.poses[0]
     places = [first.at(pose.back(dyad.fixed)) for pose in body.poses]
     centre = first.at(dyad.moving)
-    elements: list[design.Element] = [design.Dot(dyad.fixed, pivot, "given", fixed=True)]
-    elements += [
-        design.Dot(place, f"{pivot}'{number}") for number, place in enumerate(places[1:], 2)
-    ]
+    elements: list[Element] = [Dot(dyad.fixed, pivot, "given", fixed=True)]
+    elements += [Dot(place, f"{pivot}'{number}") for number, place in enumerate(places[1:], 2)]
     for one, other in itertools.pairwise(places):
-        elements.append(design.Segment(bisector(one, other).middle, centre, beyond=BEYOND))
-    elements += [
-        design.DrawnCircle(centre, abs(centre - dyad.fixed)),
-        design.Dot(centre, f"{letter}1", "result"),
-    ]
-    return design.DrawingStep(
+        elements.append(Segment(bisector(one, other).middle, centre, beyond=BEYOND))
+    elements += [DrawnCircle(centre, abs(centre - dyad.fixed)), Dot(centre, f"{letter}1", "result")]
+    return DrawingStep(
         f"{pivot} as the body sees it: its places turned back into position 1 lie on a circle "
         f"about {letter}1",
         tuple(elements),
     )
 
 
-def links(body: design.CarriedBody, pair: Pair) -> design.DrawingStep:
+def links(body: CarriedBody, pair: Pair) -> DrawingStep:
     """Draw the four-bar in its first position."""
     pins = [body.poses[0].at(dyad.moving) for dyad in pair]
     letters = [f"{body.letter(dyad.moving, which)}1" for which, dyad in enumerate(pair)]
-    elements: tuple[design.Element, ...] = (
-        design.Segment(pair[0].fixed, pins[0], "result"),
-        design.Segment(pins[0], pins[1], "result"),
-        design.Segment(pins[1], pair[1].fixed, "result"),
-        *(design.Dot(place, letter, "result") for place, letter in zip(pins, letters, strict=True)),
+    elements: tuple[Element, ...] = (
+        Segment(pair[0].fixed, pins[0], "result"),
+        Segment(pins[0], pins[1], "result"),
+        Segment(pins[1], pair[1].fixed, "result"),
+        *(Dot(place, letter, "result") for place, letter in zip(pins, letters, strict=True)),
         *(
-            design.Dot(dyad.fixed, pivot, "result", fixed=True)
-            for dyad, pivot in zip(pair, design.PIVOTS, strict=True)
+            Dot(dyad.fixed, pivot, "result", fixed=True)
+            for dyad, pivot in zip(pair, PIVOTS, strict=True)
         ),
     )
-    return design.DrawingStep(f"the links {design.PIVOTS[0]}{letters[0]}, {''.join(letters)} and "
-                f"{design.PIVOTS[1]}{letters[1]}", elements)  # fmt: skip
+    return DrawingStep(f"the links {PIVOTS[0]}{letters[0]}, {''.join(letters)} and "
+                f"{PIVOTS[1]}{letters[1]}", elements)  # fmt: skip
 
 
-def curve_steps(
-    body: design.CarriedBody, curves: Sequence[Sequence[PoseDyad]]
-) -> Iterator[design.DrawingStep]:
+def curve_steps(body: CarriedBody, curves: Sequence[Sequence[PoseDyad]]) -> Iterator[DrawingStep]:
     """Draw Burmester's curves of four positions."""
     yield given_positions(body)
     centres = tuple(tuple(dyad.fixed for dyad in piece) for piece in curves)
     circles = tuple(tuple(body.poses[0].at(dyad.moving) for dyad in piece) for piece in curves)
-    yield design.DrawingStep(
-        "the centre-point curve: where fixed pivots can stand", (design.DrawnCurve(centres),)
+    yield DrawingStep(
+        "the centre-point curve: where fixed pivots can stand", (DrawnCurve(centres),)
     )
-    yield design.DrawingStep(
-        "the circle-point curve: their moving pivots in position 1", (design.DrawnCurve(circles),)
+    yield DrawingStep(
+        "the circle-point curve: their moving pivots in position 1", (DrawnCurve(circles),)
     )
 
 
@@ -149,7 +146,7 @@ FALLEN_BACK = 3
 """Number of examined pairs if all have a defect."""
 
 
-def coupler_proposals(task: CouplerTask) -> tuple[list[design.Proposal], int]:
+def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
     """Return the four-bars of a task, and the number of pairs of cranks considered.
 
     Raises
@@ -184,13 +181,13 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[design.Proposal], int]:
     return proposals, len(proposals)
 
 
-def carried_body(task: CouplerTask) -> design.CarriedBody:
+def carried_body(task: CouplerTask) -> CarriedBody:
     """Return the body of a task in its positions."""
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
-    return design.CarriedBody(task.name, task.source, poses, task.own_points)
+    return CarriedBody(task.name, task.source, poses, task.own_points)
 
 
-def _moving(task: CouplerTask, body: design.CarriedBody) -> tuple[complex, complex]:
+def _moving(task: CouplerTask, body: CarriedBody) -> tuple[complex, complex]:
     """Return the two moving pivots in the body's frame."""
     if task.moving_m is not None:
         one, other = (body.poses[0].back(complex(*place)) for place in task.moving_m)
@@ -201,7 +198,7 @@ def _moving(task: CouplerTask, body: design.CarriedBody) -> tuple[complex, compl
     return one, other
 
 
-def _two(task: CouplerTask, body: design.CarriedBody) -> Iterator[tuple[Pair, dict[str, str]]]:
+def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str, str]]]:
     """Yield pairs for two positions: the fixed pivots anywhere on the bisectors."""
     moving = _moving(task, body)
     ways = [abs(body.poses[1].at(z) - body.poses[0].at(z)) for z in moving]
@@ -215,17 +212,17 @@ def _two(task: CouplerTask, body: design.CarriedBody) -> Iterator[tuple[Pair, di
             about_bisector(body.poses, moving[0], first),
             about_bisector(body.poses, moving[1], second),
         )
-        distances = zip(design.PIVOTS, (first, second), strict=True)
-        told = {f"{pivot} from the middle": f"{distance:.6g} m" for pivot, distance in distances}
+        told = {f"{pivot} from the middle": f"{distance:.6g} m"
+                for pivot, distance in zip(PIVOTS, (first, second), strict=True)}  # fmt: skip
         yield pair, told
 
 
-def _three(task: CouplerTask, body: design.CarriedBody) -> tuple[Pair, dict[str, str]]:
+def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
     """Pair for three positions: from moving pivots by circles, from fixed ones by inversion."""
     if task.fixed_m is not None:
         one, other = (
             about_given_pivot(body.poses, complex(*place), letter)
-            for place, letter in zip(task.fixed_m, design.PIVOTS, strict=True)
+            for place, letter in zip(task.fixed_m, PIVOTS, strict=True)
         )
     else:
         one, other = (
@@ -235,7 +232,7 @@ def _three(task: CouplerTask, body: design.CarriedBody) -> tuple[Pair, dict[str,
     return (one, other), {}
 
 
-def _many(task: CouplerTask, body: design.CarriedBody) -> tuple[list[design.Proposal], int]:
+def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
     """Return four-bars of four positions, along Burmester's curves, or of five, by all cranks."""
     is_four = len(body.poses) == 4
     curves = four_positions(body.poses) if is_four else []
@@ -271,8 +268,8 @@ def _spread(every: Sequence[PoseDyad], count: int) -> list[PoseDyad]:
 
 
 def _driven(
-    task: CouplerTask, body: design.CarriedBody, pair: Pair, chosen: dict[str, str]
-) -> Iterator[design.Proposal]:
+    task: CouplerTask, body: CarriedBody, pair: Pair, chosen: dict[str, str]
+) -> Iterator[Proposal]:
     """Yield the four-bar of a pair, driven at the requested sides."""
     steps = tuple(guiding_steps(body, pair, inverted=task.fixed_m is not None))
     if task.driver != "second":

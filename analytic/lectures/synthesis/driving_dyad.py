@@ -26,7 +26,15 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
-from analytic.lectures.synthesis import design
+from analytic.lectures.synthesis.design import (
+    INPUT,
+    Dot,
+    DrawingStep,
+    DrawnCircle,
+    Proposal,
+    Segment,
+    letters_beside,
+)
 from models.errors import CrankcheckError
 from models.files.assemble import Table
 from models.lectures.draft import bar, plate
@@ -67,34 +75,31 @@ class ToAndFro:
 
     def steps(
         self, ends: tuple[complex, complex], letters: tuple[str, str, str]
-    ) -> list[design.DrawingStep]:
+    ) -> list[DrawingStep]:
         """Return the construction; ``letters`` are the crank's pivot, its pin, the rocker's pin."""
         pivot, pin, end = letters
         middle = 0.5 * sum(ends)
         far = max(ends, key=lambda place: abs(place - self.pivot))
         return [
-            design.DrawingStep(
+            DrawingStep(
                 f"the chord {end}1{end}2, and {pivot} on its extension",
-                (
-                    design.Segment(far, self.pivot),
-                    design.Dot(self.pivot, pivot, "result", fixed=True),
-                ),
+                (Segment(far, self.pivot), Dot(self.pivot, pivot, "result", fixed=True)),
             ),
-            design.DrawingStep(
+            DrawingStep(
                 f"half of {end}1{end}2 is the crank: its circle meets the line in {pin}1 and "
                 f"{pin}2",
                 (
-                    design.Segment(middle, ends[0]),
-                    design.DrawnCircle(self.pivot, self.crank_m),
-                    design.Dot(self.pin(0), f"{pin}1", "result"),
-                    design.Dot(self.pin(1), f"{pin}2"),
+                    Segment(middle, ends[0]),
+                    DrawnCircle(self.pivot, self.crank_m),
+                    Dot(self.pin(0), f"{pin}1", "result"),
+                    Dot(self.pin(1), f"{pin}2"),
                 ),
             ),
-            design.DrawingStep(
+            DrawingStep(
                 f"{pin}1{end}1 is the coupler",
                 (
-                    design.Segment(self.pivot, self.pin(0), "result"),
-                    design.Segment(self.pin(0), ends[0], "result"),
+                    Segment(self.pivot, self.pin(0), "result"),
+                    Segment(self.pin(0), ends[0], "result"),
                 ),
             ),
         ]
@@ -115,18 +120,16 @@ SHARE = 0.6
 """Distance of the dyad's pin from the fixed pivot, over the input link."""
 
 
-def with_driving_dyad(proposal: design.Proposal) -> Iterator[design.Proposal]:
+def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
     """Yield the six-bars of a four-bar of two positions, the dyad on its input link, O6 on either
     side of the chord and at several distances from it."""
     draft = proposal.draft
-    pivot_name, pin_name = _points(draft.links[design.INPUT])
-    length = draft.links[design.INPUT]["length_m"]
+    pivot_name, pin_name = _points(draft.links[INPUT])
+    length = draft.links[INPUT]["length_m"]
     assert isinstance(length, float)
     pivot = draft.ground[pivot_name]
     first, second = (position.driver_rad for position in proposal.positions)
-    on, own_pin = design.letters_beside(
-        {name for one in draft.links.values() for name in _points(one)}, 2
-    )
+    on, own_pin = letters_beside({name for one in draft.links.values() for name in _points(one)}, 2)
     radius = SHARE * length
     ends = tuple(pivot + cmath.rect(radius, angle) for angle in (first, second))
     crank = 0.5 * abs(ends[1] - ends[0])
@@ -140,19 +143,17 @@ def with_driving_dyad(proposal: design.Proposal) -> Iterator[design.Proposal]:
                     "crank": bar(O6, own_pin, found.crank_m),
                     "rod": bar(own_pin, on, found.coupler_m),
                     **draft.links,
-                    design.INPUT: plate(
-                        {pivot_name: 0j, pin_name: complex(length), on: complex(radius)}
-                    ),
+                    INPUT: plate({pivot_name: 0j, pin_name: complex(length), on: complex(radius)}),
                 },
             )
             positions = tuple(
                 replace(position, driver_rad=angle)
                 for position, angle in zip(proposal.positions, found.angles, strict=True)
             )
-            dots = tuple(design.Dot(end, f"{on}{n}") for n, end in enumerate(ends, 1))
+            dots = tuple(Dot(end, f"{on}{n}") for n, end in enumerate(ends, 1))
             steps = (
                 *proposal.steps,
-                design.DrawingStep(f"{on} on the input link, in both positions", dots),
+                DrawingStep(f"{on} on the input link, in both positions", dots),
                 *found.steps((ends[0], ends[1]), (O6, own_pin, on)),
             )
             told = {f"{O6} from the chord's middle": f"{distance:.6g} m", "beyond": f"{on}{beyond}"}
@@ -173,7 +174,7 @@ def _points(link: Table) -> list[str]:
     return list(names)
 
 
-def swings_little(proposal: design.Proposal) -> bool:
+def swings_little(proposal: Proposal) -> bool:
     """True if the input link turns by less than half a turn, so that a rocker's chord leads it."""
     first, second = (position.driver_rad for position in proposal.positions)
     return abs(math.remainder(second - first, math.tau)) < math.pi

@@ -20,7 +20,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis import design
+from analytic.lectures.synthesis.design import (
+    INPUT,
+    PIVOTS,
+    AskedPlace,
+    Dot,
+    DrawingStep,
+    DrawnCurve,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+)
 from analytic.lectures.synthesis.path.candidate import POINT, drafted
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
 from analytic.lectures.synthesis.straight_part import StraightPart, measured, on_line
@@ -38,7 +48,7 @@ class StraightLinkage:
 
     four_bar: CouplerCurve
     part: StraightPart
-    proposal: design.Proposal
+    proposal: Proposal
 
 
 def refuse_none(length_m: float, deviation: float) -> None:
@@ -70,7 +80,7 @@ def placed(
     # The ends of the part as well: between them the point is as near as stated.
     angles = sorted({own.crank_rad[0], *on_line(four_bar, own), own.crank_rad[1]})
     positions = tuple(
-        design.PrecisionPosition(angle, (design.AskedPlace(POINT, complex(place)),))
+        PrecisionPosition(angle, (AskedPlace(POINT, complex(place)),))
         for angle, place in zip(angles, four_bar.at(np.array(angles)), strict=True)
     )
     draft = drafted(f"straight-line-{kind}", source, four_bar)
@@ -79,15 +89,13 @@ def placed(
         "crank's turn": f"{math.degrees(own.crank_rad[1] - own.crank_rad[0]):.6g} deg",
         "change of speed": f"{100.0 * own.uneven:.3g} % of its mean",
     }
-    proposal = design.Proposal(
-        draft, design.INPUT, positions, chosen, _steps(four_bar, own, angles)
-    )
+    proposal = Proposal(draft, INPUT, positions, chosen, _steps(four_bar, own, angles))
     return StraightLinkage(four_bar, own, proposal)
 
 
 def _steps(
     four_bar: CouplerCurve, part: StraightPart, angles: list[float]
-) -> tuple[design.DrawingStep, ...]:
+) -> tuple[DrawingStep, ...]:
     """Return the line, the linkage in its first position, and the curve with all positions."""
     end = part.start + part.length_m * part.along
     first = np.array(angles[:1])
@@ -96,23 +104,22 @@ def _steps(
     low, high = part.crank_rad
     spread = np.linspace(low, low + math.tau if four_bar.family != "limited" else high, DRAWN)
     met = tuple(
-        design.Dot(complex(place), str(k + 1))
-        for k, place in enumerate(four_bar.at(np.array(angles)))
+        Dot(complex(place), str(k + 1)) for k, place in enumerate(four_bar.at(np.array(angles)))
     )
     pairs = ((four_bar.o2, a), (a, b), (four_bar.o4, b), (a, p), (b, p))
     return (
-        design.DrawingStep("the line, and its length", (design.Segment(part.start, end, "given"),)),
-        design.DrawingStep(
+        DrawingStep("the line, and its length", (Segment(part.start, end, "given"),)),
+        DrawingStep(
             "the linkage in the textbook's proportions",
             (
-                *(design.Segment(*pair, "result") for pair in pairs),
-                design.Dot(four_bar.o2, design.PIVOTS[0], "result", fixed=True),
-                design.Dot(four_bar.o4, design.PIVOTS[1], "result", fixed=True),
+                *(Segment(*pair, "result") for pair in pairs),
+                Dot(four_bar.o2, PIVOTS[0], "result", fixed=True),
+                Dot(four_bar.o4, PIVOTS[1], "result", fixed=True),
             ),
         ),
-        design.DrawingStep(
+        DrawingStep(
             "its coupler curve, and where this is on the line",
-            (design.DrawnCurve((tuple(four_bar.at(spread).tolist()),)), *met),
+            (DrawnCurve((tuple(four_bar.at(spread).tolist()),)), *met),
         ),
     )
 
@@ -126,9 +133,7 @@ LEAN = math.radians(32.0)
 POSITIONS = 5
 
 
-def peaucellier(
-    length_m: float, *, start: complex = 0j, direction_rad: float = 0.0
-) -> design.Proposal:
+def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 0.0) -> Proposal:
     """Return Peaucellier's linkage with a way of a length [m], with P exactly on the line.
 
     Parameters
@@ -159,9 +164,7 @@ def peaucellier(
     corners = [_corner(a, p, scale) for a, p in zip(cranks, places, strict=True)]
     # The place of B selects the assembly, as B and C may be exchanged.
     positions = tuple(
-        design.PrecisionPosition(
-            cmath.phase(a - o2), (design.AskedPlace("P", p), design.AskedPlace("B", b))
-        )
+        PrecisionPosition(cmath.phase(a - o2), (AskedPlace("P", p), AskedPlace("B", b)))
         for a, p, b in zip(cranks, places, corners, strict=True)
     )
     draft = Draft(
@@ -182,7 +185,7 @@ def peaucellier(
     chosen = {"crank's turn": f"{math.degrees(4.0 * LEAN):.6g} deg", "deviation": "none"}
     at = POSITIONS // 2
     steps = _exact_steps((o2, o4, cranks[at], corners[at], places[at]), places)
-    return design.Proposal(draft, CRANK, positions, chosen, steps)
+    return Proposal(draft, CRANK, positions, chosen, steps)
 
 
 def _leans(ways: Array) -> list[float]:
@@ -197,17 +200,15 @@ def _corner(a: complex, p: complex, scale: float) -> complex:
     return a + half + 1j * half / abs(half) * math.sqrt((SIDE * scale) ** 2 - abs(half) ** 2)
 
 
-def _exact_steps(
-    points: tuple[complex, ...], places: list[complex]
-) -> tuple[design.DrawingStep, ...]:
+def _exact_steps(points: tuple[complex, ...], places: list[complex]) -> tuple[DrawingStep, ...]:
     """Return the way, and the linkage in its middle."""
     o2, o4, a, b, p = points
     c = a + p - b
     pairs = ((o2, a), (o4, b), (o4, c), (a, b), (a, c), (b, p), (c, p))
-    dots = tuple(design.Dot(place, str(k + 1), "given") for k, place in enumerate(places))
-    pivots = design.Dot(o2, "O2", "result", fixed=True), design.Dot(o4, "O4", "result", fixed=True)
-    links = tuple(design.Segment(*pair, "result") for pair in pairs)
+    dots = tuple(Dot(place, str(k + 1), "given") for k, place in enumerate(places))
+    pivots = Dot(o2, "O2", "result", fixed=True), Dot(o4, "O4", "result", fixed=True)
+    links = tuple(Segment(*pair, "result") for pair in pairs)
     return (
-        design.DrawingStep("the way of P", (design.Segment(places[0], places[-1], "given"), *dots)),
-        design.DrawingStep("the linkage in the middle of the way", (*links, *pivots)),
+        DrawingStep("the way of P", (Segment(places[0], places[-1], "given"), *dots)),
+        DrawingStep("the linkage in the middle of the way", (*links, *pivots)),
     )

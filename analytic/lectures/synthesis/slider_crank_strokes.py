@@ -26,7 +26,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis import design
+from analytic.lectures.synthesis.design import (
+    AskedSlide,
+    Dot,
+    DrawingStep,
+    DrawnCircle,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+)
 from models.errors import CrankcheckError
 from models.lectures.draft import Draft, bar
 from models.lectures.tasks.positions import StrokeTask
@@ -77,7 +85,7 @@ class Ends:
         return folded, cmath.phase(self.second)
 
 
-def stroke_proposals(task: StrokeTask) -> tuple[list[design.Proposal], int]:
+def stroke_proposals(task: StrokeTask) -> tuple[list[Proposal], int]:
     """Return the slider-cranks of a task. Raises CrankcheckError for an impossible task."""
     found = [_proposal(task, ends) for ends in _ends(task)]
     return found, len(found)
@@ -174,7 +182,7 @@ def _with_rod(task: StrokeTask, lag: float, rod: float) -> float:
     return at_far
 
 
-def _proposal(task: StrokeTask, ends: Ends) -> design.Proposal:
+def _proposal(task: StrokeTask, ends: Ends) -> Proposal:
     """Return the slider-crank; its displacement counts from the inner end of the stroke."""
     through = [ends.first.real, ends.first.imag]
     draft = Draft(
@@ -186,7 +194,7 @@ def _proposal(task: StrokeTask, ends: Ends) -> design.Proposal:
         sliders={SLIDER: {"on": "ground", "through_m": through, "direction_deg": 0.0}},
     )
     positions = tuple(
-        design.PrecisionPosition(angle, (design.AskedSlide(SLIDER, displacement),))
+        PrecisionPosition(angle, (AskedSlide(SLIDER, displacement),))
         for angle, displacement in zip(ends.angles, (0.0, task.stroke_m), strict=True)
     )
     told = {
@@ -195,47 +203,42 @@ def _proposal(task: StrokeTask, ends: Ends) -> design.Proposal:
         "offset": f"{ends.offset:.6g} m",
     }
     steps = tuple(_steps(task, ends))
-    return design.Proposal(draft, "crank", positions, told, steps, turns_back=SLIDER)
+    return Proposal(draft, "crank", positions, told, steps, turns_back=SLIDER)
 
 
-def _steps(task: StrokeTask, ends: Ends) -> Iterator[design.DrawingStep]:
+def _steps(task: StrokeTask, ends: Ends) -> Iterator[DrawingStep]:
     """Yield the construction in the plane of the scene."""
     first, second = ends.first, ends.second
-    yield design.DrawingStep(
+    yield DrawingStep(
         f"the stroke, {task.stroke_m:g} m on the slider's line",
         (
-            design.Segment(first, second, "given", beyond=0.2),
-            design.Dot(first, "B1", "given"),
-            design.Dot(second, "B2", "given"),
+            Segment(first, second, "given", beyond=0.2),
+            Dot(first, "B1", "given"),
+            Dot(second, "B2", "given"),
         ),
     )
     if task.time_ratio is not None:
         lag = lag_of(task.time_ratio)
         radius = 0.5 * abs(second - first) / math.sin(lag)
         centre = 0.5 * (first + second) + 1j * 0.5 * abs(second - first) / math.tan(lag)
-        yield design.DrawingStep(
+        yield DrawingStep(
             f"the circle from which B1 B2 is seen under a = {math.degrees(lag):.6g} deg, and O2 "
             "on it",
-            (design.DrawnCircle(centre, radius), design.Dot(0j, O2, "result", fixed=True)),
+            (DrawnCircle(centre, radius), Dot(0j, O2, "result", fixed=True)),
         )
     else:
-        yield design.DrawingStep(
-            f"O2 beside the line by {-first.imag:.6g} m",
-            (design.Dot(0j, O2, "result", fixed=True),),
+        yield DrawingStep(
+            f"O2 beside the line by {-first.imag:.6g} m", (Dot(0j, O2, "result", fixed=True),)
         )
     equal = task.form == "isosceles"
-    yield design.DrawingStep(
+    yield DrawingStep(
         "crank and rod are a quarter of the stroke each, and O2 is its middle"
         if equal
         else "O2 B1 is rod less crank, O2 B2 rod and crank: half their difference is the crank",
-        (design.Segment(0j, first), design.Segment(0j, second), design.DrawnCircle(0j, ends.crank)),
+        (Segment(0j, first), Segment(0j, second), DrawnCircle(0j, ends.crank)),
     )
     pin = cmath.rect(ends.crank, ends.angles[0])
-    yield design.DrawingStep(
+    yield DrawingStep(
         "crank and rod in position 1",
-        (
-            design.Segment(0j, pin, "result"),
-            design.Segment(pin, first, "result"),
-            design.Dot(pin, "A1", "result"),
-        ),
+        (Segment(0j, pin, "result"), Segment(pin, first, "result"), Dot(pin, "A1", "result")),
     )

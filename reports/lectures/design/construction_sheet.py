@@ -10,12 +10,33 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle as Round
 
-from analytic.lectures.synthesis import design
+from analytic.lectures.synthesis.design import (
+    Dot,
+    DrawingStep,
+    DrawnCircle,
+    DrawnCurve,
+    Element,
+    Proposal,
+)
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import INK, LARGE, QUIET, cut
-from reports.lectures.design import construction_view, step_column
+from reports.lectures.design.construction_view import (
+    GIVEN,
+    OTHERS,
+    OTHERS_WIDTH,
+    ConstructionView,
+    look_of,
+    strokes,
+    xy,
+)
+from reports.lectures.design.step_column import (
+    ColumnPart,
+    height_of,
+    parts_of,
+    write_column,
+)
 from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
 from reports.lectures.drawing.sheets.paper import (
     MARGIN,
@@ -38,7 +59,7 @@ NUMBERED, NUMBER_PLACES = 2, 14
 
 
 def dot_letters(
-    steps: Sequence[design.DrawingStep],
+    steps: Sequence[DrawingStep],
     points: Mapping[str, Array],
     at: Callable[[Array], Array],
     box: Box,
@@ -46,10 +67,8 @@ def dot_letters(
     """The letters of all dots in the box, and of those of the mechanism's ``points`` [m] without a
     letter: C1 is also the letter of a point C in the first position."""
     low, high = box.corners
-    dots = [each for step in steps for each in step.elements if isinstance(each, design.Dot)]
-    named = [
-        (dot.letter, at(construction_view.xy(dot.place)), dot.look) for dot in dots if dot.letter
-    ]
+    dots = [each for step in steps for each in step.elements if isinstance(each, Dot)]
+    named = [(dot.letter, at(xy(dot.place)), dot.look) for dot in dots if dot.letter]
     named += [(name, at(place), "result") for name, place in points.items()]
     spots: list[tuple[list[str], Array, str]] = []
     for letter, place, look in named:
@@ -61,24 +80,19 @@ def dot_letters(
         elif letter not in spot[0] and f"{letter}1" not in spot[0]:
             spot[0].append(letter)
     return [
-        Letter(
-            ", ".join(names),
-            place,
-            PIN_MM,
-            color=construction_view.GIVEN if look == "given" else INK,
-        )
+        Letter(", ".join(names), place, PIN_MM, color=GIVEN if look == "given" else INK)
         for names, place, look in spots
     ]
 
 
 def step_numbers(
-    steps: Sequence[design.DrawingStep], drawn: Mapping[int, Sequence[Array]]
+    steps: Sequence[DrawingStep], drawn: Mapping[int, Sequence[Array]]
 ) -> list[Letter]:
     """The number of each step at its longest lines [mm], links excepted; ``drawn`` are the lines of
     elements, by their identity."""
     letters = []
     for number, step in enumerate(steps, 1):
-        every = [each for each in step.elements if not isinstance(each, design.Dot)]
+        every = [each for each in step.elements if not isinstance(each, Dot)]
         some = [each for each in every if each.look != "result"]
         longest = sorted(
             ((max(map(_length, lines)), each) for each in some if (lines := drawn[id(each)])),
@@ -86,11 +100,7 @@ def step_numbers(
         )
         for _, each in longest[:NUMBERED]:
             line = max(drawn[id(each)], key=_length)
-            colour = (
-                construction_view.look_of(each, steps).colour
-                if isinstance(each, design.DrawnCurve)
-                else QUIET
-            )
+            colour = look_of(each, steps).colour if isinstance(each, DrawnCurve) else QUIET
             letters.append(Letter(f"({number})", _along(line), 0.1, NUMBER, colour))
     return letters
 
@@ -123,12 +133,12 @@ class ConstructionSheet:
     """A construction on paper: its scale [m/mm], the middle of its box [m], and the words of the
     column beside or below it."""
 
-    view: construction_view.ConstructionView
+    view: ConstructionView
     scale: float
     middle: Array
     box: Box
     column: Box
-    words: list[list[step_column.ColumnPart]]
+    words: list[list[ColumnPart]]
     paper: Paper
 
     def at(self, places: Array) -> Array:
@@ -142,19 +152,19 @@ class ConstructionSheet:
         return self.middle - half, self.middle + half
 
 
-def laid_out(proposed: Examined | design.Proposal, paper: Paper) -> ConstructionSheet:
+def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
     """The construction of a mechanism on paper, with the words of its steps on the right, or below
     on paper that is higher than wide.
 
     Raises CrankcheckError for a proposal that can not be assembled in its first position, and for
     paper too small for its words.
     """
-    view = construction_view.ConstructionView.of(proposed)
+    view = ConstructionView.of(proposed)
     inner = inner_box(paper)
     tried = _below(view, inner) if paper.height > paper.width else _beside(view, inner)
     for box, column in tried:
         sheet = _in(view, box, column, paper)
-        if step_column.height_of(sheet.words, column.width) <= column.height:
+        if height_of(sheet.words, column.width) <= column.height:
             return sheet
     larger = "A3" if paper.width < 420.0 else "A2"
     raise CrankcheckError(
@@ -163,19 +173,15 @@ def laid_out(proposed: Examined | design.Proposal, paper: Paper) -> Construction
     )
 
 
-def _in(
-    view: construction_view.ConstructionView, box: Box, column: Box, paper: Paper
-) -> ConstructionSheet:
+def _in(view: ConstructionView, box: Box, column: Box, paper: Paper) -> ConstructionSheet:
     """The sheet with its figure in one box, and its words in another."""
     scale, middle = box.fitted(view.shown, PADDING)
     half = scale * np.array([box.width, box.height]) / 2
-    words = step_column.parts_of(
-        view, [words for _, words in view.far(middle - half, middle + half)]
-    )
+    words = parts_of(view, [words for _, words in view.far(middle - half, middle + half)])
     return ConstructionSheet(view, scale, middle, box, column, words, paper)
 
 
-def _beside(view: construction_view.ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
+def _beside(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     """Boxes of the figure with columns of several widths on its right."""
     boxes = []
     for width in COLUMNS_MM:
@@ -187,11 +193,9 @@ def _beside(view: construction_view.ConstructionView, inner: Box) -> list[tuple[
     return boxes
 
 
-def _below(view: construction_view.ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
+def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     """The box of the figure over the box of the words, which is as high as they need."""
-    tall = step_column.height_of(
-        step_column.parts_of(view, [words for _, words in view.far(*_corners(view))]), inner.width
-    )
+    tall = height_of(parts_of(view, [words for _, words in view.far(*_corners(view))]), inner.width)
     boxes = []
     for spare in (1.0, 1.25, 1.6):
         high = spare * tall
@@ -202,11 +206,11 @@ def _below(view: construction_view.ConstructionView, inner: Box) -> list[tuple[B
     return boxes
 
 
-def _corners(view: construction_view.ConstructionView) -> tuple[Array, Array]:
+def _corners(view: ConstructionView) -> tuple[Array, Array]:
     return view.shown.min(axis=0), view.shown.max(axis=0)
 
 
-def construction_sheet(proposed: Examined | design.Proposal, paper: Paper) -> Canvas:
+def construction_sheet(proposed: Examined | Proposal, paper: Paper) -> Canvas:
     """The sheet of a construction on paper. Raises CrankcheckError as `laid_out`."""
     sheet = laid_out(proposed, paper)
     return draw_construction(sheet, sheet_note(sheet.view.examined.scene))
@@ -219,13 +223,7 @@ def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
     others = canvas.layer("positions")
     for placed in sheet.view.others:
         places = {name: sheet.at(place) for name, place in placed.points.items()}
-        draw_outline(
-            others,
-            placed.scene.links.values(),
-            places,
-            construction_view.OTHERS,
-            construction_view.OTHERS_WIDTH,
-        )
+        draw_outline(others, placed.scene.links.values(), places, OTHERS, OTHERS_WIDTH)
     drawn: dict[int, list[Array]] = {}
     for number, step in enumerate(sheet.view.steps, 1):
         name = layer_words(f"step-{number}-{step.words[:LAYER_WORDS]}")
@@ -247,26 +245,19 @@ def _frame(axes: Axes, sheet: ConstructionSheet, note: str) -> None:
     write_head(axes, sheet.paper, cut(name + told, room, LARGE), note)
     for box in (sheet.box, sheet.column):
         draw_border(axes, box)
-    step_column.write_column(axes, sheet.words, sheet.column)
+    write_column(axes, sheet.words, sheet.column)
 
 
-def _draw(axes: Axes, sheet: ConstructionSheet, element: design.Element, gid: str) -> list[Array]:
+def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> list[Array]:
     """Draw an element of a step; return its lines on the sheet [mm]."""
-    if isinstance(element, design.Dot):
+    if isinstance(element, Dot):
         _draw_dot(axes, sheet, element, gid)
         return []
-    look = construction_view.look_of(element, sheet.view.steps)
-    lines = [sheet.at(part) for part in construction_view.strokes(element, *sheet.cut)]
-    if (
-        isinstance(element, design.DrawnCircle)
-        and element.arc is None
-        and _is_whole(sheet, element)
-    ):
+    look = look_of(element, sheet.view.steps)
+    lines = [sheet.at(part) for part in strokes(element, *sheet.cut)]
+    if isinstance(element, DrawnCircle) and element.arc is None and _is_whole(sheet, element):
         # a drawing program is to have it as a circle
-        middle, radius = (
-            sheet.at(construction_view.xy(element.centre)),
-            element.radius / sheet.scale,
-        )
+        middle, radius = sheet.at(xy(element.centre)), element.radius / sheet.scale
         axes.add_patch(
             Round(tuple(middle), radius, fill=False, ec=look.colour, lw=look.width, gid=gid)
         )
@@ -276,23 +267,23 @@ def _draw(axes: Axes, sheet: ConstructionSheet, element: design.Element, gid: st
     return lines
 
 
-def _is_whole(sheet: ConstructionSheet, circle: design.DrawnCircle) -> bool:
+def _is_whole(sheet: ConstructionSheet, circle: DrawnCircle) -> bool:
     """True if all of a circle is on the paper."""
     low, high = sheet.cut
-    middle = construction_view.xy(circle.centre)
+    middle = xy(circle.centre)
     return bool(np.all((middle - circle.radius > low) & (middle + circle.radius < high)))
 
 
-def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: design.Dot, gid: str) -> None:
+def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: Dot, gid: str) -> None:
     """Draw a point as a small circle, a pivot of the ground on its foot; nothing off the paper."""
     low, high = sheet.cut
-    place = construction_view.xy(dot.place)
+    place = xy(dot.place)
     if np.any((place < low) | (place > high)):
         return
     spot = sheet.at(place)
     if dot.fixed:
         draw_foot(axes, spot)
-    colour = construction_view.GIVEN if dot.look == "given" else INK
+    colour = GIVEN if dot.look == "given" else INK
     radius = PIN_MM if dot.fixed else DOT_MM[dot.look]
     face = colour if dot.look == "given" and not dot.fixed else "white"
     axes.add_patch(Round(tuple(spot), radius, fc=face, ec=colour, lw=0.7, zorder=FRONT, gid=gid))

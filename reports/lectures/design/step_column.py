@@ -8,7 +8,14 @@ from matplotlib.axes import Axes
 
 from analytic.lectures.synthesis.design import Dot, Look
 from reports.figures.style import INK, QUIET, SMALL, wrapped
-from reports.lectures.design import construction_view
+from reports.lectures.design.construction_view import (
+    LOOKS,
+    OTHERS,
+    OTHERS_WIDTH,
+    ConstructionView,
+    Stroke,
+    curves_of,
+)
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, line, text
 
 ROW_MM, GAP_MM = 3.1, 1.3
@@ -25,14 +32,14 @@ class ColumnPart:
     """A paragraph of the column, with a hanging number or the sample of a line before it."""
 
     words: str
-    before: str | construction_view.Stroke = ""
+    before: str | Stroke = ""
     colour: str = INK
     weight: str = "normal"
 
     @property
     def hanging(self) -> float:
         """Distance of its words from the left [mm]."""
-        if isinstance(self.before, construction_view.Stroke):
+        if isinstance(self.before, Stroke):
             return SAMPLE_MM + 1.5
         return HANGING_MM if self.before else 0.0
 
@@ -42,9 +49,7 @@ class ColumnPart:
         return wrapped(self.words, room, SMALL)
 
 
-def parts_of(
-    view: construction_view.ConstructionView, far: Iterable[str]
-) -> list[list[ColumnPart]]:
+def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[ColumnPart]]:
     """The words on a construction, in groups."""
     proposal = view.examined.proposal
     steps = [ColumnPart(step.words, f"({k})") for k, step in enumerate(view.steps, 1)]
@@ -61,21 +66,14 @@ def parts_of(
     return [group for group in groups if group]
 
 
-def _key(view: construction_view.ConstructionView) -> list[ColumnPart]:
+def _key(view: ConstructionView) -> list[ColumnPart]:
     """The key of the lines, for the looks that occur."""
-    coloured = {
-        id(curve) for curve in construction_view.curves_of(view.steps)
-    }  # by the numbers of their steps
+    coloured = {id(curve) for curve in curves_of(view.steps)}  # by the numbers of their steps
     every = [each for step in view.steps for each in step.elements if id(each) not in coloured]
     looks = {each.look for each in every if not isinstance(each, Dot)}
-    key = [(words, construction_view.LOOKS[look]) for look, words in KEY.items() if look in looks]
-    key.append(("mechanism in position 1", construction_view.LOOKS["result"]))
-    key += [
-        (
-            "in the other positions",
-            construction_view.Stroke(construction_view.OTHERS, construction_view.OTHERS_WIDTH),
-        )
-    ] * bool(view.others)
+    key = [(words, LOOKS[look]) for look, words in KEY.items() if look in looks]
+    key.append(("mechanism in position 1", LOOKS["result"]))
+    key += [("in the other positions", Stroke(OTHERS, OTHERS_WIDTH))] * bool(view.others)
     return [ColumnPart(words, look, QUIET) for words, look in key]
 
 
@@ -108,7 +106,7 @@ def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box
 
 def _hang(axes: Axes, part: ColumnPart, left: float, base: float) -> None:
     """Draw the number or sample before a paragraph, on the base line of its first row."""
-    if isinstance(part.before, construction_view.Stroke):
+    if isinstance(part.before, Stroke):
         start, end = np.array([left, base + 0.8]), np.array([left + SAMPLE_MM, base + 0.8])
         line(axes, start, end, color=part.before.colour, linewidth=part.before.width)
     elif part.before:

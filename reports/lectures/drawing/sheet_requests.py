@@ -19,7 +19,13 @@ from models.errors import CrankcheckError, harmless
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.describe.facts import angle_at, driver_at
-from reports.lectures.drawing.sheets import centre_sheet
+from reports.lectures.drawing.sheets.centre_sheet import (
+    CentreSheet,
+    body_numbers,
+    centre_name,
+    centres_of,
+    draw_centres,
+)
 from reports.lectures.drawing.sheets.field_sheets import DrawnChain, check_room, draw_chains
 from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions
@@ -90,12 +96,10 @@ class CentresRequest:
         refuse_other_than_cranked(scene, "a sheet of instant centres", analyse(scene))
         # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
         drawn = draw_polygons(scene, DriverState(_angle(scene, self.at_deg), sense_of_law(scene)))
-        sheet = centre_sheet.centres_of(drawn, self.link, paper)
+        sheet = centres_of(drawn, self.link, paper)
         if self.output is not None:
             told = f"instant centres of {scene.name} at {self.at_deg:g} deg"
-            save_sheet(
-                console, centre_sheet.draw_centres(sheet, sheet_note(scene)), self.output, told
-            )
+            save_sheet(console, draw_centres(sheet, sheet_note(scene)), self.output, told)
             return 0
         _show(console, sheet)
         return 0
@@ -106,8 +110,8 @@ def _angle(scene: Scene, at_deg: float) -> float:
     return angle_at(at_deg) if scene.is_free else driver_at(scene, at_deg)[0]
 
 
-def _show(console: Console, sheet: centre_sheet.CentreSheet) -> None:
-    numbers = centre_sheet.body_numbers(sheet.drawn)
+def _show(console: Console, sheet: CentreSheet) -> None:
+    numbers = body_numbers(sheet.drawn)
     bodies = ", ".join(f"{k} {body}" for body, k in numbers.items())
     console.print(f"bodies: {bodies}", highlight=False, markup=False)
     table = plain_table(gap=2)
@@ -116,11 +120,10 @@ def _show(console: Console, sheet: centre_sheet.CentreSheet) -> None:
     ranked = sorted(sheet.centres.items(), key=lambda each: sorted(numbers[b] for b in each[0]))
     for pair, centre in ranked:
         crossing = " and ".join(
-            " ".join(centre_sheet.centre_name(each, numbers) for each in pairs)
-            for pairs in centre.by
+            " ".join(centre_name(each, numbers) for each in pairs) for pairs in centre.by
         )
         found = f"where {crossing} cross" if crossing else "a joint"
-        table.add_row(centre_sheet.centre_name(pair, numbers), *_place(centre.place), found)
+        table.add_row(centre_name(pair, numbers), *_place(centre.place), found)
     console.print(table)
     if sheet.circles is not None:
         _show_circles(console, sheet)
@@ -130,7 +133,7 @@ def _place(place: Array | None) -> tuple[str, str]:
     return ("at infinity", "") if place is None else (f"{place[0]:.8g}", f"{place[1]:.8g}")
 
 
-def _show_circles(console: Console, sheet: centre_sheet.CentreSheet) -> None:
+def _show_circles(console: Console, sheet: CentreSheet) -> None:
     """Show the poles and circles of the named link."""
     circles = sheet.circles
     assert circles is not None

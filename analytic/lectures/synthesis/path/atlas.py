@@ -30,17 +30,24 @@ from functools import cache
 import numpy as np
 from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.synthesis.path import unit_four_bar
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, real_size
 from analytic.lectures.synthesis.path.fit import Fitted, placed
 from analytic.lectures.synthesis.path.task import UnitPath, refuse_points
+from analytic.lectures.synthesis.path.unit_four_bar import (
+    BOUNDS,
+    FULL,
+    Complexes,
+    Family,
+    direction,
+    lengths,
+)
 from models.array import Array
 
 FINE = 32
 """Number of chords of each piece of a spline, for its length."""
 
 
-def shares(curves: unit_four_bar.Complexes) -> Array:
+def shares(curves: Complexes) -> Array:
     """Return the share of the whole length drawn at each point of curves (E, M), from 0 to 1."""
     steps = np.abs(np.diff(curves, axis=1))
     total = np.cumsum(steps, axis=1)
@@ -48,9 +55,7 @@ def shares(curves: unit_four_bar.Complexes) -> Array:
     return np.asarray(share / np.maximum(share[:, -1:], np.finfo(np.float64).tiny))
 
 
-def at_shares(
-    share: Array, values: unit_four_bar.Complexes | Array, wanted: Array
-) -> unit_four_bar.Complexes | Array:
+def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complexes | Array:
     """Interpolate values (E, M) at their own shares to wanted shares (E, W), each within 0 to 1.
 
     All rows at once: each is moved by its number, so that they follow each other on one axis.
@@ -63,11 +68,11 @@ def at_shares(
     low, high = share.ravel()[upper - 1], share.ravel()[upper]
     part = (wanted - low) / np.maximum(high - low, 1e-300)
     before, after = values.ravel()[upper - 1], values.ravel()[upper]
-    between: unit_four_bar.Complexes | Array = before + part * (after - before)
+    between: Complexes | Array = before + part * (after - before)
     return between
 
 
-def smooth(points: unit_four_bar.Complexes, closed: bool) -> tuple[unit_four_bar.Complexes, Array]:
+def smooth(points: Complexes, closed: bool) -> tuple[Complexes, Array]:
     """Return a fine curve through points, in order, and the shares of its length in them, (N,).
 
     It is a cubic spline over the length of the chords; a closed curve ends where it starts, and
@@ -101,7 +106,7 @@ class Match:
     start: Array
 
 
-def descriptors(curves: unit_four_bar.Complexes) -> unit_four_bar.Complexes:
+def descriptors(curves: Complexes) -> Complexes:
     """Return the descriptors of closed curves (E, M), last point as the first, (E, 2 HARMONICS)."""
     even = np.tile(np.arange(SAMPLES) / SAMPLES, (len(curves), 1))
     drawn = at_shares(shares(curves), curves, even)
@@ -112,7 +117,7 @@ def descriptors(curves: unit_four_bar.Complexes) -> unit_four_bar.Complexes:
     return np.asarray(every[:, ORDERS] / np.maximum(size, np.finfo(np.float64).tiny))
 
 
-def match(one: unit_four_bar.Complexes, others: unit_four_bar.Complexes) -> Match:
+def match(one: Complexes, others: Complexes) -> Match:
     """Match one descriptor (2 HARMONICS,) with others (E, 2 HARMONICS), over all starts."""
     product = np.zeros((len(others), STARTS), dtype=np.complex64)
     product[:, ORDERS] = one.conj() * others
@@ -142,7 +147,7 @@ def between(share: Array, bounds: tuple[tuple[float, float], ...]) -> Array:
     return np.asarray(low + (high - low) * share.T)
 
 
-ENTRIES: dict[unit_four_bar.Family, int] = {"crank-rocker": 9000, "double-crank": 4000}
+ENTRIES: dict[Family, int] = {"crank-rocker": 9000, "double-crank": 4000}
 LOOKS = 96
 """Number of crank angles at which a curve of the atlas is drawn."""
 REACH = 2.2
@@ -155,10 +160,10 @@ class Atlas:
     """Four-bars of one family: the numbers of their shapes (3, E), the coupler points in the
     coupler's frame over the ground (E,), and the descriptors of their curves."""
 
-    family: unit_four_bar.Family
+    family: Family
     x: Array
-    arm: unit_four_bar.Complexes
-    descriptors: unit_four_bar.Complexes
+    arm: Complexes
+    descriptors: Complexes
 
 
 @dataclass(frozen=True)
@@ -171,28 +176,26 @@ class Similar:
 
 
 @cache
-def atlas(family: unit_four_bar.Family) -> Atlas:
+def atlas(family: Family) -> Atlas:
     """Return the entries of a family: some thousands in a fraction of a second."""
     share = spread(ENTRIES[family], 5, seed=0)
-    x = between(share[:, :3], unit_four_bar.BOUNDS[family])
-    arm = arms(unit_four_bar.lengths(family, x)[1], share[:, 3:])
+    x = between(share[:, :3], BOUNDS[family])
+    arm = arms(lengths(family, x)[1], share[:, 3:])
     return Atlas(family, x, arm, descriptors(curves(family, x, arm)))
 
 
-def arms(coupler: Array, share: Array) -> unit_four_bar.Complexes:
+def arms(coupler: Array, share: Array) -> Complexes:
     """Return coupler points spread over a disc about the middle of the coupler, (E,)."""
     radius = REACH * np.sqrt(share[:, 0])
     return np.asarray(coupler * (0.5 + radius * np.exp(2j * np.pi * share[:, 1])))
 
 
-def curves(
-    family: unit_four_bar.Family, x: Array, arm: unit_four_bar.Complexes, phi: Array | None = None
-) -> unit_four_bar.Complexes:
+def curves(family: Family, x: Array, arm: Complexes, phi: Array | None = None) -> Complexes:
     """Return the coupler curves of shapes (3, E), on a ground from 0 to 1: over a turn, or at the
     crank's angles [rad], (E, M)."""
-    a, b, c = (each[:, None] for each in unit_four_bar.lengths(family, x))
+    a, b, c = (each[:, None] for each in lengths(family, x))
     angles = np.linspace(0.0, math.tau, LOOKS + 1)[None] if phi is None else phi
-    u, _ = unit_four_bar.direction((a, b, c), angles)
+    u, _ = direction((a, b, c), angles)
     return np.asarray(a * np.exp(1j * angles) + arm[:, None] * u)
 
 
@@ -215,19 +218,19 @@ def _ranked(path: UnitPath, count: int) -> list[tuple[float, Fitted]]:
 
 
 def _over(
-    points: unit_four_bar.Complexes, count: int, *, mirrored: bool, back: bool
+    points: Complexes, count: int, *, mirrored: bool, back: bool
 ) -> list[tuple[float, Fitted]]:
     """Return the most similar entries for points drawn forwards, with their similarity."""
     curve, share = smooth(points, closed=True)
     own = descriptors(curve[None])[0]
     found: list[tuple[float, Fitted]] = []
-    for family in unit_four_bar.FULL:
+    for family in FULL:
         book = atlas(family)
         matched = match(own, book.descriptors)
         for k in np.argsort(-matched.similarity, kind="stable")[:count].tolist():
             x, arm = book.x[:, k], book.arm[k : k + 1]
             phi = _crank_angles(family, x, arm, share + matched.start[k])
-            placing = placed(unit_four_bar.lengths(family, x), phi, points)
+            placing = placed(lengths(family, x), phi, points)
             if back:
                 phi = phi[::-1]
             fit = Fitted(family, x, placing, phi, math.inf, mirrored)
@@ -235,9 +238,7 @@ def _over(
     return found
 
 
-def _crank_angles(
-    family: unit_four_bar.Family, x: Array, arm: unit_four_bar.Complexes, share: Array
-) -> Array:
+def _crank_angles(family: Family, x: Array, arm: Complexes, share: Array) -> Array:
     """Return the crank's angles [rad] at shares of an entry's curve, on through the turns."""
     drawn = shares(curves(family, x[:, None], arm))
     angles = np.linspace(0.0, math.tau, LOOKS + 1)[None]

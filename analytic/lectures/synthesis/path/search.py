@@ -21,12 +21,27 @@ import numpy as np
 
 from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.examine import Examined, examine
-from analytic.lectures.synthesis.path import fit, unit_four_bar
 from analytic.lectures.synthesis.path.atlas import between, closed_starts, spread
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, candidates, proposed
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
+from analytic.lectures.synthesis.path.fit import (
+    LARGEST,
+    Fitted,
+    Progress,
+    SearchClock,
+    fitted,
+    placed,
+)
 from analytic.lectures.synthesis.path.pieces import open_starts
 from analytic.lectures.synthesis.path.task import PathTask, UnitPath
+from analytic.lectures.synthesis.path.unit_four_bar import (
+    BOUNDS,
+    FULL,
+    Complexes,
+    Family,
+    direction,
+    lengths,
+)
 from models.array import Array
 from models.errors import CrankcheckError
 
@@ -38,10 +53,10 @@ APART = 0.12
 """Distance in the box of shapes and starts, below which starts mostly lead to the same fit."""
 
 
-def timed_starts(path: UnitPath, count: int, seed: int, *, limited: bool) -> list[fit.Fitted]:
+def timed_starts(path: UnitPath, count: int, seed: int, *, limited: bool) -> list[Fitted]:
     """Return the best shapes of either assembly for points with timing, the best first; with
     ``limited`` also those whose crank does not turn fully."""
-    families = (*unit_four_bar.FULL, "limited") if limited else unit_four_bar.FULL
+    families = (*FULL, "limited") if limited else FULL
     found = [
         each
         for mirrored in (False, True)
@@ -52,12 +67,10 @@ def timed_starts(path: UnitPath, count: int, seed: int, *, limited: bool) -> lis
     return found[:count]
 
 
-def _best(
-    path: UnitPath, family: unit_four_bar.Family, count: int, seed: int, mirrored: bool
-) -> list[fit.Fitted]:
+def _best(path: UnitPath, family: Family, count: int, seed: int, mirrored: bool) -> list[Fitted]:
     """Return those of one family, spread over its box."""
     share = spread(LOOKS, 4, seed)
-    x, start = between(share[:, :3], unit_four_bar.BOUNDS[family]), math.tau * share[:, 3]
+    x, start = between(share[:, :3], BOUNDS[family]), math.tau * share[:, 3]
     cost = np.concatenate(
         [
             _costs(path, family, x[:, k : k + BLOCK], start[k : k + BLOCK])
@@ -75,13 +88,13 @@ def _best(
     return [_start(path, family, x[:, k], float(start[k]), float(cost[k]), mirrored) for k in kept]
 
 
-def _costs(path: UnitPath, family: unit_four_bar.Family, x: Array, start: Array) -> Array:
+def _costs(path: UnitPath, family: Family, x: Array, start: Array) -> Array:
     """Return the least sums of squares, inf where the mechanism is too large or does not close."""
     assert path.turned is not None
     crank = np.exp(1j * path.turned)
     common, triangle = np.linalg.qr(np.stack([np.ones_like(crank), crank], axis=1))
-    a, b, c = (each[:, None] for each in unit_four_bar.lengths(family, x))
-    u, cosine = unit_four_bar.direction((a, b, c), start[:, None] + path.turned)
+    a, b, c = (each[:, None] for each in lengths(family, x))
+    u, cosine = direction((a, b, c), start[:, None] + path.turned)
     y, w = _left(path.points[None], common)[0], _left(u, common)
     square = np.sum(np.abs(w) ** 2, axis=1)
     product = w.conj() @ y
@@ -89,38 +102,24 @@ def _costs(path: UnitPath, family: unit_four_bar.Family, x: Array, start: Array)
     cost = np.sum(np.abs(y) ** 2) - np.abs(product) ** 2 / np.maximum(square, 1e-12)
     ground = ((path.points - arm[:, None] * u) @ common[:, 1].conj()) / (triangle[1, 1] * a[:, 0])
     bad = (
-        (np.abs(arm) > fit.LARGEST)
-        | (np.abs(ground) > fit.LARGEST)
+        (np.abs(arm) > LARGEST)
+        | (np.abs(ground) > LARGEST)
         | (np.max(np.abs(cosine), axis=1) >= 1.0)
     )
     return np.where(bad, np.inf, cost)
 
 
-def _left(
-    rows: unit_four_bar.Complexes, common: unit_four_bar.Complexes
-) -> unit_four_bar.Complexes:
+def _left(rows: Complexes, common: Complexes) -> Complexes:
     """Return the residuals of rows (E, N) outside the plane of two columns (N, 2)."""
     return np.asarray(rows - (rows @ common.conj()) @ common.T)
 
 
 def _start(
-    path: UnitPath,
-    family: unit_four_bar.Family,
-    x: Array,
-    start: float,
-    cost: float,
-    mirrored: bool,
-) -> fit.Fitted:
+    path: UnitPath, family: Family, x: Array, start: float, cost: float, mirrored: bool
+) -> Fitted:
     assert path.turned is not None
     phi = start + path.turned
-    return fit.Fitted(
-        family,
-        x,
-        fit.placed(unit_four_bar.lengths(family, x), phi, path.points),
-        phi,
-        cost,
-        mirrored,
-    )
+    return Fitted(family, x, placed(lengths(family, x), phi, path.points), phi, cost, mirrored)
 
 
 STARTS = 48
@@ -168,7 +167,7 @@ def generate(
     starts: int = STARTS,
     seed: int = 0,
     time_s: float = math.inf,
-    progress: fit.Progress | None = None,
+    progress: Progress | None = None,
     least_transmission_rad: float = 0.0,
 ) -> PathSearch:
     """Find four-bars whose coupler point goes through the points of a task, or as near as possible.
@@ -214,8 +213,8 @@ def generate(
             f"asked for; ask for 0 to {math.degrees(MOST_TRANSMISSION):g} deg"
         )
     strict = least_transmission_rad + MARGIN * (least_transmission_rad > 0.0)
-    clock = fit.SearchClock(starts, time.monotonic() + time_s, task.radius_m, progress)
-    fits = fit.fitted(list(_starts(task, starts, seed)), task.unit, clock, strict)
+    clock = SearchClock(starts, time.monotonic() + time_s, task.radius_m, progress)
+    fits = fitted(list(_starts(task, starts, seed)), task.unit, clock, strict)
     sound: list[PathFit] = []
     refused: list[str] = []
     least_sine = math.sin(least_transmission_rad)
@@ -241,7 +240,7 @@ def generate(
     return PathSearch(tuple(sound), clock.complete)
 
 
-def _starts(task: PathTask, count: int, seed: int) -> Iterator[fit.Fitted]:
+def _starts(task: PathTask, count: int, seed: int) -> Iterator[Fitted]:
     """Yield the starts of least squares, the most promising first."""
     if task.is_timed:
         yield from timed_starts(task.unit, count, seed, limited=not task.closed)
@@ -253,17 +252,13 @@ def _starts(task: PathTask, count: int, seed: int) -> Iterator[fit.Fitted]:
     yield from itertools.chain(entries[:own], itertools.islice(strayed, count - own))
 
 
-def _strayed(entry: fit.Fitted, path: UnitPath, rng: np.random.Generator) -> fit.Fitted:
+def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
     """Return a start beside an entry: another shape, put over the points anew."""
-    low, high = (np.array(side) for side in zip(*unit_four_bar.BOUNDS[entry.family], strict=True))
+    low, high = (np.array(side) for side in zip(*BOUNDS[entry.family], strict=True))
     off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)
     x = np.clip(entry.x + off, low, high)
     own = path.mirrored if entry.mirrored else path
-    return replace(
-        entry,
-        x=x,
-        placing=fit.placed(unit_four_bar.lengths(entry.family, x), entry.phi, own.points),
-    )
+    return replace(entry, x=x, placing=placed(lengths(entry.family, x), entry.phi, own.points))
 
 
 def _examined(name: str, candidate: FourBarCandidate, task: PathTask) -> PathFit | str:

@@ -13,7 +13,15 @@ from models.errors import CrankcheckError, ReachError, suggestion
 from models.motion import Motion
 from models.scene import GROUND, Scene, span
 from models.scene.laws import ConstantSpeed
-from reports.lectures.drawing.workbook import formula_table
+from reports.lectures.drawing.workbook.formula_table import (
+    ASSEMBLED,
+    NAME,
+    STATE,
+    Column,
+    FormulaTable,
+    Input,
+    evaluated,
+)
 from reports.output.numbers import readable
 
 MOST_MEMBERS = 20
@@ -25,9 +33,7 @@ OF_ROWS = ("start_deg", "step_deg")
 """Inputs that define the rows alone, and nothing of the mechanism."""
 
 
-def varied(
-    table: formula_table.FormulaTable, name: str, values: Sequence[float]
-) -> formula_table.Input:
+def varied(table: FormulaTable, name: str, values: Sequence[float]) -> Input:
     """The input that members differ in, by its name or by the link whose length it is.
 
     Raises CrankcheckError for an unknown name; too few, too many or equal values; one out of range.
@@ -59,7 +65,7 @@ def check_values(name: str, values: Sequence[float]) -> None:
 
 
 def member_columns(
-    table: formula_table.FormulaTable, one: formula_table.Input, values: Sequence[float], asked: str
+    table: FormulaTable, one: Input, values: Sequence[float], asked: str
 ) -> list[dict[str, Array]]:
     """The columns of each member, (rows,). Raises CrankcheckError for a member without position or
     rates somewhere on the path of the crank; ``asked`` is the user's name for ``one``."""
@@ -68,23 +74,23 @@ def member_columns(
         inputs = [replace(i, value=value) if i is one else i for i in table.inputs]
         member = replace(table, inputs=inputs)
         _check_way(member, asked, value)
-        found.append(formula_table.evaluated(member))
+        found.append(evaluated(member))
     return found
 
 
-def _check_way(member: formula_table.FormulaTable, name: str, value: float) -> None:
+def _check_way(member: FormulaTable, name: str, value: float) -> None:
     """Refuse a member that the crank can not be brought all the way with: between rows, too."""
     (step,) = (each for each in member.inputs if each.name == "step_deg")
     way_deg = min(step.value * (member.count - 1), 360.0)
     count = math.ceil(way_deg / CLOSE_DEG)
     closely = replace(step, value=way_deg / count)
     inputs = [closely if each is step else each for each in member.inputs]
-    columns = formula_table.evaluated(replace(member, inputs=inputs, count=count + 1))
-    wrong = columns[formula_table.STATE] != formula_table.ASSEMBLED
+    columns = evaluated(replace(member, inputs=inputs, count=count + 1))
+    wrong = columns[STATE] != ASSEMBLED
     if wrong.any():
         at = int(np.argmax(wrong))
         why = "cannot be assembled"
-        if columns[formula_table.STATE][at] != why:
+        if columns[STATE][at] != why:
             why = "has no determined rates"
         raise CrankcheckError(
             f"--family {name}={value:g}: this member {why} with its crank at "
@@ -92,9 +98,7 @@ def _check_way(member: formula_table.FormulaTable, name: str, value: float) -> N
         )
 
 
-def family(
-    table: formula_table.FormulaTable, name: str, values: Sequence[float]
-) -> formula_table.FormulaTable:
+def family(table: FormulaTable, name: str, values: Sequence[float]) -> FormulaTable:
     """The table with a group of columns for each value of the input ``name``. Raises
     CrankcheckError as `varied` and `member_columns`."""
     one = varied(table, name, values)
@@ -113,16 +117,14 @@ def family(
         title: [f"{column}_{k}" for k in members for column in drawn]
         for title, drawn in table.charts.items()
     }
-    return formula_table.FormulaTable(inputs, columns, table.count, charts)
+    return FormulaTable(inputs, columns, table.count, charts)
 
 
-def _of_member(
-    column: formula_table.Column, name: str, k: int, shared: Sequence[str]
-) -> formula_table.Column:
+def _of_member(column: Column, name: str, k: int, shared: Sequence[str]) -> Column:
     """A column of the member ``k``, with the member's own inputs and columns in its formula."""
 
     def own(formula: str) -> str:
-        return formula_table.NAME.sub(
+        return NAME.sub(
             lambda m: (
                 f"{{{m[1]}_{k}}}" if m[1] == name
                 else m[0] if m[1] or m[2] in shared
@@ -133,7 +135,7 @@ def _of_member(
 
     first = None if column.first is None else own(column.first)
     head = f'="{column.head}, {name} = "&{{{name}_{k}}}'
-    return formula_table.Column(f"{column.name}_{k}", head, own(column.formula), first)
+    return Column(f"{column.name}_{k}", head, own(column.formula), first)
 
 
 KINDS = ("position", "velocity", "acceleration")
@@ -169,9 +171,7 @@ class FamilyCurves:
         return [chart for chart in self.charts if chart.kind == kind]
 
 
-def family_curves(
-    table: formula_table.FormulaTable, name: str, values: Sequence[float]
-) -> FamilyCurves:
+def family_curves(table: FormulaTable, name: str, values: Sequence[float]) -> FamilyCurves:
     """The curves of a family of formulas. Raises CrankcheckError as `family`."""
     one = varied(table, name, values)
     members = member_columns(table, one, values, name)

@@ -6,39 +6,43 @@ from analytic.mechanism.fourbar import FourBar
 from analytic.structure.groups import Group
 from models.scene import Point, Scene, Slider, span
 from models.scene.joints import less, turned
-from reports.lectures.drawing.workbook import formula_table
+from reports.lectures.drawing.workbook.formula_table import (
+    DRIVE_COLUMNS,
+    Column,
+    FormulaTable,
+    Input,
+    continued,
+    drive_inputs,
+    state_column,
+)
 
 FOUR_BAR_COLUMNS = (
-    *formula_table.DRIVE_COLUMNS,
-    formula_table.Column("Bx", "B x m", "{AB}*COS([phi])"),
-    formula_table.Column("By", "B y m", "{AB}*SIN([phi])"),
-    formula_table.Column("Dx", "D x m", "{AD}*COS(RADIANS({AD_deg}))"),
-    formula_table.Column("Dy", "D y m", "{AD}*SIN(RADIANS({AD_deg}))"),
-    formula_table.Column("BD", "BD m", "SQRT(([Dx]-[Bx])^2+([Dy]-[By])^2)"),
-    formula_table.Column("cosine", "cos CBD", "({BC}^2+[BD]^2-{CD}^2)/(2*{BC}*[BD])"),
-    formula_table.Column("inside", "sin^2 CBD", "1-[cosine]^2"),
-    formula_table.state_column("inside"),
-    formula_table.Column("inner", "angle CBD rad", "ACOS(IF([inside]<0,NA(),[cosine]))"),
-    formula_table.Column("psi", "of BC rad", "ATAN2([Dx]-[Bx],[Dy]-[By])+{branch}*[inner]"),
-    formula_table.Column("Cx", "C x m", "[Bx]+{BC}*COS([psi])"),
-    formula_table.Column("Cy", "C y m", "[By]+{BC}*SIN([psi])"),
-    formula_table.Column("chi", "of DC rad", "ATAN2([Cx]-[Dx],[Cy]-[Dy])"),
-    formula_table.continued("theta_bc", "theta of BC rad", "psi"),
-    formula_table.continued("theta_dc", "theta of DC rad", "chi"),
-    formula_table.Column("sine", "sin(BC - DC)", "SIN([psi]-[chi])"),
-    formula_table.Column(
-        "omega_bc", "omega of BC rad/s", "-{omega}*{AB}*SIN([phi]-[chi])/({BC}*[sine])"
-    ),
-    formula_table.Column(
-        "omega_dc", "omega of DC rad/s", "-{omega}*{AB}*SIN([phi]-[psi])/({CD}*[sine])"
-    ),
-    formula_table.Column(
+    *DRIVE_COLUMNS,
+    Column("Bx", "B x m", "{AB}*COS([phi])"),
+    Column("By", "B y m", "{AB}*SIN([phi])"),
+    Column("Dx", "D x m", "{AD}*COS(RADIANS({AD_deg}))"),
+    Column("Dy", "D y m", "{AD}*SIN(RADIANS({AD_deg}))"),
+    Column("BD", "BD m", "SQRT(([Dx]-[Bx])^2+([Dy]-[By])^2)"),
+    Column("cosine", "cos CBD", "({BC}^2+[BD]^2-{CD}^2)/(2*{BC}*[BD])"),
+    Column("inside", "sin^2 CBD", "1-[cosine]^2"),
+    state_column("inside"),
+    Column("inner", "angle CBD rad", "ACOS(IF([inside]<0,NA(),[cosine]))"),
+    Column("psi", "of BC rad", "ATAN2([Dx]-[Bx],[Dy]-[By])+{branch}*[inner]"),
+    Column("Cx", "C x m", "[Bx]+{BC}*COS([psi])"),
+    Column("Cy", "C y m", "[By]+{BC}*SIN([psi])"),
+    Column("chi", "of DC rad", "ATAN2([Cx]-[Dx],[Cy]-[Dy])"),
+    continued("theta_bc", "theta of BC rad", "psi"),
+    continued("theta_dc", "theta of DC rad", "chi"),
+    Column("sine", "sin(BC - DC)", "SIN([psi]-[chi])"),
+    Column("omega_bc", "omega of BC rad/s", "-{omega}*{AB}*SIN([phi]-[chi])/({BC}*[sine])"),
+    Column("omega_dc", "omega of DC rad/s", "-{omega}*{AB}*SIN([phi]-[psi])/({CD}*[sine])"),
+    Column(
         "alpha_bc",
         "alpha of BC rad/s^2",
         "({CD}*[omega_dc]^2-{AB}*{omega}^2*COS([phi]-[chi])-{BC}*[omega_bc]^2*COS([psi]-[chi]))"
         "/({BC}*[sine])",
     ),
-    formula_table.Column(
+    Column(
         "alpha_dc",
         "alpha of DC rad/s^2",
         "({CD}*[omega_dc]^2*COS([psi]-[chi])-{AB}*{omega}^2*COS([phi]-[psi])-{BC}*[omega_bc]^2)"
@@ -52,9 +56,7 @@ FOUR_BAR_CHARTS = {
 }
 
 
-def four_bar_table(
-    scene: Scene, group: Group, count: int, step_deg: float
-) -> formula_table.FormulaTable:
+def four_bar_table(scene: Scene, group: Group, count: int, step_deg: float) -> FormulaTable:
     """The table of a four-bar at constant speed, whose one group is ``group``."""
     bar = FourBar.of(scene)
     pins = group.outer1, group.outer2
@@ -67,44 +69,42 @@ def four_bar_table(
         (group.first, group.second) if pins[0] == near else (group.second, group.first)
     )
     inputs = (
-        formula_table.Input("AB", bar.driver, "m", "length of the driver", "above 0", crank),
-        formula_table.Input("BC", bar.coupler, "m", "length of the coupler", "above 0", coupler),
-        formula_table.Input("CD", bar.rocker, "m", "length of the rocker", "above 0", rocker),
-        formula_table.Input("AD", bar.ground, "m", "distance of the pins on the ground", "above 0"),
-        formula_table.Input("AD_deg", math.degrees(math.atan2(y, x)), "deg", "direction of AD"),
-        formula_table.Input(
-            "branch", left, "", "1: C to the left of the way from B to D; -1: right", "1 or -1"
-        ),
-        *formula_table.drive_inputs(scene, near, step_deg),
+        Input("AB", bar.driver, "m", "length of the driver", "above 0", crank),
+        Input("BC", bar.coupler, "m", "length of the coupler", "above 0", coupler),
+        Input("CD", bar.rocker, "m", "length of the rocker", "above 0", rocker),
+        Input("AD", bar.ground, "m", "distance of the pins on the ground", "above 0"),
+        Input("AD_deg", math.degrees(math.atan2(y, x)), "deg", "direction of AD"),
+        Input("branch", left, "", "1: C to the left of the way from B to D; -1: right", "1 or -1"),
+        *drive_inputs(scene, near, step_deg),
     )
-    return formula_table.FormulaTable(inputs, FOUR_BAR_COLUMNS, count, FOUR_BAR_CHARTS)
+    return FormulaTable(inputs, FOUR_BAR_COLUMNS, count, FOUR_BAR_CHARTS)
 
 
 E_TOLD = "the way of the rod's pin on the slider passes the crank's pivot so far on its left"
 SLIDER_CRANK_COLUMNS = (
-    *formula_table.DRIVE_COLUMNS,
-    formula_table.Column("t", "t rad", "[phi]-RADIANS({line_deg})"),
-    formula_table.Column("aside", "R sin t - e m", "{R}*SIN([t])-{e}"),
-    formula_table.Column("inside", "cos^2 f", "1-([aside]/{L})^2"),
-    formula_table.state_column("inside"),
-    formula_table.Column("cosine", "cos f", "{branch}*SQRT(IF([inside]<0,NA(),[inside]))"),
-    formula_table.Column("f", "f rad", "ATAN2([cosine],[aside]/{L})"),
-    formula_table.Column("f_rate", "f' rad/s", "{omega}*{R}*COS([t])/({L}*[cosine])"),
-    formula_table.Column(
+    *DRIVE_COLUMNS,
+    Column("t", "t rad", "[phi]-RADIANS({line_deg})"),
+    Column("aside", "R sin t - e m", "{R}*SIN([t])-{e}"),
+    Column("inside", "cos^2 f", "1-([aside]/{L})^2"),
+    state_column("inside"),
+    Column("cosine", "cos f", "{branch}*SQRT(IF([inside]<0,NA(),[inside]))"),
+    Column("f", "f rad", "ATAN2([cosine],[aside]/{L})"),
+    Column("f_rate", "f' rad/s", "{omega}*{R}*COS([t])/({L}*[cosine])"),
+    Column(
         "f_gain",
         "f'' rad/s^2",
         "([f_rate]^2*[aside]-{omega}^2*{R}*SIN([t]))/({L}*[cosine])",
     ),
-    formula_table.Column("X", "X m", "{R}*COS([t])+{L}*[cosine]"),
-    formula_table.Column("X_rate", "X' m/s", "-{omega}*{R}*SIN([t])-[f_rate]*[aside]"),
-    formula_table.Column(
+    Column("X", "X m", "{R}*COS([t])+{L}*[cosine]"),
+    Column("X_rate", "X' m/s", "-{omega}*{R}*SIN([t])-[f_rate]*[aside]"),
+    Column(
         "X_gain",
         "X'' m/s^2",
         "-({omega}^2)*{R}*COS([t])-[f_gain]*[aside]-[f_rate]*{omega}*{R}*COS([t])",
     ),
-    formula_table.Column("s", "displacement m", "[X]-{X0}"),
-    formula_table.Column("omega_rod", "omega of the rod rad/s", "-[f_rate]"),
-    formula_table.Column("alpha_rod", "alpha of the rod rad/s^2", "-[f_gain]"),
+    Column("s", "displacement m", "[X]-{X0}"),
+    Column("omega_rod", "omega of the rod rad/s", "-[f_rate]"),
+    Column("alpha_rod", "alpha of the rod rad/s^2", "-[f_gain]"),
 )
 SLIDER_CRANK_CHARTS = {
     "position X [m]": ("X",),
@@ -113,9 +113,7 @@ SLIDER_CRANK_CHARTS = {
 }
 
 
-def slider_crank_table(
-    scene: Scene, group: Group, count: int, step_deg: float
-) -> formula_table.FormulaTable:
+def slider_crank_table(scene: Scene, group: Group, count: int, step_deg: float) -> FormulaTable:
     """The table of a slider-crank at constant speed, whose one group is ``group``."""
     slider, pivot = scene.sliders[group.outer2], scene.ground[scene.driver_pivot]
     crank, rod = scene.links[scene.driver.link], scene.links[group.first]
@@ -127,19 +125,15 @@ def slider_crank_table(
     length = span({pin: rod.points[pin] for pin in ends})
     branch = scene.branch.get(group.branch_key, 1)
     inputs = (
-        formula_table.Input("R", radius, "m", "length of the crank", "above 0", crank.name),
-        formula_table.Input("L", length, "m", "length of the rod", "above 0", rod.name),
-        formula_table.Input("e", e, "m", E_TOLD),
-        formula_table.Input(
-            "line_deg", math.degrees(slider.direction_rad), "deg", "direction of the line"
-        ),
-        formula_table.Input("X0", x0, "m", "X from which the displacement counts"),
-        formula_table.Input(
-            "branch", branch, "", "1: the rod points along the line; -1: against it", "1 or -1"
-        ),
-        *formula_table.drive_inputs(scene, group.outer1, step_deg),
+        Input("R", radius, "m", "length of the crank", "above 0", crank.name),
+        Input("L", length, "m", "length of the rod", "above 0", rod.name),
+        Input("e", e, "m", E_TOLD),
+        Input("line_deg", math.degrees(slider.direction_rad), "deg", "direction of the line"),
+        Input("X0", x0, "m", "X from which the displacement counts"),
+        Input("branch", branch, "", "1: the rod points along the line; -1: against it", "1 or -1"),
+        *drive_inputs(scene, group.outer1, step_deg),
     )
-    return formula_table.FormulaTable(inputs, SLIDER_CRANK_COLUMNS, count, SLIDER_CRANK_CHARTS)
+    return FormulaTable(inputs, SLIDER_CRANK_COLUMNS, count, SLIDER_CRANK_CHARTS)
 
 
 def _pin_in(scene: Scene, slider: Slider, pin: str) -> Point:
@@ -152,29 +146,29 @@ def _pin_in(scene: Scene, slider: Slider, pin: str) -> Point:
 
 
 SLOTTED_LEVER_COLUMNS = (
-    *formula_table.DRIVE_COLUMNS,
-    formula_table.Column("x", "C to B, x m", "{R}*COS([phi])-{ACx}"),
-    formula_table.Column("y", "C to B, y m", "{R}*SIN([phi])-{ACy}"),
-    formula_table.Column("inside", "(rho/R)^2", "([x]^2+[y]^2-{o}^2)/{R}^2"),
-    formula_table.state_column("inside"),
-    formula_table.Column("rho", "rho m", "{branch}*{R}*SQRT(IF([inside]<0,NA(),[inside]))"),
-    formula_table.Column("line", "of the line rad", "ATAN2([x],[y])-ATAN2([rho],{o})"),
-    formula_table.continued("theta", "theta of the line rad", "line"),
-    formula_table.Column("turn", "phi - theta rad", "[phi]-[line]"),
-    formula_table.Column("omega3", "lever omega rad/s", "{omega}*{R}*COS([turn])/[rho]"),
-    formula_table.Column("slide", "rho' m/s", "-{omega}*{R}*SIN([turn])+[omega3]*{o}"),
-    formula_table.Column("coriolis", "2 omega rho' m/s^2", "2*[omega3]*[slide]"),
-    formula_table.Column(
+    *DRIVE_COLUMNS,
+    Column("x", "C to B, x m", "{R}*COS([phi])-{ACx}"),
+    Column("y", "C to B, y m", "{R}*SIN([phi])-{ACy}"),
+    Column("inside", "(rho/R)^2", "([x]^2+[y]^2-{o}^2)/{R}^2"),
+    state_column("inside"),
+    Column("rho", "rho m", "{branch}*{R}*SQRT(IF([inside]<0,NA(),[inside]))"),
+    Column("line", "of the line rad", "ATAN2([x],[y])-ATAN2([rho],{o})"),
+    continued("theta", "theta of the line rad", "line"),
+    Column("turn", "phi - theta rad", "[phi]-[line]"),
+    Column("omega3", "lever omega rad/s", "{omega}*{R}*COS([turn])/[rho]"),
+    Column("slide", "rho' m/s", "-{omega}*{R}*SIN([turn])+[omega3]*{o}"),
+    Column("coriolis", "2 omega rho' m/s^2", "2*[omega3]*[slide]"),
+    Column(
         "alpha3",
         "lever alpha rad/s^2",
         "(-({omega}^2)*{R}*SIN([turn])-[coriolis]+[omega3]^2*{o})/[rho]",
     ),
-    formula_table.Column(
+    Column(
         "gain",
         "rho'' m/s^2",
         "-({omega}^2)*{R}*COS([turn])+[alpha3]*{o}+[omega3]^2*[rho]",
     ),
-    formula_table.Column("s", "displacement m", "[rho]-{rho0}"),
+    Column("s", "displacement m", "[rho]-{rho0}"),
 )
 SLOTTED_LEVER_CHARTS = {
     "position: theta [rad]": ("theta",),
@@ -183,9 +177,7 @@ SLOTTED_LEVER_CHARTS = {
 }
 
 
-def slotted_lever_table(
-    scene: Scene, group: Group, count: int, step_deg: float
-) -> formula_table.FormulaTable:
+def slotted_lever_table(scene: Scene, group: Group, count: int, step_deg: float) -> FormulaTable:
     """The table of a slotted lever at constant speed, whose one group is ``group``."""
     slider = scene.sliders[group.inner]
     lever, crank = scene.links[slider.on], scene.links[scene.driver.link]
@@ -195,14 +187,12 @@ def slotted_lever_table(
     radius = span({pin: crank.points[pin] for pin in (scene.driver_pivot, slider.point)})
     branch = scene.branch.get(group.branch_key, 1)
     inputs = (
-        formula_table.Input("R", radius, "m", "length of the crank", "above 0", crank.name),
-        formula_table.Input("ACx", x, "m", "from the crank's pivot to the lever's, along x"),
-        formula_table.Input("ACy", y, "m", "and along y"),
-        formula_table.Input("o", o, "m", "the line is so far to the left of the lever's pivot"),
-        formula_table.Input("rho0", rho0, "m", "rho from which the displacement counts"),
-        formula_table.Input(
-            "branch", branch, "", "1: B along the line from C; -1: against it", "1 or -1"
-        ),
-        *formula_table.drive_inputs(scene, slider.point, step_deg),
+        Input("R", radius, "m", "length of the crank", "above 0", crank.name),
+        Input("ACx", x, "m", "from the crank's pivot to the lever's, along x"),
+        Input("ACy", y, "m", "and along y"),
+        Input("o", o, "m", "the line is so far to the left of the lever's pivot"),
+        Input("rho0", rho0, "m", "rho from which the displacement counts"),
+        Input("branch", branch, "", "1: B along the line from C; -1: against it", "1 or -1"),
+        *drive_inputs(scene, slider.point, step_deg),
     )
-    return formula_table.FormulaTable(inputs, SLOTTED_LEVER_COLUMNS, count, SLOTTED_LEVER_CHARTS)
+    return FormulaTable(inputs, SLOTTED_LEVER_COLUMNS, count, SLOTTED_LEVER_CHARTS)
