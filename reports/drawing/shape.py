@@ -1,4 +1,6 @@
-"""Positions and motion of a mechanism on paper: a turn of it, its box, and colours."""
+"""Positions and motion of a mechanism on paper: a turn of it, its box, and colours;
+and places for the names in it.
+"""
 
 import itertools
 import math

@@ -200,7 +200,6 @@ class ElasticSolving(Solving):
         return ELASTIC_FIGURES.written(course, folder)
 
     def page(self, solution: ElasticSolution) -> tuple[str, str]:
-        from reports.describe.elastic_course import closely_sampled, drawn_course
         from reports.figures.elastic_figures import ELASTIC_FIGURES
         from reports.page.scene_page import elastic_page
 

@@ -1,4 +1,4 @@
-"""`crankcheck engines`: the engines."""
+"""`crankcheck engines` and `engines check`: the engines, and one put to the contract of engines."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,8 +9,6 @@ from rich.table import Table
 from rich.text import Text
 
 from models.errors import CrankcheckError, suggestion
-from reports.contract.clauses import CLAUSES
-from reports.contract.ruling import SCENES, named, put_to_all, refuses_all, show
 from reports.requests.options import Jobs, argument, option
 from reports.workers.isolated import checked_limits
 from reports.workers.progress import progress_bar
@@ -61,6 +59,9 @@ class EngineCheckRequest:
         """Answer, and return the exit code: 0 where every clause that can be tried is held, 1 where
         one is broken, 2 where none can be tried. Raises CrankcheckError for an engine that does not
         exist or is no engine, and for an unknown clause."""
+        from reports.contract.clauses import CLAUSES  # with the solvers: not for a list of engines
+        from reports.contract.ruling import SCENES, named, put_to_all, refuses_all, show
+
         limits = checked_limits(self.limit_s, MEMORY_GB)
         for clause in self.clauses:
             if clause not in CLAUSES:

@@ -1,4 +1,6 @@
-"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`."""
+"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`;
+and `scenes`, the list of them.
+"""
 
 import math
 import os

@@ -9,7 +9,7 @@ import io
 import itertools
 from collections.abc import Callable, Iterable
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.console import Console, Group
 from rich.markup import render
@@ -18,9 +18,6 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.output.console import TABLE_WIDTH
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 
 class Shown:

@@ -1,4 +1,6 @@
-"""The cheapest settings of each engine that reach a target error on every scene of a study."""
+"""The cheapest settings of each engine that reach a target error on every scene of a study; on the
+terminal too, with the noise.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Run the catalogue: every case in every engine and profile, each run in a process apart."""
+"""Run the catalogue: every case in every engine and profile, each run in a process apart; and
+search the value up to which each holds a case.
+"""
 
 import math
 from collections.abc import Callable, Generator, Sequence

@@ -1,4 +1,6 @@
-"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one."""
+"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one;
+and print the result.
+"""
 
 from __future__ import annotations
 

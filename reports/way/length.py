@@ -1,4 +1,4 @@
-"""Length and step of a run, as requested."""
+"""Length and step of a run, as requested; and the clock that both are counted by."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,5 @@
-"""Drive of the crank in exudyn: a constraint of its angle, or a motor; and its torque.
+"""Drive of the crank in exudyn: a constraint of its angle, or a motor; its torque, and the
+reactions of all joints.
 
 exudyn solves M q'' + C' lambda = Q at the end of each step, C' the transposed derivatives of the
 constraints: for a hinge the place of its second marker less the place of its first, in the ground's

@@ -1,4 +1,5 @@
-"""The exudyn system of a scene: a rigid body in the plane per link, a joint per pin and line.
+"""The exudyn system of a scene: a rigid body in the plane per link, a joint per pin and line;
+and the package itself, with its output.
 
 The node of a body is at its centre of mass, whose place in the link's own frame is kept. All bodies
 have three coordinates, the driven crank too: its drive is one more constraint. A pin of k bodies is

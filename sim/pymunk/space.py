@@ -1,4 +1,5 @@
-"""The pymunk space of a scene: a body per link, joints as constraints, no shapes.
+"""The pymunk space of a scene: a body per link, joints as constraints, no shapes;
+and a point on a line where the groove joint is in error.
 
 Bodies have their origin at the centre of gravity, as Chipmunk needs it; `Body.local` keeps the
 place of the link's own frame. A driven crank is a kinematic body on its pivot. A massless slider

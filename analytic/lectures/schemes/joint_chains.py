@@ -24,7 +24,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import linprog  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.lectures.schemes import screws
 from models.array import Array
@@ -257,6 +256,8 @@ def _class_of(rows: Array, touching: Touching, size: float) -> JointClass:
 
 def _is_kept(loads: Mapping[Contact, Array]) -> bool:
     """True if no motion opens a contact: by a linear program that opens as much as it can."""
+    from scipy.optimize import linprog  # type: ignore[import-untyped]  # ships no stubs
+
     closed = [rows for contact, rows in loads.items() if contact.both_ways]
     opening = [rows for contact, rows in loads.items() if not contact.both_ways]
     if not opening:

@@ -44,7 +44,6 @@ from sim.registry import engine
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
 
 Proofs = Mapping[int, Sequence[Met]]
@@ -283,8 +282,6 @@ class Synthesis(Shown):
 
     def frame(self) -> pd.DataFrame:
         """Table of solutions, a row each, including those with a defect."""
-        from reports.lectures.design.design_tables import solution_frame
-
         return solution_frame(self.details.examined)
 
     def proof(self, engine: str, profile: str = "tuned", *, best: int = 1) -> pd.DataFrame:
@@ -295,9 +292,6 @@ class Synthesis(Shown):
         EngineError
             An unknown engine or profile, or a missing package.
         """
-        from reports.lectures.design.design_tables import proof_frame
-        from reports.lectures.design.proof import proven
-
         found = enumerate(self.details.examined, 1)
         sound = [(number, one) for number, one in found if not one.defects][:best]
         return proof_frame(
@@ -305,8 +299,6 @@ class Synthesis(Shown):
         )
 
     def show(self, console: Console) -> None:
-        from reports.lectures.design.design_tables import counted, solution_table
-
         listed = self.details.examined[:LISTED]
         console.print(counted(self.details, len(listed)), highlight=False, markup=False)
         console.print("", solution_table(listed), sep="\n")

@@ -1,4 +1,4 @@
-"""`crankcheck mobility`: the motions of a scheme, by count and by rank."""
+"""`crankcheck mobility`, the motions of a scheme by count and by rank, and `joint`, its class."""
 
 from collections import Counter
 from dataclasses import dataclass

@@ -27,6 +27,7 @@ from reports.lectures.drawing.sheets.polygon_page import (
     PAGE,
     PolygonCourse,
     polygon_file,
+    polygon_page,
     turning_file,
 )
 from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
@@ -198,10 +199,6 @@ class PolygonRequest:
         ending = self.output.suffix.lower()
         steady = self.omega is not None
         if ending == PAGE:
-            from reports.lectures.drawing.sheets.polygon_page import (
-                polygon_page,  # the page's machinery, for it alone
-            )
-
             raw: str | bytes = polygon_page(placement, steady=steady)
         else:
             raw = turning_file(sheet, steady=steady) if self.turn else polygon_file(sheet, ending)

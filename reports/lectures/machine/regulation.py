@@ -27,7 +27,6 @@ from reports.requests.shown import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,4 +1,4 @@
-"""Steady vibration on the terminal."""
+"""Steady vibration on the terminal, and as tables and JSON with all digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""A user's own model in MuJoCo, unchanged: only the driven hinge gets a flywheel.
+"""A user's own model in MuJoCo, unchanged: only the driven hinge gets a flywheel; and
+contacts and limits that it meets on its way round.
 
 The flywheel is an armature set at run time, so that it changes nothing that MuJoCo computes when it
 compiles, above all not the softness of the loops; the tolerance of the solver is divided by its

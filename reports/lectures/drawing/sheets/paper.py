@@ -1,4 +1,5 @@
-"""Paper: its size, and the boxes on it, in millimetres from the lower left corner.
+"""Paper: its size, and the boxes on it, in millimetres from the lower left corner; and the
+canvas of a sheet, in layers that an SVG keeps apart.
 
 Source: lecture "Phan tich dong hoc": K is the real value over the length drawn in mm, and is taken
 from 1, 2, 5 times a power of ten. The problem book takes the scale that makes the vector of the

@@ -1,4 +1,5 @@
-"""The polygons over a turn as a page: they move with the mechanism, and are drawn step by step."""
+"""Polygons one after the other, and the page of a turn: they move with the mechanism, and are
+drawn step by step."""
 
 from __future__ import annotations
 
@@ -19,7 +20,6 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
-from reports.compare.free_truth import kept_motion
 from reports.describe.facts import describe_law
 from reports.describe.free_motion import instants
 from reports.drawing.moving import drawing, packed
@@ -30,8 +30,6 @@ from reports.lectures.drawing.sheets.polygon_drawing import POLES, lower_case
 from reports.lectures.drawing.sheets.polygon_table import drawn_links
 from reports.output.numbers import count
 from reports.output.write import crankcheck_version
-from reports.page.build import Head, assembled
-from reports.page.sections.section import Section
 
 
 @dataclass(frozen=True)
@@ -101,6 +99,8 @@ class FreeMotionCourse(PolygonCourse):
 
     @classmethod
     def instants(cls, scene: Scene, samples: int, most: int) -> int:
+        from reports.compare.free_truth import kept_motion  # integrates
+
         return min(instants(kept_motion(scene, scene.driver.law.period_s)), most)
 
     @property
@@ -193,6 +193,9 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
 
     Raises CrankcheckError where the driver goes through no turn.
     """
+    from reports.page.build import Head, assembled  # the machinery of a page, for it alone
+    from reports.page.sections.section import Section
+
     course = PolygonCourse.of(placement, INSTANTS, MOST, steady=steady)
     scene, motion, drawn = course.scene, course.motion, course.drawn
     section = Section(
