@@ -32,6 +32,13 @@ CHANGED = {
         "load.direction_rad - lean",
         "(load.direction_rad + lean)",
     ),
+    38: (
+        "(-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned",
+        "-k2",
+        "k2",
+    ),
+    40: ("off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)", "rng", "path"),
+    61: ("graph_words.tell(console, told)", "(console, told)", "(told, console)"),
     62: (
         "say(console, f\"{document['scene']}: the branch that it is on alone\")",
         "say(console, f\"{document['scene']}: the branch that it is on alone\")",
@@ -53,6 +60,12 @@ CHANGED = {
         "left is None or not _elsewhere(beside, far)",
         "(not (left is None or not _elsewhere(beside, far)))",
     ),
+    76: (
+        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
+        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
+        "pass",
+    ),
+    86: ("log: OwnLog = field(kw_only=True)", "True", "False"),
     101: (
         "return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS",
         "{clock_of(drive) for drive in drives} <= {SECONDS}",
