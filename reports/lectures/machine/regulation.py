@@ -228,16 +228,6 @@ def _write_cycle(path: Path, cycle: SteadyCycle) -> None:
 SCENE = ".toml"
 
 
-FlywheelOutput = Annotated[
-    Path | None,
-    typer.Option("-o", "--output", help="Write .csv, .parquet, .xlsx or .json, or a page, .html."),
-]
-
-FlywheelFigures = Annotated[
-    Path | None, typer.Option(metavar="DIR", help="Draw the cycle, as SVG and PDF.")
-]
-
-
 @dataclass(frozen=True)
 class FlywheelRequest:
     """Arguments of `flywheel`, as given. ``written`` is the file of the scene, which is in free
@@ -247,8 +237,8 @@ class FlywheelRequest:
     delta: Annotated[
         float, typer.Option(help="Coefficient of fluctuation that is wanted, such as 0.02.")
     ]
-    output: FlywheelOutput = None
-    figures: FlywheelFigures = None
+    output: Output = None
+    figures: Figures = None
     written: Annotated[
         Path | None,
         typer.Option("--write", metavar="FILE.toml", help="Write the scene with the flywheel."),
