@@ -144,10 +144,14 @@ def _is_enough(many: int, paper: Paper) -> bool:
 
 
 def _fields(many: int, paper: Paper) -> list[Box]:
-    """The fields, row by row from the top."""
+    """The fields of chains."""
     inner = inner_box(paper)
     columns = max(1, math.ceil(math.sqrt(many * inner.width / (inner.height * ASPECT))))
-    columns = min(columns, many)
+    return _grid(many, min(columns, many), inner)
+
+
+def _grid(many: int, columns: int, inner: Box) -> list[Box]:
+    """The fields of so many columns, row by row from the top."""
     rows = math.ceil(many / columns)
     wide, tall = inner.width / columns, inner.height / rows
     top = inner.bottom + inner.height
@@ -234,13 +238,7 @@ def _square_fields(many: int, paper: Paper) -> list[Box]:
     """The fields, side by side and then below, about as wide as high."""
     inner = inner_box(paper)
     columns = min(range(1, many + 1), key=lambda n: _unlike(many, n, inner))
-    rows = math.ceil(many / columns)
-    wide, tall = inner.width / columns, inner.height / rows
-    top = inner.bottom + inner.height
-    return [
-        Box(inner.left + (k % columns) * wide, top - (k // columns + 1) * tall, wide, tall)
-        for k in range(many)
-    ]
+    return _grid(many, columns, inner)
 
 
 def _unlike(many: int, columns: int, inner: Box) -> float:
