@@ -135,18 +135,15 @@ class Prepared:
         return chunk
 
     def _open(self, step: Step, theta: Array, short_m: Array) -> str:
-        """Return the text of an open loop: its place, its gap, and the reachable range."""
         scene, index = self.scene, int(np.argmax(short_m))
         if isinstance(step, FollowedStep):
             index = int(np.argmax(short_m > 0.0))  # the first, beside the end
-            ends = step.end_in_words(self.passages, float(theta[index]))
-            return (
-                f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: {ends}. "
-                f"{describe_reach(scene, self.stretched, self.looked_turns)}"
-            )
+            fault = step.end_in_words(self.passages, float(theta[index]))
+        else:
+            open_m = float(np.ravel(short_m)[index])
+            fault = f"the loop cannot close at {step.key}, it is open by {open_m:.3g} m"
         return (
-            f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: the loop "
-            f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "
+            f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: {fault}. "
             f"{describe_reach(scene, self.stretched, self.looked_turns)}"
         )
 
@@ -212,10 +209,7 @@ def _closer(stretched: Stretched, whole: Range) -> list[Range]:
     grid = np.linspace(low, high, SCAN + 1)
     closes = shortage(stretched, grid) <= 0.0
     closes[[0, -1]] = True
-    edges = np.flatnonzero(closes[1:] != closes[:-1])
-    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
-    ends: list[float] = [low, *borders, high]
-    return list(zip(ends[::2], ends[1::2], strict=True))
+    return _parts(stretched, grid, closes)
 
 
 def with_valleys(shortage_at: Callable[[Array], Array], theta: Array) -> Array:
@@ -246,6 +240,11 @@ def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:
     unlike = np.count_nonzero(closes[SCAN:] != closes[:-SCAN])
     if unlike <= 2 * turns:  # looks beside an end, by rounding
         return None
+    return _parts(stretched, grid, closes)
+
+
+def _parts(stretched: Stretched, grid: Array, closes: Mask) -> list[Range]:
+    """Return the ranges between the first and the last angle of a grid."""
     edges = np.flatnonzero(closes[1:] != closes[:-1])
     borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
     ends = [float(grid[0])] * bool(closes[0]) + borders + [float(grid[-1])] * bool(closes[-1])

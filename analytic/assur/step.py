@@ -61,7 +61,6 @@ class AssurStep(FollowedStep):
         self._pieces: dict[tuple[AssemblyTrack, int], CrossingPiece | None] = {}
 
     def advance(self, chunk: Chunk) -> None:
-        """Add the group's bodies and sliders. Raises OpenError."""
         track = self.track(chunk.passages)
         theta = track.home(chunk.theta)
         solved = self._solved(chunk, *track.guess(theta))
@@ -111,7 +110,6 @@ class AssurStep(FollowedStep):
         return replace(solved, body=body), closes
 
     def _piece(self, track: AssemblyTrack, k: int) -> CrossingPiece | None:
-        """Return the motion through a change point, computed once."""
         if (track, k) not in self._pieces:
 
             def solved(theta: Array) -> BodyKinematics:
@@ -127,7 +125,6 @@ class AssurStep(FollowedStep):
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
-        """Return the group's change points that a driver passes between two angles, each once."""
         track = self.track(passages)
         period = track.period
         found = set()
@@ -169,35 +166,26 @@ class AssurStep(FollowedStep):
                 f"{scene.name}: at {scene.driver.joint} {told(scene, start)}, where it starts, the "
                 f"group about {self.key} is singular to within rounding; start elsewhere"
             )
-        slides = scene.driver.slider is not None
-        periods = [math.tau]
-        periods += [one.period for key, one in passages.items()]  # type: ignore[attr-defined]
-        periods += [
-            one.track(passages).period or math.tau
-            for one in self.before.steps
-            if isinstance(one, AssurStep)
-        ]
-        repeats = None if slides else max(periods)
+        repeats = None
+        if scene.driver.slider is None:
+            periods = [one.period for one in passages.values()]  # type: ignore[attr-defined]
+            followed = (one for one in self.before.steps if isinstance(one, AssurStep))
+            periods += [one.period(passages) or math.tau for one in followed]
+            repeats = max(periods, default=math.tau)
         return AssemblyTrack(rows, pose, self.mounting.size_m, repeats)
 
     def period(self, passages: Mapping[str, Passage]) -> float | None:
-        """Return the driver angle after which the assembly comes back [rad]; None where it ends."""
         return self.track(passages).period
 
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
-        """Return the text of the end beside a driver angle [rad]."""
         track = self.track(passages)
         at = float(track.home(np.array([theta]))[0])
-        ends = [end for end in (track.low, track.high) if end is not None]
+        ends = [end for end in track.ends if end is not None]
         end = min(ends, key=lambda one: abs(one.theta - at), default=None)
         if end is None:
             return f"the group about {self.key} cannot close"
         place = told(self.scene, end.theta)
         return f"the group about {self.key} ends in a {end.kind} at {place}"
-
-    def rows_at(self, theta: float, passages: Mapping[str, Passage]) -> list[SampledRow]:
-        """Return the rows at one driver angle."""
-        return self.mounting.rows(self.before.chunk(np.array([theta]), 0.0, passages))
 
     def assemblies(
         self, theta: float, passages: Mapping[str, Passage]
@@ -205,7 +193,8 @@ class AssurStep(FollowedStep):
         """Return all assemblies at one driver angle, in the order of their numbers."""
         from analytic.assur.assemblies import assemblies  # with python-flint, for these alone
 
-        one, two, three = (row.at(0) for row in self.rows_at(theta, passages))
+        before = self.before.chunk(np.array([theta]), 0.0, passages)
+        one, two, three = (row.at(0) for row in self.mounting.rows(before))
         return assemblies((one, two, three))
 
     def _side(self, start: float, one: TriadAssembly, passages: Mapping[str, Passage]) -> float:
@@ -254,7 +243,6 @@ class AssurStep(FollowedStep):
 
 
 def _pose(one: TriadAssembly) -> tuple[Vec, Vec]:
-    """Return an assembly as one sample."""
     place = Vec(np.array([one.place[0]]), np.array([one.place[1]]))
     turn = Vec(np.array([math.cos(one.angle_rad)]), np.array([math.sin(one.angle_rad)]))
     return place, turn

@@ -7,20 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from analytic.dyads import prp, rpp, rpr, rrp, rrr
+from analytic.dyads import prp, riding, rpp, rpr, rrp, rrr
 from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.plane import direction, rounding_of_angles
-from analytic.dyads.riding import (
-    Bar,
-    PlacedBodies,
-    RidingLine,
-    following_body,
-    riding_point,
-    rounding_of,
-    total,
-    turning_body,
-    without_lead,
-)
+from analytic.dyads.riding import Bar, PlacedBodies, RidingLine, riding_point
 from analytic.structure.groups import Group
 from models.array import Array
 from models.motion import Crossing
@@ -36,7 +26,6 @@ class Step(Protocol):
 
     def advance(self, chunk: Chunk) -> None:
         """Add the group's bodies and sliders to the chunk. Raises OpenError."""
-        ...
 
 
 class FollowedStep(ABC):
@@ -50,19 +39,16 @@ class FollowedStep(ABC):
     @abstractmethod
     def period(self, passages: Mapping[str, Passage]) -> float | None:
         """Return the driver angle after which the assembly comes back [rad]; None where it ends."""
-        ...
 
     @abstractmethod
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
         """Return the group's change points that a driver passes between two angles, each once."""
-        ...
 
     @abstractmethod
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
         """Return the text of the end beside a driver angle [rad]."""
-        ...
 
 
 def stretched(
@@ -124,9 +110,7 @@ class RRPStep:
         dyad = chunk.keep(self.key, free)
         chunk.bodies[g.first] = self.bar.body(dyad.first, p1)
         pin = riding_point(line, dyad.second)
-        known = chunk.bodies[self.riding.known]
-        follow, rounding = self.riding.follow, self.riding.rounding
-        chunk.bodies[g.second] = following_body(known, follow, rounding, self.rider, pin)
+        chunk.bodies[g.second] = self.riding.follower(chunk, self.rider, pin)
         chunk.sliders[g.outer2] = self.through.displacement(dyad.second, self.lead)
 
 
@@ -148,7 +132,7 @@ class RPRStep:
         reach = turned(less(tip, self.local1), slider.angle_rad)
         self.lead, self.offset = foot[0] - reach[0], foot[1] - reach[1]
         line, angle = slider.direction_rad, slider.angle_rad
-        self.slack = rounding_of((line, angle), foot, reach)
+        self.slack = riding.rounding_of((line, angle), foot, reach)
         self.back1, self.back2 = direction(-angle), direction(line)
         self.rounding1, self.rounding2 = rounding_of_angles(angle), rounding_of_angles(line)
 
@@ -156,7 +140,7 @@ class RPRStep:
         p1, p2 = chunk.point(self.hold1, self.pin1), chunk.point(self.hold2, self.pin2)
         block = p1
         if p1.error is not None and self.slack:
-            error = replace(p1.error, position=p1.error.position + self.slack)
+            error = p1.error._replace(position=p1.error.position + self.slack)
             block = replace(p1, error=error)
         branch, stretch = chunk.assembly(self.key)
         root = chunk.roots.get(self.key)
@@ -165,9 +149,13 @@ class RPRStep:
         )
         dyad = chunk.keep(self.key, free)
         found = dyad.first
-        chunk.bodies[self.body] = turning_body(found, self.back1, self.local1, p1, self.rounding1)
-        chunk.bodies[self.guide] = turning_body(found, self.back2, self.local2, p2, self.rounding2)
-        chunk.sliders[self.slider] = without_lead(dyad.second, self.lead, self.slack)
+        chunk.bodies[self.body] = riding.turning_body(
+            found, self.back1, self.local1, p1, self.rounding1
+        )
+        chunk.bodies[self.guide] = riding.turning_body(
+            found, self.back2, self.local2, p2, self.rounding2
+        )
+        chunk.sliders[self.slider] = riding.without_lead(dyad.second, self.lead, self.slack)
 
 
 class PRPStep:
@@ -186,11 +174,8 @@ class PRPStep:
         dyad = prp.solve(*lines, certified=chunk.certified, stretch=chunk.stretch)
         ends = ((g.first, g.outer1, dyad.first), (g.second, g.outer2, dyad.second))
         for i, (body, slider, sliding) in enumerate(ends):
-            riding, pin = self.ridings[i], riding_point(lines[i], sliding)
-            known = chunk.bodies[riding.known]
-            chunk.bodies[body] = following_body(
-                known, riding.follow, riding.rounding, self.locals[i], pin
-            )
+            pin = riding_point(lines[i], sliding)
+            chunk.bodies[body] = self.ridings[i].follower(chunk, self.locals[i], pin)
             line, lead = self.through[i]
             chunk.sliders[slider] = line.displacement(sliding, lead)
         chunk.keep(self.key, dyad)
@@ -209,8 +194,8 @@ class RPPStep:
         self.follow, self.rounding = self.outer.follow + inner.follow, rounding_of_angles(*angles)
         offset = turned(less(inner.base, self.outer.rider), self.outer.follow)
         arm = turned(less(self.local, inner.rider), self.follow)
-        base = total(self.outer.base, offset, arm)
-        slack = rounding_of(angles, offset, arm, onto=base)
+        base = riding.total(self.outer.base, offset, arm)
+        slack = riding.rounding_of(angles, offset, arm, onto=base)
         self.through = replace(self.outer, base=base, slack=slack)
         self.inner = inner
         self.between = direction(self.outer.follow + inner.angle - self.outer.angle)
@@ -225,10 +210,10 @@ class RPPStep:
         )
         known, outer = chunk.bodies[self.outer.known], self.outer
         rider = riding_point(outer.line(chunk), dyad.first)
-        chunk.bodies[g.second] = following_body(
-            known, outer.follow, outer.rounding, outer.rider, rider
+        chunk.bodies[g.second] = outer.follower(chunk, outer.rider, rider)
+        chunk.bodies[g.first] = riding.following_body(
+            known, self.follow, self.rounding, self.local, p1
         )
-        chunk.bodies[g.first] = following_body(known, self.follow, self.rounding, self.local, p1)
         chunk.sliders[g.outer2] = self.outer.displacement(dyad.first, 0.0)
         chunk.sliders[g.inner] = self.inner.displacement(dyad.second, 0.0)
         chunk.keep(self.key, dyad)

@@ -1,23 +1,14 @@
 """Chunks of a given motion, for the computation of forces."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
+from analytic.dyads import plane
 from analytic.dyads.chunk import SINES, Chunk, DrivenCoordinate, driver_scale
 from analytic.dyads.parts import SlideError, Sliding
-from analytic.dyads.plane import (
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Vec,
-    direction,
-    fixed_body,
-    rounding_of_angles,
-)
-from analytic.prepared import CHUNK
+from analytic.dyads.plane import AngleError, BodyKinematics, PointKinematics
+from analytic.prepared import spans
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
@@ -34,8 +25,7 @@ def chunks_of(scene: Scene, motion: Motion, *, bound: bool) -> Iterator[tuple[sl
         A link, point or slider that the motion lacks, or missing accelerations or bounds.
     """
     _check_whole(scene, motion, bound=bound)
-    for first in range(0, len(motion.time_s), CHUNK):
-        span = slice(first, first + CHUNK)
+    for span in spans(len(motion.time_s)):
         yield span, _Span(scene, motion, span, certified=bound).chunk()
 
 
@@ -66,15 +56,13 @@ def _check_whole(scene: Scene, motion: Motion, *, bound: bool) -> None:
 
 
 class _Span:
-    """Span of a motion's samples."""
-
     def __init__(self, scene: Scene, motion: Motion, span: slice, *, certified: bool) -> None:
         self.scene, self.motion, self.span = scene, motion, span
         self.bound = motion.bound if certified else None
 
     def chunk(self) -> Chunk:
         certified = self.bound is not None
-        bodies = {GROUND: fixed_body(certified=certified)}
+        bodies = {GROUND: plane.fixed_body(certified=certified)}
         bodies |= {name: self._link(name) for name in self.scene.links}
         for slider in self.scene.sliders.values():
             if slider.link is None:
@@ -86,7 +74,6 @@ class _Span:
         return chunk
 
     def _driver(self) -> DrivenCoordinate:
-        """Return the driven joint from the motion."""
         scale, span, driver = driver_scale(self.scene), self.span, self.scene.driver
         theta, omega, alpha = (one[span] / scale for one in driver_course(self.scene, self.motion))
         if self.bound is None:
@@ -100,11 +87,8 @@ class _Span:
         for name in (driver.link, driver.base):
             if name != GROUND:
                 own = self.bound.links[name]
-                error = AngleError(
-                    error.theta + own.theta[span],
-                    error.omega + own.omega[span],
-                    error.alpha + own.alpha[span],
-                )
+                levels = zip(error, (own.theta, own.omega, own.alpha), strict=True)
+                error = AngleError(*(before + more[span] for before, more in levels))
         return DrivenCoordinate(theta, omega, alpha, error)
 
     def _link(self, name: str) -> BodyKinematics:
@@ -115,7 +99,7 @@ class _Span:
         if self.bound is not None:
             own = self.bound.links[name]
             error = AngleError(own.theta[span] + SINES, own.omega[span], own.alpha[span])
-        turn = Vec(np.cos(theta), np.sin(theta))
+        turn = plane.Vec(np.cos(theta), np.sin(theta))
         omega, alpha = one.omega[span], one.alpha[span]
         return BodyKinematics(local, self._point(point), turn, omega, alpha, error, theta)
 
@@ -123,20 +107,20 @@ class _Span:
         """Return a block, which has the direction of its line."""
         angle, error = slider.direction_rad, guide.error
         if error is not None:
-            error = replace(error, theta=error.theta + rounding_of_angles(angle))
-        turn, at = guide.turn.turned(direction(angle)), self._point(slider.point)
+            error = error._replace(theta=error.theta + plane.rounding_of_angles(angle))
+        turn, at = guide.turn.turned(plane.direction(angle)), self._point(slider.point)
         return BodyKinematics((0.0, 0.0), at, turn, guide.omega, guide.alpha, error)
 
     def _point(self, name: str) -> PointKinematics:
         one, span = self.motion.points[name], self.span
         p, v, a = (
-            Vec(series[span, 0], series[span, 1])
+            plane.Vec(series[span, 0], series[span, 1])
             for series in (one.position, one.velocity, one.acceleration)
         )
         if self.bound is None:
             return PointKinematics(p, v, a, None)
         own = self.bound.points[name]
-        error = PointError(own.position[span], own.velocity[span], own.acceleration[span])
+        error = plane.PointError(own.position[span], own.velocity[span], own.acceleration[span])
         return PointKinematics(p, v, a, error)
 
     def _sliding(self, name: str) -> Sliding:
