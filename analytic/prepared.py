@@ -23,12 +23,12 @@ from analytic.dyads.redundant import BridgeStep
 from analytic.dyads.riding import PlacedBodies
 from analytic.dyads.steps import DYAD_STEPS, FollowedStep, Step, stretched
 from analytic.result import MotionArrays, Selection
-from analytic.structure.groups import Bridge, Group, Triad
+from analytic.structure.groups import Bridge, Triad
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array, Mask
 from models.errors import ReachError
 from models.files.names import MOST_ASSEMBLIES
-from models.motion import Crossing, Motion
+from models.motion import Motion
 from models.scene import GROUND, KEPT, Same, Scene
 
 CHUNK = 12288
@@ -104,14 +104,10 @@ class Prepared:
             counted = wanted.links and low < high  # at the start itself there is nothing to count
             counter = Counter(self.turns, driven[0]) if counted else None
             result.write(span, self.chunk(*driven), counter)
-        return replace(result.motion(), crossings=self._passed(low, high))
-
-    def _passed(self, low: float, high: float) -> tuple[Crossing, ...]:
-        """Return the change points that a driver passes between two angles [rad]."""
         crossings = passed(self.passages, low, high)
         for step in self.followed:
             crossings += step.passed(self.passages, low, high)
-        return crossings
+        return replace(result.motion(), crossings=crossings)
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
     def chunk(
@@ -290,18 +286,13 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
         elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
-            steps.append(_step_of_class_three(placed, part, steps))
+            from analytic.assur.mounting import Mounting  # few scenes need it
+            from analytic.assur.step import AssurStep
+
+            steps.append(AssurStep(Mounting(placed, part), steps))
         else:
             steps.append(DYAD_STEPS[part.kind](placed, part))
         known.update(part.bodies)
         if compound is not None and compound.name in part.bodies:
             known.update((compound.base, compound.link))
     return steps
-
-
-def _step_of_class_three(placed: PlacedBodies, part: Group | Triad, before: Sequence[Step]) -> Step:
-    """Return the step of a triad, or of a dyad with a compound: few scenes need it."""
-    from analytic.assur.mounting import Mounting
-    from analytic.assur.step import AssurStep
-
-    return AssurStep(Mounting(placed, part), before)

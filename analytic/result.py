@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from analytic.change_points.turns import SURE, Counter
+from analytic.change_points.turns import SURE
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from analytic.dyads.steps import Step
@@ -18,6 +18,13 @@ from models.errors import CrankcheckError
 from models.files.inputs import names_in
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
+
+
+class Counting(Protocol):
+    """Counter of the whole turns of links over the written samples."""
+
+    def count(self, name: str, angle: Array) -> None:
+        """Add the missing whole turns to the angles of a link [rad], (T,)."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +128,7 @@ class MotionArrays:
             self.slider_bounds = {k: block.track() for k in wanted.sliders}
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-    def write(self, span: slice, chunk: Chunk, counter: Counter | None) -> None:
+    def write(self, span: slice, chunk: Chunk, counter: Counting | None) -> None:
         """Store the requested series of a solved chunk; without a counter no turns are counted."""
         for key, row in self.sines.items():
             row[span] = chunk.sines[key]
@@ -136,7 +143,7 @@ class MotionArrays:
                 self.slider_bounds[name].put_bounds(span, *sliding.error)
 
     def _write_link(
-        self, span: slice, name: str, body: BodyKinematics, counter: Counter | None
+        self, span: slice, name: str, body: BodyKinematics, counter: Counting | None
     ) -> None:
         track = self.links[name]
         if body.theta is not None:
@@ -164,16 +171,20 @@ class MotionArrays:
         """Return the filled arrays as a motion."""
         bound = None
         if self.certified:
-            bound = Bound(
-                {k: LinkMotion(*track) for k, track in self.link_bounds.items()},
-                {k: PointMotion(*track) for k, track in self.point_bounds.items()},
-                {k: SliderMotion(*track) for k, track in self.slider_bounds.items()},
-            )
-        return Motion(
-            self.time_s,
-            {k: LinkMotion(*track) for k, track in self.links.items()},
-            {k: PointMotion(*track) for k, track in self.points.items()},
-            {k: SliderMotion(*track) for k, track in self.sliders.items()},
-            self.sines,
-            bound,
-        )
+            bounds = (self.link_bounds, self.point_bounds, self.slider_bounds)
+            bound = Bound(*_by_name(*bounds))
+        series = _by_name(self.links, self.points, self.sliders)
+        return Motion(self.time_s, *series, self.sines, bound)
+
+
+Tracks = Mapping[str, Derivatives]
+
+
+def _by_name(
+    links: Tracks, points: Tracks, sliders: Tracks
+) -> tuple[dict[str, LinkMotion], dict[str, PointMotion], dict[str, SliderMotion]]:
+    return (
+        {k: LinkMotion(*track) for k, track in links.items()},
+        {k: PointMotion(*track) for k, track in points.items()},
+        {k: SliderMotion(*track) for k, track in sliders.items()},
+    )

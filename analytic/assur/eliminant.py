@@ -124,10 +124,7 @@ def eliminant(rows: LegRows, turn: Turn) -> Eliminant:
     last = own[2]
     one, other = (row.less(last) if row.is_circle else row for row in own[:2])
     over = one.u[0] * other.u[1] - one.u[1] * other.u[0]
-    place = (
-        one.u[1] * other.k - one.k * other.u[1],
-        one.k * other.u[0] - one.u[0] * other.k,
-    )
+    place = (one.u[1] * other.k - one.k * other.u[1], one.k * other.u[0] - one.u[0] * other.k)
     shared = _without_w(over.gcd(place[0]).gcd(place[1]))
     if not all(map(is_zero, (over, *place))):
         over, place = over / shared, (place[0] / shared, place[1] / shared)

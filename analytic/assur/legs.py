@@ -22,14 +22,7 @@ from analytic.assur.sampled_rows import (
 from analytic.dyads import prp
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import MovingLine, SlideError, Sliding, Turning
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    AngleError,
-    BodyKinematics,
-    PointKinematics,
-    Vec,
-)
+from analytic.dyads.plane import EPS, EXACT_ANGLE, AngleError, BodyKinematics, PointKinematics, Vec
 from analytic.dyads.riding import Bar, PlacedBodies, RidingLine, riding_point
 from models.scene import Point
 

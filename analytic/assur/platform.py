@@ -84,12 +84,7 @@ class SolvedPlatform:
 
 @np.errstate(all="ignore")
 def solve_platform(
-    rows: Sequence[SampledRow],
-    place: Vec,
-    turn: Vec,
-    size_m: float,
-    *,
-    certified: bool,
+    rows: Sequence[SampledRow], place: Vec, turn: Vec, size_m: float, *, certified: bool
 ) -> SolvedPlatform:
     """Solve for the central link near a guess.
 

@@ -17,13 +17,12 @@ from analytic.assur.track import AssemblyTrack
 from analytic.change_points.sign import AT_START, HALVES, whole_turns_off
 from analytic.dyads.chunk import Chunk, Passage, driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
-from analytic.dyads.plane import STEADY, AngleError, BodyKinematics, Vec
-from analytic.dyads.steps import FollowedStep, Step
+from analytic.dyads.plane import BodyKinematics, Vec
+from analytic.dyads.steps import FollowedStep, Step, uncertain_chunk
 from analytic.structure.groups import Group
 from models.array import Array, Mask
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.motion import Crossing
-from models.scene import Scene
 
 SIDE = HALVES[0]
 """Range of influence of a change point [rad]."""
@@ -35,30 +34,18 @@ if TYPE_CHECKING:
     from analytic.assur.assemblies import TriadAssembly
 
 
-class Before:
-    """Steps before a step, which it depends on."""
-
-    def __init__(self, scene: Scene, steps: Sequence[Step]) -> None:
-        self.scene, self.steps = scene, tuple(steps)
-
-    def chunk(self, theta: Array, half: Array | float, passages: Mapping[str, Passage]) -> Chunk:
-        """Solve the earlier steps at driver angles with this uncertainty [rad]."""
-        error = AngleError(np.broadcast_to(half, theta.shape), 0.0, 0.0)
-        chunk = Chunk.begin(self.scene, theta, 1.0, STEADY, error, stretch=True, passages=passages)
-        for step in self.steps:
-            step.advance(chunk)
-        return chunk
-
-
 class AssurStep(FollowedStep):
     """Central link of a group on its legs, followed from its assembly at time 0."""
 
     def __init__(self, mounting: Mounting, before: Sequence[Step]) -> None:
         self.mounting, self.key = mounting, mounting.group.branch_key
-        self.scene = mounting.placed.scene
-        self.before = Before(self.scene, before)
+        self.scene, self.steps_before = mounting.placed.scene, tuple(before)
         self._tracks: dict[frozenset[str], AssemblyTrack] = {}
         self._pieces: dict[tuple[AssemblyTrack, int], CrossingPiece | None] = {}
+
+    def before(self, theta: Array, half: Array | float, passages: Mapping[str, Passage]) -> Chunk:
+        """Solve the earlier steps at driver angles with this uncertainty [rad]."""
+        return uncertain_chunk(self.scene, self.steps_before, theta, half, passages)
 
     def advance(self, chunk: Chunk) -> None:
         track = self.track(chunk.passages)
@@ -147,7 +134,7 @@ class AssurStep(FollowedStep):
         ReachError
             The group has no assembly at the start, or none of that number.
         """
-        own = frozenset(passages) & {step.key for step in self.before.steps}
+        own = frozenset(passages) & {step.key for step in self.steps_before}
         if own not in self._tracks:
             self._tracks[own] = self._follow({key: passages[key] for key in own})
         return self._tracks[own]
@@ -158,7 +145,7 @@ class AssurStep(FollowedStep):
         chosen = self._chosen(start, passages)
 
         def rows(theta: Array, half: Array) -> list[SampledRow]:
-            return self.mounting.rows(self.before.chunk(theta, half, passages))
+            return self.mounting.rows(self.before(theta, half, passages))
 
         pose = pose_at(rows, start, *_pose(chosen), self.mounting.size_m)
         if pose is None:
@@ -169,7 +156,7 @@ class AssurStep(FollowedStep):
         repeats = None
         if scene.driver.slider is None:
             periods = [one.period for one in passages.values()]  # type: ignore[attr-defined]
-            followed = (one for one in self.before.steps if isinstance(one, AssurStep))
+            followed = (one for one in self.steps_before if isinstance(one, AssurStep))
             periods += [one.period(passages) or math.tau for one in followed]
             repeats = max(periods, default=math.tau)
         return AssemblyTrack(rows, pose, self.mounting.size_m, repeats)
@@ -193,7 +180,7 @@ class AssurStep(FollowedStep):
         """Return all assemblies at one driver angle, in the order of their numbers."""
         from analytic.assur.assemblies import assemblies  # with python-flint, for these alone
 
-        before = self.before.chunk(np.array([theta]), 0.0, passages)
+        before = self.before(np.array([theta]), 0.0, passages)
         one, two, three = (row.at(0) for row in self.mounting.rows(before))
         return assemblies((one, two, three))
 
@@ -201,7 +188,7 @@ class AssurStep(FollowedStep):
         """Return a value that orders the two assemblies of a dyad: the larger one is side +1."""
         group = self.mounting.group
         assert isinstance(group, Group)
-        chunk = self.before.chunk(np.array([start]), 0.0, passages)
+        chunk = self.before(np.array([start]), 0.0, passages)
         self.mounting.place(chunk, self._solved(chunk, *_pose(one)).body)
         if group.kind != "RRR":
             return float(chunk.sliders[group.branch_key].s[0])

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
 
 from analytic.dyads import plane
-from analytic.dyads.parts import Closure, Dyad, First, Second, SlideError, Sliding
+from analytic.dyads.parts import Closure, Dyad, First, MovingLine, Second, SlideError, Sliding
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from models.array import Array
 from models.scene import GROUND, Point, Scene, span
@@ -118,15 +118,24 @@ class Chunk:
             )
         return self.points[name]
 
-    def assembly(self, key: str) -> tuple[Real, bool]:
-        """Return the branch of a dyad at every sample, and True if stretched where open.
+    def closed(
+        self,
+        key: str,
+        solve: Callable[..., Dyad[First, Second]],
+        *geometry: PointKinematics | MovingLine | float,
+        side: int = 1,
+    ) -> Dyad[First, Second]:
+        """Return a dyad of two assemblies on the scene's branch, times ``side``.
 
         In a change point it may be open by rounding, which `keep` mends.
         """
-        branch, passage = self.scene.branch.get(key, 1), self.passages.get(key)
-        if passage is None:
-            return branch, self.stretch
-        return branch * passage.sign(self.theta), True
+        branch: Real = self.scene.branch.get(key, 1) * side
+        stretch = self.stretch
+        if key in self.passages:
+            branch, stretch = branch * self.passages[key].sign(self.theta), True
+        root = self.roots.get(key)
+        free = solve(*geometry, branch, certified=self.certified, stretch=stretch, root=root)
+        return self.keep(key, free)
 
     def keep(self, key: str, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
         """Return the solved dyad, mended in its change points, and note its conditioning."""

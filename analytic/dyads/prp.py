@@ -17,11 +17,7 @@ from analytic.dyads.plane import EPS
 
 
 def solve(
-    line1: MovingLine,
-    line2: MovingLine,
-    *,
-    certified: bool = False,
-    stretch: bool = False,
+    line1: MovingLine, line2: MovingLine, *, certified: bool = False, stretch: bool = False
 ) -> Dyad[Sliding, Sliding]:
     """Solve a PRP dyad: the point where two moving lines cross.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.dyads import prp, riding, rpp, rpr, rrp, rrr
 from analytic.dyads.chunk import Chunk, Passage
-from analytic.dyads.plane import direction, rounding_of_angles
+from analytic.dyads.plane import STEADY, AngleError, direction, rounding_of_angles
 from analytic.dyads.riding import Bar, PlacedBodies, RidingLine, riding_point
 from analytic.structure.groups import Group
 from models.array import Array
@@ -52,10 +52,7 @@ class FollowedStep(ABC):
 
 
 def stretched(
-    scene: Scene,
-    steps: Sequence[Step],
-    theta: Array,
-    passages: Mapping[str, Passage] | None = None,
+    scene: Scene, steps: Sequence[Step], theta: Array, passages: Mapping[str, Passage] | None = None
 ) -> Chunk:
     """Return the mechanism at driver angles that may be out of reach, with open dyads in line."""
     zero = np.zeros_like(theta)
@@ -63,6 +60,23 @@ def stretched(
     with np.errstate(all="ignore"):  # parallel lines cross at infinity
         for step in steps:
             step.advance(chunk)
+    return chunk
+
+
+@np.errstate(all="ignore")
+def uncertain_chunk(
+    scene: Scene,
+    steps: Sequence[Step],
+    theta: Array,
+    half: Array | float,
+    passages: Mapping[str, Passage],
+) -> Chunk:
+    """Return the mechanism, stretched, at driver angles with this uncertainty [rad], the driver at
+    1 rad/s and steady."""
+    error = AngleError(np.broadcast_to(half, theta.shape), 0.0, 0.0)
+    chunk = Chunk.begin(scene, theta, 1.0, STEADY, error, stretch=True, passages=passages)
+    for step in steps:
+        step.advance(chunk)
     return chunk
 
 
@@ -77,13 +91,7 @@ class RRRStep:
     def advance(self, chunk: Chunk) -> None:
         one, other = self.bar1, self.bar2
         p1, p2 = one.anchor(chunk), other.anchor(chunk)
-        branch, stretch = chunk.assembly(self.key)
-        root = chunk.roots.get(self.key)
-        free = rrr.solve(
-            p1, p2, one.length, other.length, branch,
-            certified=chunk.certified, stretch=stretch, root=root,
-        )  # fmt: skip
-        dyad = chunk.keep(self.key, free)
+        dyad = chunk.closed(self.key, rrr.solve, p1, p2, one.length, other.length)
         chunk.bodies[one.link] = one.body(dyad.first, p1)
         chunk.bodies[other.link] = other.body(dyad.second, p2)
 
@@ -99,15 +107,9 @@ class RRPStep:
         self.through, self.lead = self.riding.through(self.rider)
 
     def advance(self, chunk: Chunk) -> None:
-        g, length = self.group, self.bar.length
+        g, length, side = self.group, self.bar.length, self.riding.sign
         p1, line = self.bar.anchor(chunk), self.through.line(chunk)
-        branch, stretch = chunk.assembly(self.key)
-        branch = branch * self.riding.sign
-        root = chunk.roots.get(self.key)
-        free = rrp.solve(
-            p1, line, length, branch, certified=chunk.certified, stretch=stretch, root=root
-        )
-        dyad = chunk.keep(self.key, free)
+        dyad = chunk.closed(self.key, rrp.solve, p1, line, length, side=side)
         chunk.bodies[g.first] = self.bar.body(dyad.first, p1)
         pin = riding_point(line, dyad.second)
         chunk.bodies[g.second] = self.riding.follower(chunk, self.rider, pin)
@@ -142,12 +144,7 @@ class RPRStep:
         if p1.error is not None and self.slack:
             error = p1.error._replace(position=p1.error.position + self.slack)
             block = replace(p1, error=error)
-        branch, stretch = chunk.assembly(self.key)
-        root = chunk.roots.get(self.key)
-        free = rpr.solve(
-            block, p2, self.offset, branch, certified=chunk.certified, stretch=stretch, root=root
-        )
-        dyad = chunk.keep(self.key, free)
+        dyad = chunk.closed(self.key, rpr.solve, block, p2, self.offset)
         found = dyad.first
         chunk.bodies[self.body] = riding.turning_body(
             found, self.back1, self.local1, p1, self.rounding1

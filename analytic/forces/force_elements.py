@@ -22,13 +22,7 @@ from models.array import Array
 from models.errors import CrankcheckError, few
 from models.scene import GROUND, KEPT, Same, Scene
 from models.scene.joints import block_name, local_point, whole_turns
-from models.scene.loads import (
-    ConstantFriction,
-    Friction,
-    LineSpring,
-    PinSpring,
-    Spring,
-)
+from models.scene.loads import ConstantFriction, Friction, LineSpring, PinSpring, Spring
 
 Stretch = tuple[Bounded, Bounded]
 """Deflection q of a spring [m or rad] and its rate q' [m/s or rad/s]."""

@@ -1,5 +1,6 @@
 """Chunks of a given motion, for the computation of forces."""
 
+import operator
 from collections.abc import Iterator
 
 import numpy as np
@@ -9,8 +10,9 @@ from analytic.dyads.chunk import SINES, Chunk, DrivenCoordinate, driver_scale
 from analytic.dyads.parts import SlideError, Sliding
 from analytic.dyads.plane import AngleError, BodyKinematics, PointKinematics
 from analytic.prepared import spans
+from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Motion
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_course
 from models.scene.joints import block_name
@@ -73,34 +75,33 @@ class _Span:
         chunk.sliders.update({name: self._sliding(name) for name in self.scene.sliders})
         return chunk
 
+    def _levels(self, track: LinkMotion | PointMotion | SliderMotion) -> list[Array]:
+        """Return the span of a quantity and of its first two derivatives, or of their bounds."""
+        return [level[self.span] for level in vars(track).values()]
+
     def _driver(self) -> DrivenCoordinate:
         scale, span, driver = driver_scale(self.scene), self.span, self.scene.driver
         theta, omega, alpha = (one[span] / scale for one in driver_course(self.scene, self.motion))
-        if self.bound is None:
-            return DrivenCoordinate(theta, omega, alpha, None)
-        if driver.slider is not None:
-            off = self.bound.sliders[driver.slider]
-            each = (off.displacement, off.speed, off.acceleration)
-            error = AngleError(*(one[span] / scale for one in each))
-            return DrivenCoordinate(theta, omega, alpha, error)
-        error = AngleError(SINES, 0.0, 0.0)
-        for name in (driver.link, driver.base):
-            if name != GROUND:
-                own = self.bound.links[name]
-                levels = zip(error, (own.theta, own.omega, own.alpha), strict=True)
-                error = AngleError(*(before + more[span] for before, more in levels))
+        error = None
+        if self.bound is not None and driver.slider is not None:
+            off = self._levels(self.bound.sliders[driver.slider])
+            error = AngleError(*(one / scale for one in off))
+        elif self.bound is not None:
+            error = AngleError(SINES, 0.0, 0.0)
+            for name in (driver.link, driver.base):
+                if name != GROUND:
+                    own = self._levels(self.bound.links[name])
+                    error = AngleError(*map(operator.add, error, own))
         return DrivenCoordinate(theta, omega, alpha, error)
 
     def _link(self, name: str) -> BodyKinematics:
-        one, span = self.motion.links[name], self.span
+        theta, omega, alpha = self._levels(self.motion.links[name])
         point, local = next(iter(self.scene.links[name].points.items()))
-        theta = one.theta[span]
         error = None
         if self.bound is not None:
-            own = self.bound.links[name]
-            error = AngleError(own.theta[span] + SINES, own.omega[span], own.alpha[span])
+            error = AngleError(*self._levels(self.bound.links[name]))
+            error = error._replace(theta=error.theta + SINES)
         turn = plane.Vec(np.cos(theta), np.sin(theta))
-        omega, alpha = one.omega[span], one.alpha[span]
         return BodyKinematics(local, self._point(point), turn, omega, alpha, error, theta)
 
     def _block(self, slider: Slider, guide: BodyKinematics) -> BodyKinematics:
@@ -112,21 +113,16 @@ class _Span:
         return BodyKinematics((0.0, 0.0), at, turn, guide.omega, guide.alpha, error)
 
     def _point(self, name: str) -> PointKinematics:
-        one, span = self.motion.points[name], self.span
-        p, v, a = (
-            plane.Vec(series[span, 0], series[span, 1])
-            for series in (one.position, one.velocity, one.acceleration)
-        )
-        if self.bound is None:
-            return PointKinematics(p, v, a, None)
-        own = self.bound.points[name]
-        error = plane.PointError(own.position[span], own.velocity[span], own.acceleration[span])
+        levels = self._levels(self.motion.points[name])
+        p, v, a = (plane.Vec(level[:, 0], level[:, 1]) for level in levels)
+        error = None
+        if self.bound is not None:
+            error = plane.PointError(*self._levels(self.bound.points[name]))
         return PointKinematics(p, v, a, error)
 
     def _sliding(self, name: str) -> Sliding:
-        one, span = self.motion.sliders[name], self.span
+        s, speed, acceleration = self._levels(self.motion.sliders[name])
         error = None
         if self.bound is not None:
-            own = self.bound.sliders[name]
-            error = SlideError(own.displacement[span], own.speed[span], own.acceleration[span])
-        return Sliding(one.displacement[span], one.speed[span], one.acceleration[span], error)
+            error = SlideError(*self._levels(self.bound.sliders[name]))
+        return Sliding(s, speed, acceleration, error)

@@ -38,11 +38,7 @@ from models.scene.loads import ConstantFriction, CoulombFriction, Friction
 
 
 def forces(
-    scene: Scene,
-    when: ArrayLike | Motion,
-    *,
-    bound: bool = True,
-    skip_dead_points: bool = False,
+    scene: Scene, when: ArrayLike | Motion, *, bound: bool = True, skip_dead_points: bool = False
 ) -> Forces:
     """Return the driving torque, and the reaction in every pin and slider.
 

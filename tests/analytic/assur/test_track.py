@@ -40,7 +40,6 @@ def start_of(scene: Scene) -> float:
 
 @functools.cache
 def as_drawn(kinds: tuple[str, str, str], seed: int) -> Scene:
-    """A random triad on the assembly that it was drawn in."""
     scene, angle = triad(kinds, seed)
     found = [one.angle_rad for one in step_of(scene).assemblies(start_of(scene), {})]
     apart = [abs(math.remainder(one - angle, math.tau)) for one in found]
@@ -86,10 +85,8 @@ def test_error_stays_below_the_bound_a_million_lengths_away(kinds: tuple[str, st
 
 
 def followed(step: AssurStep, theta: Array) -> BodyKinematics:
-    """The central link at driver angles within the track."""
     track = step.track({})
-    chunk = step.before.chunk(theta, 0.0, {})
-    rows = step.mounting.rows(chunk)
+    rows = step.mounting.rows(step.before(theta, 0.0, {}))
     place, turn = track.guess(track.home(theta))
     solved = solve_platform(rows, place, turn, step.mounting.size_m, certified=True)
     assert solved.closed.all()
