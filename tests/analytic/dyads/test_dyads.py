@@ -82,7 +82,6 @@ def _compare(bunch: Bunch, shift: Exact | Moved) -> Found:
 
 
 def _many(kind: str, count: int, *, wrong: tuple[float, float] | None = None) -> Found:
-    """``count`` random dyads of a kind, half of them within 1e-6 of toggle."""
     found = []
     for number in range(count // BUNCH):
         rng = np.random.default_rng([number, len(kind), ord(kind[1]), wrong is None])

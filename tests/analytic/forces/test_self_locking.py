@@ -232,7 +232,6 @@ def test_a_driver_that_speeds_up_has_no_cycle() -> None:
 
 @pytest.mark.parametrize("every", [4, slowly(2, reason="random mechanisms")])
 def test_friction_never_puts_power_in(every: int) -> None:
-    """In any mechanism, in any joint."""
     told = 0
     for number in range(0, 40, every):
         scene, _ = rubbed_mechanism(number)
