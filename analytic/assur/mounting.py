@@ -4,7 +4,6 @@ import math
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from statistics import fmean
 
 import numpy as np
 
@@ -46,7 +45,8 @@ class Mounting:
         points = [leg.held for leg in legs if leg.held is not None]
         origin = next(iter(scene.links[body].points.values()))
         if points:
-            origin = fmean(x for x, _ in points), fmean(y for _, y in points)
+            x, y = (math.fsum(row) / len(points) for row in zip(*points, strict=True))
+            origin = x, y
         self.frame = replace(self.frame, origin=origin)
         self.size_m = _size(scene, self.frame, points)
         self.legs = self._made(held, joint)
