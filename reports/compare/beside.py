@@ -47,7 +47,11 @@ class Truth:
 
     def beside(self, run: Run) -> Beside | None:
         """Return a run beside this reference; None where it logged nothing."""
-        return Beside.of(self, run)
+        motion = run.motion
+        return self._beside(run, motion) if motion is not None and motion.time_s.size else None
+
+    def _beside(self, run: Run, motion: Motion) -> Beside:
+        return Beside(self, run, motion)
 
     @property
     def given(self) -> Scene:
@@ -65,36 +69,34 @@ class Truth:
 
     def at(self, time_s: Array) -> Motion:
         """Return the reference at instants (T,). Raises CrankcheckError where there is none."""
-        instants = time_s.tobytes()
-        motion = self._motions.get(instants)
-        if motion is None:
-            motion = self._solved(time_s)
-            _keep(self._motions, instants, motion)
-        return motion
+        return kept(self._motions, time_s, self._solved)
 
     def _solved(self, time_s: Array) -> Motion:
         return solve(self.scene, time_s, links=self.links, points=self.points, bound=self.bound)
 
     def with_forces_at(self, time_s: Array) -> Motion:
         """Return `at` with the forces; there are none (NaN) in dead points."""
-        instants = time_s.tobytes()
-        motion = self._loaded.get(instants)
-        if motion is None:
-            whole = self
-            if self.links is not None or self.points is not None:
-                whole = replace(self, links=None, points=None, _motions={}, _loaded={})
-            motion = whole.at(time_s)
-            load = forces(self.scene, motion, bound=self.bound, skip_dead_points=True)
-            motion = replace(motion, forces=load)
-            _keep(self._loaded, instants, motion)
-        return motion
+        return kept(self._loaded, time_s, self._solved_with_forces)
+
+    def _solved_with_forces(self, time_s: Array) -> Motion:
+        whole = self
+        if self.links is not None or self.points is not None:
+            whole = replace(self, links=None, points=None, _motions={}, _loaded={})
+        motion = whole.at(time_s)
+        load = forces(self.scene, motion, bound=self.bound, skip_dead_points=True)
+        return replace(motion, forces=load)
 
 
-def _keep(motions: dict[bytes, Motion], instants: bytes, motion: Motion) -> None:
-    """Keep a motion in the place of the oldest."""
-    for oldest in list(motions)[: 1 - SETS]:
-        motions.pop(oldest, None)  # another thread may have done so
-    motions[instants] = motion
+def kept(motions: dict[bytes, Motion], time_s: Array, solved: Callable[[Array], Motion]) -> Motion:
+    """Return the motion at instants (T,), solved once, and then kept in the place of the oldest."""
+    instants = time_s.tobytes()
+    motion = motions.get(instants)
+    if motion is None:
+        motion = solved(time_s)
+        for oldest in list(motions)[: 1 - SETS]:
+            motions.pop(oldest, None)  # another thread may have done so
+        motions[instants] = motion
+    return motion
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,6 @@ def places(beside: Beside | None) -> list[Error]:
 
 
 def _modules(beside: Beside | None) -> Iterator[Comparing]:
-    """Yield the modules that compare a run."""
     for name in beside.compared_by if beside else ():
         yield cast(Comparing, import_module(name, __package__))
 

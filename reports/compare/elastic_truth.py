@@ -26,7 +26,7 @@ from models.scene import Scene, as_bytes
 from models.scene.cut_links import CutScene
 from models.scene.cut_scenes import BeamedScene, SegmentedScene
 from reports.compare.beam_theory import LEAST, BeamTheory, ExactChain, shape_of
-from reports.compare.beside import Beside, Truth
+from reports.compare.beside import Beside, Truth, kept
 from sim.engine import Run
 
 
@@ -161,12 +161,7 @@ class ElasticTruth(Truth):
         """Return a run of the engine's scene as one of the scene."""
         return folded_run(self.cut, run)
 
-    def beside(self, run: Run) -> Beside | None:
-        """Return the run, with its elastic links as such, beside the beam; None for an empty
-        log."""
-        motion = run.motion
-        if motion is None or not motion.time_s.size:
-            return None
+    def _beside(self, run: Run, motion: Motion) -> Beside:
         return ElasticBeside(self, run, motion, elastic=self)
 
 
@@ -226,13 +221,8 @@ class ChainTruth(ElasticTruth):
         return fastest_rad_s(self.theory.scene, Segments(self.chain.count, self.chain.corrected))
 
     def exact_at(self, time_s: Array) -> Motion:
-        """Return the exact chain at times (T,) [s]; the last set of instants is kept."""
-        instants = time_s.tobytes()
-        if instants not in self._chains:
-            motion = self.exact.at(time_s)
-            self._chains.clear()
-            self._chains[instants] = motion
-        return self._chains[instants]
+        """Return the exact chain at times (T,) [s]."""
+        return kept(self._chains, time_s, self.exact.at)
 
     def logged(self, run: Run) -> Run:
         """Return the run as one of the scene; if it came apart, its reason names a stable step."""

@@ -131,7 +131,6 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
 
 
 def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
-    """Yield notes on the reference."""
     if facts.left_out:
         yield (
             f"the truth ends at t = {facts.until_s:.4g} s, where it is no longer known to a "

@@ -89,11 +89,8 @@ class FreeTruth(Truth):
         lost = np.flatnonzero(~(unsure <= self.known_rad))
         return int(lost[0]) if lost.size else time_s.size
 
-    def beside(self, run: Run) -> Beside | None:
-        """Return the run beside the reference as far as that is known; None for an empty log."""
-        motion = run.motion
-        if motion is None or not motion.time_s.size:
-            return None
+    def _beside(self, run: Run, motion: Motion) -> Beside:
+        """Return the run beside the reference as far as that is known."""
         known = first_samples(run, max(self.known(motion.time_s), 1))
         assert known.motion is not None
         return FreeBeside(self, known, known.motion, whole_run=run, free=self.free)
@@ -157,11 +154,8 @@ class FreeBeside(Beside):
     @property
     def no_geometry(self) -> str:
         """Reason why the position of the run is undefined, "" where it is defined."""
-        return (
-            ""
-            if np.all(np.isfinite(self.crank))
-            else ("no geometry: the logged angle of the driver is not finite")
-        )
+        lost = not np.all(np.isfinite(self.crank))
+        return "no geometry: the logged angle of the driver is not finite" if lost else ""
 
     @property
     def tells_momentum(self) -> bool:

@@ -210,7 +210,6 @@ def _positions(course: ElasticCourse) -> Figure | None:
 
 
 def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -> None:
-    """Draw links, sliders and pins at a sample, the rigid mechanism behind them."""
     for name, link in own.scene.links.items():
         ghost = np.array([own.rigid.points[p].position[index] for p in link.points])
         outline = own.outline(name, index)

@@ -87,7 +87,6 @@ def _frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
 
 
 def _write_name(axes: Axes, each: Name) -> None:
-    """Write a letter or a name in its place."""
     size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
     axes.text(each.x, each.y, each.text, size=size, style=style, ha="center", va="center", zorder=8)
 

@@ -192,7 +192,6 @@ def saved(figure: Figure, kind: str, title: str) -> bytes:
 
 
 def _with_fonts(svg: str) -> str:
-    """Return the drawing with the letters of its texts as fonts in a style sheet."""
     texts = TEXT.findall(svg)
     letters = "".join(sorted(LETTERS.union(unescape("".join(texts))) - {"\n"}))
     rules = "".join(_rule(style, letters) for style, sign in FACES.items() if sign in svg)

@@ -65,7 +65,6 @@ def draw_all(report: Report) -> Figure | None:
 def _panel(
     axes: Axes, report: Report, lines: Sequence[Line], mark_of: Mapping[Named, Mark]
 ) -> None:
-    """Draw the curves of one scene over its front."""
     cells = pd.concat([line.cells for line in lines])
     best = cells.set_index("key").loc[front(cells, report.noise)]
     _stair(axes, zip(best["s_per_turn"], best["place_pure"], strict=True))
@@ -113,7 +112,6 @@ def _points(lines: Sequence[Line]) -> list[CostAndError]:
 
 
 def _limits(axes: Sequence[Axes], points: Sequence[CostAndError]) -> None:
-    """Set the same limits for all panels."""
     for one in axes:
         logarithmic(one, "x", *around(time_s for time_s, _ in points))
         logarithmic(one, "y", *around(error for _, error in points))

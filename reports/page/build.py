@@ -54,18 +54,16 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
     report = PageReport(stored, matrix)
     sections = {name: build(report) for name, build in SECTIONS.items()}
     text = render(report, sections.values())
-    over = len(text.encode()) - MOST_BYTES
-    for name, own in OF_WAYS.items():
-        if over > 0 and sections[name] is not None and own.lighter is not None:
-            sections[name] = own.lighter(report, max(BUDGET - over, 0))
-            text = render(report, sections.values())
-            over = len(text.encode()) - MOST_BYTES
-    if over > 0 and report.driven is not None and sections["motion"] is not None:
-        sections["motion"] = motion(report.driven, BUDGET - over)
-        text = render(report, sections.values())
-    over = len(text.encode()) - MOST_BYTES
-    if over > 0 and matrix is not None and sections["hard"] is not None:
-        sections["hard"] = lighter(matrix, sections["hard"], over)
+    for name in (*OF_WAYS, "motion", "hard"):
+        over, section = len(text.encode()) - MOST_BYTES, sections[name]
+        if over <= 0 or section is None:
+            continue
+        if name == "hard" and matrix is not None:
+            sections[name] = lighter(matrix, section, over)
+        elif name == "motion" and report.driven is not None:
+            sections[name] = motion(report.driven, BUDGET - over)
+        elif name in OF_WAYS and (own := OF_WAYS[name].lighter):
+            sections[name] = own(report, max(BUDGET - over, 0))
         text = render(report, sections.values())
     return text
 
@@ -144,7 +142,6 @@ def _template(environment: Environment, template: str | Path) -> Template:
 
 @cache
 def _environment() -> Environment:
-    """Return an environment that escapes everything and refuses undefined names."""
     environment = Environment(
         loader=FileSystemLoader(HERE / "templates"),
         autoescape=True,
@@ -171,7 +168,6 @@ def _script(name: str) -> str:
 
 @cache
 def _plotly() -> str:
-    """Return the script of the installed Plotly."""
     from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]  # ships no stubs
 
     return str(get_plotlyjs()).replace("</script", "<\\/script")

@@ -213,7 +213,6 @@ class _Drawing:
 
 
 def _limit(row: LogRow, unit: float) -> float | None:
-    """Return the limit of an error in a unit; None where there is no limit."""
     limit = row.limit.number * row.error.scale / unit
     return limit if math.isfinite(limit) else None
 

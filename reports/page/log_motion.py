@@ -191,7 +191,6 @@ def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBo
 
 
 def _angles_out(judged: JudgedLog) -> frozenset[str]:
-    """Return the links with an angle out of tolerance."""
     angles = [row for row in log_rows(judged) if row.error.quantity in ("angle", "drive")]
     return frozenset(row.error.body for row in angles if row.verdict == "out")
 

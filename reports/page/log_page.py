@@ -179,7 +179,6 @@ def standing(curve: DrawnChannel) -> str:
 
 
 def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> dict[str, object]:
-    """Return a channel as the script reads it."""
     near = None if curve.near is None else _samples(curve.near, axes)
     return {
         "label": name_text(curve.column, TITLE),
@@ -245,7 +244,6 @@ MOST_CHANNELS = 400
 
 
 def _made(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
-    """Return the settings of reading and judging: columns, drive, limits, versions."""
     log = judged.log
     channels = [(each.channel, "") for each in log.readings]
     channels += [(each.channel, "a further copy, for the gap") for each in log.copies]
@@ -263,7 +261,6 @@ def _made(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
 
 
 def _settings(judged: JudgedLog) -> dict[str, str]:
-    """Return the settings that the log was judged with."""
     log = judged.log
     time_s = log.time_s
     stamp = f"{name_text(log.stamp[0])}, in {log.stamp[1]}"
@@ -286,7 +283,6 @@ def _settings(judged: JudgedLog) -> dict[str, str]:
 
 
 def _channel_row(channel: Channel, note: str) -> dict[str, str]:
-    """Return a column with its corrections; empty where there are none."""
     told = [
         f"sign {channel.sign}" if channel.sign != 1 else "",
         f"offset {channel.offset:g}" if channel.offset else "",

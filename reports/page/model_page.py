@@ -99,7 +99,6 @@ def _verdict(judged: JudgedModel) -> Section:
 
 
 def _row(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
-    """Return a line of the table: its error and its gain at each step."""
     worst = worst_place(one.errors) if one.errors else None
     steps = len(sentences.step_heads(judged))
     first = math.nan if worst is None else worst.pure
@@ -154,7 +153,6 @@ def _lines(judged: JudgedModel) -> Section | None:
 
 
 def _line(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
-    """Return a line as the script reads it."""
     dt_s, course = judged.account.dt_s, one.course
     return {
         "look": line_looks(judged)[one.cell.profile].number,
@@ -255,7 +253,6 @@ def _disturbing(judged: JudgedModel) -> Section | None:
 
 
 def _recommended(judged: JudgedModel) -> Section:
-    """Return the recommended settings, to be copied into the file."""
     last = judged.lines[-1]
     gain = judged.gains(last)[0]
     return Section(
@@ -276,7 +273,6 @@ def _recommended(judged: JudgedModel) -> Section:
 
 
 def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
-    """Return how the model was read, driven and run: settings of every line, versions."""
     account = judged.account
     told = {"file": str(account.request.path), **sentences.reading(account)}
     return Section(

@@ -158,8 +158,6 @@ def _force(
     scale: Callable[[Scene, Motion], float],
     criterion: Criterion,
 ) -> Quantity:
-    """Return a quantity of forces of one kind of bodies."""
-
     def seen(scene: Scene, forces: Forces | ForceBound | None) -> Series:
         return {} if forces is None else read(scene, forces)
 

@@ -56,7 +56,6 @@ def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[Reco
 
 
 def _row(report: Report, one: Recommendation, period_s: float) -> RecommendationRow:
-    """Return a recommendation with its look and its text to be copied."""
     best = one.best
     return {
         "one": one,
@@ -82,7 +81,6 @@ def _cheapest(report: Report, one: Recommendation) -> bool:
 
 
 def _first(names: Sequence[str], most: int = 2) -> str:
-    """Return the first names of a list, and the number of the rest."""
     rest = len(names) - most
     return "; ".join(names[:most]) + (f"; and {rest} more" if rest > 0 else "")
 

@@ -87,7 +87,6 @@ class FreeCourses:
         return np.linspace(0.0, max(ends, default=1.0), INSTANTS)
 
     def _truth(self, time_s: Array) -> Motion | None:
-        """Return the integrated reference; None where the store does not have its scene."""
         try:
             return None if self.scene is None else true_motion(self.scene, time_s)
         except CrankcheckError:

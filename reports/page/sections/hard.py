@@ -101,7 +101,6 @@ def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
 
 
 def _number(matrix: Matrix, picture: Picture) -> int | None:
-    """Return the number of the run of a picture."""
     wanted = (picture.case, picture.engine, picture.profile)
     for number, run in enumerate(matrix.runs):
         if (run.case, run.engine, run.profile) == wanted and same(run.value, picture.value):
@@ -134,7 +133,6 @@ def _failures(matrix: Matrix, shown: Sequence[int]) -> dict[str, list[tuple[int,
 
 
 def _case(case: CaseFacts) -> dict[str, object]:
-    """Return the facts of a case for the scripts."""
     return {
         "title": case.title,
         "parameter": case.parameter,
@@ -146,7 +144,6 @@ def _case(case: CaseFacts) -> dict[str, object]:
 
 
 def _driver(case: CaseFacts | None, place: float | None) -> str | None:
-    """Return the place of the driver, in words; None where it has no place."""
     if place is None or math.isnan(place):
         return None
     if case is not None and case.driver_unit == "m":
@@ -155,7 +152,6 @@ def _driver(case: CaseFacts | None, place: float | None) -> str | None:
 
 
 def _run(case: CaseFacts | None, run: Graded) -> dict[str, object]:
-    """Return the facts of a run for the scripts."""
     return {
         **vars(run),
         "value_told": amount(run.value, case.unit if case else ""),
@@ -292,7 +288,6 @@ def heat(matrix: Matrix, pictured: frozenset[int] = frozenset()) -> Heat:
 
 
 def _held(strips: Sequence[Strip]) -> str:
-    """Say in how many of its cases a column holds throughout."""
     run = [s for s in strips if any(cell.number is not None for cell in s.cells)]
     held = sum(all(cell.held for cell in s.cells if cell.number is not None) for s in run)
     return f"holds {held} of {len(run)} throughout"

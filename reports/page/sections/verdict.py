@@ -70,7 +70,6 @@ def build(report: Report) -> Section:
 
 
 def _held_to(report: Report) -> list[str]:
-    """Return the meaning of errors, for each kind of cell in the report."""
     kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
     return list(dict.fromkeys(kind.error for kind in kinds))
 
@@ -108,7 +107,6 @@ def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommend
 
 
 def _held(row: VerdictRow) -> str:
-    """Say if an engine holds with settings that are judged."""
     name = row.look.variant
     manner = f"As {name}," if "," in name else f"With {name} settings"
     text = f"{manner} it is within tolerance in {_share(row)}"
@@ -122,7 +120,6 @@ def _held(row: VerdictRow) -> str:
 
 
 def _shipped(row: VerdictRow) -> str:
-    """Return the sentence on an engine as shipped."""
     text = f"As shipped it is within tolerance in {_share(row)}"
     texts = []
     if row.floors:
@@ -137,7 +134,6 @@ def _shipped(row: VerdictRow) -> str:
 
 
 def _cheapest(chosen: Sequence[Recommendation]) -> str:
-    """Return the sentence on the settings that reach the target at least cost."""
     asked = next((one for one in chosen if one.target == ASKED), None)
     if asked is None:
         return ""
@@ -168,7 +164,6 @@ def _by_look(report: Report) -> list[tuple[Look, list[Line]]]:
 
 
 def _row(look: Look, lines: Sequence[Line]) -> VerdictRow:
-    """Return the numbers of one engine with its settings."""
     cells = pd.concat([line.cells for line in lines])
     finest = [_finest(line) for line in lines]
     return VerdictRow(
