@@ -92,20 +92,6 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
     return [whole_row(track, at) for track in tracks], ()
 
 
-def _travel(beside: FreeBeside) -> float:
-    """Return the angle that the driver turns through, weighed as `MotionFacts.travel_rad`."""
-    speed = np.abs(beside.driver_speed)
-    peak = beside.scene.pace_rad_s
-    return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
-
-
-def _drifted(beside: FreeBeside) -> float:
-    """Return the largest turned angle of the driver over the sensitivity at that time [rad]."""
-    speed, time_s = np.abs(beside.driver_speed), beside.motion.time_s
-    turned = np.cumsum(np.diff(time_s, prepend=time_s[0]) * speed)
-    return float(np.max(turned / beside.growth))
-
-
 def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
     """Return the growth of the errors, at `COURSE` instants."""
     worst: Array = np.zeros_like(beside.motion.time_s)
@@ -115,10 +101,12 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
     kept = np.unique(np.linspace(0, worst.size - 1, COURSE).round().astype(np.intp))
     raw, judged = np.maximum.accumulate(worst), np.maximum.accumulate(worst / beside.growth)
     time_s, scene = beside.motion.time_s, beside.scene
+    speed, peak = np.abs(beside.driver_speed), scene.pace_rad_s
+    turned = np.cumsum(np.diff(time_s, prepend=time_s[0]) * speed)
     while_s = window_s(scene, float(np.ptp(beside.reference.time_s)))
     return FreeFacts(
-        travel_rad=_travel(beside),
-        drifted_rad=_drifted(beside),
+        travel_rad=float(np.trapezoid(peak * (speed / peak) ** 3, time_s)),
+        drifted_rad=float(np.max(turned / beside.growth)),
         late=late_impulses(scene, beside.reference, beside.run.dt_s, while_s),
         sensitivity=beside.pure_growth,
         until_s=float(time_s[-1]),

@@ -70,15 +70,8 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
 
 def stability_page(matrix: Matrix) -> str:
     """Return a page of the hard cases alone as one HTML file."""
-    head, section = _stability_head(matrix), hard(matrix, ALONE)
-    text = assembled(head, [section])
-    over = len(text.encode()) - MOST_BYTES
-    return text if over <= 0 else assembled(head, [lighter(matrix, section, over)])
-
-
-def _stability_head(matrix: Matrix) -> Head:
     engines = dict.fromkeys(run.engine for run in matrix.runs)
-    return Head(
+    head = Head(
         title="crankcheck: hard cases",
         facts=(
             *(f"{engine} {matrix.facts.get(engine, '')}".strip() for engine in engines),
@@ -88,6 +81,10 @@ def _stability_head(matrix: Matrix) -> Head:
         made=str(matrix.facts.get("made", "")),
         first="map",
     )
+    section = hard(matrix, ALONE)
+    text = assembled(head, [section])
+    over = len(text.encode()) - MOST_BYTES
+    return text if over <= 0 else assembled(head, [lighter(matrix, section, over)])
 
 
 def render(report: Report, sections: Iterable[Section | None]) -> str:

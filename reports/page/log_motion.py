@@ -44,7 +44,9 @@ def log_motion(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | No
     """Return the section; None where the log has no place of a body. Raises CrankcheckError."""
     if not has_places(judged):
         return None
-    shown = [(each, _instants(each)) for each in stretches(judged, drawn)]
+    shown = [
+        (each, np.linspace(each.start_s, each.end_s, INSTANTS)) for each in stretches(judged, drawn)
+    ]
     truth = truth_of_all(judged)
     bodies = [logged_bodies(judged, truth, time_s) for _, time_s in shown]
     return Section(
@@ -93,10 +95,6 @@ def _drawing(truth: Motion, bodies: LoggedBodies) -> dict[str, object]:
 def has_places(judged: JudgedLog) -> bool:
     """True if the log has a place or an angle of any body."""
     return any(reading.channel.kind.order == 0 for reading in judged.log.readings)
-
-
-def _instants(stretch: Stretch) -> Array:
-    return np.linspace(stretch.start_s, stretch.end_s, INSTANTS)
 
 
 def stretches(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> list[Stretch]:

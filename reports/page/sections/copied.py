@@ -25,7 +25,8 @@ RecommendationRow = dict[str, object]
 
 def recommendation(report: Report) -> Section:
     """Return the section."""
-    period_s = _usual_period(report)
+    # Copied texts are written for the period of most lines.
+    period_s = Counter(line.period_s for line in report.lines).most_common(1)[0][0]
     # Engines side by side for each target, the least demanding first.
     ordered = sorted(report.recommendations, key=lambda one: -one.target)
     rows = [row for one in ordered for row in _rows(report, one, period_s)]
@@ -41,11 +42,6 @@ def recommendation(report: Report) -> Section:
         },
         scripts=("copying.js",),
     )
-
-
-def _usual_period(report: Report) -> float:
-    """Return the period of most lines [s], for which copied texts are written."""
-    return Counter(line.period_s for line in report.lines).most_common(1)[0][0]
 
 
 def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[RecommendationRow]:

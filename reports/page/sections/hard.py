@@ -82,19 +82,18 @@ def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
     The easiest failures of each case in each engine, its limits, come first if the room is short.
     """
     places = {case.name: index for index, case in enumerate(matrix.cases)}
-    lines = {(run.engine, run.profile): None for run in matrix.runs}
-    columns = {line: index for index, line in enumerate(lines)}
+    columns = list(dict.fromkeys((run.engine, run.profile) for run in matrix.runs))
     shown = []
     for picture in matrix.pictures:
         number = _number(matrix, picture)
         if number is not None and picture.case in places:
             shown.append((number, picture))
-    shown.sort(key=lambda x: (places[x[1].case], columns[x[1].engine, x[1].profile], x[0]))
-    ranks: dict[tuple[str, str, str], int] = {}
+    shown.sort(key=lambda x: (places[x[1].case], columns.index((x[1].engine, x[1].profile)), x[0]))
+    ranks = Counter[tuple[str, str, str]]()
     order = []
     for index, (_, one) in enumerate(shown):
         line = (one.case, one.engine, one.profile)
-        ranks[line] = ranks.get(line, 0) + 1
+        ranks[line] += 1
         order.append((ranks[line], index))
     sizes = [len(embedded([one.drawing, one.rows])) for _, one in shown]
     return [shown[i] for i in fitting([index for _, index in sorted(order)], sizes, room)]
@@ -197,21 +196,8 @@ class HeatCell:
     pictured: bool
 
 
-@dataclass(frozen=True)
-class Strip:
-    """A case in one column: its cells from easy to hard, and its limit in words."""
-
-    cells: tuple[HeatCell, ...]
-    words: str
-
-
-@dataclass(frozen=True)
-class HeatRow:
-    """A case with a strip for each column."""
-
-    case: CaseFacts
-    strips: tuple[Strip, ...]
-    good: str
+Strip = tuple[list[HeatCell], str]
+"""A case in one column: its cells from easy to hard, and its limit in words."""
 
 
 @dataclass(frozen=True)
@@ -229,10 +215,10 @@ class HeatColumn:
 
 @dataclass(frozen=True)
 class Heat:
-    """The whole map: columns, and rows by group in the order of the cases."""
+    """The whole map: columns, and by group in the order of the cases a strip for each of these."""
 
-    columns: tuple[HeatColumn, ...]
-    groups: Mapping[str, tuple[HeatRow, ...]]
+    columns: list[HeatColumn]
+    groups: Mapping[str, list[tuple[CaseFacts, list[Strip]]]]
 
 
 def kind(outcome: str) -> str:
@@ -271,26 +257,26 @@ def heat(matrix: Matrix, pictured: frozenset[int] = frozenset()) -> Heat:
     for number, run in enumerate(matrix.runs):
         numbered.setdefault((run.case, (run.engine, run.profile)), []).append((number, run))
     words = {(one.case, (one.engine, one.profile)): one.words for one in matrix.critical}
-    groups: dict[str, tuple[HeatRow, ...]] = {}
+    groups: dict[str, list[tuple[CaseFacts, list[Strip]]]] = {}
     for case in matrix.cases:
-        strips = tuple(
-            Strip(
-                tuple(_cells(case, numbered.get((case.name, x), []), pictured)),
-                words.get((case.name, x), ""),
+        strips = [
+            (
+                [*_cells(case, numbered.get((case.name, line), []), pictured)],
+                words.get((case.name, line), ""),
             )
-            for x in lines
-        )
-        row = HeatRow(case, strips, ", ".join(case.good))
-        groups[case.group] = (*groups.get(case.group, ()), row)
-    rows = [row for group in groups.values() for row in group]
-    columns = [HeatColumn(*x, _held([row.strips[i] for row in rows])) for i, x in enumerate(lines)]
-    return Heat(tuple(columns), groups)
+            for line in lines
+        ]
+        groups.setdefault(case.group, []).append((case, strips))
+    by_column = zip(*(strips for group in groups.values() for _, strips in group), strict=True)
+    held = [_held(strips) for strips in by_column] or [_held(())] * len(lines)
+    columns = [HeatColumn(*line, told) for line, told in zip(lines, held, strict=True)]
+    return Heat(columns, groups)
 
 
 def _held(strips: Sequence[Strip]) -> str:
-    run = [s for s in strips if any(cell.number is not None for cell in s.cells)]
-    held = sum(all(cell.held for cell in s.cells if cell.number is not None) for s in run)
-    return f"holds {held} of {len(run)} throughout"
+    run = [[cell.held for cell in cells if cell.number is not None] for cells, _ in strips]
+    ran = [cells for cells in run if cells]
+    return f"holds {sum(map(all, ran))} of {len(ran)} throughout"
 
 
 def _cells(

@@ -48,7 +48,11 @@ class VerdictRow:
 
 def build(report: Report) -> Section:
     """Return the section."""
-    rows = [_row(look, lines) for look, lines in _by_look(report)]
+    rows = [
+        _row(look, [line for line in report.lines if named(line) == name])
+        for name, look in report.looks.items()
+    ]
+    kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
     chosen = () if report.driven is None else report.driven.recommendations
     gated = report.cells[report.cells["gated"]]
     return Section(
@@ -63,15 +67,10 @@ def build(report: Report) -> Section:
                 for engine, version in report.engines.items()
             ],
             "rows": rows,
-            "held_to": _held_to(report),
+            "held_to": list(dict.fromkeys(kind.error for kind in kinds)),
             "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
         },
     )
-
-
-def _held_to(report: Report) -> list[str]:
-    kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
-    return list(dict.fromkeys(kind.error for kind in kinds))
 
 
 def level(gated: pd.DataFrame) -> str:
@@ -154,13 +153,6 @@ def spread(told: Sequence[str]) -> str:
     if not told:
         return "\N{EN DASH}"
     return told[0] if told[0] == told[-1] else f"{told[0]} to {told[-1]}"
-
-
-def _by_look(report: Report) -> list[tuple[Look, list[Line]]]:
-    return [
-        (look, [line for line in report.lines if named(line) == name])
-        for name, look in report.looks.items()
-    ]
 
 
 def _row(look: Look, lines: Sequence[Line]) -> VerdictRow:
