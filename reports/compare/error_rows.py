@@ -65,11 +65,9 @@ def instants_of(beside: Beside, time_s: Array, reference: Motion) -> Instants:
     return Instants(time_s, driver_rad, passed, beside.settling, beside.scene.driver.unit)
 
 
-def whole_row(
-    track: Track, at: Instants, source: Source = "reported", kind: ErrorKind = "total"
-) -> Error:
-    """Return a track as numbers."""
-    return _numbers(track, length(track.error), track.bound, at, source, kind)
+def whole_row(track: Track, at: Instants, kind: ErrorKind = "total") -> Error:
+    """Return a reported track as numbers."""
+    return _numbers(track, length(track.error), track.bound, at, "reported", kind)
 
 
 def _numbers(

@@ -71,7 +71,8 @@ def sheet(
     The legend has ``entries`` in ``columns`` (0: as many as have room).
     """
     room = width - 2 * EDGE
-    number = columns or _columns([text for _, text in entries], room)
+    widest = max((width_in(text) for _, text in entries), default=0.0) + HANDLE + GAP
+    number = columns or max(1, min(int((room + GAP) / widest), len(entries) or 1))
     in_rows = math.ceil(len(entries) / number)
     legend = in_rows * SMALL * 1.38 / style.POINTS + (0.05 if entries else 0.0)
     lines = [line for note in notes for line in folded(note, room)]
@@ -103,11 +104,6 @@ def sheet(
         }
         figure.text(edge, EDGE / height, "\n".join(lines), **look)
     return figure, figure.axes
-
-
-def _columns(labels: Sequence[str], room: float) -> int:
-    widest = max((width_in(text) for text in labels), default=0.0) + HANDLE + GAP
-    return max(1, min(int((room + GAP) / widest), len(labels) or 1))
 
 
 def _legend(
@@ -194,11 +190,9 @@ class Abscissa(Protocol):
 
     def plot(self, axes: Axes, series: Array, **look: Any) -> None:
         """Draw a series (T,)."""
-        ...
 
     def mark(self, axes: Axes, *, labelled: bool = True) -> None:
         """Set limits, ticks and label of the axis, and short numbers on the other."""
-        ...
 
 
 Curve = tuple[str, Array, Look]

@@ -80,6 +80,19 @@ def _pictures(
     ]
 
 
+def _moving(name: str, words: Mapping[str, object], embedded: Mapping[str, object]) -> Section:
+    """Return the section of a moving scene; ``name`` is that of its template and of its script."""
+    return Section(
+        anchor="motion",
+        title="In motion",
+        template=f"{name}.html",
+        words=words,
+        embedded=embedded,
+        scripts=("arrows.js", "mechanism.js", "stage.js", f"{name}.js"),
+        styles=("forces.css",),
+    )
+
+
 def _motion(scene: Scene, *, acting: bool) -> Section:
     """Return a scene in motion by the closed form, with its forces if requested. Raises
     CrankcheckError where the driver goes through no turn."""
@@ -89,18 +102,14 @@ def _motion(scene: Scene, *, acting: bool) -> Section:
         arrows = force_arrows(scene, turn)
         low, high = arrows.box(turn)
         drawn |= {"forces": arrows.embedded(turn), "box": [*low, *high]}
-    return Section(
-        anchor="motion",
-        title="In motion",
-        template="scene_motion.html",
-        words={
+    return _moving(
+        "scene_motion",
+        {
             "scene": scene_words(scene),
             "has_arrows": "forces" in drawn and bool(drawn["forces"]["arrows"]),  # type: ignore[index]  # as embedded
             "with_forces": acting,
         },
-        embedded={"drawing": drawn, "effort": _effort(scene, turn)},
-        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_motion.js"),
-        styles=("forces.css",),
+        {"drawing": drawn, "effort": _effort(scene, turn)},
     )
 
 
@@ -158,20 +167,16 @@ def _free(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
     motion = free.at(time_s, bound=False)
     drawn = drawing(free.scene, time_s, motion)
     lasts_ms = float(np.clip(1000.0 * free.until_s, SHORTEST_MS, LONGEST_MS))
-    return Section(
-        anchor="motion",
-        title="In motion",
-        template="scene_free.html",
-        words={
+    return _moving(
+        "scene_free",
+        {
             "scene": scene_words(free.scene),
             "notes": [
                 *filter(None, (*free_notes(free, free.until_s), continued_note(free.scene, motion)))
             ],
             "figures": _pictures(figures, FREE_CAPTIONS),
         },
-        embedded={"drawing": drawn | {"until_s": free.until_s}, "lasts_ms": lasts_ms},
-        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_free.js"),
-        styles=("forces.css",),
+        {"drawing": drawn | {"until_s": free.until_s}, "lasts_ms": lasts_ms},
     )
 
 
@@ -202,11 +207,9 @@ def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, 
     if not isinstance(scene.driver.law, ConstantSpeed) or turns > 1.0 + 1e-9:
         drawn |= {"until_s": motion.until_s}
     notes = [start_words(scene, elastic_course.start_of(motion)), *certainty(motion)]
-    return Section(
-        anchor="motion",
-        title="In motion",
-        template="scene_elastic.html",
-        words={
+    return _moving(
+        "scene_elastic",
+        {
             "scene": scene_words(scene),
             "elastic": elastic_facts(scene, motion.by, stiffened=motion.stiffened),
             "along": "Time" if "until_s" in drawn else "Crank angle",
@@ -218,14 +221,12 @@ def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, 
             "notes": [*notes, *elastic_warnings(scene, elastic_course.largest_deflections(fine))],
             "figures": _pictures(figures, ELASTIC_CAPTIONS),
         },
-        embedded={
+        {
             "drawing": drawn,
             "moved": packed(_moved(course)),
             "bent": _bent(course),
             "lasts_ms": 5000 * min(max(1.0, turns), 6.0),
         },
-        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_elastic.js"),
-        styles=("forces.css",),
     )
 
 

@@ -132,14 +132,8 @@ def _failures(matrix: Matrix, shown: Sequence[int]) -> dict[str, list[tuple[int,
 
 
 def _case(case: CaseFacts) -> dict[str, object]:
-    return {
-        "title": case.title,
-        "parameter": case.parameter,
-        "unit": case.unit,
-        "within": case.within,
-        "error_of": case.error_of,
-        "good": ", ".join(case.good),
-    }
+    told = ("title", "parameter", "unit", "within", "error_of")
+    return {name: getattr(case, name) for name in told} | {"good": ", ".join(case.good)}
 
 
 def _driver(case: CaseFacts | None, place: float | None) -> str | None:
