@@ -33,13 +33,11 @@ ROUNDING = 1e-12
 
 
 def compared(scene: Scene, run: Run) -> Errors:
-    """The errors of a run beside its truth."""
     return compare(Beside.of(Truth(scene), run))
 
 
 @pytest.fixture(scope="module")
 def healthy(fourbar: Scene, disturbed: Callable[..., Run]) -> Run:
-    """A run of the four-bar without any error."""
     return disturbed(fourbar)
 
 
@@ -52,7 +50,6 @@ def with_motion(run: Run, **parts: Any) -> Run:
 
 
 def with_link(run: Run, name: str = "rocker", **series: Array) -> Run:
-    """The run with other series of a link."""
     return with_motion(run, links={**run.motion.links, name: replace(link_of(run, name), **series)})
 
 

@@ -44,7 +44,6 @@ def _run(engine: str, steps: int = 360) -> Run:
 
 
 def _case(name: str) -> Scene:
-    """The easiest of a hard case."""
     case = CATALOGUE[name]
     return case.trial(case.values[0]).scene
 
@@ -285,7 +284,6 @@ def test_inertia_has_a_share_of_one_at_most() -> None:
 
 
 def _near(scene: Scene, steps: int = 360) -> list[int]:
-    """The samples that are beside a jump."""
     motion = _motion(scene, steps)
     motion = replace(motion, forces=forces(scene, motion, bound=False))
     return np.flatnonzero(near_jumps(scene, motion)).tolist()

@@ -81,7 +81,6 @@ def _picture(scene: Scene, found: Graded, done: Run) -> Picture:
 
 
 def critical(case: CaseFacts, runs: list[Graded]) -> Critical:
-    """How far one line holds."""
     bad = max((run.value for run in runs if run.outcome != "ok"), default=math.nan)
     good = min((run.value for run in runs if not run.value <= bad), default=math.nan)
     ends = next((run.outcome for run in runs if run.value == bad), "ok")
@@ -93,7 +92,6 @@ def critical(case: CaseFacts, runs: list[Graded]) -> Critical:
 
 
 def matrix() -> Matrix:
-    """The matrix of the scenes in both engines with both profiles."""
     runs, pictures, ends = [], [], []
     cases = {name: case_of(name) for name in SCENES}
     for name, (engine, profile) in itertools.product(SCENES, LINES):

@@ -168,8 +168,6 @@ def test_a_matrix_of_no_run_has_a_page_and_of_one_with_its_long_reason(matrix: M
 
 
 def evil(matrix: Matrix) -> Matrix:
-    """The matrix with hostile text wherever a file may have it."""
-
     def marked(one: Any, *fields: str, **other: object) -> Any:
         names = {name: f"{EVIL}{getattr(one, name)}" for name in (*fields, "engine", "profile")
                  if hasattr(one, name)}  # fmt: skip

@@ -2,7 +2,6 @@
 
 import copy
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -41,7 +40,6 @@ def parts(colour: str) -> Array:
 
 
 def cell(page: Page, number: int) -> Locator:
-    """The cell of a run."""
     return page.locator(f"#hard-map button[data-run='{number}']")
 
 
@@ -55,18 +53,11 @@ def as_opened(tab: Tab, path: Path) -> Tab:
 
 
 @pytest.fixture
-def opened(wide: Tab, hard_page: Path) -> Iterator[Tab]:
-    yield as_opened(wide, hard_page)
-    assert wide.said == []
-
-
-@pytest.fixture
-def page(opened: Tab) -> Page:
-    return opened.page
+def opened(wide: Tab, hard_page: Path) -> Tab:
+    return as_opened(wide, hard_page)
 
 
 def first(matrix: Matrix, outcome: str) -> int:
-    """The first run of the grid with an outcome."""
     return next(n for n, run in enumerate(matrix.runs) if run.grid and run.outcome == outcome)
 
 
@@ -226,10 +217,7 @@ def test_hostile_text_does_nothing(wide: Tab, matrix: Matrix, written: Write) ->
     page = wide.open(written(stability_page(evil(matrix)))).page
     page.locator("#hard-map button").evaluate_all("all => all.forEach(each => each.click())")
     page.select_option("#hard-failures", index=1)
-    assert page.evaluate("() => window.hacked") is None
-    assert page.locator("main img").count() == 0
-    assert "{{ 7 * 7 }}" in wide.text("#hard-told")
-    assert wide.said == []
+    wide.hostile_text_does_nothing("#hard-told")
 
 
 def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
@@ -248,7 +236,6 @@ def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
     for key, count in (("Home", 3), ("End", 0)):
         wide.page.keyboard.press(key)
         assert [wide.page.locator(each).count() for each in (TRUTH, RUN)] == [count, count]
-    assert wide.said == []
 
 
 @slow("each section has scripts of its own, which `test_browser` and this file run apart")
@@ -262,7 +249,6 @@ def test_hard_cases_work_in_the_report_beside_its_other_sections(
     wide.elapse(100)
     assert wide.text("#motion-play") == "Play"
     assert "diverged" in wide.text("#hard-told")
-    assert wide.said == []
 
 
 def test_nothing_runs_out_of_a_phone(phone: Tab, hard_page: Path) -> None:
@@ -291,4 +277,3 @@ def test_a_page_without_pictures_and_with_what_is_not_known_works(
     assert "exploded" in phone.text("#hard-told")
     assert "no moving picture" in phone.text("#hard-note")
     assert phone.page.evaluate(OUT) == []
-    assert phone.said == []

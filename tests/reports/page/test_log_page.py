@@ -36,7 +36,6 @@ ONE = {"rocker_deg": angles(MOTION)["rocker_deg"]}
 
 
 def page(*asked: object, **more: object) -> str:
-    """The page of a log."""
     return log_page(judged(*asked, **more), FACTS)
 
 

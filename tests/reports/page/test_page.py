@@ -100,7 +100,6 @@ def test_drawings_give_way_where_the_page_gets_too_large(
 
 
 def report(*asked: object) -> str:
-    """What the command says."""
     said = StringIO()
     assert ReportRequest(*asked).run(Console(file=said, width=200), Console()) == 0
     return said.getvalue()
