@@ -267,11 +267,6 @@ def test_nothing_runs_out_of_a_phone(phone: Tab, small_page: Path) -> None:
     phone.visit(small_page, *SECTIONS).nothing_runs_out()
 
 
-@slow("the same scripts as on a computer: what a finger makes other is that nothing is zoomed")
-def test_no_error_and_no_request_in_a_whole_visit_by_phone(phone: Tab, small_page: Path) -> None:
-    phone.open(small_page, *SECTIONS).no_error_and_no_request("#motion-visible")
-
-
 @slow("a section that has less to show is read as text by `test_page`")
 def test_a_page_without_times_and_with_one_scene_works(wide: Tab, tiny_page: Path) -> None:
     page = wide.open(tiny_page, *SECTIONS).page

@@ -262,11 +262,6 @@ def test_nothing_runs_out_of_a_phone(phone: Tab, hard_page: Path) -> None:
     cases.evaluate("each => { each.scrollLeft = 0; }")
 
 
-@slow("the same scripts as on a computer, by touch: a map that scrolls by itself is tapped")
-def test_no_error_and_no_request_in_a_whole_visit_by_phone(phone: Tab, hard_page: Path) -> None:
-    phone.open(hard_page).no_error_and_no_request()
-
-
 def test_a_page_without_pictures_and_with_what_is_not_known_works(
     phone: Tab, matrix: Matrix, written: Write
 ) -> None:
