@@ -16,7 +16,7 @@ import numpy as np
 
 from models.array import Array, Mask
 from models.motion import Motion
-from reports.compare.beside import Beside
+from reports.compare.beside import EPSILON, Beside
 from reports.compare.errors import Error, ErrorKind
 from reports.compare.hardness import WINDOW_RAD, near
 from reports.compare.tracks import Track, length, rate, second_rate, size
@@ -99,9 +99,6 @@ def rate_rows(track: Track, at: Instants, source: Source) -> Iterable[Error]:
     error = length(track.error)
     for kind, part, instants in at.parts:
         yield _numbers(track, error[part], track.bound[part], instants, source, kind)
-
-
-EPSILON = float(np.finfo(np.float64).eps)
 
 
 def whole_rows(beside: Beside, at: Instants, role: Role) -> list[Error]:

@@ -65,7 +65,9 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
     to their curves, by their numbers among those ``drawn``."""
     numbers = {curve.column: number for number, curve in enumerate(drawn)}
     rows = sorted(table.shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
-    unused = judged.log.unused
+    unused, unexplained = judged.log.unused, ""
+    if judged.failures and not judged.scene.is_free:  # where causes are not searched
+        unexplained = sentence_text(few(table.unexplained(judged), 6))
     return Section(
         anchor="verdict",
         title="Verdict",
@@ -78,7 +80,7 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
                 for each in judged.failures
             ],
             "causes": [(sentence_text(each.text), map_lines(each)) for each in judged.causes],
-            "unexplained": _unexplained(judged),
+            "unexplained": unexplained,
             "fit": table.fit_text(judged) if judged.fit else "",
             "notes": [sentence_text(note) for note in judged.notes],
             "rows": [_row(row, numbers) for row in rows],
@@ -90,12 +92,6 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
         scripts=("copying.js",),
         styles=("log.css",),
     )
-
-
-def _unexplained(judged: JudgedLog) -> str:
-    """Return the columns that no cause explains; causes of a free motion are not searched."""
-    is_explained = judged.scene.is_free or not judged.failures
-    return "" if is_explained else sentence_text(few(table.unexplained(judged), 6))
 
 
 def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:

@@ -11,14 +11,9 @@ import numpy as np
 
 from models.motion import Motion
 from models.scene import GROUND, Scene
-from models.scene.driver import driver_place
+from reports.quantities.places import driver_series
 from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance, every_place
 from sim.engine import Run
-
-
-def _driver(motion: Motion | None, scene: Scene) -> Series:
-    place = driver_place(scene, motion) if motion else None
-    return {} if place is None else {scene.driver.name: place / scene.driver_arm_m}
 
 
 def _driver_bound(scene: Scene, reference: Motion) -> Series:
@@ -45,8 +40,8 @@ PHASE = Quantity(
             unit="rad",
             share="rad",
             scale=lambda scene, reference: 1.0,
-            truth=lambda scene, reference: _driver(reference, scene),
-            logged=lambda scene, run: _driver(run.motion, scene),
+            truth=driver_series,
+            logged=lambda scene, run: driver_series(scene, run.motion),
             bound=_driver_bound,
         ),
     ),

@@ -47,7 +47,8 @@ def convergence(report: Report) -> Section:
         for name, (words, _) in DIAGRAMS.items()
         if name in report.cells and report.cells[name].notna().any()
     }
-    curves = {name: [drawn(report, x) for x in _lines(report, name)] for name in names}
+    own = {name: lines(report.stored, name) for name in names if name != "place_pure"}
+    curves = {name: [drawn(report, x) for x in own.get(name, report.lines)] for name in names}
     return Section(
         anchor="convergence",
         title="Error against step",
@@ -61,10 +62,6 @@ def convergence(report: Report) -> Section:
         scripts=("legend.js", "charts.js", "convergence.js"),
         plotly=True,
     )
-
-
-def _lines(report: Report, quantity: str) -> tuple[Line, ...]:
-    return report.lines if quantity == "place_pure" else lines(report.stored, quantity)
 
 
 def drawn(report: Report, line: Line) -> dict[str, object]:
@@ -173,10 +170,11 @@ def _known(number: float) -> float | None:
 def _scene(report: Report, scene: str) -> dict[str, object]:
     lines = report.lines_of(scene)
     cells = pd.concat([line.cells for line in lines])
+    best = cells.set_index("key").loc[front(cells)].sort_values("s_per_turn")
     return {
         "name": scene,
         "lines": [_line(report, line) for line in lines],
-        "front": _points(cells.set_index("key").loc[front(cells)]),
+        "front": {"error": list(best["place_pure"]), "s_per_turn": list(best["s_per_turn"])},
     }
 
 
@@ -191,11 +189,6 @@ def _line(report: Report, line: Line) -> dict[str, object]:
         "within": list(cells["verdict"] == "within"),
         "dt_s": list(cells["dt_s"]),
     }
-
-
-def _points(cells: pd.DataFrame) -> dict[str, object]:
-    ordered = cells.sort_values("s_per_turn")
-    return {"error": list(ordered["place_pure"]), "s_per_turn": list(ordered["s_per_turn"])}
 
 
 def _over_all(report: Report) -> dict[str, object]:
