@@ -28,8 +28,7 @@ SETS = 2
 
 @lru_cache(maxsize=1)
 def truth_of(same: Same) -> Truth:
-    """Return the reference of the scene requested last: its cells follow one another, and most are
-    logged at the same instants."""
+    """Return the reference of the scene requested last: its cells follow one another."""
     return Truth(same.scene)
 
 
@@ -142,14 +141,12 @@ class Beside:
 
     @cached_property
     def crank(self) -> Array:
-        """The logged coordinate of the driver [rad, or m of a slider], (T,); NaN where there is
-        none."""
+        """The logged coordinate of the driver [rad, or m of a slider], (T,); NaN without one."""
         return fitting(driver_place(self.scene, self.motion), self.motion.time_s)
 
     @cached_property
     def drive(self) -> Array:
-        """Distance of the driver from its commanded place [rad], (T,); for a slider over the
-        longest length."""
+        """Error of the driver's place [rad], (T,); for a slider over the longest length."""
         if self.scene.driver.slider is not None:
             return np.asarray((self.crank - self.driver_rad) / self.scene.driver_arm_m)
         return angle_error(self.crank, self.driver_rad)
@@ -246,8 +243,7 @@ def incomplete(run: Run) -> str:
 
 
 def first_samples(run: Run, number: int) -> Run:
-    """Return the run with its first samples alone, in all its series; itself where these are
-    all."""
+    """Return the run with its first samples alone in all its series; itself if these are all."""
     motion = run.motion
     if motion is None or number >= motion.time_s.size:
         return run

@@ -71,8 +71,7 @@ def _truth(pickled: bytes, count: int, springs: str, until_s: float) -> ElasticT
 
 
 def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
-    """Return an engine's scene with the pieces of elastic links. Raises EngineError where they are
-    impossible."""
+    """Return a scene with its elastic links in pieces. Raises EngineError if impossible."""
     try:
         pieces = cut(scene, count, springs)
         assert pieces.given  # made now, to be refused now
@@ -83,8 +82,7 @@ def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
 
 @lru_cache(maxsize=2)
 def kept_theory(pickled: bytes, until_s: float, kind: type[BeamTheory] = BeamTheory) -> BeamTheory:
-    """Return the beam of a scene, which may come from another process: one for every number of
-    segments."""
+    """Return the beam of a scene, maybe of another process, for any number of segments."""
     return kind(pickle.loads(pickled), until_s)
 
 
@@ -167,8 +165,7 @@ class ElasticTruth(Truth):
 
 @dataclass(frozen=True)
 class ChainTruth(ElasticTruth):
-    """As `ElasticTruth`, for an engine with chains of segments, whose exact motion is known as
-    well."""
+    """As `ElasticTruth`, for an engine with chains of segments: their exact motion is known too."""
 
     _chains: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
@@ -189,8 +186,7 @@ class ChainTruth(ElasticTruth):
 
     @property
     def is_exact(self) -> bool:
-        """True if the motion is periodic, or the segments few: an integration of many takes
-        minutes."""
+        """True if the motion is periodic, or the segments few: to integrate many takes minutes."""
         return self.theory.is_periodic or self.chain.count <= LEAST
 
     def apart(self, by_name: Callable[[Motion, Motion], Apart]) -> Apart:
@@ -246,8 +242,7 @@ class ChainTruth(ElasticTruth):
 
 @dataclass(frozen=True)
 class ElasticBeside(Beside):
-    """As `Beside`. Where links bend, the angle of the driver determines no other: there are no
-    errors at the logged angle."""
+    """As `Beside`, without errors at the logged angle: it determines no other of bent links."""
 
     compared_by: ClassVar[tuple[str, ...]] = (*Beside.compared_by, ".elastic_errors")
     elastic: ElasticTruth = field(kw_only=True)

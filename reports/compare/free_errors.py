@@ -81,8 +81,7 @@ def _phase_and_places(beside: FreeBeside, tracks: Iterable[Track], at: Instants)
 
 
 def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
-    """Return errors against the reference at the run's own coordinate, or a note with the reason
-    for none."""
+    """Return errors at the run's own coordinate, or a note with the reason for none."""
     if beside.no_geometry:
         return [], (beside.no_geometry,)
     try:

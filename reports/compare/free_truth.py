@@ -31,16 +31,16 @@ LEAST_KNOWN = 0.25
 def free_truth(
     scene: Scene, steps: int, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """Return the reference of a free scene, for ``steps`` steps of ``dt_s``. Raises CrankcheckError
-    as `analytic.free.release`."""
+    """Return the reference of a free scene for ``steps`` of ``dt_s`` [s], as `free_truth_until`."""
     return free_truth_until(scene, steps * dt_s, dt_s, tolerance)
 
 
 def free_truth_until(
     scene: Scene, lasts_s: float, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """Return `free_truth` for a duration [s]; ``dt_s`` is 0 where no step is known, and the limit
-    of the phase is then its cap, unless one is given."""
+    """Return the reference of a free scene for a duration [s]; ``dt_s`` is 0 if no step is known, and
+    the limit of the phase is then its cap, unless one is given. Raises CrankcheckError as
+    `analytic.free.release`."""
     motion = kept_motion(scene, lasts_s)
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
     law = Released(
@@ -201,8 +201,7 @@ LOOK = 1e-3
 
 
 def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
-    """Return the motion of a free scene, for at least so long [s]. Raises CrankcheckError as
-    `analytic.free.release`."""
+    """Return the motion of a free scene for at least so long [s]. Raises CrankcheckError."""
     return _released(as_bytes(scene), long_enough_s(scene, lasts_s))
 
 

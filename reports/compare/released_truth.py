@@ -116,8 +116,7 @@ class ReleasedElasticTruth(elastic_truth.ChainTruth):
 
     @property
     def _works(self) -> ReleasedElasticMotion:
-        """The motion with the reference energies: that of the engine's own chain, if it is
-        known."""
+        """The motion with the reference energies: that of the engine's own chain, if known."""
         motion = self.exact.motion if self.is_exact else self.beam
         assert isinstance(motion, ReleasedElasticMotion)
         return motion
@@ -137,8 +136,7 @@ class ReleasedElasticTruth(elastic_truth.ChainTruth):
 
 
 def at_any(motion: ReleasedElasticMotion, time_s: Array) -> Motion:
-    """Return a motion at times in ascending order [s], (T,), some of which may be within a step of
-    its start or its end."""
+    """Return a motion at ascending times [s], (T,), up to a step before its start and its end."""
     early, late = time_s < 0.0, time_s > motion.until_s
     if not (early.any() or late.any()):
         return sampled(motion, time_s)

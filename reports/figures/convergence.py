@@ -60,8 +60,7 @@ def draw(report: Report, scene: str) -> Figure:
 
 
 def draw_all(report: Report) -> Figure:
-    """Draw the plots of all scenes side by side, over steps per turn; over time for free
-    motions."""
+    """Draw the plots of all scenes side by side, over steps per turn, or time of free motions."""
     lines, scenes, mark_of = report.lines, list(report.scenes), marks(report.lines)
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], **mark.style), report.looks[name].name) for name, mark in mark_of.items()

@@ -118,8 +118,7 @@ def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, la
 
 
 def _torque(course: ElasticCourse) -> Figure | None:
-    """Draw the driving torque with elastic links and with rigid ones, and their difference; None
-    without a drive."""
+    """Draw the torque of the drive with elastic links and with rigid ones, and their difference."""
     if course.torques is None:
         return None
     elastic, rigid = course.torques

@@ -154,8 +154,7 @@ def _efficiency(turn: ForceTurn) -> Figure | None:
 
 
 def _reduced(turn: ForceTurn) -> Figure:
-    """Draw the machine reduced to its driver: inertia, and below it torque if weights or loads
-    act."""
+    """Draw the machine reduced to its driver: inertia, and torque if weights or loads act."""
     reduced, notes, drive = turn.reduced, turn.notes, turn.scene.driver
     mass = "moment of inertia [kg m²]" if drive.slider is None else "mass [kg]"
     panels = [LinePanel(mass, [("", reduced.inertia, CURVE)])]

@@ -214,8 +214,7 @@ def _dots(turn: ForceTurn) -> dict[int, int]:
 
 
 def loaded(turn: ForceTurn) -> Figure | None:
-    """Draw the mechanism where its reactions are largest, with the forces as arrows to one scale;
-    None without reactions."""
+    """Draw the mechanism with its largest reactions as arrows to one scale; None without these."""
     if not turn.has_forces or not (turn.acting.pins or turn.acting.sliders):
         return None
     scene = turn.scene

@@ -54,8 +54,7 @@ class FreeRun:
 
     @property
     def energy(self) -> Array | None:
-        """Change of energy since the start, over the largest kinetic energy; None without
-        energy."""
+        """Change of energy, over the largest kinetic energy; None without energy."""
         if "energy" not in self.trace:
             return None
         largest = float(np.max(self.trace["kinetic"]))
@@ -76,8 +75,7 @@ class FreeRun:
 
 @dataclass(frozen=True)
 class FreeRuns:
-    """The runs of a scene beside the reference; its driver has ``angle`` [rad], ``omega`` at
-    ``time_s``."""
+    """The runs of a scene beside the reference, whose driver has ``angle`` and ``omega`` (T,)."""
 
     scene: Scene
     runs: tuple[FreeRun, ...]

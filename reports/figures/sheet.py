@@ -201,8 +201,7 @@ Curve = tuple[str, Array, Look]
 
 @dataclass(frozen=True)
 class LinePanel:
-    """A panel of curves; below them a line at 0 where they come near to it, on request; over them
-    a line at a level."""
+    """A panel of curves, over a line at 0 if it is marked and near, and under one at a level."""
 
     label: str
     curves: Sequence[Curve]

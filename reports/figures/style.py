@@ -252,8 +252,7 @@ class FigureSet(Generic[Of]):
         return {name: self._saved(solved, name, each) for name, each in self._drawn(solved)}
 
     def written(self, solved: Of, folder: Path) -> str:
-        """Write all figures; returns a line on the written files. Raises CrankcheckError where the
-        system refuses."""
+        """Write all figures; returns a line on their files. Raises CrankcheckError if refused."""
         names = []
         for name, figure in self._drawn(solved):
             names.append(name)

@@ -173,8 +173,7 @@ def truth_of_all(judged: JudgedLog) -> Truth:
 
 
 def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBodies:
-    """Return the logged bodies at instants (T,), beside a reference of every point. Raises
-    CrankcheckError."""
+    """Return the logged bodies at instants (T,), beside a reference of every point."""
     scene, truth = judged.beside.scene, truth_of.at(time_s)
     errors = [
         (reading, _error_at(truth_of, reading, time_s))
@@ -207,8 +206,7 @@ def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
 
 
 def _turned(errors: Sequence[tuple[Reading, Array]], samples: int) -> dict[str, Array]:
-    """Return the angle errors of links; a relative angle has the error of the other link as
-    well."""
+    """Return the angle errors of links; a relative angle has that of the other link as well."""
     own = {e.channel.of: (e.channel.relative_to, off) for e, off in errors if e.channel.kind.turns}
     found: dict[str, Array] = {}
     for link in own:

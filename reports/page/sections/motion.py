@@ -139,8 +139,7 @@ class _DrawnScene:
         }
 
     def _axis(self, parts: ErrorParts) -> dict[str, object]:
-        """Return the driver's place [deg or m], angles from the first turn on, and the period part
-        [%]."""
+        """Return the driver's place [deg or m], from the first turn on, and the period part [%]."""
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
         return {
             "angle": [round(float(a), 6) for a in moving.told_places(self.scene, parts.driver_rad)],
