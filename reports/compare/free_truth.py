@@ -38,7 +38,7 @@ def free_truth(
 def free_truth_until(
     scene: Scene, lasts_s: float, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """Return the reference of a free scene for a duration [s]; ``dt_s`` is 0 if no step is known, and
+    """Return the reference of a free scene for a duration [s]; ``dt_s`` is 0 if none is known, and
     the limit of the phase is then its cap, unless one is given. Raises CrankcheckError as
     `analytic.free.release`."""
     motion = kept_motion(scene, lasts_s)
