@@ -191,10 +191,7 @@ class _Drawing:
         part = slice(int(first), int(last) + 1)
         some = extreme_rows((logged[part], error[part]), max(round(NEAR * self.most), LEAST))
         thinned = some.size < error[part].size
-        return {
-            "whole": whole,
-            "near": self._at(truth, logged, error, some + part.start, thinned),
-        }
+        return {"whole": whole, "near": self._at(truth, logged, error, some + part.start, thinned)}
 
     def _at(
         self, truth: Motion, logged: Array, error: Array, rows: Rows, is_thinned: bool

@@ -70,7 +70,7 @@ def log_motion(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | No
                     "pieces": body.embedded(time_s.size),
                 }
                 for (stretch, time_s), body in zip(shown, bodies, strict=True)
-            ],
+            ]
         },
         scripts=("mechanism.js", "stage.js", "log_motion.js"),
         styles=("log.css",),

@@ -249,9 +249,7 @@ def test_a_whole_log_is_complete_however_thin_it_is(fourbar: Scene, steps: int, 
     assert incomplete(run) == ""
 
 
-def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(
-    disturbed: Callable[..., Run],
-) -> None:
+def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(disturbed: Callable[..., Run]) -> None:
     scene = load_scene("fourbar-double-rocker")
     run = disturbed(scene)
     errors = compared(scene, with_link(run, "driver", theta=link_of(run, "driver").theta + 2.0))

@@ -232,10 +232,7 @@ def test_a_page_of_many_large_pictures_is_below_8_megabytes(
 
 
 def test_pictures_give_way_where_the_report_gets_too_large(
-    paged: tuple[Stored, Path],
-    matrix: Matrix,
-    both_page: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    paged: tuple[Stored, Path], matrix: Matrix, both_page: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = both_page.read_text(encoding="utf-8")
     most = len(whole.encode()) - 30_000
