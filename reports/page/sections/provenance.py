@@ -7,8 +7,8 @@ import shlex
 from collections.abc import Mapping, Sequence
 
 from reports.output.write import crankcheck_version
-from reports.page.sections.section import Section
-from reports.results.lines import Line, Look, left_out, usual, value_text
+from reports.page.sections.section import Section, setting_rows
+from reports.results.lines import Line, Look, left_out, usual
 from reports.results.overview import Report
 
 
@@ -54,11 +54,7 @@ def _settings(report: Report, engine: str) -> dict[str, object]:
         if line.engine == engine:
             variants.setdefault(report.look(line), line)
     first = usual(report.lines, engine)
-    rows = []
-    for name in dict.fromkeys(name for line in variants.values() for name in line.settings):
-        known = value_text(first.settings.get(name))
-        values = [value_text(line.settings.get(name)) for line in variants.values()]
-        rows.append((name, [(value, value != known) for value in values]))
+    rows = setting_rows([line.settings for line in variants.values()], first.settings)
     return {"engine": engine, "looks": list(variants), "usual": first.name, "rows": rows}
 
 
