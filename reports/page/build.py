@@ -46,10 +46,7 @@ class Head:
 def page(stored: Stored, matrix: Matrix | None = None) -> str:
     """Return the report of a store as one HTML file, with the hard cases that were run beside it.
 
-    Raises
-    ------
-    CrankcheckError
-        A store that can not be read, part by part.
+    Raises CrankcheckError for a store that can not be read, part by part.
     """
     report = PageReport(stored, matrix)
     sections = {name: build(report) for name, build in SECTIONS.items()}

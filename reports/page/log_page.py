@@ -26,10 +26,7 @@ ROOM = 2_000_000
 def log_page(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     """Return the page of a judged log; ``facts`` are versions and the like.
 
-    Raises
-    ------
-    CrankcheckError
-        A motion without a reference between the instants of the log.
+    Raises CrankcheckError for a motion without a reference between the instants of the log.
     """
     drawn = curves(judged, ROOM)
     sections = [
