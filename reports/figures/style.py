@@ -192,7 +192,6 @@ def saved(figure: Figure, kind: str, title: str) -> bytes:
 
 
 def _with_fonts(svg: str) -> str:
-    """Return the drawing with the letters of its texts as fonts in a style sheet."""
     texts = TEXT.findall(svg)
     letters = "".join(sorted(LETTERS.union(unescape("".join(texts))) - {"\n"}))
     rules = "".join(_rule(style, letters) for style, sign in FACES.items() if sign in svg)
@@ -253,8 +252,7 @@ class FigureSet(Generic[Of]):
         return {name: self._saved(solved, name, each) for name, each in self._drawn(solved)}
 
     def written(self, solved: Of, folder: Path) -> str:
-        """Write all figures; returns a line on the written files. Raises CrankcheckError where the
-        system refuses."""
+        """Write all figures; returns a line on their files. Raises CrankcheckError if refused."""
         names = []
         for name, figure in self._drawn(solved):
             names.append(name)
