@@ -61,8 +61,8 @@ CHANGED = {
         "(not (left is None or not _elsewhere(beside, far)))",
     ),
     76: (
-        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
-        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
+        "any_log.refuse_run(scene, log, replace(asked, require=required))",
+        "any_log.refuse_run(scene, log, replace(asked, require=required))",
         "pass",
     ),
     86: ("log: OwnLog = field(kw_only=True)", "True", "False"),
