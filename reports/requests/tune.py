@@ -114,7 +114,6 @@ def _how(
 
 
 def _goal(request: TuneRequest) -> Goal:
-    """The goal of the search, checked. Raises CrankcheckError."""
     target, budget, seed = request.target, request.budget, request.seed
     if not AT_ROUNDING <= target < COARSEST:
         raise CrankcheckError(
@@ -203,7 +202,6 @@ def _rows(bench: Bench, of: Attempt) -> list[Row]:
 
 
 def _unreached(goal: Goal, nearest: Attempt) -> str:
-    """Words on the nearest attempt, where none reaches the target."""
     if nearest.reason:
         return f"NOTHING REACHES {goal.target:g}; {nearest.reason}"
     if math.isinf(nearest.error):
