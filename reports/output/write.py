@@ -29,20 +29,11 @@ NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def check_file(
-    path: Path,
-    option: str,
-    endings: tuple[str, ...] = (),
-    *,
-    inputs: Iterable[Path | None] = (),
+    path: Path, option: str, endings: tuple[str, ...] = (), *, inputs: Iterable[Path | None] = ()
 ) -> None:
-    """Refuse a file that could not be written, before anything is run.
-
-    Raises
-    ------
-    CrankcheckError
-        An ending that is not one of ``endings``, a link, a folder in its place, no folder to hold
-        it, no right to write there, or that it is read (``inputs``).
-    """
+    """Refuse a file that could not be written, before anything is run. Raises CrankcheckError for
+    an ending that is not one of ``endings``, a link, a folder in its place, no folder to hold it,
+    no right to write there, or that it is read (``inputs``)."""
     if endings and path.suffix.lower() not in endings:
         ending = repr(path.suffix) if path.suffix else "no ending"
         raise CrankcheckError(f"{option} {path}: found {ending}; use {', '.join(endings)}")
@@ -112,11 +103,7 @@ def _write_into(stream: Path, raw: bytes) -> None:
 
 
 def check_folder(
-    path: Path,
-    option: str,
-    files: Iterable[str] = (),
-    *,
-    inputs: Iterable[Path | None] = (),
+    path: Path, option: str, files: Iterable[str] = (), *, inputs: Iterable[Path | None] = ()
 ) -> None:
     """Refuse a folder that could be neither written nor created, or whose ``files`` could not be
     replaced or are read (``inputs``). Raises CrankcheckError."""
@@ -200,7 +187,6 @@ class Outputs:
 
 
 def _refuse_input(path: Path, option: str, inputs: Iterable[Path | None]) -> None:
-    """Refuse to write over a file that is read. Raises CrankcheckError."""
     for read in inputs:
         try:
             same = read is not None and read.samefile(path)
@@ -223,13 +209,8 @@ def _looking_at(path: Path, option: str) -> Iterator[None]:
 
 
 def write(path: Path, content: bytes | str) -> None:
-    """Write a file whole: aside first, then renamed over the old one, or over a link.
-
-    Raises
-    ------
-    CrankcheckError
-        The system refused (disk full, rights taken away since the check).
-    """
+    """Write a file whole: aside first, then renamed over the old one, or over a link. Raises
+    CrankcheckError where the system refuses (disk full, rights taken away since the check)."""
     raw = content.encode() if isinstance(content, str) else content
     try:
         if _is_stream(path):

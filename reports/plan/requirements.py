@@ -16,12 +16,7 @@ from models.scene.cut_links import with_rigid_links
 from models.scene.driver import Controlled
 from reports.judge.tolerance import check_names
 from reports.plan.chosen import chosen_scenes, refuse_unfollowed
-from reports.plan.steps import (
-    FREE_STEP_S,
-    STEPS_PER_TURN,
-    counted_free,
-    positive,
-)
+from reports.plan.steps import FREE_STEP_S, STEPS_PER_TURN, counted_free, positive
 from reports.way.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
 from reports.way.way import StudyLinks, way_of
 
@@ -83,14 +78,9 @@ def refuse_giving_way(scene: Scene, instead: str) -> None:
 
 
 def refuse_unreleased(scene: Scene, duration_s: float) -> None:
-    """Refuse a scene that can not move freely, or not for so long.
-
-    Raises
-    ------
-    CrankcheckError
-        Friction that grows with the reaction of a joint, a load over time whose table ends before,
-        no mass that moves, a start that can not be assembled or contradicts itself.
-    """
+    """Refuse a scene that can not move freely, or not for so long. Raises CrankcheckError for
+    friction that grows with the reaction of a joint, a load over time whose table ends before, no
+    mass that moves, a start that can not be assembled or contradicts itself."""
     from analytic.free.release import release  # slow to import, for free motion alone
 
     check_names(scene)
@@ -213,14 +203,9 @@ def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> Non
 def refuse_unelastic(
     truth_of: Callable[[Scene, GivenAs], ElasticTruth], scene: Scene, given: GivenAs
 ) -> None:
-    """Refuse elastic links whose motion is not known, by their start.
-
-    Raises
-    ------
-    CrankcheckError
-        A link that stretches, which segments do not; a resonance, next to which no periodic motion
-        is found.
-    """
+    """Refuse elastic links whose motion is not known, by their start. Raises CrankcheckError for a
+    link that stretches, which segments do not; a resonance, next to which no periodic motion is
+    found."""
     try:
         truth = truth_of(scene, given)
     except EngineError:

@@ -78,15 +78,8 @@ class ExaminedStore:
 
 
 def examine(folder: Path) -> ExaminedStore:
-    """Look through a store.
-
-    Raises
-    ------
-    OSError
-        Its folder can not be looked at.
-    CrankcheckError
-        A store of another format.
-    """
+    """Look through a store. Raises OSError where its folder can not be looked at, CrankcheckError
+    for a store of another format."""
     # The request of a sweep is in the manifest before its first cell is in a part.
     folders = {name: open_folder(folder / name, name) for name in TABLES}
     damage = []
@@ -122,7 +115,6 @@ def _cells(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
 
 
 def _timings(folder: Path, timings: Folder) -> Iterator[Damage]:
-    """Yield the lost timings."""
     for name, error in timings.faults.items():
         yield Damage(f"timings/{name}", f"{error}; its times are lost", aside=True)
     if timings.fault and os.path.lexists(folder / "timings"):
@@ -200,13 +192,8 @@ class Stored:
 
 
 def read_store(folder: Path) -> Stored:
-    """Return the store in a folder, as far as it can be read.
-
-    Raises
-    ------
-    CrankcheckError
-        No store, one of another format, or without a manifest or a cell that can be read.
-    """
+    """Return the store in a folder, as far as it can be read. Raises CrankcheckError for no store,
+    one of another format, or without a manifest or a cell that can be read."""
     try:
         _refuse_unknown(folder)
         store = _examined(folder)

@@ -39,11 +39,8 @@ class Writer:
 
     Damage in it is mended at once, as ``mended`` says.
 
-    Raises
-    ------
-    CrankcheckError
-        A folder that is no store, is not to be written, has links for folders, or that another
-        sweep writes to.
+    Raises CrankcheckError for a folder that is no store, is not to be written, has links for
+    folders, or that another sweep writes to.
     """
 
     def __init__(self, folder: Path, manifest: Manifest) -> None:
@@ -140,7 +137,6 @@ class Writer:
 
 
 def _is_new(folder: Path) -> bool:
-    """True if there is nothing of a store yet."""
     return not (os.path.lexists(folder / MANIFEST) or has_parts(folder))
 
 

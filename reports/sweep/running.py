@@ -1,6 +1,5 @@
-"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one;
-and print the result.
-"""
+"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one; and
+print the result."""
 
 from __future__ import annotations
 
@@ -9,14 +8,13 @@ from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
-from reports.judge.cell import Cell, unfinished
+from reports.judge.cell import unfinished
 from reports.judge.rows import cell_row
 from reports.output.console import say, tell
 from reports.output.numbers import count
@@ -26,7 +24,7 @@ from reports.plan.study import Study
 from reports.results.lines import lines
 from reports.results.recommend import noise_line, recommendation_table, recommendations
 from reports.store.manifest import Manifest
-from reports.store.reader import Stored, read_store, stored_costs, stored_endings, stored_keys
+from reports.store.reader import read_store, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
 from reports.sweep.measured import (
     UNMEASURED,
@@ -88,7 +86,9 @@ class Running:
         failed: dict[str, Counter[str]] = {}
         cells = [task.cell for task in missing]
         if client is None:
-            ends = as_they_end(partial(_measured, keep_run), cells, jobs, self.limits)
+            ends = as_they_end(
+                lambda child, cell: child.call(measured, cell, keep_run), cells, jobs, self.limits
+            )
         else:
             ends = on_cluster(client, cells, self.limits, keep_run)
         with progress_bar(self.progress, "errors", len(missing)) as advance, closing(ends):
@@ -150,13 +150,9 @@ class Running:
         return ended.time_s < self.limits.time_s or ended.memory_gb < self.limits.memory_gb
 
     def _refuse_other_versions(self, task: Task, outcome: MeasuredCell) -> None:
-        """Refuse a worker elsewhere with other packages than the key of the cell says.
-
-        Raises
-        ------
-        CrankcheckError
-            An engine, or crankcheck itself, of another version there, or not installed.
-        """
+        """Refuse a worker elsewhere with other packages than the key of the cell says. Raises
+        CrankcheckError for an engine, or crankcheck itself, of another version there, or not
+        installed."""
         engine, row = task.cell.engine, outcome.row
         for name, found, here in (
             (engine, str(row["version"] or ""), task.version),
@@ -172,11 +168,6 @@ class Running:
             raise CrankcheckError(
                 f"a worker has no {engine}; install {engine}=={task.version} there"
             )
-
-
-def _measured(keep_run: bool, child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
-    """Run a cell in a child process."""
-    return child.call(measured, cell, keep_run)
 
 
 def _lost(task: Task, lost: Lost) -> MeasuredCell:
@@ -250,15 +241,11 @@ def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
         console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
         for reason, _ in reasons.most_common(2):
             say(console, f"    {reason}")
-    stored = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
-    console.print(harmless(stored), markup=False)
-    found = read_store(folder)
-    if not found.timings.empty:
-        _recommend(console, found)
-
-
-def _recommend(console: Console, stored: Stored) -> None:
-    """Print recommendations from all that the store holds."""
+    place = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
+    console.print(harmless(place), markup=False)
+    stored = read_store(folder)
+    if stored.timings.empty:
+        return
     console.print()
     older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
     if older:
