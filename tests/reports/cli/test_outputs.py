@@ -14,7 +14,6 @@ from tests.worlds.without_pdf import without_pdf
 
 
 def files(place: Path) -> dict[Path, bytes]:
-    """All that there is below a folder."""
     return {path: path.read_bytes() for path in place.rglob("*") if path.is_file()}
 
 
@@ -114,7 +113,6 @@ def ran(line: str) -> int:
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A store of one cell."""
     folder = tmp_path_factory.mktemp("kept")
     assert ran(f"{SWEEP} -o {folder}") == 0
     return folder

@@ -65,12 +65,10 @@ def written(folder: Path, name: str, text: str) -> Path:
 
 
 def asked_for(**options: Any) -> Study:
-    """The study of a sweep with these options."""
     return asked(SweepRequest(Path("x"), **options))
 
 
 def study_of(*variants: Variant, scene: str = "fourbar-lecture-1", **more: Any) -> Study:
-    """A study of one scene."""
     return Study(**{"scenes": [scene], "variants": variants, "steps_per_turn": [90.0]} | more)
 
 

@@ -17,7 +17,7 @@ from reports.sweep import running
 from reports.sweep.measured import MeasuredCell
 from reports.workers.signals import Stopped
 from tests.reports.store.test_damage import same
-from tests.worlds.command import COMMAND, PYTHON, script
+from tests.worlds.command import PYTHON, script
 from tests.worlds.command_line import crank, crank_alone, refused
 from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start, until
@@ -182,16 +182,3 @@ def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.Monke
 def test_a_folder_that_another_sweep_writes_to_is_refused(tmp_path: Path) -> None:
     with FileLock(tmp_path / ".lock"):
         refused(crank("sweep", *GRID, *STEPS, "-o", tmp_path), "another sweep writes there now")
-
-
-@slow("two processes: `make test` holds the lock by itself")
-def test_two_sweeps_into_one_folder_do_not_mix(programs: Start, tmp_path: Path) -> None:
-    first = begun(programs, tmp_path, (*CELLS, 1), signal.SIGSTOP)
-    until(lambda: psutil.Process(first.pid).status() == psutil.STATUS_STOPPED)
-    second = programs(COMMAND, "sweep", *GRID, *STEPS, "-o", tmp_path / "store")
-    _, err = second.communicate()
-    first.send_signal(signal.SIGTERM)
-    first.send_signal(signal.SIGCONT)
-    first.communicate()
-    assert (first.returncode, second.returncode) == (143, 2)
-    assert "another sweep writes there now" in err
