@@ -13,7 +13,7 @@ import platform
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -125,35 +125,6 @@ def check_folder(
         _refuse_input(path / name, option, read)
 
 
-def check_outputs(
-    files: Mapping[str, Path | None],
-    folder: Path | None = None,
-    names: Sequence[str] = (),
-    *,
-    inputs: Iterable[Path | None] = (),
-) -> None:
-    """Refuse files, by their options, and ``names`` in the folder of -o, that could not be written,
-    two of all these that are one file, and one that is read (``inputs``). Raises
-    CrankcheckError."""
-    outputs = [(option, path) for option, path in files.items() if path is not None]
-    read = list(inputs)
-    for option, path in outputs:
-        check_file(path, option, inputs=read)
-    if folder is not None:
-        check_folder(folder, "-o", names, inputs=read)
-        outputs += [("-o", folder / name) for name in names]
-    taken: dict[Path, str] = {}
-    for option, path in outputs:
-        with _looking_at(path, option):
-            real = path.parent.resolve() / path.name
-            several = _is_stream(path)  # /dev/stdout takes them one after the other
-        if real in taken and not several:
-            raise CrankcheckError(
-                f"{taken[real]} and {option}: both name {path}; give each a file of its own"
-            )
-        taken[real] = option
-
-
 @dataclass(frozen=True)
 class Outputs:
     """Files that a request names, each None where it names none, by their options, and a folder for
@@ -164,24 +135,37 @@ class Outputs:
     names: Mapping[str, str] = field(default_factory=dict)
 
     def check(self, inputs: Iterable[Path | None] = ()) -> None:
-        """Refuse as `check_outputs`. Raises CrankcheckError."""
-        check_outputs(self.files, self.folder, tuple(self.names), inputs=inputs)
-
-    def write(self, contents: Mapping[str, Callable[[], bytes | str]]) -> None:
-        """Write the requested contents, by name, or by option; each whole or not at all. Raises
-        CrankcheckError."""
-        for name, content in contents.items():
-            inside = self.folder / name if self.folder and name in self.names else None
-            places = [*filter(None, (self.files.get(self.names.get(name, name)), inside))]
-            made = content() if places else ""
-            for place in places:
-                write(place, made)
+        """Refuse files, and ``names`` in the folder, that could not be written, two of all these
+        that are one file, and one that is read (``inputs``). Raises CrankcheckError."""
+        outputs = [(option, path) for option, path in self.files.items() if path is not None]
+        read = list(inputs)
+        for option, path in outputs:
+            check_file(path, option, inputs=read)
+        if self.folder is not None:
+            check_folder(self.folder, "-o", self.names, inputs=read)
+            outputs += [("-o", self.folder / name) for name in self.names]
+        taken: dict[Path, str] = {}
+        for option, path in outputs:
+            with _looking_at(path, option):
+                real = path.parent.resolve() / path.name
+                several = _is_stream(path)  # /dev/stdout takes them one after the other
+            if real in taken and not several:
+                raise CrankcheckError(
+                    f"{taken[real]} and {option}: both name {path}; give each a file of its own"
+                )
+            taken[real] = option
 
     @contextlib.contextmanager
     def written(self, contents: Mapping[str, Callable[[], bytes | str]]) -> Iterator[None]:
-        """Write, and show in the block; a full disk costs the file, and not the shown text."""
+        """Write the requested contents, by name, or by option, each whole or not at all, and show
+        in the block; a full disk costs the file, and not the shown text. Raises CrankcheckError."""
         try:
-            self.write(contents)
+            for name, content in contents.items():
+                inside = self.folder / name if self.folder and name in self.names else None
+                places = [*filter(None, (self.files.get(self.names.get(name, name)), inside))]
+                made = content() if places else ""
+                for place in places:
+                    write(place, made)
         finally:
             yield
 

@@ -15,6 +15,7 @@ from models.scene import Scene
 from models.scene.cut_links import with_rigid_links
 from models.scene.driver import Controlled
 from reports.judge.tolerance import check_names
+from reports.output.numbers import listed
 from reports.plan.chosen import chosen_scenes, refuse_unfollowed
 from reports.plan.steps import FREE_STEP_S, STEPS_PER_TURN, counted_free, positive
 from reports.way.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
@@ -116,12 +117,10 @@ PART = 360
 """Divisor of the steps of a turn, or of a whole free run."""
 
 
-def chosen_springs(text: str, option: str = "--springs") -> Springs:
+def chosen_springs(text: str) -> Springs:
     """Return the springs of that name. Raises CrankcheckError for any other."""
     if text not in SPRINGS:
-        *most, last = SPRINGS
-        words = f"{', '.join(most)} or {last}"
-        raise CrankcheckError(f"{option} {shown(text)}: unknown; use {words}")
+        raise CrankcheckError(f"--springs {shown(text)}: unknown; use {listed(SPRINGS, 'or')}")
     return text
 
 

@@ -83,9 +83,8 @@ class TuneRequest:
         if best is None:
             console.print(Text(_unreached(goal, last), "bold red"))
         elif goal.engine in offering("snippet"):
-            period_s = goal.scenes[
-                0
-            ].driver.law.period_s  # to copy, at the speed of the first scene
+            # To copy, at the speed of the first scene.
+            period_s = goal.scenes[0].driver.law.period_s
             text = snippet(goal.engine, best.settings, float(best.tried), period_s)
             console.print()
             say_whole(console, text)

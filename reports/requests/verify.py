@@ -19,7 +19,7 @@ from reports.judge.rows import cell_frame, cell_row, error_frame
 from reports.output.console import say_whole, tell
 from reports.output.formats import csv, junit, parquet
 from reports.output.numbers import finite
-from reports.output.write import Outputs, check_outputs, provenance
+from reports.output.write import Outputs, provenance
 from reports.plan import chosen, requirements
 from reports.plan.singular import gives_forces, silent_note
 from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
@@ -58,7 +58,7 @@ class VerifyRequest(VerifyOptions):
         if self.baseline is not None:  # which ``-o`` may go on from, and no other output write over
             from reports.requests.diff import stored_files
 
-            check_outputs(self.files, inputs=stored_files(self.baseline))
+            Outputs(self.files).check(stored_files(self.baseline))
         digests = _digests(self)
         silent = silent_note(chosen.chosen_engines(())) if self.forces and not self.engines else ""
         for note in filter(None, (*passages(cells), silent, chosen.left_out_note(self.names))):
