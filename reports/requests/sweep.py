@@ -286,8 +286,9 @@ def _segments(text: str) -> int:
 def _numbers(
     option: str, text: str | None, kind: Callable[[str], Number], noun: str, such_as: str
 ) -> list[Number]:
+    parts = [] if text is None else text.split(",")
     try:
-        return [] if text is None else [*map(kind, text.split(","))]
+        return [kind(part) for part in parts]
     except ValueError:
         raise CrankcheckError(
             f"{option} {shown(text)}: write {noun} with commas between, such as {such_as}"

@@ -110,9 +110,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
     profiles = chosen.chosen_profiles(request.profiles, engines)
     given = requirements.given_of(scenes, request.segments, request.springs)
     length = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
-    steps = {
-        scene.name: laid_out(scene, length, given, with_forces=request.forces) for scene in scenes
-    }
+    laid = [(each, *laid_out(each, length, given, with_forces=request.forces)) for each in scenes]
     return [
         Cell(
             scene=scene,
@@ -128,8 +126,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
             segments=given.segments,
             springs=given.springs,
         )
-        for scene in scenes
-        for dt_s, count in [steps[scene.name]]
+        for scene, dt_s, count in laid
         for profile, gated in profiles
         for name in engines
     ]

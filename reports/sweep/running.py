@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
-from reports.judge.cell import unfinished
+from reports.judge.cell import Cell, unfinished
 from reports.judge.rows import cell_row
 from reports.output.console import say, tell
 from reports.output.numbers import count
@@ -77,6 +77,10 @@ class Running:
 
         So many ``jobs`` at a time here (0: one per processor), or all on the cluster of ``client``.
         """
+
+        def in_child(child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
+            return child.call(measured, cell, keep_run)
+
         ended = stored_endings(self.writer.folder)
         asked = {task.key for task in self.tasks}  # others would not come back
         over = {key for key in asked & set(ended) if again or self._wider_than(ended[key])}
@@ -86,9 +90,7 @@ class Running:
         failed: dict[str, Counter[str]] = {}
         cells = [task.cell for task in missing]
         if client is None:
-            ends = as_they_end(
-                lambda child, cell: child.call(measured, cell, keep_run), cells, jobs, self.limits
-            )
+            ends = as_they_end(in_child, cells, jobs, self.limits)
         else:
             ends = on_cluster(client, cells, self.limits, keep_run)
         with progress_bar(self.progress, "errors", len(missing)) as advance, closing(ends):
