@@ -65,6 +65,11 @@ CHANGED = {
         "any_log.refuse_run(scene, log, replace(asked, require=required))",
         "pass",
     ),
+    78: (
+        "option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name",
+        "name not in own and OTHERS.get(name) in own",
+        "(name not in own or OTHERS.get(name) in own)",
+    ),
     86: ("log: OwnLog = field(kw_only=True)", "True", "False"),
     101: (
         "return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS",
