@@ -91,7 +91,7 @@ def refuse_run(scene: Scene, run: Run, options: LogOptions) -> None:
         "--map": options.map is not None,
         "--require": bool(options.require),
     }
-    for option in (option for option, is_given in of_logs.items() if is_given):
+    for option in [name for name, is_given in of_logs.items() if is_given]:
         raise CrankcheckError(
             f"{option}: {known}, which says itself what it is; leave it out, or give frame() of "
             "the run"
