@@ -26,16 +26,8 @@ from reports.results.recommend import noise_line, recommendation_table, recommen
 from reports.store.manifest import Manifest
 from reports.store.reader import read_store, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
-from reports.sweep.measured import (
-    UNMEASURED,
-    MeasuredCell,
-    Repeats,
-    connected,
-    measured,
-    on_cluster,
-    timed_in_turns,
-    timing_row,
-)
+from reports.sweep import measured as measuring
+from reports.sweep.measured import MeasuredCell
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped
@@ -79,7 +71,7 @@ class Running:
         """
 
         def in_child(child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
-            return child.call(measured, cell, keep_run)
+            return child.call(measuring.measured, cell, keep_run)
 
         ended = stored_endings(self.writer.folder)
         asked = {task.key for task in self.tasks}  # others would not come back
@@ -92,7 +84,7 @@ class Running:
         if client is None:
             ends = as_they_end(in_child, cells, jobs, self.limits)
         else:
-            ends = on_cluster(client, cells, self.limits, keep_run)
+            ends = measuring.on_cluster(client, cells, self.limits, keep_run)
         with progress_bar(self.progress, "errors", len(missing)) as advance, closing(ends):
             for index, how in ends:
                 task = missing[index]
@@ -114,15 +106,15 @@ class Running:
         count = 0
         with (
             progress_bar(self.progress, "timings", ROUNDS * len(missing)) as advance,
-            closing(Isolated[Repeats](self.limits)) as isolated,
+            closing(Isolated[measuring.Repeats](self.limits)) as isolated,
         ):
             for at in range(0, len(missing), BLOCK):
                 block = missing[at : at + BLOCK]
                 cells = [(task.cell, guesses[task.key]) for task in block]
-                timings = timed_in_turns(isolated, cells, ROUNDS, advance)
+                timings = measuring.timed_in_turns(isolated, cells, ROUNDS, advance)
                 for task, timing in zip(block, timings, strict=True):
                     if timing is not None:
-                        row = timing_row(task.cell, *timing)
+                        row = measuring.timing_row(task.cell, *timing)
                         self.writer.timing({"key": task.key, **row, **where})
                         count += 1
                 self.writer.flush()
@@ -175,7 +167,7 @@ class Running:
 def _lost(task: Task, lost: Lost) -> MeasuredCell:
     """Return a cell that came to no end of its own, as a row with its reason."""
     row = cell_row(unfinished(task.cell, lost.status, lost.reason))
-    return MeasuredCell({**row, **UNMEASURED})
+    return MeasuredCell({**row, **measuring.UNMEASURED})
 
 
 @dataclass(frozen=True)
@@ -200,7 +192,7 @@ def swept(
     study, or of the folder, that are known before running.
     """
     laid = grid(study)
-    client = None if manner.dask is None else connected(manner.dask)
+    client = None if manner.dask is None else measuring.connected(manner.dask)
     facts = provenance({task.cell.engine: task.version for task in laid.tasks})
     run = {
         "command": list(command),

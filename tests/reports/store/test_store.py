@@ -202,7 +202,7 @@ def test_a_sweep_that_comes_or_goes_is_seen(store: Path, monkeypatch: pytest.Mon
     gone("cells")(store)
     for busy in ([True], [False, True]):
         seen = iter(busy)
-        monkeypatch.setattr("reports.store.reader.is_written", lambda _, seen=seen: next(seen))
+        monkeypatch.setattr("reports.store.folder.is_written", lambda _, seen=seen: next(seen))
         assert [each.what for each in read_store(store).damage] == [BUSY]
 
 

@@ -137,7 +137,7 @@ def test_workers_with_other_packages_are_refused(
         yield 0, replace(found, row=row, crankcheck=change.get("crankcheck", found.crankcheck))
 
     dask(monkeypatch, Cluster())
-    monkeypatch.setattr("reports.sweep.running.on_cluster", there)
+    monkeypatch.setattr("reports.sweep.measured.on_cluster", there)
     options = ("--engine", "pymunk", "--profile", "tuned", "--no-timing", "-o", str(tmp_path / "s"))
     done = crank("sweep", GRID[0], "--steps-per-turn", "90", "--dask", "tcp://there:1", *options)
     assert done.exit_code == (2 if words else 0)
