@@ -62,9 +62,14 @@ CHANGED = {
         "(not (left is None or not _elsewhere(beside, far)))",
     ),
     76: (
-        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
-        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
+        "any_log.refuse_run(scene, log, replace(asked, require=required))",
+        "any_log.refuse_run(scene, log, replace(asked, require=required))",
         "pass",
+    ),
+    78: (
+        "option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name",
+        "name not in own and OTHERS.get(name) in own",
+        "(name not in own or OTHERS.get(name) in own)",
     ),
     86: ("log: OwnLog = field(kw_only=True)", "True", "False"),
     101: (

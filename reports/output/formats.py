@@ -132,7 +132,6 @@ def _row(cells: Iterable[str]) -> str:
 
 
 def _inside_html(text: str) -> str:
-    """Return a text on one line of HTML."""
     return escape(" ".join(text.split()), quote=False).replace("@", f"@{JOINER}")
 
 

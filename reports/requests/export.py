@@ -1,6 +1,5 @@
-"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`;
-and `scenes`, the list of them.
-"""
+"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`; and
+`scenes`, the list of them."""
 
 import math
 import os
@@ -166,6 +165,5 @@ def _groups(scene: Scene) -> str:
 
 
 def _heading(kind: str) -> str:
-    """A kind of scenes, and the words that name all of them."""
     by_name = f"all of them by `{kind}`, as in `crankcheck verify {kind}`"
     return f"{kind}: {'all of them where no scene is named' if kind == KINEMATICS else by_name}"

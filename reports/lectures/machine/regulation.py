@@ -21,7 +21,7 @@ from models.scene import Scene
 from reports.lectures.machine import cycle_rows
 from reports.output.console import say_whole
 from reports.output.formats import ENDINGS, write_frame
-from reports.output.write import check_file, check_folder, check_outputs, write
+from reports.output.write import Outputs, check_file, check_folder, write
 from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
 from reports.requests.options import SceneName
 from reports.requests.shown import Shown
@@ -284,7 +284,7 @@ def _check(request: FlywheelRequest) -> None:
                 f"{SCENE}"
             )
         files = {"-o": request.output, "--write": request.written}
-        check_outputs(files, inputs=[find_scene(request.scene)])
+        Outputs(files).check([find_scene(request.scene)])
 
 
 def _scene(found: WantedFlywheel, *, free: bool) -> str:
