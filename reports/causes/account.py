@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -98,10 +98,9 @@ class _AccountTable:
 
     def total(self, some: Sequence[int]) -> float:
         """Return the remaining error and the cost of some accounts together."""
-        return float(self._least(some).sum() + self.cost[list(some)].sum())
+        return float(self._least_left(some).sum() + self.cost[list(some)].sum())
 
-    def _least(self, some: Sequence[int]) -> Array:
-        """Return the least error of each column that one of some accounts leaves."""
+    def _least_left(self, some: Sequence[int]) -> Array:
         least: Array = self.left[list(some)].min(axis=0, initial=UNTOLD)
         return least
 
@@ -131,7 +130,7 @@ class _AccountTable:
         """Return the accounts with the further account that lowers their total most."""
         if not plain:
             return []
-        gained = np.minimum(self.left[list(plain)], self._least(base)).sum(axis=1)
+        gained = np.minimum(self.left[list(plain)], self._least_left(base)).sum(axis=1)
         best = int(np.argmin(gained + self.cost[list(plain)]))
         return [[*base, plain[best]]] if plain[best] not in base else []
 
@@ -239,6 +238,15 @@ def fitted(
         if float(left @ left) > (1.0 - SETTLED) * size:
             break
     return at
+
+
+def fitted_from(
+    residual: Residual, starts: Iterable[Sequence[float]], delta: Sequence[float]
+) -> Array | None:
+    """Return the parameters (p,) with the least residual, fitted from several starts, if any."""
+    tried = (fitted(residual, start, delta) for start in starts)
+    found = [each for each in tried if each is not None]
+    return min(found, key=lambda each: float(np.sum(residual(each) ** 2)), default=None)
 
 
 def _slopes(residual: Residual, at: Array, left: Array, delta: Sequence[float]) -> Array | None:

@@ -72,6 +72,8 @@ TIGHT = 0.02
 ROUGH = 1.0
 """Mean square of the steps of a series over its own, above which it is noise: 2 where no sample
 predicts the next one (von Neumann, Ann. Math. Stat. 12, 1941)."""
+MOVED = 0.3
+"""A hypothesis affects a channel if it changes the reference by this part of its error."""
 BROUGHT_WITHIN = 1.0 / 3.0
 """Part that may be left where the channel is then within its limit."""
 
@@ -107,6 +109,11 @@ class Excerpt:
     def beside(self, expected: Array, values: Array | None = None) -> Array:
         """Return the error of the readings, or of other ``values``, against another reference."""
         return _finite(self.channel.error(self.values if values is None else values, expected))
+
+    def moves(self, expected: Array, least: float = 0.0) -> bool:
+        """True if another reference changes the error noticeably, and by more than ``least``."""
+        change = CauseSize.of(self.beside(expected) - self.error).largest
+        return change > max(least, MOVED * self.size.largest)
 
     def in_world(self, expected: Array) -> Excerpt:
         """Return the same readings against another reference; ``worst`` is that of these rows."""

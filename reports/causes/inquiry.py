@@ -22,8 +22,6 @@ MISSING = 0.4
 """Part of the channels that a hypothesis affects which may have another fault as well."""
 MENDED = 0.8
 """Part that may be left in a channel that comes within its limit by a fault of others."""
-MOVED = 0.3
-"""A hypothesis affects a channel if it changes the reference by this part of its error."""
 WELL = 0.02
 """Remaining part of an error explained too well to try expensive hypotheses."""
 NOTHING_LEFT = 1e-3
@@ -122,8 +120,16 @@ class Inquiry:
 
     def errors(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
         """Return the errors against a world, by column. Raises CrankcheckError."""
-        expected = self.expected(world, columns)
+        return self._beside(self.expected(world, columns))
+
+    def _beside(self, expected: Mapping[str, Array]) -> dict[str, Array]:
         return {column: self.excerpts[column].beside(each) for column, each in expected.items()}
+
+    def misfit(self, world: World, columns: Iterable[str]) -> Array:
+        """Return the errors of columns against a world one after the other, each over its size.
+        Raises CrankcheckError."""
+        errors = self.errors(world, columns)
+        return np.concatenate([errors[c] / self.excerpts[c].size.rms for c in columns])
 
     def channel(self, column: str) -> Channel:
         return self.excerpts[column].channel
@@ -185,14 +191,14 @@ class Inquiry:
             expected = self.expected(world, among)
         except CrankcheckError:
             return None
-        errors = {column: self.excerpts[column].beside(each) for column, each in expected.items()}
+        errors = self._beside(expected)
         told = self.account(name, cost, errors, phrase, expected=expected)
         if told is None or self.spoilt(errors):
             return None
         if all(self._vanishes(column, expected[column]) for column in told.rests):
             return None
         told = replace(told, world=world)
-        moved = [c for c in self.open if c in expected and self._moved(c, expected[c])]
+        moved = [c for c in self.open if c in expected and self.excerpts[c].moves(expected[c])]
         missed = [c for c in moved if c not in told.rests and c in self.unclaimed]
         return told if len(missed) <= missing * len(moved) else None
 
@@ -219,12 +225,6 @@ class Inquiry:
         only: that would explain any readings next to nothing."""
         before = CauseSize.of_signal(self.excerpts[column].expected).rms
         return CauseSize.of_signal(expected).rms < NOTHING_LEFT * before
-
-    def _moved(self, column: str, expected: Array) -> bool:
-        """True if the reference of a channel changes noticeably beside its error."""
-        excerpt = self.excerpts[column]
-        change = CauseSize.of(excerpt.beside(expected) - excerpt.error)
-        return change.largest > MOVED * excerpt.size.largest
 
     def within(self, world: World, left: Iterable[str]) -> Inquiry | None:
         """Return the inquiry into the open columns ``left`` in another world; None where there is

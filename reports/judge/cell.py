@@ -142,12 +142,11 @@ def examined(
     replaces the engine of that name: for an engine with a model of its own.
     """
     began = time.perf_counter()
-    found, done = _examined(cell, runner or run, adapter)
+    found, done = _untimed(cell, runner or run, adapter)
     return replace(found, wall_s=time.perf_counter() - began), done
 
 
-def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
-    """Return `examined`, but for the time."""
+def _untimed(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
     try:
         truth = cell.truth  # before the run: the reference of another scene is dropped
         own = adapter or engine(cell.engine)

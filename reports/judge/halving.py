@@ -56,7 +56,7 @@ def followed(
     placing, order : Placing, int
         The engine's, see `sim.engine.Engine`.
     """
-    worst, force = worst_place(errors), _worst_of(errors.rows, FORCES)
+    worst, force = worst_place(errors), _largest_total(errors.rows, FORCES)
     motion, summed_rad = errors.of_motion, errors.of_scene.summed_rad
     if worst is None or not motion.has_order:
         return Followed()
@@ -69,7 +69,7 @@ def followed(
     steps_s, faults = [dt_s / p for p in parts], [fault for _, fault in finer if fault]
 
     def pure(followed: Error) -> list[float]:
-        same = [_worst_of(rows, [followed.quantity]) for rows, _ in finer]
+        same = [_largest_total(rows, [followed.quantity]) for rows, _ in finer]
         return [followed.pure, *(row.pure if row else math.nan for row in same)]
 
     def over(quantities: Sequence[str], rounding: float) -> list[str]:
@@ -144,7 +144,7 @@ def _over(
     in_force = limits(scene, finer, tolerance)
     texts = []
     for name in quantities:
-        full, fine = errors.worst(name), _worst_of(rows, [name])
+        full, fine = errors.worst(name), _largest_total(rows, [name])
         if name not in before or full is None or fine is None:
             continue
         if not full.pure <= before[name].number:
@@ -205,10 +205,9 @@ def _rounding(drive: Error | None, exact: float) -> float:
 def worst_place(errors: Errors) -> Error | None:
     """Return the largest total error of angle, displacement or position, as pure numbers; where
     links bend, that of the deflection against the exact chain."""
-    groups = (_worst_of(errors.rows, names) for names in errors.of_links.followed)
+    groups = (_largest_total(errors.rows, names) for names in errors.of_links.followed)
     return next((worst for worst in groups if worst), None)
 
 
-def _worst_of(rows: Iterable[Error], quantities: Collection[str]) -> Error | None:
-    """Return the largest total error of some quantities, as pure numbers."""
+def _largest_total(rows: Iterable[Error], quantities: Collection[str]) -> Error | None:
     return largest(row for row in rows if row.quantity in quantities and row.kind == "total")

@@ -185,15 +185,15 @@ def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[
         place = f"{option} {text!r}"
         if not (equals or every):
             raise CrankcheckError(f"{place}: no `=` in it; write it like {option} angle=1e-4")
-        key = _quantity(name.strip(), place) if equals else every
-        numbers[key] = _positive(number, place)
+        key = _known_quantity(name.strip(), place) if equals else every
+        numbers[key] = _positive_number(number, place)
     return numbers
 
 
 def check_names(scene: Scene) -> None:
     """Refuse a scene whose [tolerance] names an unknown quantity."""
     for name in scene.tolerance:
-        _quantity(name, f"scene {scene.name}, [tolerance] {name}")
+        _known_quantity(name, f"scene {scene.name}, [tolerance] {name}")
 
 
 def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
@@ -222,16 +222,14 @@ def refuse_of_other_kinds(
         )
 
 
-def _quantity(name: str, place: str) -> str:
-    """Return the name; raise CrankcheckError with similar names for an unknown one."""
+def _known_quantity(name: str, place: str) -> str:
     if name in EVERY:
         return name
     hint = suggestion(name, EVERY, "use one of", 2, 0.6)
     raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
 
 
-def _positive(number: str, place: str) -> float:
-    """Return a finite number above 0."""
+def _positive_number(number: str, place: str) -> float:
     try:
         value = float(number)
     except ValueError:

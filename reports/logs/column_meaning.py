@@ -45,17 +45,16 @@ def column_meaning(
             found = Meaning("", None, False, "")
     else:
         found = Meaning(told.of, None, told.kind == "gap", "")
-    return _channel(column, told, found, named, times)
+    return _corrected_channel(column, told, found, named, times)
 
 
-def _channel(
+def _corrected_channel(
     column: str,
     told: ChannelTable | None,
     found: Meaning,
     named: SceneNames,
     times: Mapping[str, str],
 ) -> Channel | GapColumn:
-    """Return a channel by its name, corrected by the map. Raises CrankcheckError."""
     told = told or ChannelTable.model_construct(column=column)
     where = f"[[channel]] {column!r}"
     of = told.of or found.of
@@ -105,7 +104,6 @@ def _channel(
 def _check_roles(
     where: str, scene: Scene, body_kind: str, of: str, relative_to: str, on: str
 ) -> None:
-    """Refuse another link, or a body of a point, that does not exist. Raises CrankcheckError."""
     if relative_to and (body_kind != "link" or relative_to not in scene.links or relative_to == of):
         others = [name for name in scene.links if name != of]
         hint = suggestion(relative_to, others, "use one of")

@@ -59,7 +59,7 @@ def understood(
     unused += spare
     if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
-        raise CrankcheckError(f"{_nothing(columns, scene, unused)} {in_python}")
+        raise CrankcheckError(f"{_nothing_found_text(columns, scene, unused)} {in_python}")
     main = times["time"]
     base = instants(columns, main, unit_of_time(main, map_), holes=map_.file.holes == "meant")
     zero_s = float(base[0]) if map_.time.zero else 0.0
@@ -129,8 +129,7 @@ def _by_meaning(
     return channels, gaps, unused
 
 
-def _nothing(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) -> str:
-    """Return the message for a log without columns of the scene."""
+def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) -> str:
     bodies = few([*scene.links, *scene.pins, *scene.sliders], 12)
     why = f" ({cut(unused[0][0])!r}: {unused[0][1]})" if unused else ""
     return (
@@ -228,7 +227,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
         elif name in bodies:
             lines.append(f"# {map_file.toml_text(name)} is taken as its name says")
         else:
-            lines += map_file.form_lines(name, _why_not(name, named))
+            lines += map_file.form_lines(name, _why_no_meaning(name, named))
     return "\n".join(lines) + "\n", "; ".join(lacks)
 
 
@@ -246,16 +245,14 @@ def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
 
 def _time_lines(map_: map_file.Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
     """Return the table of times; with remarks for missing entries."""
-    told = map_.time.model_dump(exclude_defaults=True)
-    lines = ["[time]", *(f"{key} = {map_file.toml_text(value)}" for key, value in told.items())]
+    lines = [*map_file.time_lines(map_.time)]
     if not times:
         lines += [f"# column = {map_file.toml_text(name)}" for name in names]
         lines.append('# unit = "s"')
     return lines
 
 
-def _why_not(name: str, named: SceneNames) -> str:
-    """Return the reason why a column has no meaning."""
+def _why_no_meaning(name: str, named: SceneNames) -> str:
     try:
         found = meaning(name, named)
     except CrankcheckError as error:

@@ -133,7 +133,6 @@ def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> No
 
 
 def _refuse_holes(columns: Columns, column: str, time_s: Array, steps: Array) -> None:
-    """Refuse an even log that lacks samples in between. Raises CrankcheckError."""
     usual = float(np.median(steps))
     same = np.abs(steps - usual) <= EVEN * usual
     far = np.flatnonzero(steps > HOLE * usual)

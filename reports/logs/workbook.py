@@ -92,7 +92,7 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
     if at is None:
         raise UnreadableError(" is empty; a log has a header and rows of numbers")
     wide = max(map(len, rows))
-    names = _words(rows[at], wide)
+    names = _row_texts(rows[at], wide)
     blank = next((n for n, name in enumerate(names) if not name), None)
     if blank is not None:
         raise UnreadableError(
@@ -105,7 +105,7 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
             "and rocker_deg"
         )
     first = at + 1
-    if first < len(rows) and (units := units_below(_words(rows[first], wide), wide)):
+    if first < len(rows) and (units := units_below(_row_texts(rows[first], wide), wide)):
         names, first = with_units(names, units), first + 1
     if first == len(rows):
         raise UnreadableError(": a header and no rows; a log has rows of numbers")
@@ -115,8 +115,7 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
     return SheetTable(names, columns, first + 1)
 
 
-def _words(row: Sequence[object], wide: int) -> list[str]:
-    """Return the cells of a row as text."""
+def _row_texts(row: Sequence[object], wide: int) -> list[str]:
     found = ["" if cell is None else str(cell).strip() for cell in row]
     return found + [""] * (wide - len(found))
 

@@ -162,11 +162,10 @@ def _of_crank(log: OwnLog, crank: Reading) -> DriveFit:
     doubt = sigma / math.sqrt(square)
     at_start = sigma * math.sqrt(1.0 / angle.size + mean**2 / square)
     by = f"{angle.size} angles of the crank"
-    return DriveFit(speed, _near(start, log.scene), doubt, at_start, by)
+    return DriveFit(speed, _within_half_a_turn(start, log.scene), doubt, at_start, by)
 
 
-def _near(start_rad: float, scene: Scene) -> float:
-    """Return a start angle within half a turn of the scene's."""
+def _within_half_a_turn(start_rad: float, scene: Scene) -> float:
     told = float(scene.driver.law.at(np.zeros(1))[0][0])
     return told + math.remainder(start_rad - told, math.tau)
 
@@ -200,7 +199,7 @@ def _of_places(log: OwnLog) -> DriveFit:
     channels = "a channel" if len(places) == 1 else f"{len(places)} channels"
     return DriveFit(
         best[0],
-        _near(best[1], log.scene),
+        _within_half_a_turn(best[1], log.scene),
         *doubts,
         f"{count} places of {channels}",
         explains=_size(rest) <= EXPLAINED**2 * count,

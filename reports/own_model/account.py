@@ -97,12 +97,6 @@ def read(request: ModelRequest, limits: Limits) -> ModelAccount:
         account = child.call(read_here, request)
     finally:
         child.close()
-    return _unless_lost(account, request, limits)
-
-
-def _unless_lost(
-    account: ModelAccount | Lost, request: ModelRequest, limits: Limits
-) -> ModelAccount:
     if not isinstance(account, Lost):
         return account
     if isinstance(account.error, CrankcheckError) and NO_MEMORY not in str(account.error):
@@ -120,7 +114,7 @@ def read_here(request: ModelRequest) -> ModelAccount:
     found = assembled(own, request)
     scene = found.scene
     check_names(scene)
-    dt_s, steps = _counted(scene, own, request)
+    dt_s, steps = _step_s_and_count(scene, own, request)
     turns = min(dt_s * steps / scene.driver.law.period_s, repeats_after(scene) / math.tau)
     poses = max(POSES, math.ceil(POSES * turns))
     times = np.linspace(0.0, turns * scene.driver.law.period_s, poses)
@@ -171,8 +165,7 @@ def _proposed(touching: bool) -> list[Advised]:
     ]
 
 
-def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
-    """Return step [s] and number of steps. Raises CrankcheckError as `counted`."""
+def _step_s_and_count(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
     given_s = request.dt_s
     if given_s is None and request.steps_per_turn is None:
         if not 0.0 < own.dt_s < math.inf:

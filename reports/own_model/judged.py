@@ -87,10 +87,9 @@ class JudgedModel:
         """The other lines worth reporting."""
         names = told(self.account.profiles)
         rest = [one for one in self.lines if one.cell.profile not in names]
-        return [one for one in rest if self._says(one)]
+        return [one for one in rest if self._is_worth_reporting(one)]
 
-    def _says(self, one: Checked) -> bool:
-        """True if a line changes the error, or how the run ends."""
+    def _is_worth_reporting(self, one: Checked) -> bool:
         if one.status != self.own.status:
             return True
         factor = self.gains(one)[0]

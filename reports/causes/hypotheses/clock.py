@@ -105,13 +105,12 @@ def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> ClockFault | None:
     width = max(SCANNED * period, least)
     starts = np.arange(1, SCAN) / SCAN * period
     clocks = [ClockFault(first_s, float(start), 0.0) for start in starts]
-    there = inquiry.into(column, _rows(ages, width))
+    there = inquiry.into(column, _first_rows(ages, width))
     best = min(clocks, key=lambda each: _rest(there, column, each, paced=paced))
     return _grown(inquiry, column, best, width, paced=paced)
 
 
-def _rows(ages: Array, width: float) -> Rows:
-    """Return rows spread over the beginning of a log."""
+def _first_rows(ages: Array, width: float) -> Rows:
     return picked(int(np.searchsorted(ages, width, side="right")), most=ROWS)
 
 
@@ -121,7 +120,7 @@ def _grown(
     """Return the clock near another, fitted to the beginning of a channel, then to all of it."""
     ages = inquiry.excerpts[column].reading.instants - clock.first_s
     while True:
-        there = inquiry.into(column, _rows(ages, width))
+        there = inquiry.into(column, _first_rows(ages, width))
         near = _nearest(there, column, clock, paced=paced)
         if near is None or not near.runs:
             return None
@@ -185,7 +184,7 @@ def _either(inquiry: Inquiry, column: str, clock: ClockFault, cost: float) -> Ac
         for paced in (False, True)
     }
     plain, fast = accounts[False], accounts[True]
-    of_clock, of_driver = _words(inquiry, clock)
+    of_clock, of_driver = _clock_and_driver_text(inquiry, clock)
     if plain is None or (fast is not None and UNLIKE * _left(fast, plain) < _left(plain, fast)):
         words = f"{of_driver}, or {of_clock} and the rates are taken over its time"
         return fast and replace(fast, phrase=words)
@@ -199,8 +198,7 @@ def _left(account: Account, other: Account) -> float:
     return max(account.rests.get(column, 1.0) for column in (*account.rests, *other.rests))
 
 
-def _words(inquiry: Inquiry, clock: ClockFault) -> tuple[str, str]:
-    """Return a clock in words, and the driver that would show the same."""
+def _clock_and_driver_text(inquiry: Inquiry, clock: ClockFault) -> tuple[str, str]:
     law, pace = inquiry.world.scene.driver.law, 1.0 + clock.gain
     slow = "slow" if clock.gain > 0.0 else "fast"
     of_clock = f"the clock of the log runs {change(1.0 / pace, 1.0).lstrip('+-')} {slow}"
@@ -242,7 +240,7 @@ def stamps(inquiry: Inquiry) -> Iterator[Account | None]:
     world = inquiry.world.stamped(even)
     shaken = float(np.max(np.abs(off)))
     phrase = (
-        f"{_printed(inquiry)}, off by up to {duration(shaken)}: the samples are even, "
+        f"{_stamps_text(inquiry)}, off by up to {duration(shaken)}: the samples are even, "
         f"{interval:.6g} s apart"
     )
     for each in (world, _aligned(inquiry, world, middle, shaken)):
@@ -265,15 +263,13 @@ def _aligned(inquiry: Inquiry, world: World, middle: float, shaken: float) -> Wo
         ).stamped(world.stamps[-1])
 
     def residual(numbers: Array) -> Array:
-        errors = thin.errors(aligned(numbers), columns)
-        return np.concatenate([errors[c] / thin.excerpts[c].size.rms for c in columns])
+        return thin.misfit(aligned(numbers), columns)
 
     found = fitted(residual, (0.0, 0.0), (1e-4, 1e-4))
     return None if found is None or np.max(np.abs(found)) > 1.0 else aligned(found)
 
 
-def _printed(inquiry: Inquiry) -> str:
-    """Return the printed form of the times in words."""
+def _stamps_text(inquiry: Inquiry) -> str:
     log = inquiry.case.log
     column, unit = log.stamp
     size = UNITS["time"].get(unit, 1.0)

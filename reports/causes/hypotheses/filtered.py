@@ -155,11 +155,10 @@ def smoothed(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of smoothing, even or delayed, for channels without a good explanation."""
     for column in inquiry.unexplained:
         for delayed in (False, True):
-            yield _told_of_smooth(inquiry, column, delayed=delayed)
+            yield _smoothing_account(inquiry, column, delayed=delayed)
 
 
-def _told_of_smooth(inquiry: Inquiry, column: str, *, delayed: bool) -> Account | None:
-    """Return the account of smoothing over a fitted width, with a delay or without."""
+def _smoothing_account(inquiry: Inquiry, column: str, *, delayed: bool) -> Account | None:
     period = inquiry.period_s
     excerpt = inquiry.thin.excerpts[column]
 

@@ -58,7 +58,7 @@ def two_faults(inquiry: Inquiry) -> Iterator[Account]:
                 except (CrankcheckError, ArithmeticError, ValueError, IndexError):
                     continue
                 yield from (_both(inquiry, column, first, each) for each in found
-                            if _well(first, column, each))  # fmt: skip
+                            if _is_no_chance(first, column, each))  # fmt: skip
 
 
 def _unclear(inquiry: Inquiry) -> list[str]:
@@ -72,8 +72,7 @@ def _unclear(inquiry: Inquiry) -> list[str]:
     return [column for column in inquiry.open if column not in clear]
 
 
-def _well(first: First, column: str, second: Account) -> bool:
-    """True if the residual of two faults is too small for chance."""
+def _is_no_chance(first: First, column: str, second: Account) -> bool:
     excerpt = first.inquiry.excerpts[column]
     largest = second.lefts[column] * CauseSize.of(excerpt.error).largest
     return second.rests[column] <= TIGHT or largest <= excerpt.limit
