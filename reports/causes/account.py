@@ -65,7 +65,7 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
     that it explains best. At most one account is of another world, as a log has one."""
     if not accounts or not columns:
         return []
-    table = _AccountTable.of(accounts, columns)
+    table = _AccountTable(accounts, columns)
     worlds = [n for n, account in enumerate(accounts) if account.world is not None]
     plain = [n for n, account in enumerate(accounts) if account.world is None]
     starts = [[], *([world] for world in worlds)]
@@ -83,26 +83,21 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
 class _AccountTable:
     """Remaining error of each account (a,) in each column (c,), in powers of ten, and its cost."""
 
-    def __init__(self, left: Array, cost: Array) -> None:
-        self.left, self.cost = left, cost
-
-    @staticmethod
-    def of(accounts: Sequence[Account], columns: Sequence[str]) -> _AccountTable:
-        left = np.full((len(accounts), len(columns)), UNTOLD)
+    def __init__(self, accounts: Sequence[Account], columns: Sequence[str]) -> None:
+        self.cost = np.array([account.cost for account in accounts])
+        self.left = np.full((len(accounts), len(columns)), UNTOLD)
         for number, account in enumerate(accounts):
             for place, column in enumerate(columns):
                 if column in account.rests:
                     rest = max(account.rests[column], LEAST_REST)
-                    left[number, place] = np.log10(rest) + ORDER * account.order
-        return _AccountTable(left, np.array([account.cost for account in accounts]))
+                    self.left[number, place] = np.log10(rest) + ORDER * account.order
 
     def total(self, some: Sequence[int]) -> float:
         """Return the remaining error and the cost of some accounts together."""
         return float(self._least_left(some).sum() + self.cost[list(some)].sum())
 
     def _least_left(self, some: Sequence[int]) -> Array:
-        least: Array = self.left[list(some)].min(axis=0, initial=UNTOLD)
-        return least
+        return np.asarray(self.left[list(some)].min(axis=0, initial=UNTOLD))
 
     def owner(self, some: Sequence[int], worlds: Sequence[int], place: int) -> int | None:
         """Return the account that leaves least of a column, preferably an account of a world if it

@@ -124,30 +124,23 @@ DIGITS = 2e-3
 """Largest excess over half a turn by rounding [rad]: that of 3.142."""
 
 
-@dataclass(frozen=True)
-class Reader:
-    """Reader of columns as readings: the instants of the rows, and those of other columns."""
-
-    columns: Columns
-    time_s: Array
-    others: dict[str, Array]
-
-    def reading(self, channel: Channel, told: ChannelTable | None) -> Reading:
-        """Return the numbers of a channel in SI, and their instants."""
-        unit = UNITS[channel.kind.dimension][channel.unit]
-        raw = self.columns.numbers(channel.column)
-        with np.errstate(over="ignore"):  # which is refused
-            values = channel.sign * unit * (raw + channel.offset)
-        _refuse_huge(self.columns, channel, values)
-        if channel.kind.turns:
-            wrapped = told.wrapped if told else None
-            if wrapped is None:
-                wrapped = _is_wrapped(unit * raw)
-            channel = replace(channel, wrapped=wrapped)
-        own = self.others.get(channel.time, self.time_s)
-        if channel.delay_s:
-            own = own + channel.delay_s
-        return Reading(channel, np.asarray(values), own)
+def reading(
+    columns: Columns, channel: Channel, told: ChannelTable | None, instants: Array
+) -> Reading:
+    """Return the numbers of a channel in SI, at ``instants`` [s] but for its delay."""
+    unit = UNITS[channel.kind.dimension][channel.unit]
+    raw = columns.numbers(channel.column)
+    with np.errstate(over="ignore"):  # which is refused
+        values = channel.sign * unit * (raw + channel.offset)
+    _refuse_huge(columns, channel, values)
+    if channel.kind.turns:
+        wrapped = told.wrapped if told else None
+        if wrapped is None:
+            wrapped = _is_wrapped(unit * raw)
+        channel = replace(channel, wrapped=wrapped)
+    if channel.delay_s:
+        instants = instants + channel.delay_s
+    return Reading(channel, np.asarray(values), instants)
 
 
 def _refuse_huge(columns: Columns, of: Channel | GapColumn, values: Array) -> None:

@@ -79,15 +79,13 @@ class Columns:
     def cell(self, name: str, row: int) -> str:
         """Return the content of a cell that is no finite number."""
         found = self.raw[name][row]
-        if found is None or found is pd.NA or (isinstance(found, str) and not found.strip()):
-            return "the cell is empty"
-        return f"found {cut(str(found), 40)}"
+        return "the cell is empty" if _is_empty(found) else f"found {cut(str(found), 40)}"
 
     def _parsed(self, name: str, values: np.ndarray[Any, Any]) -> Array:
         """Return cells that are not all numbers as numbers; NaN for empty ones."""
         found = np.empty(values.shape[0])
         for row, cell in enumerate(values.tolist()):
-            if cell is None or cell is pd.NA or (isinstance(cell, str) and not cell.strip()):
+            if _is_empty(cell):
                 found[row] = np.nan
                 continue
             try:
@@ -101,6 +99,10 @@ class Columns:
                     f"{cure_of(text, self.decimal)}"
                 ) from None
         return found
+
+
+def _is_empty(cell: object) -> bool:
+    return cell is None or cell is pd.NA or (isinstance(cell, str) and not cell.strip())
 
 
 def read_columns(

@@ -6,8 +6,8 @@ from dataclasses import replace
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from reports.logs import map_file
-from reports.logs.channel import Channel, OwnLog
-from reports.logs.column_meaning import GapColumn, Reader, column_meaning, gaps_told
+from reports.logs.channel import Channel, OwnLog, Reading
+from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, reading
 from reports.logs.columns import Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
 from reports.logs.kinds import LENGTH
@@ -66,17 +66,23 @@ def understood(
     base = base - zero_s
     refuse_far(columns, main, base, scene)
     others = {c: further_instants(columns, c, zero_s, scene) for c in times.values() if c != main}
-    reader = Reader(columns, base, others)
+
+    def readings(some: Sequence[Channel]) -> tuple[Reading, ...]:
+        return tuple(
+            reading(columns, each, told.get(each.column), others.get(each.time, base))
+            for each in some
+        )
+
     ignored = {column for column, one in told.items() if one.ignore}
     acts = further_instants(columns, TIMES, zero_s, scene) if TIMES in borne else None
     return OwnLog(
         source=columns.source,
         scene=scene,
         time_s=base,
-        readings=tuple(reader.reading(each, told.get(each.column)) for each in channels),
+        readings=readings(channels),
         stamp=(main, unit_of_time(main, map_)),
         zero_s=zero_s,
-        copies=tuple(reader.reading(each, told.get(each.column)) for each in copies),
+        copies=readings(copies),
         gaps=gaps_told(columns, gaps),
         unused=tuple(unused),
         forces=log_forces(columns, scene, base, acts, ignored) if forces else None,
