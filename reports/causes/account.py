@@ -110,8 +110,7 @@ class _AccountTable:
         return None if best is None or self.left[best, place] >= UNTOLD else best
 
     def descended(self, start: Sequence[int], plain: Sequence[int]) -> list[int]:
-        """Return accounts, including the start, whose total no addition, removal or replacement of
-        one account lowers."""
+        """Return accounts whose total no addition, removal or exchange of one lowers."""
         some, total = list(start), self.total(start)
         while True:
             kept = [some, *([n for n in some if n != out] for out in some if out not in start)]

@@ -31,8 +31,7 @@ class LogCase:
 
     @cached_property
     def excerpts(self) -> Mapping[str, Excerpt]:
-        """The excerpt of each judged channel, by column. Raises CrankcheckError where there is no
-        reference."""
+        """The excerpt of each judged channel. Raises CrankcheckError without a reference."""
         return excerpts(self.readings, self.truth, self.limits)
 
     @property
@@ -169,8 +168,7 @@ class Excerpt:
         return rest <= (BROUGHT_WITHIN if within else EXPLAINED)
 
     def told_apart(self, error: Array) -> bool:
-        """True if the residual is negligible or noise, so that the explanation is not a mere
-        likeness."""
+        """True if the residual is negligible or noise: the explanation is more than a likeness."""
         return self.rest(error) <= TIGHT or _rough(error)
 
 

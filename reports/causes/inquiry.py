@@ -83,8 +83,7 @@ class Inquiry:
 
     @property
     def unexplained(self) -> tuple[str, ...]:
-        """Open columns that no account with at most one number so far explains well and brings
-        within its limit."""
+        """Open columns that no account with one number or none brings well within limits."""
         few = [account for account in self.accounts if account.cost < CAUSE + 2 * NUMBER]
         over = {
             column: excerpt.limit / excerpt.size.largest
@@ -126,8 +125,7 @@ class Inquiry:
         return {column: self.excerpts[column].beside(each) for column, each in expected.items()}
 
     def misfit(self, world: World, columns: Iterable[str]) -> Array:
-        """Return the errors of columns against a world one after the other, each over its size.
-        Raises CrankcheckError."""
+        """Return the errors in a world over their sizes, joined. Raises CrankcheckError."""
         errors = self.errors(world, columns)
         return np.concatenate([errors[c] / self.excerpts[c].size.rms for c in columns])
 
@@ -203,8 +201,7 @@ class Inquiry:
         return told if len(missed) <= missing * len(moved) else None
 
     def no_chance(self, account: Account) -> bool:
-        """True if an account with numbers explains several channels, or one so well that it is not
-        a mere likeness."""
+        """True if an account explains several channels, or one too well for a mere likeness."""
         if len(account.columns) > 1 or account.world is None:
             return True
         (column,) = account.columns
@@ -227,8 +224,7 @@ class Inquiry:
         return CauseSize.of_signal(expected).rms < NOTHING_LEFT * before
 
     def within(self, world: World, left: Iterable[str]) -> Inquiry | None:
-        """Return the inquiry into the open columns ``left`` in another world; None where there is
-        no such mechanism."""
+        """Return the inquiry into the columns ``left`` in another world, if it has a mechanism."""
         try:
             expected = self.expected(world)
         except CrankcheckError:
@@ -237,8 +233,7 @@ class Inquiry:
         return replace(self, world=world, excerpts=there, open=tuple(left), changed=True)
 
     def stretch(self, column: str) -> Inquiry:
-        """Return the inquiry into one column at consecutive rows around its largest error. Raises
-        CrankcheckError."""
+        """Return the inquiry into rows around a column's largest error. Raises CrankcheckError."""
         excerpt = self.excerpts[column]
         rows = excerpt.reading.values.size
         worst = int(excerpt.rows[np.argmax(np.abs(excerpt.error))])
@@ -255,8 +250,7 @@ class Inquiry:
         return replace(self, excerpts={column: there}, open=(column,))
 
     def whole(self, column: str) -> tuple[Array, Array]:
-        """Return all readings of a column, and their errors, 0 where a number is missing. Raises
-        CrankcheckError."""
+        """Return a column's readings and errors, 0 for missing numbers. Raises CrankcheckError."""
         reading = self.excerpts[column].reading
         channel = reading.channel
         if self.changed:

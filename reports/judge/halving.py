@@ -135,10 +135,8 @@ def _over(
     quantities: Sequence[str],
     rounding: float,
 ) -> str:
-    """Return the errors of a finer run over the limits of its step, the worst of each quantity.
-
-    An error over its limit at the full step fails its own rule, and is not repeated.
-    """
+    """Return the errors of a finer run over the limits of its step, the worst of each quantity. An
+    error over its limit at the full step fails its own rule, and is not repeated."""
     before = limits(scene, errors, tolerance)
     finer = _at_step(errors, parts, errors.of_scene.summed_rad * parts)
     in_force = limits(scene, finer, tolerance)
@@ -169,11 +167,9 @@ def _copied(
     runs: Sequence[Sequence[Error]],
     order: int,
 ) -> list[str]:
-    """Return the finer runs that are copies: of one before them, or of the reference.
-
-    A shorter step rounds otherwise, if nothing else: the errors of bodies that do not move evenly
-    with the driver are never the same to the last bit.
-    """
+    """Return the finer runs that are copies: of one before them, or of the reference. A shorter
+    step rounds otherwise, if nothing else: the errors of bodies that do not move evenly with the
+    driver are never the same to the last bit."""
     texts = []
     seen: dict[tuple[float, ...], str] = {}
     for number, rows in zip(parts, runs, strict=True):
@@ -196,8 +192,7 @@ def _copied(
 
 
 def _rounding(drive: Error | None, exact: float) -> float:
-    """Return the position error that rounding explains: a prescribed crank has no other, and at
-    most ``exact``."""
+    """Return the position error that rounding explains: of a set crank, at most ``exact``."""
     of_crank = drive.pure if drive is not None and drive.pure <= exact else 0.0
     return max(AT_ROUNDING, BEHIND_DRIVE * of_crank)
 

@@ -172,13 +172,9 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
 
 
 def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[str, float]:
-    """Parse `angle=1e-4` and the like, also several in one text with commas between.
-
-    ``every`` is the key of a number by itself, where that is permitted.
-
-    Raises CrankcheckError for a text that is not NAME=NUMBER, a name that is no quantity, a number
-    that is not positive.
-    """
+    """Parse `angle=1e-4` and the like, also several in one text with commas between. ``every`` is
+    the key of a number by itself, where that is permitted. Raises CrankcheckError for a text that
+    is not NAME=NUMBER, a name that is no quantity, a number that is not positive."""
     numbers: dict[str, float] = {}
     for text in (part.strip() for whole in texts for part in whole.split(",")):
         name, equals, number = text.rpartition("=")
@@ -209,8 +205,7 @@ def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
 def refuse_of_other_kinds(
     option: str, quantities: Iterable[str], known: Iterable[Mapping[str, Tolerance]]
 ) -> None:
-    """Refuse limits of quantities that none of the cells has, whose limits are the ``known``.
-    Raises CrankcheckError."""
+    """Refuse limits of quantities that none of the ``known`` has. Raises CrankcheckError."""
     names = [name for limits in known for name in limits]
     other = [name for name in quantities if name not in names]
     if other:

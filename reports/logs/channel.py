@@ -88,8 +88,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Gap:
-    """A column with the distance of the bodies at a pin or slider: in its ``unit``, and as
-    ``opening_m`` (T,)."""
+    """A column with the gap at a pin or slider: in its ``unit``, and as ``opening_m`` (T,)."""
 
     column: str
     of: str
@@ -144,10 +143,8 @@ def logged_motion(
     orders: Sequence[Order] = (0, 1, 2),
 ) -> Motion:
     """Return the positions of a log, or rates of some ``orders``, as a motion; the rest is NaN.
-
     ``truth_of`` gives the reference at the instants of an order, ``error_of`` the error of a
-    reading: a coordinate of a point that the log lacks equals the reference.
-    """
+    reading: a coordinate of a point that the log lacks equals the reference."""
     bodies: dict[str, dict[str, dict[str, Array]]]
     bodies = {"links": {}, "points": {}, "sliders": {}, "elastic": {}}
     for (kind, body), several in _slots(log).items():

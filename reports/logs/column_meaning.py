@@ -144,8 +144,7 @@ def reading(
 
 
 def _refuse_huge(columns: Columns, of: Channel | GapColumn, values: Array) -> None:
-    """Refuse absurdly large readings [SI]: an angle would lose its place within a turn. Raises
-    CrankcheckError."""
+    """Refuse absurd readings [SI], whose place in a turn is lost. Raises CrankcheckError."""
     angle = isinstance(of, Channel) and of.kind.turns
     most = MOST_TURNS * math.tau if angle else MOST
     row = int(np.argmax(np.abs(values) > most))

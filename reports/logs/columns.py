@@ -39,11 +39,8 @@ class Columns:
     decimal: str = "."
 
     def numbers(self, name: str) -> Array:
-        """Return a column as numbers, all of them finite.
-
-        Raises CrankcheckError for a cell that is empty, NaN, infinite or no number; the message has
-        its row. Also for durations and dates.
-        """
+        """Return a column as numbers, all of them finite. Raises CrankcheckError for a cell that is
+        empty, NaN, infinite or no number; the message has its row. Also for durations and dates."""
         values = np.asarray(self.raw[name])
         if values.dtype.kind in "mM":  # which numpy would count in nanoseconds
             raise CrankcheckError(

@@ -139,11 +139,8 @@ def plural(body_kind: str) -> str:
 @dataclass(frozen=True)
 class Kind:
     """One kind of reading: ``field`` of the motion of bodies of ``body_kind``, for vectors the
-    component ``axis``, None where it is a number.
-
-    ``quantity`` is its entry in `reports.quantities`; ``order`` 0 is a position, 1 and 2 are its
-    rates.
-    """
+    component ``axis``, None where it is a number. ``quantity`` is its entry in
+    `reports.quantities`; ``order`` 0 is a position, 1 and 2 are its rates."""
 
     name: str
     body_kind: LoggedKind
@@ -230,8 +227,7 @@ class Meaning:
 
 
 def own_meanings(bodies: Mapping[str, tuple[LoggedKind, ...]]) -> Mapping[str, Meaning | str]:
-    """Return the meanings of our own columns of ``bodies``, by name; where two bodies give the same
-    name, of the later one."""
+    """Return the meanings of our own columns of bodies; of a name of two, that of the later."""
     found: dict[str, Meaning | str] = {}
     for body, kinds in bodies.items():
         said: dict[str, Meaning | str] = {

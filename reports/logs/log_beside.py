@@ -64,11 +64,9 @@ class AtCrank(Truth):
 
 @dataclass(frozen=True)
 class LogBeside(Beside):
-    """A log beside the reference: tracks of its own content alone.
-
-    ``step_s`` is the stated step, 0 for none: without one there is no start, and nothing is
-    differenced. A reference `AtCrank` has ``geometry_alone``.
-    """
+    """A log beside the reference: tracks of its own content alone. ``step_s`` is the stated step, 0
+    for none: without one there is no start, and nothing is differenced. A reference `AtCrank` has
+    ``geometry_alone``."""
 
     step_s: float = 0.0
     geometry_alone: bool = False
@@ -188,8 +186,7 @@ def _gaps(log: OwnLog) -> dict[str, Array]:
 
 
 def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
-    """Return the scene's positions, rates and, where requested, forces that the log lacks, quantity
-    by quantity."""
+    """Return positions, rates and, on request, forces that the log lacks, quantity by quantity."""
     held, there = list[tuple[str, str]](), list[tuple[str, str]]()
     way = way_of(log.scene)
     roles = way.roles_of(with_forces=beside.run.with_forces)

@@ -112,8 +112,7 @@ def read_map(path: Path) -> Map:
 
 
 def map_of(raw: Mapping[str, object], place: str) -> Map:
-    """Return a map of such tables; ``place`` names them in messages. Raises CrankcheckError with
-    every fault."""
+    """Return a map of such tables, at ``place``. Raises CrankcheckError with every fault."""
     try:
         map_ = Map.model_validate(raw)
     except ValidationError as error:
@@ -125,10 +124,8 @@ def map_of(raw: Mapping[str, object], place: str) -> Map:
 
 
 def _check_words(map_: Map, place: str) -> None:
-    """Refuse unknown units and kinds, and repeated columns.
-
-    Raises CrankcheckError with every fault.
-    """
+    """Refuse unknown units and kinds, and repeated columns. Raises CrankcheckError with every
+    fault."""
     faults = []
     twice = set[str]()
     if map_.time.unit is not None and map_.time.unit not in UNITS["time"]:

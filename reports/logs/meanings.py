@@ -196,11 +196,9 @@ def judged_channels(
 
 
 def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, str] | None:
-    """Return a form of the map of a log with all its columns, and the entries still missing.
-
-    None where names and map give the times and a column of the scene, as the fault is another one
-    then, and where the map names a missing column.
-    """
+    """Return a form of the map of a log with all its columns, and the entries still missing. None
+    where names and map give the times and a column of the scene, as the fault is another one then,
+    and where the map names a missing column."""
     told = {one.column: one for one in map_.channel}
     if not {*told, map_.time.column or next(iter(columns.raw))} <= set(columns.raw):
         return None

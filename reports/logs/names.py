@@ -26,10 +26,8 @@ RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 
 def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | str:
     """Return the meaning of a column's name, or the reason for none. A unit ``told`` by the map
-    replaces that in the name.
-
-    Raises CrankcheckError for units that contradict each other, or their kind.
-    """
+    replaces that in the name. Raises CrankcheckError for units that contradict each other, or their
+    kind."""
     if own := named.own.get(column):
         if isinstance(own, str) or not told:
             return own
@@ -120,8 +118,7 @@ def kind_of_words(
 def _kind_of_order(
     body_kind: Literal["link", "slider"], words: Sequence[str], unit: str
 ) -> kinds.Kind | str:
-    """Return the kind whose derivative the words name, or that has the unit where there are none;
-    or the reason for none."""
+    """Return the kind by a derivative that words name, or by the unit; or why there is none."""
     of_body = [kind for kind in kinds.KINDS.values() if kind.body_kind == body_kind]
     if words:
         order = _order(words, DERIVATIVES[body_kind])

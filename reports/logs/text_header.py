@@ -84,8 +84,7 @@ def with_units(names: Sequence[str], units: Sequence[str]) -> list[str]:
 
 
 def units_below(fields: Sequence[str], columns: int) -> list[str]:
-    """Return the units of a row of words alone, some of them known units: "" for a column without,
-    none for another row."""
+    """Return the units in a row of words, some of them known, "" for none; [] for another row."""
     bare = [field.strip("[]() ") for field in fields]
     words = [field for field in bare if field not in UNITLESS]
     if len(bare) != columns or not any(map(spelled_unit, words)) or any(map(is_number, words)):

@@ -21,18 +21,15 @@ HEXADECIMAL = re.compile(rb"0[xX]")
 
 @dataclass(frozen=True)
 class RowReader:
-    """Reader of the rows of a text: the lines ``below`` its header, with decimals after a point or
-    comma."""
+    """Reader of the rows ``below`` the header of a text, with decimals after a point or comma."""
 
     header: Header
     below: text_lines.Body
     decimal: str
 
     def table(self, fields: Sequence[str], wanted: Callable[[str], bool]) -> pa.Table:
-        """Return the wanted columns, as numbers where all of their cells are, as text else.
-
-        Raises UnreadableError for rows that do not fit the header, and for too many.
-        """
+        """Return the wanted columns, as numbers where all of their cells are, as text else. Raises
+        UnreadableError for rows that do not fit the header, and for too many."""
         self._refuse_misfit_first(fields)
         names = self.header.names
         types = {

@@ -34,10 +34,8 @@ def time_of(column: str, told: str = "") -> tuple[str, str] | None:
 
 
 def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
-    """Return the columns of times, by kind: that of all rows is ``time``.
-
-    Raises CrankcheckError for none, and for two.
-    """
+    """Return the columns of times, by kind: that of all rows is ``time``. Raises CrankcheckError
+    for none, and for two."""
     found: dict[str, list[str]] = {}
     others = {one.column for one in map_.channel if one.ignore or map_.time.column is not None}
     for column in columns.raw:

@@ -31,8 +31,7 @@ class SheetTable:
 
 
 def sheet_columns(raw: bytes, asked: str) -> SheetTable:
-    """Read the ``asked`` sheet of a workbook, or the first. Raises UnreadableError for no workbook,
-    and for no log in it."""
+    """Read the ``asked`` sheet, or the first. Raises UnreadableError for no log in it."""
     try:
         with zipfile.ZipFile(io.BytesIO(raw)) as packed:
             unpacked = sum(each.file_size for each in packed.infolist())

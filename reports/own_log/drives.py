@@ -17,8 +17,7 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.log_beside import MANY, AtCrank
 
 LogDrive = Literal["scene", "fitted", "logged"]
-"""The scene's law; constant speed, fitted to the log; or the crank's angle at each row, for the
-geometry alone."""
+"""The scene's law; a constant speed fitted to the log; or its angles, for geometry alone."""
 STARTS = 24
 """Angles of the start that are tried, where the log lacks the driver's."""
 FIRST = 400
@@ -67,11 +66,8 @@ def chosen_drive(text: str) -> LogDrive:
 
 
 def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
-    """Return the reference, and the fit of its drive.
-
-    Raises CrankcheckError for a drive that the log, or the scene's law, does not allow; a crank
-    that leaves its range.
-    """
+    """Return the reference, and the fit of its drive. Raises CrankcheckError for a drive that the
+    log, or the scene's law, does not allow; a crank that leaves its range."""
     links, points = _compared(log)
     if drive == "scene":
         return Truth(log.scene, links=links, points=points), None
@@ -273,8 +269,7 @@ FACTORS = (1.0, 0.5, 0.7, 1.5, 2.0)
 
 
 def speeds(readings: Sequence[Reading], usual_rad_s: float) -> list[float]:
-    """Return speeds of both signs [rad/s], first those that repeat the readings best, then some
-    near the scene's own."""
+    """Return speeds of both signs [rad/s]: of repeating readings, then near the scene's own."""
     found = [usual_rad_s * factor for factor in FACTORS]
     periodic = _frequencies(readings)
     chosen = dict.fromkeys([*periodic, *(abs(each) for each in found)])

@@ -47,12 +47,9 @@ NOT_OF_LOGS = ("CC110", "CC111", "CC115", "CC117")
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedLog(Evidence):
-    """A log with its results.
-
-    ``beside`` is the comparison, ``fit`` the fitted drive of its reference, if any. ``causes``
-    explain errors out of tolerance, and delays within it; ``not_judged`` are parts of the scene
-    that the log lacks; ``notes`` are further facts.
-    """
+    """A log with its results. ``beside`` is the comparison, ``fit`` the fitted drive of its
+    reference, if any. ``causes`` explain errors out of tolerance, and delays within it;
+    ``not_judged`` are parts of the scene that the log lacks; ``notes`` are further facts."""
 
     log: OwnLog
     beside: LogBeside

@@ -109,8 +109,7 @@ def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
 
 
 def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[str, float]:
-    """Return the allowed error of each column [SI]: the least limit that it exceeds, or else the
-    largest."""
+    """Return the allowed error of each column [SI]: the least limit exceeded, or the largest."""
     over: dict[str, list[float]] = {}
     under: dict[str, list[float]] = {}
     for row in errors.rows:
@@ -130,10 +129,8 @@ def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[st
 
 
 def required_name(scene: Scene, name: str) -> tuple[str, str, str]:
-    """Return a required name as given, with its quantity and body, "" for any.
-
-    Raises CrankcheckError for one that is neither.
-    """
+    """Return a required name as given, with its quantity and body, "" for any. Raises
+    CrankcheckError for one that is neither."""
     bodies = {*scene.links, *scene.pins, *scene.sliders}
     if name in QUANTITIES:
         return name, name, ""

@@ -34,8 +34,7 @@ POSES = 73
 
 @dataclass(frozen=True)
 class ProposedChange:
-    """Settings that may be recommended, and the change of the file: a diff, or words; "" for no
-    change."""
+    """Settings that may be recommended, with the change of the file: a diff, words, or ""."""
 
     advised: Advised
     patch: str
@@ -199,8 +198,7 @@ class ErrorCourse:
 
 @dataclass(frozen=True, kw_only=True)
 class CheckedLine(Checked):
-    """A line that was run and judged: also its last turn, and its whole course; without both where
-    it logged nothing."""
+    """A judged line, with its last turn and its whole course where it logged something."""
 
     last_turn: Trace = field(default_factory=dict)
     course: ErrorCourse | None = None
@@ -217,8 +215,7 @@ def checked(cell: Cell, adapter: Engine) -> CheckedLine:
 
 
 def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
-    """Return the course of a run, None where it logged nothing. Raises CrankcheckError where there
-    is no reference."""
+    """Return the course of a run, None without a log. Raises CrankcheckError for no reference."""
     beside = Beside.of(truth_of(Same(cell.scene)), run)
     if beside is None:
         return None

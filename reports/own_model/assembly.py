@@ -23,8 +23,7 @@ from sim.registry.own_models import MOST_TURNS, OwnModel
 MOST_CHOICES = 8
 """Most choices that are tried, two to this power; beyond it the user chooses."""
 ALIKE = 0.1
-"""A pose fits both assemblies if it is nearer to the best than to the next by less than this
-share."""
+"""A pose fits two assemblies if it is nearer to the best than the next by less than this share."""
 TURN = math.tau
 SHOWN = 6
 
@@ -157,9 +156,7 @@ def _why_not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str
 
 def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
     """Return the requested and the possible range of the driver in words; ``otherwise`` if empty.
-
-    The angle of the driver is its joint's reading, so that all is in the joint's own coordinate.
-    """
+    The angle of the driver is its joint's reading, so that all is in the joint's own coordinate."""
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     way = math.copysign(TURN, request.speed_rad_s)
     end = start + way * request.turns

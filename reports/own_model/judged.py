@@ -41,10 +41,8 @@ class JointGap:
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedModel:
-    """A model as read, and its lines: as written first, recommended last.
-
-    The verdict is that on the model as written.
-    """
+    """A model as read, and its lines: as written first, recommended last. The verdict is that on
+    the model as written."""
 
     account: ModelAccount
     lines: Sequence[CheckedLine]
@@ -108,8 +106,7 @@ class JudgedModel:
         return first, second, third
 
     def still(self) -> Finding | None:
-        """Return the worst failure of the recommended settings, as a part of its limit; None if
-        there is none."""
+        """Return the worst failure of the recommended settings, as a part of its limit, if any."""
         failures = self.lines[-1].failures
         return max(failures, key=_part, default=None)
 

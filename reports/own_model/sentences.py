@@ -1,5 +1,4 @@
-"""Words for an own model: its reading, its possible disturbances, the gain of each line, the
-verdict."""
+"""Words for an own model: its reading, its possible disturbances, gains of lines, the verdict."""
 
 import math
 from collections.abc import Sequence

@@ -28,8 +28,7 @@ FARTHEST = 20.0
 """Largest magnitude of the logarithm of a time constant in samples."""
 LEAST_ROWS = 16
 PASSED = 0.1
-"""Least part of a signal that a filter has to pass: below it, no reading would be there to
-explain."""
+"""Least part of a signal that a filter has to pass: less would leave no readings to explain."""
 
 
 def filtered(inquiry: Inquiry) -> Iterator[Account | None]:
@@ -84,8 +83,7 @@ def _low_pass(stretch: Inquiry, column: str) -> Account | None:
 
 
 def _told(stretch: Inquiry, column: str, name: str, left: Array, phrase: str) -> Account | None:
-    """Return the account of a filter; None if it passes next to nothing, or if its curve is a mere
-    likeness."""
+    """Return the account of a filter; None if it passes next to nothing, or is a mere likeness."""
     excerpt = stretch.excerpts[column]
     passed = CauseSize.of_signal(excerpt.expected + excerpt.error - left).rms
     if passed < PASSED * CauseSize.of_signal(excerpt.expected).rms or not excerpt.told_apart(left):

@@ -1,5 +1,4 @@
-"""Readings of another quantity than the column states: another body, another kind, or relative to
-another link."""
+"""Readings of another quantity than stated: another body or kind, or relative to another link."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -222,8 +221,7 @@ def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
 
 
 def _read_as(values: Array, own: Channel, other: Channel) -> Iterator[tuple[Channel, Array]]:
-    """Yield a column as another channel, with its readings as they are and with its numbers as the
-    map reads the other's."""
+    """Yield a column as another channel: as read, and with its numbers read as the other's."""
     instead = replace(
         other,
         column=own.column,

@@ -164,8 +164,7 @@ def _phrase(
 
 
 def _steady_rate(excerpt: Excerpt) -> float:
-    """Return the rate of a steadily moving reference, for which a zero and a delay are the same; 0
-    where it is not steady."""
+    """Return the steady rate of a reference, for which a zero and a delay are the same, else 0."""
     fine = np.isfinite(excerpt.expected)
     times, signal = excerpt.instants[fine], excerpt.expected[fine]
     times, signal = times - times.mean(), signal - signal.mean()

@@ -97,8 +97,7 @@ def _both(inquiry: Inquiry, column: str, first: First, second: Account) -> Accou
 
 
 def _read_otherwise(inquiry: Inquiry, column: str) -> Iterator[First]:
-    """Yield a channel in other units and of the other sign, if its readings then have the right
-    size, and are nearer."""
+    """Yield a channel in another unit or sign, if it then has the right size and is nearer."""
     excerpt = inquiry.excerpts[column]
     channel = excerpt.channel
     units = UNITS[channel.kind.dimension]
@@ -170,8 +169,7 @@ def _without_samples(inquiry: Inquiry, column: str) -> Iterator[First]:
 
 
 def _stuck(excerpt: Excerpt, values: Array, error: Array) -> Mask:
-    """Return a mask of readings that repeat the one before while they should move by more than
-    their limit."""
+    """Return a mask of readings that repeat the one before, but should move by over their limit."""
     where = np.zeros(values.shape, dtype=bool)
     where[1:] = values[1:] == values[:-1]
     expected = values - error

@@ -164,18 +164,6 @@ def test_it_is_refused_in_one_message(name: str, apart: Isolated[Ended], tmp_pat
     assert ended.peak - ended.before < LESS
 
 
-@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root reads every file")
-def test_a_log_that_may_not_be_read_is_refused(apart: Isolated[Ended]) -> None:
-    def locked(path: Path) -> None:
-        path.write_bytes(bad_logs.text(*bad_logs.ROWS))
-        path.chmod(0)
-
-    ended = apart.call(partial(attempt, name="log.csv"), locked, *PLAIN.split())
-    assert isinstance(ended, Ended)
-    assert ended.code == 2
-    assert "ermission" in ended.errors
-
-
 TURNS, PER_TURN = 1000, 1000
 
 
