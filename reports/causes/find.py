@@ -1,6 +1,6 @@
 """Search for the causes of the errors of a log."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account, chosen, sentence
 from reports.causes.cause import Cause, LogCase
-from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypothesis
+from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypotheses, Hypothesis
 from reports.causes.inquiry import Inquiry
 
 FEWEST_ROWS = 8
@@ -27,7 +27,7 @@ def causes(case: LogCase) -> tuple[Cause, ...]:
     inquiry = Inquiry.of(case)
     if inquiry.rows < FEWEST_ROWS:  # numbers could be found for anything; or it has gaps alone
         return ()
-    accounts = _accounts(inquiry, {**OF_CHANNELS, **OF_LOGS})
+    accounts = _accounts(inquiry, (*OF_CHANNELS, *OF_LOGS))
     told = chosen(accounts, inquiry.open)
     world = next((account for account in told if account.world is not None), None)
     told = _advised(inquiry, accounts, told) if world is None else _beside(inquiry, world, told)
@@ -80,9 +80,9 @@ def _columns_of(told: Sequence[Account]) -> set[str]:
     return {column for account in told for column in account.columns}
 
 
-def _accounts(inquiry: Inquiry, hypotheses: Mapping[str, Hypothesis]) -> tuple[Account, ...]:
+def _accounts(inquiry: Inquiry, hypotheses: Hypotheses) -> tuple[Account, ...]:
     """Return the accounts of each hypothesis, with its place; each sees those before it."""
-    for order, hypothesis in enumerate(hypotheses.values()):
+    for order, hypothesis in enumerate(hypotheses):
         told = (replace(account, order=order) for account in _said(hypothesis, inquiry))
         inquiry = replace(inquiry, accounts=(*inquiry.accounts, *told))
     return inquiry.accounts

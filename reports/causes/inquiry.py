@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Motion
 from reports.causes.account import CAUSE, NUMBER, Account
 from reports.causes.cause import EXPLAINED, MOST, CauseSize, Excerpt, LogCase, Rows, picked
 from reports.causes.world import World
@@ -77,25 +76,24 @@ class Inquiry:
     @property
     def unclaimed(self) -> tuple[str, ...]:
         """Open columns that no account without a fitted number explains."""
-        plain = [account for account in self.accounts if account.cost < CAUSE + NUMBER]
-        well = {c for account in plain for c, rest in account.rests.items() if rest <= EXPLAINED}
-        return tuple(column for column in self.open if column not in well)
+        return self._open_beside(CAUSE + NUMBER, lambda column: EXPLAINED)
 
     @property
     def unexplained(self) -> tuple[str, ...]:
         """Open columns that no account with one number or none brings well within limits."""
-        few = [account for account in self.accounts if account.cost < CAUSE + 2 * NUMBER]
         over = {
             column: excerpt.limit / excerpt.size.largest
             for column, excerpt in self.excerpts.items()
             if excerpt.size.largest > 0.0
         }
-        well = {
-            column
-            for account in few
-            for column, rest in account.rests.items()
-            if rest <= min(WELL, over.get(column, WELL))
-        }
+        return self._open_beside(
+            CAUSE + 2 * NUMBER, lambda column: min(WELL, over.get(column, WELL))
+        )
+
+    def _open_beside(self, cost: float, enough: Callable[[str], float]) -> tuple[str, ...]:
+        """Return the open columns of which each account below a cost leaves more than enough."""
+        few = [account for account in self.accounts if account.cost < cost]
+        well = {c for account in few for c, rest in account.rests.items() if rest <= enough(c)}
         return tuple(column for column in self.open if column not in well)
 
     @property
@@ -105,16 +103,14 @@ class Inquiry:
 
     def expected(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
         """Return the reference in a world, by column (all of them). Raises CrankcheckError."""
-        motions: dict[bytes, Motion] = {}
         groups: dict[bytes, list[str]] = {}
         for column in self.excerpts if columns is None else columns:
             groups.setdefault(self.excerpts[column].instants.tobytes(), []).append(column)
-        found = {}
-        for instants, group in groups.items():
+        found: dict[str, Array] = {}
+        for group in groups.values():
             channels = [self.channel(column) for column in group]
-            motions[instants] = world.at(self.excerpts[group[0]].instants, channels)
-            for column, channel in zip(group, channels, strict=True):
-                found[column] = channel.expected(motions[instants])
+            motion = world.at(self.excerpts[group[0]].instants, channels)
+            found |= {c: each.expected(motion) for c, each in zip(group, channels, strict=True)}
         return found
 
     def errors(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:

@@ -43,18 +43,11 @@ def followed(
     placing: Placing = "integrated",
     order: int = 2,
 ) -> Followed:
-    """Follow the largest errors of position and of forces at ``dt_s``, its half and its quarter.
+    """Follow the largest errors of position and of forces at ``dt_s``, its half and its quarter:
+    those of the quantity that is worst at the full step, at the same instants throughout.
 
-    The quantity that is worst at the full step is followed, at the same instants throughout.
-
-    Parameters
-    ----------
-    truth : Truth
-        The reference of the run at the full step: its solutions serve the finer ones.
-    rerun : Callable[[int], Run]
-        The run with its step divided by a number, logged at the instants of the full step.
-    placing, order : Placing, int
-        The engine's, see `sim.engine.Engine`.
+    The solutions of the ``truth`` at the full step serve the finer ones; ``rerun`` is the run with
+    its step divided by a number, ``placing`` and ``order`` are the engine's (`sim.engine.Engine`).
     """
     worst, force = worst_place(errors), _largest_total(errors.rows, FORCES)
     motion, summed_rad = errors.of_motion, errors.of_scene.summed_rad

@@ -50,19 +50,9 @@ class LogForces:
 def log_forces(
     columns: Columns, scene: Scene, time_s: Array, acting_s: Array | None, ignored: set[str]
 ) -> LogForces:
-    """Return the forces in the columns of a log.
-
-    Raises CrankcheckError for no column of forces, two of one, or cells that are no numbers.
-
-    Parameters
-    ----------
-    time_s : Array
-        The instants of the rows [s], (T,).
-    acting_s : Array or None
-        Instants at which the forces act, where they differ.
-    ignored : set of str
-        Columns that the user's map leaves out.
-    """
+    """Return the forces in the columns of a log but those ``ignored`` by the map: at the instants
+    of the rows [s], (T,), or at those at which they are ``acting_s``. Raises CrankcheckError for no
+    column of forces, two of one, or cells that are no numbers."""
     found = _found(columns, scene, ignored)
     if not found:
         raise CrankcheckError(

@@ -8,7 +8,7 @@ from typing import Literal
 
 from models.array import Array
 from models.errors import CrankcheckError, cut
-from models.motion import Bound, Motion, Order
+from models.motion import Motion, Order
 from reports.quantities.quantity import FIELDS, MovingKind
 
 Dimension = Literal[
@@ -58,17 +58,12 @@ DIMENSION: dict[str, Dimension] = {
 """The dimension of each unit: no two have a unit in common."""
 
 
+_SIGNS = str.maketrans({"²": "2", "°": "deg", "·": " ", "*": " ", "^": ""})
+
+
 def _key(text: str) -> str:
     """Return a spelling without differences of style: rad/s^2, rad_s2 and rad s-2 alike."""
-    text = (
-        text.strip()
-        .lower()
-        .replace("²", "2")
-        .replace("°", "deg")
-        .replace("·", " ")
-        .replace("*", " ")
-    )
-    text = re.sub(r"\s+", " ", text.replace("^", "")).strip()
+    text = re.sub(r"\s+", " ", text.strip().lower().translate(_SIGNS)).strip()
     text = re.sub(r"[ _]?s-?2$|[ _/]s[ _]?2$|/\(s2\)$", "/s2", text)
     text = re.sub(r"(?<=[a-z°])[ _](?=s$)|(?<=[a-z])[ _]?s-1$", "/", text)
     return re.sub(r"/$", "/s", text) if text.endswith("/") else text
@@ -176,11 +171,6 @@ class Kind:
         """Return the series (T,) of a body in a motion."""
         series: Array = getattr(getattr(motion, self.bodies)[name], self.field)
         return series if self.axis is None else series[:, self.axis]
-
-    def bound(self, bound: Bound, name: str) -> Array:
-        """Return the uncertainty of the reference (T,)."""
-        series: Array = getattr(getattr(bound, self.bodies)[name], self.field)
-        return series
 
 
 def _kinds() -> Iterator[Kind]:

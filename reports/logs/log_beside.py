@@ -18,6 +18,7 @@ from models.array import Array
 from models.motion import Forces, Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
+from reports.compare.errors import Error
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
 from reports.quantities import QUANTITIES, named
@@ -207,13 +208,15 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     return tuple(f"{name} of {body}" for name, body in there if (name, body) not in held)
 
 
-def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
-    """Return the readings by which a quantity of a body is judged."""
+def readings_of(log: OwnLog, error: Error) -> tuple[Reading, ...]:
+    """Return the readings by which the quantity of an error is judged."""
     side = cast(LogSide, way_of(log.scene).part("log"))
     return tuple(
         each
         for each in log.readings
-        if each.channel.of == body and quantity in side.judged_as(log.scene, each.channel)
+        if each.channel.of == error.body
+        and error.quantity in side.judged_as(log.scene, each.channel)
+        and error.body_kind in (each.channel.kind.judged_of, "driver")
     )
 
 

@@ -179,18 +179,12 @@ def form_lines(column: str, reason: str) -> Sequence[str]:
 
 def file_lines(file: FileTable) -> Sequence[str]:
     """Return the entries of a map on the file as lines of TOML, none where it has none."""
-    told = file.model_dump(exclude_defaults=True)
-    return ["[file]", *_entries(told), ""] if told else []
+    return [*table_lines("[file]", file), ""] if file.model_dump(exclude_defaults=True) else []
 
 
-def told_lines(told: ChannelTable) -> Sequence[str]:
-    """Return the entries of a map on a column, as lines of TOML."""
-    return ["[[channel]]", *_entries(told.model_dump(exclude_defaults=True))]
-
-
-def time_lines(told: TimeTable) -> Sequence[str]:
-    """Return the entries of a map on the times, as lines of TOML."""
-    return ["[time]", *_entries(told.model_dump(exclude_defaults=True))]
+def table_lines(head: str, table: MapTable) -> Sequence[str]:
+    """Return a table of a map as lines of TOML, without defaults."""
+    return [head, *_entries(table.model_dump(exclude_defaults=True))]
 
 
 def _entries(told: Mapping[str, object]) -> list[str]:

@@ -27,18 +27,12 @@ A_FORCE = "a force, which is judged with --forces"
 def understood(
     columns: Columns, scene: Scene, map_: map_file.Map | None = None, *, forces: bool = False
 ) -> OwnLog:
-    """Return the log of a scene, with its ``forces`` on request.
+    """Return the log of a scene, with its ``forces`` on request; meanings of columns by the user's
+    map replace those by their names.
 
     Raises CrankcheckError for no column of times, or one that goes back; no column of the scene;
     two columns for one quantity; units that contradict their kind; cells that are no numbers; a map
     with unknown names.
-
-    Parameters
-    ----------
-    columns : Columns
-        The content of the file.
-    map_ : Map or None
-        The user's meanings of columns, in place of their names.
     """
     map_ = map_ or map_file.Map()
     times = time_columns(columns, map_)
@@ -227,7 +221,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     for name in others:
         lines.append("")
         if name in told:
-            lines += map_file.told_lines(told[name])
+            lines += map_file.table_lines("[[channel]]", told[name])
         elif name in bodies:
             lines.append(f"# {map_file.toml_text(name)} is taken as its name says")
         else:
@@ -249,7 +243,7 @@ def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
 
 def _time_lines(map_: map_file.Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
     """Return the table of times; with remarks for missing entries."""
-    lines = [*map_file.time_lines(map_.time)]
+    lines = [*map_file.table_lines("[time]", map_.time)]
     if not times:
         lines += [f"# column = {map_file.toml_text(name)}" for name in names]
         lines.append('# unit = "s"')

@@ -85,16 +85,8 @@ HOLE = 1.9
 
 
 def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -> Array:
-    """Return the times of all rows [s], (T,).
-
-    Raises CrankcheckError for fewer than 2 rows; times that go back or stand still; a hole in an
-    otherwise even log.
-
-    Parameters
-    ----------
-    holes : bool
-        True if missing samples in an even log are intended.
-    """
+    """Return the times of all rows [s], (T,). Raises CrankcheckError for fewer than 2 rows; times
+    that go back or stand still; samples missing in an even log, unless ``holes`` are intended."""
     time_s = columns.numbers(column) * UNITS["time"][unit]
     if time_s.size < 2:
         raise CrankcheckError(f"{columns.source}: {time_s.size} row; a motion has at least 2")

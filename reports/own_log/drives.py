@@ -287,18 +287,13 @@ def _frequencies(readings: Sequence[Reading]) -> list[float]:
         return []
     step = max(APART * math.tau / lasts, (fastest - slowest) / MOST)
     tried = np.arange(slowest, fastest, step)
-    signals = _stacked(readings)
+    each_signal = [each for reading in readings for each in _signals(reading)]
+    signals = np.stack(each_signal, axis=-1) if each_signal else np.zeros((time_s.size, 0))
     left = np.array([_left(time_s, signals, each) for each in tried])
     lows = np.flatnonzero(
         (left <= np.roll(left, 1)) & (left <= np.roll(left, -1)) & np.isfinite(left)
     )
     return [float(tried[at]) for at in lows[np.argsort(left[lows])][:BEST]]
-
-
-def _stacked(readings: Sequence[Reading]) -> Array:
-    """Return the signals of all readings, (T, n)."""
-    every = [each for reading in readings for each in _signals(reading)]
-    return np.stack(every, axis=-1) if every else np.zeros((readings[0].values.size, 0))
 
 
 def _signals(reading: Reading) -> list[Array]:

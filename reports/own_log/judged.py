@@ -236,12 +236,7 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
         if error.kind not in KINDS or error.tolerance not in judged.limits:
             continue
         limit = limit_of(error, judged, errors)
-        read = [
-            each
-            for each in readings_of(judged.log, error.quantity, error.body)
-            if error.source == "reported"
-            and (each.channel.kind.judged_of == error.body_kind or error.body_kind == "driver")
-        ]
+        read = readings_of(judged.log, error) if error.source == "reported" else ()
         columns = tuple(each.channel.column for each in read)
         unit = _unit(read, error.unit)
         for gap in judged.log.gaps:

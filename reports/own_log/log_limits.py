@@ -116,13 +116,12 @@ def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[st
         if row.source != "reported" or row.kind == "geometric":
             continue
         limit = limit_of(row, evidence, errors).number
-        for reading in readings_of(log, row.quantity, row.body):
-            if reading.channel.kind.judged_of == row.body_kind or row.body_kind == "driver":
-                side = under if row.pure <= limit else over
-                # Two coordinates may be off by too much together, though neither is alone.
-                axis = reading.channel.kind.axis
-                both = math.sqrt(2.0) if side is over and axis is not None else 1.0
-                side.setdefault(reading.channel.column, []).append(limit * row.scale / both)
+        for reading in readings_of(log, row):
+            side = under if row.pure <= limit else over
+            # Two coordinates may be off by too much together, though neither is alone.
+            axis = reading.channel.kind.axis
+            both = math.sqrt(2.0) if side is over and axis is not None else 1.0
+            side.setdefault(reading.channel.column, []).append(limit * row.scale / both)
     return {column: max(each) for column, each in under.items()} | {
         column: min(each) for column, each in over.items()
     }

@@ -23,7 +23,7 @@ from reports.own_model.assembly import ModelRequest, assembled, out_of_reach
 from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.engine import Engine, Run
+from sim.engine import Run
 from sim.registry.own_models import Advised, Disturbance, OwnModel, reader, reading_engine
 
 NO_MEMORY = "not allocate memory"
@@ -175,13 +175,6 @@ def _step_s_and_count(scene: Scene, own: OwnModel, request: ModelRequest) -> tup
     return counted(scene, given_s, request.steps_per_turn, request.turns)
 
 
-def checked_line(line: ModelLine) -> CheckedLine:
-    """Run and judge one line, in this process."""
-    account, request = line.account, line.account.request
-    own = reader()(request.path, request.joint, request.key)
-    return checked(line.cell, own.engine(account.recommended.advised))
-
-
 MOST = 600
 """Instants of a course."""
 
@@ -204,9 +197,11 @@ class CheckedLine(Checked):
     course: ErrorCourse | None = None
 
 
-def checked(cell: Cell, adapter: Engine) -> CheckedLine:
-    """Run and judge a line in an engine that holds the model."""
-    found, run = examined(cell, adapter=adapter)
+def checked_line(line: ModelLine) -> CheckedLine:
+    """Run and judge one line, in this process."""
+    cell, request = line.cell, line.account.request
+    own = reader()(request.path, request.joint, request.key)
+    found, run = examined(cell, adapter=own.engine(line.account.recommended.advised))
     if run is None or found.errors is None:
         return CheckedLine(**vars(found))
     return CheckedLine(

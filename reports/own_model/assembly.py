@@ -30,11 +30,9 @@ SHOWN = 6
 
 @dataclass(frozen=True)
 class AssembledModel:
-    """The scene for the run, and the distance of the drawn pose from it: the largest distance of a
-    body's frame over the longest link, or angle [rad]."""
+    """The scene for the run, with notes on its choice."""
 
     scene: Scene
-    far: float
     notes: tuple[str, ...]
 
 
@@ -87,7 +85,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     if request.start_deg is not None:
         law = replace(law, start_rad=math.radians(request.start_deg))
         scene = _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
-    return AssembledModel(scene, far, tuple(notes))
+    return AssembledModel(scene, tuple(notes))
 
 
 def _words(branch: Mapping[str, int]) -> str:
@@ -122,7 +120,8 @@ def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
 def _fits(
     own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
 ) -> Iterator[tuple[float, Scene]]:
-    """Yield every assembly, with the distance of the pose from it."""
+    """Yield every assembly, with the distance of the drawn pose from it: the largest distance of a
+    body's frame over the longest link, or angle [rad]."""
     left = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
     for signs in itertools.product(*(choices[key] for key in left)):

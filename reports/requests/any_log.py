@@ -158,7 +158,7 @@ def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> O
     from reports.logs.columns import Columns
     from reports.logs.meanings import understood
 
-    columns = Columns(source, raw, rows=raw[TIME].size)
+    columns = Columns(source, raw)
     return understood(columns, scene, Map(time=TimeTable(column=TIME), channel=channels))
 
 

@@ -74,12 +74,11 @@ def _low_pass(stretch: Inquiry, column: str) -> Account | None:
     constant = step * math.exp(log_constant)
     if constant > (excerpt.instants[-1] - excerpt.instants[0]):
         return None  # the output would be constant
-    errors = {column: residual(np.array([log_constant]), feed)}
     phrase = (
         f"{{who}} went through a low-pass of first order, time constant {duration(constant)} "
         f"({constant / step:.3g} samples)"
     )
-    return _told(stretch, column, "low-pass", errors[column], phrase)
+    return _told(stretch, column, "low-pass", residual(np.array([log_constant]), feed), phrase)
 
 
 def _told(stretch: Inquiry, column: str, name: str, left: Array, phrase: str) -> Account | None:

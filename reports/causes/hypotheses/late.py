@@ -79,7 +79,7 @@ class Search:
         delta = NUDGE * self.inquiry.period_s
 
         def residual(by: Array) -> Array:
-            return self._error(excerpt, column, float(by[0]))
+            return self._error(excerpt, float(by[0]))
 
         def rest(by: Array) -> float:
             return excerpt.rest(residual(by))
@@ -100,7 +100,7 @@ class Search:
             return None
         return Delay(column, found, left / moving / math.sqrt(excerpt.rows.size))
 
-    def _error(self, excerpt: Excerpt, column: str, by_s: float) -> Array:
+    def _error(self, excerpt: Excerpt, by_s: float) -> Array:
         """Return the error of readings that belong ``by_s`` later. Raises CrankcheckError."""
         world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
         channel = excerpt.channel
@@ -178,7 +178,8 @@ def _delay_account(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
         advised = [
             column
             for column in _doubtful(inquiry)
-            if _clearly(inquiry.excerpts[column], errors[column], expected[column])
+            if CLEAR * inquiry.excerpts[column].rest(errors[column]) <= 1.0
+            and inquiry.excerpts[column].moves(expected[column])
         ]
     instants = later(by_s, inquiry.step_s)
     told = inquiry.account(
@@ -194,11 +195,6 @@ def _delay_account(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
         return told
     phrase = f"all that is logged belongs {instants}: {_start_text(inquiry, by_s)}"
     return replace(told, name="start", phrase=phrase, world=world)
-
-
-def _clearly(excerpt: Excerpt, error: Array, expected: Array) -> bool:
-    """True if a delay explains an error within its limit, and would show in it."""
-    return CLEAR * excerpt.rest(error) <= 1.0 and excerpt.moves(expected)
 
 
 def _everything(

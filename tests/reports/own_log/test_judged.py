@@ -307,8 +307,7 @@ def test_a_point_whose_coordinates_are_off_by_too_much_only_together_has_its_cau
 
 
 def written(scene: Scene, kept: str = "") -> pd.DataFrame:
-    """A turn with its forces, as we write it; of its columns those with times, and those whose
-    names end so."""
+    """A turn with its forces, as we write it: the columns with times, and those that end so."""
     time_s = np.linspace(0.0, scene.driver.law.period_s, 200)
     frame = motion_frame(with_forces(scene, solve(scene, time_s)))
     return frame[[c for c in frame if c == "time_s" or c.endswith(kept)]]
