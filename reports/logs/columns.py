@@ -124,13 +124,13 @@ def read_columns(
             table, every = _parquet(raw, wanted)
             return _named(_of_table(str(path), [table]), every, path)
         if ending == ".xlsx":
-            sheet = sheet_columns(raw, layout.sheet)
-            _refuse_twins(sheet.names, f"log {path}")
-            cells = dict(zip(sheet.names, sheet.columns, strict=True))
-            return Columns(str(path), cells, sheet.first, decimal=layout.decimal)
-        text = text_columns(raw, layout, wanted)
-        first, passed, names, tables = text.first, text.passed, text.names, [text.table]
-        del raw, text
+            names, cells, first = sheet_columns(raw, layout.sheet)
+            _refuse_twins(names, f"log {path}")
+            by_name = dict(zip(names, cells, strict=True))
+            return Columns(str(path), by_name, first, decimal=layout.decimal)
+        table, names, first, passed = text_columns(raw, layout, wanted)
+        tables = [table]
+        del raw, table
         columns = _named(_of_table(str(path), tables, first), names, path)
         return replace(columns, passed=passed, decimal=layout.decimal)
     except UnreadableError as error:

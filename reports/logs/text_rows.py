@@ -153,24 +153,12 @@ class Layout:
     sheet: str = ""
 
 
-@dataclass(frozen=True)
-class TextTable:
-    """The table of a text, all names of its header, the line of its first row, and the lines from
-    there on that are no rows."""
-
-    table: pa.Table
-    names: Sequence[str]
-    first: int
-    passed: Array
-
-
 def text_columns(
-    raw: bytes,
-    layout: Layout,
-    wanted: Callable[[str], bool] = lambda name: True,
-) -> TextTable:
-    """Read the ``wanted`` columns of a text with a header; lines that are blank or remarks are
-    skipped anywhere. Raises UnreadableError for other texts."""
+    raw: bytes, layout: Layout, wanted: Callable[[str], bool]
+) -> tuple[pa.Table, Sequence[str], int, Array]:
+    """Read the ``wanted`` columns of a text with a header: all its names, the line of the first
+    row, and the lines from there on that are no rows; those that are blank or remarks are skipped
+    anywhere. Raises UnreadableError for other texts."""
     start = text_lines.beginning(raw)
     header = header_of(start, layout.separator, wanted)
     names = header.names
@@ -179,4 +167,4 @@ def text_columns(
     fields = text_lines.fields_of(start.lines[header.first], header.separator)
     table = RowReader(header, below, layout.decimal).table(fields, wanted)
     kept = names[:-1] if header.ends else names
-    return TextTable(table, kept, header.first + 1, below.passed)
+    return table, kept, header.first + 1, below.passed

@@ -4,7 +4,6 @@ import io
 import warnings
 import zipfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,13 +20,8 @@ MOST_CELLS = 20_000_000
 """Limit of a sheet, from the first cell to the last."""
 
 
-@dataclass(frozen=True)
-class SheetTable:
-    """The columns of a sheet, and the row of its first numbers."""
-
-    names: Sequence[str]
-    columns: Sequence[Any]
-    first: int
+SheetTable = tuple[Sequence[str], Sequence[Any], int]
+"""The names and columns of a sheet, and the row of its first numbers."""
 
 
 def sheet_columns(raw: bytes, asked: str) -> SheetTable:
@@ -111,7 +105,7 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
     refuse_rows(len(rows) - first, wide)
     cells = ([row[n] if n < len(row) else None for row in rows[first:]] for n in range(wide))
     columns = [np.array([plain(cell) for cell in each], dtype=object) for each in cells]
-    return SheetTable(names, columns, first + 1)
+    return names, columns, first + 1
 
 
 def _row_texts(row: Sequence[object], wide: int) -> list[str]:

@@ -97,7 +97,7 @@ def _of_link(link: Link) -> Iterator[DimensionFault]:
         length = math.hypot(x1 - x0, y1 - y0)
         words = f"length {names[0]}{names[1]} of {link.name}"
         if length > 0.0:
-            yield DimensionFault(words, length, partial(_length, link.name, *names[:2]))
+            yield DimensionFault(words, length, partial(_length, link.name, names[0], names[1]))
     for point in names[2:]:
         for axis in (0, 1):
             words = f"{'xy'[axis]} of {point} in the frame of {link.name}"
