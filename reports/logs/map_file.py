@@ -124,8 +124,7 @@ def map_of(raw: Mapping[str, object], place: str) -> Map:
 
 
 def _check_words(map_: Map, place: str) -> None:
-    """Refuse unknown units and kinds, and repeated columns. Raises CrankcheckError with every
-    fault."""
+    """Refuse unknown units and kinds, and repeated columns; the error has every fault."""
     faults = []
     twice = set[str]()
     if map_.time.unit is not None and map_.time.unit not in UNITS["time"]:

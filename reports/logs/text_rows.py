@@ -105,8 +105,7 @@ class RowReader:
             raise UnreadableError(f"{why}; every row has as many fields as the header") from None
 
     def _without_last(self, table: pa.Table) -> pa.Table:
-        """Return the table without the column after the separator that ends all lines. Raises
-        UnreadableError where it is not empty."""
+        """Return the table without the column after the last separator, which has to be empty."""
         last = table.column("")
         if last.null_count < table.num_rows:
             cells = last.to_pylist()
