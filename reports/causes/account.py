@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -65,7 +65,7 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
     that it explains best. At most one account is of another world, as a log has one."""
     if not accounts or not columns:
         return []
-    table = _AccountTable.of(accounts, columns)
+    table = _AccountTable(accounts, columns)
     worlds = [n for n, account in enumerate(accounts) if account.world is not None]
     plain = [n for n, account in enumerate(accounts) if account.world is None]
     starts = [[], *([world] for world in worlds)]
@@ -83,27 +83,21 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
 class _AccountTable:
     """Remaining error of each account (a,) in each column (c,), in powers of ten, and its cost."""
 
-    def __init__(self, left: Array, cost: Array) -> None:
-        self.left, self.cost = left, cost
-
-    @staticmethod
-    def of(accounts: Sequence[Account], columns: Sequence[str]) -> _AccountTable:
-        left = np.full((len(accounts), len(columns)), UNTOLD)
+    def __init__(self, accounts: Sequence[Account], columns: Sequence[str]) -> None:
+        self.cost = np.array([account.cost for account in accounts])
+        self.left = np.full((len(accounts), len(columns)), UNTOLD)
         for number, account in enumerate(accounts):
             for place, column in enumerate(columns):
                 if column in account.rests:
                     rest = max(account.rests[column], LEAST_REST)
-                    left[number, place] = np.log10(rest) + ORDER * account.order
-        return _AccountTable(left, np.array([account.cost for account in accounts]))
+                    self.left[number, place] = np.log10(rest) + ORDER * account.order
 
     def total(self, some: Sequence[int]) -> float:
         """Return the remaining error and the cost of some accounts together."""
-        return float(self._least(some).sum() + self.cost[list(some)].sum())
+        return float(self._least_left(some).sum() + self.cost[list(some)].sum())
 
-    def _least(self, some: Sequence[int]) -> Array:
-        """Return the least error of each column that one of some accounts leaves."""
-        least: Array = self.left[list(some)].min(axis=0, initial=UNTOLD)
-        return least
+    def _least_left(self, some: Sequence[int]) -> Array:
+        return np.asarray(self.left[list(some)].min(axis=0, initial=UNTOLD))
 
     def owner(self, some: Sequence[int], worlds: Sequence[int], place: int) -> int | None:
         """Return the account that leaves least of a column, preferably an account of a world if it
@@ -116,8 +110,7 @@ class _AccountTable:
         return None if best is None or self.left[best, place] >= UNTOLD else best
 
     def descended(self, start: Sequence[int], plain: Sequence[int]) -> list[int]:
-        """Return accounts, including the start, whose total no addition, removal or replacement of
-        one account lowers."""
+        """Return accounts whose total no addition, removal or exchange of one lowers."""
         some, total = list(start), self.total(start)
         while True:
             kept = [some, *([n for n in some if n != out] for out in some if out not in start)]
@@ -131,7 +124,7 @@ class _AccountTable:
         """Return the accounts with the further account that lowers their total most."""
         if not plain:
             return []
-        gained = np.minimum(self.left[list(plain)], self._least(base)).sum(axis=1)
+        gained = np.minimum(self.left[list(plain)], self._least_left(base)).sum(axis=1)
         best = int(np.argmin(gained + self.cost[list(plain)]))
         return [[*base, plain[best]]] if plain[best] not in base else []
 
@@ -239,6 +232,15 @@ def fitted(
         if float(left @ left) > (1.0 - SETTLED) * size:
             break
     return at
+
+
+def fitted_from(
+    residual: Residual, starts: Iterable[Sequence[float]], delta: Sequence[float]
+) -> Array | None:
+    """Return the parameters (p,) with the least residual, fitted from several starts, if any."""
+    tried = (fitted(residual, start, delta) for start in starts)
+    found = [each for each in tried if each is not None]
+    return min(found, key=lambda each: float(np.sum(residual(each) ** 2)), default=None)
 
 
 def _slopes(residual: Residual, at: Array, left: Array, delta: Sequence[float]) -> Array | None:

@@ -31,8 +31,7 @@ class LogCase:
 
     @cached_property
     def excerpts(self) -> Mapping[str, Excerpt]:
-        """The excerpt of each judged channel, by column. Raises CrankcheckError where there is no
-        reference."""
+        """The excerpt of each judged channel. Raises CrankcheckError without a reference."""
         return excerpts(self.readings, self.truth, self.limits)
 
     @property
@@ -72,6 +71,8 @@ TIGHT = 0.02
 ROUGH = 1.0
 """Mean square of the steps of a series over its own, above which it is noise: 2 where no sample
 predicts the next one (von Neumann, Ann. Math. Stat. 12, 1941)."""
+MOVED = 0.3
+"""A hypothesis affects a channel if it changes the reference by this part of its error."""
 BROUGHT_WITHIN = 1.0 / 3.0
 """Part that may be left where the channel is then within its limit."""
 
@@ -81,14 +82,12 @@ class Excerpt:
     """Readings of a channel (n,) at ``rows`` of the log, with their instants [s], their
     ``expected`` values (the reference), and their ``error`` [SI], 0 where a number is missing.
 
-    ``worst`` is the largest error in the whole log, and ``over`` counts the readings over ``limit``
-    there.
+    ``worst`` is the largest error in the whole log.
     """
 
     reading: Reading
     limit: float
     worst: float
-    over: int
     rows: Rows
     values: Array
     instants: Array
@@ -108,11 +107,15 @@ class Excerpt:
         """Return the error of the readings, or of other ``values``, against another reference."""
         return _finite(self.channel.error(self.values if values is None else values, expected))
 
+    def moves(self, expected: Array, least: float = 0.0) -> bool:
+        """True if another reference changes the error noticeably, and by more than ``least``."""
+        change = CauseSize.of(self.beside(expected) - self.error).largest
+        return change > max(least, MOVED * self.size.largest)
+
     def in_world(self, expected: Array) -> Excerpt:
         """Return the same readings against another reference; ``worst`` is that of these rows."""
         error = self.beside(expected)
-        worst, over = float(np.max(np.abs(error))), int(np.sum(np.abs(error) > self.limit))
-        return replace(self, expected=expected, error=error, worst=worst, over=over)
+        return replace(self, expected=expected, error=error, worst=float(np.max(np.abs(error))))
 
     def part(self, rows: Rows) -> Excerpt:
         """Return some of the rows, by their places in the excerpt."""
@@ -162,15 +165,9 @@ class Excerpt:
         return rest <= (BROUGHT_WITHIN if within else EXPLAINED)
 
     def told_apart(self, error: Array) -> bool:
-        """True if the residual is negligible or noise, so that the explanation is not a mere
-        likeness."""
-        return self.rest(error) <= TIGHT or _rough(error)
-
-
-def _rough(series: Array) -> bool:
-    """True if a series is noise: no sample predicts the next."""
-    centred = series - np.mean(series)
-    return bool(np.sum(np.diff(series) ** 2) > ROUGH * np.sum(centred**2))
+        """True if the residual is negligible or noise: the explanation is more than a likeness."""
+        rough = np.sum(np.diff(error) ** 2) > ROUGH * np.sum((error - np.mean(error)) ** 2)
+        return self.rest(error) <= TIGHT or bool(rough)
 
 
 @dataclass(frozen=True)
@@ -230,25 +227,21 @@ def excerpts(
             motions[of] = truth.at(reading.instants)
         expected = reading.channel.expected(motions[of])
         error = np.abs(_finite(reading.channel.error(reading.values, expected)))
-        limit = limits[reading.channel.column]
         row = int(np.argmax(error)) if error.size else 0
-        told.append((reading, expected, row, float(error[row]), int(np.sum(error > limit))))
-    rows = picked(
-        max((r.values.size for r in judged), default=0), [row for _, _, row, _, _ in told]
-    )
+        told.append((reading, expected, row, float(error[row])))
+    rows = picked(max((r.values.size for r in judged), default=0), [row for _, _, row, _ in told])
     return {
         reading.channel.column: Excerpt(
             reading=reading,
             limit=limits[reading.channel.column],
             worst=worst,
-            over=over,
             rows=rows,
             values=reading.values[rows],
             instants=reading.instants[rows],
             expected=expected[rows],
             error=_finite(reading.channel.error(reading.values[rows], expected[rows])),
         )
-        for reading, expected, _, worst, over in told
+        for reading, expected, _, worst in told
     }
 
 

@@ -1,6 +1,6 @@
 """Search for the causes of the errors of a log."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account, chosen, sentence
 from reports.causes.cause import Cause, LogCase
-from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypothesis
+from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypotheses, Hypothesis
 from reports.causes.inquiry import Inquiry
 
 FEWEST_ROWS = 8
@@ -27,18 +27,18 @@ def causes(case: LogCase) -> tuple[Cause, ...]:
     inquiry = Inquiry.of(case)
     if inquiry.rows < FEWEST_ROWS:  # numbers could be found for anything; or it has gaps alone
         return ()
-    accounts = _accounts(inquiry, {**OF_CHANNELS, **OF_LOGS})
+    accounts = _accounts(inquiry, (*OF_CHANNELS, *OF_LOGS))
     told = chosen(accounts, inquiry.open)
     world = next((account for account in told if account.world is not None), None)
     told = _advised(inquiry, accounts, told) if world is None else _beside(inquiry, world, told)
-    return tuple(_cause(inquiry, same) for same in _sure(inquiry, _merged(told)))
+    return tuple(_as_one_cause(inquiry, same) for same in _sure(inquiry, _merged(told)))
 
 
 def _advised(
     inquiry: Inquiry, accounts: Sequence[Account], told: Sequence[Account]
 ) -> list[Account]:
     """Return the chosen accounts, and accounts of channels within their limits."""
-    explained = _columns(told)
+    explained = _columns_of(told)
     within = [c for account in accounts for c in account.rests if c not in inquiry.open]
     left = [column for column in dict.fromkeys(within) if column not in explained]
     return [*told, *chosen(accounts, left)]
@@ -55,14 +55,14 @@ def _beside(inquiry: Inquiry, world: Account, told: Sequence[Account]) -> list[A
     found = [world, *chosen(_accounts(replace(there, open=tuple(others)), OF_CHANNELS), others)]
     still = tuple(c for c in world.columns if there.excerpts[c].out)
     found += chosen(_accounts(replace(there, open=still), OF_SAMPLES), still)
-    explained = _columns(found)
+    explained = _columns_of(found)
     return [*found, *(each for each in told if not explained & set(each.columns))]
 
 
 def _sure(inquiry: Inquiry, told: Sequence[list[Account]]) -> list[list[Account]]:
     """Return the accounts without fitted numbers of a single channel where most wrong channels have
     no cause and are off by as much: the unknown fault of the others is probably its fault too."""
-    explained = _columns([account for same in told for account in same])
+    explained = _columns_of([account for same in told for account in same])
     taken = {c: inquiry.excerpts[c].worst / inquiry.excerpts[c].limit for c in inquiry.open}
     left = [taken[column] for column in inquiry.open if column not in explained]
     if len(left) < max(2, MOSTLY * len(inquiry.open)):
@@ -76,14 +76,13 @@ def _sure(inquiry: Inquiry, told: Sequence[list[Account]]) -> list[list[Account]
     ]
 
 
-def _columns(told: Sequence[Account]) -> set[str]:
-    """Return the columns of some accounts."""
+def _columns_of(told: Sequence[Account]) -> set[str]:
     return {column for account in told for column in account.columns}
 
 
-def _accounts(inquiry: Inquiry, hypotheses: Mapping[str, Hypothesis]) -> tuple[Account, ...]:
+def _accounts(inquiry: Inquiry, hypotheses: Hypotheses) -> tuple[Account, ...]:
     """Return the accounts of each hypothesis, with its place; each sees those before it."""
-    for order, hypothesis in enumerate(hypotheses.values()):
+    for order, hypothesis in enumerate(hypotheses):
         told = (replace(account, order=order) for account in _said(hypothesis, inquiry))
         inquiry = replace(inquiry, accounts=(*inquiry.accounts, *told))
     return inquiry.accounts
@@ -106,8 +105,7 @@ def _merged(told: Sequence[Account]) -> list[list[Account]]:
     return list(same.values())
 
 
-def _cause(inquiry: Inquiry, same: Sequence[Account]) -> Cause:
-    """Return accounts with the same phrase as one cause."""
+def _as_one_cause(inquiry: Inquiry, same: Sequence[Account]) -> Cause:
     of = {column: account for account in same for column in account.columns}
     columns = tuple(column for column in inquiry.excerpts if column in of)
     every = [excerpt.channel for excerpt in inquiry.excerpts.values()]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Motion
 from reports.causes.account import CAUSE, NUMBER, Account
 from reports.causes.cause import EXPLAINED, MOST, CauseSize, Excerpt, LogCase, Rows, picked
 from reports.causes.world import World
@@ -22,8 +21,6 @@ MISSING = 0.4
 """Part of the channels that a hypothesis affects which may have another fault as well."""
 MENDED = 0.8
 """Part that may be left in a channel that comes within its limit by a fault of others."""
-MOVED = 0.3
-"""A hypothesis affects a channel if it changes the reference by this part of its error."""
 WELL = 0.02
 """Remaining part of an error explained too well to try expensive hypotheses."""
 NOTHING_LEFT = 1e-3
@@ -79,26 +76,24 @@ class Inquiry:
     @property
     def unclaimed(self) -> tuple[str, ...]:
         """Open columns that no account without a fitted number explains."""
-        plain = [account for account in self.accounts if account.cost < CAUSE + NUMBER]
-        well = {c for account in plain for c, rest in account.rests.items() if rest <= EXPLAINED}
-        return tuple(column for column in self.open if column not in well)
+        return self._open_beside(CAUSE + NUMBER, lambda column: EXPLAINED)
 
     @property
     def unexplained(self) -> tuple[str, ...]:
-        """Open columns that no account with at most one number so far explains well and brings
-        within its limit."""
-        few = [account for account in self.accounts if account.cost < CAUSE + 2 * NUMBER]
+        """Open columns that no account with one number or none brings well within limits."""
         over = {
             column: excerpt.limit / excerpt.size.largest
             for column, excerpt in self.excerpts.items()
             if excerpt.size.largest > 0.0
         }
-        well = {
-            column
-            for account in few
-            for column, rest in account.rests.items()
-            if rest <= min(WELL, over.get(column, WELL))
-        }
+        return self._open_beside(
+            CAUSE + 2 * NUMBER, lambda column: min(WELL, over.get(column, WELL))
+        )
+
+    def _open_beside(self, cost: float, enough: Callable[[str], float]) -> tuple[str, ...]:
+        """Return the open columns of which each account below a cost leaves more than enough."""
+        few = [account for account in self.accounts if account.cost < cost]
+        well = {c for account in few for c, rest in account.rests.items() if rest <= enough(c)}
         return tuple(column for column in self.open if column not in well)
 
     @property
@@ -108,22 +103,27 @@ class Inquiry:
 
     def expected(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
         """Return the reference in a world, by column (all of them). Raises CrankcheckError."""
-        motions: dict[bytes, Motion] = {}
         groups: dict[bytes, list[str]] = {}
         for column in self.excerpts if columns is None else columns:
             groups.setdefault(self.excerpts[column].instants.tobytes(), []).append(column)
-        found = {}
-        for instants, group in groups.items():
+        found: dict[str, Array] = {}
+        for group in groups.values():
             channels = [self.channel(column) for column in group]
-            motions[instants] = world.at(self.excerpts[group[0]].instants, channels)
-            for column, channel in zip(group, channels, strict=True):
-                found[column] = channel.expected(motions[instants])
+            motion = world.at(self.excerpts[group[0]].instants, channels)
+            found |= {c: each.expected(motion) for c, each in zip(group, channels, strict=True)}
         return found
 
     def errors(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
         """Return the errors against a world, by column. Raises CrankcheckError."""
-        expected = self.expected(world, columns)
+        return self._beside(self.expected(world, columns))
+
+    def _beside(self, expected: Mapping[str, Array]) -> dict[str, Array]:
         return {column: self.excerpts[column].beside(each) for column, each in expected.items()}
+
+    def misfit(self, world: World, columns: Iterable[str]) -> Array:
+        """Return the errors in a world over their sizes, joined. Raises CrankcheckError."""
+        errors = self.errors(world, columns)
+        return np.concatenate([errors[c] / self.excerpts[c].size.rms for c in columns])
 
     def channel(self, column: str) -> Channel:
         return self.excerpts[column].channel
@@ -185,20 +185,19 @@ class Inquiry:
             expected = self.expected(world, among)
         except CrankcheckError:
             return None
-        errors = {column: self.excerpts[column].beside(each) for column, each in expected.items()}
+        errors = self._beside(expected)
         told = self.account(name, cost, errors, phrase, expected=expected)
         if told is None or self.spoilt(errors):
             return None
         if all(self._vanishes(column, expected[column]) for column in told.rests):
             return None
         told = replace(told, world=world)
-        moved = [c for c in self.open if c in expected and self._moved(c, expected[c])]
+        moved = [c for c in self.open if c in expected and self.excerpts[c].moves(expected[c])]
         missed = [c for c in moved if c not in told.rests and c in self.unclaimed]
         return told if len(missed) <= missing * len(moved) else None
 
     def no_chance(self, account: Account) -> bool:
-        """True if an account with numbers explains several channels, or one so well that it is not
-        a mere likeness."""
+        """True if an account explains several channels, or one too well for a mere likeness."""
         if len(account.columns) > 1 or account.world is None:
             return True
         (column,) = account.columns
@@ -220,15 +219,8 @@ class Inquiry:
         before = CauseSize.of_signal(self.excerpts[column].expected).rms
         return CauseSize.of_signal(expected).rms < NOTHING_LEFT * before
 
-    def _moved(self, column: str, expected: Array) -> bool:
-        """True if the reference of a channel changes noticeably beside its error."""
-        excerpt = self.excerpts[column]
-        change = CauseSize.of(excerpt.beside(expected) - excerpt.error)
-        return change.largest > MOVED * excerpt.size.largest
-
     def within(self, world: World, left: Iterable[str]) -> Inquiry | None:
-        """Return the inquiry into the open columns ``left`` in another world; None where there is
-        no such mechanism."""
+        """Return the inquiry into the columns ``left`` in another world, if it has a mechanism."""
         try:
             expected = self.expected(world)
         except CrankcheckError:
@@ -237,8 +229,7 @@ class Inquiry:
         return replace(self, world=world, excerpts=there, open=tuple(left), changed=True)
 
     def stretch(self, column: str) -> Inquiry:
-        """Return the inquiry into one column at consecutive rows around its largest error. Raises
-        CrankcheckError."""
+        """Return the inquiry into rows around a column's largest error. Raises CrankcheckError."""
         excerpt = self.excerpts[column]
         rows = excerpt.reading.values.size
         worst = int(excerpt.rows[np.argmax(np.abs(excerpt.error))])
@@ -255,8 +246,7 @@ class Inquiry:
         return replace(self, excerpts={column: there}, open=(column,))
 
     def whole(self, column: str) -> tuple[Array, Array]:
-        """Return all readings of a column, and their errors, 0 where a number is missing. Raises
-        CrankcheckError."""
+        """Return a column's readings and errors, 0 for missing numbers. Raises CrankcheckError."""
         reading = self.excerpts[column].reading
         channel = reading.channel
         if self.changed:

@@ -77,7 +77,7 @@ class World:
         instants = stamped
         for change in reversed(self.stamps):
             instants = change(instants)
-        names = _bodies(channels)
+        names = _measured_bodies(channels)
         if self.drive is None:
             motion = solve(self.scene, instants, bound=False, **names)
         else:
@@ -108,8 +108,7 @@ class Bodies(TypedDict):
     sliders: tuple[str, ...]
 
 
-def _bodies(channels: Iterable[Channel]) -> Bodies:
-    """Return the bodies that channels measure."""
+def _measured_bodies(channels: Iterable[Channel]) -> Bodies:
     names: dict[str, dict[str, None]] = {"link": {}, "point": {}, "slider": {}}
     for channel in channels:
         names[channel.kind.body_kind][channel.of] = None

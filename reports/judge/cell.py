@@ -136,18 +136,15 @@ def check(cell: Cell) -> Checked:
 def examined(
     cell: Cell, runner: CellRunner | None = None, adapter: Engine | None = None
 ) -> tuple[Checked, Run | None]:
-    """Return `check`, and the run at the full step, None where there is none.
-
-    ``runner`` replaces `sim.run.run`: to see whether a fault in it is detected. ``adapter``
-    replaces the engine of that name: for an engine with a model of its own.
-    """
+    """Return `check`, and the run at the full step, None where there is none. ``runner`` replaces
+    `sim.run.run`: to see whether a fault in it is detected. ``adapter`` replaces the engine of that
+    name: for an engine with a model of its own."""
     began = time.perf_counter()
-    found, done = _examined(cell, runner or run, adapter)
+    found, done = _untimed(cell, runner or run, adapter)
     return replace(found, wall_s=time.perf_counter() - began), done
 
 
-def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
-    """Return `examined`, but for the time."""
+def _untimed(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
     try:
         truth = cell.truth  # before the run: the reference of another scene is dropped
         own = adapter or engine(cell.engine)

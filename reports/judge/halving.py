@@ -43,20 +43,13 @@ def followed(
     placing: Placing = "integrated",
     order: int = 2,
 ) -> Followed:
-    """Follow the largest errors of position and of forces at ``dt_s``, its half and its quarter.
+    """Follow the largest errors of position and of forces at ``dt_s``, its half and its quarter:
+    those of the quantity that is worst at the full step, at the same instants throughout.
 
-    The quantity that is worst at the full step is followed, at the same instants throughout.
-
-    Parameters
-    ----------
-    truth : Truth
-        The reference of the run at the full step: its solutions serve the finer ones.
-    rerun : Callable[[int], Run]
-        The run with its step divided by a number, logged at the instants of the full step.
-    placing, order : Placing, int
-        The engine's, see `sim.engine.Engine`.
+    The solutions of the ``truth`` at the full step serve the finer ones; ``rerun`` is the run with
+    its step divided by a number, ``placing`` and ``order`` are the engine's (`sim.engine.Engine`).
     """
-    worst, force = worst_place(errors), _worst_of(errors.rows, FORCES)
+    worst, force = worst_place(errors), _largest_total(errors.rows, FORCES)
     motion, summed_rad = errors.of_motion, errors.of_scene.summed_rad
     if worst is None or not motion.has_order:
         return Followed()
@@ -69,7 +62,7 @@ def followed(
     steps_s, faults = [dt_s / p for p in parts], [fault for _, fault in finer if fault]
 
     def pure(followed: Error) -> list[float]:
-        same = [_worst_of(rows, [followed.quantity]) for rows, _ in finer]
+        same = [_largest_total(rows, [followed.quantity]) for rows, _ in finer]
         return [followed.pure, *(row.pure if row else math.nan for row in same)]
 
     def over(quantities: Sequence[str], rounding: float) -> list[str]:
@@ -135,16 +128,14 @@ def _over(
     quantities: Sequence[str],
     rounding: float,
 ) -> str:
-    """Return the errors of a finer run over the limits of its step, the worst of each quantity.
-
-    An error over its limit at the full step fails its own rule, and is not repeated.
-    """
+    """Return the errors of a finer run over the limits of its step, the worst of each quantity. An
+    error over its limit at the full step fails its own rule, and is not repeated."""
     before = limits(scene, errors, tolerance)
     finer = _at_step(errors, parts, errors.of_scene.summed_rad * parts)
     in_force = limits(scene, finer, tolerance)
     texts = []
     for name in quantities:
-        full, fine = errors.worst(name), _worst_of(rows, [name])
+        full, fine = errors.worst(name), _largest_total(rows, [name])
         if name not in before or full is None or fine is None:
             continue
         if not full.pure <= before[name].number:
@@ -169,11 +160,9 @@ def _copied(
     runs: Sequence[Sequence[Error]],
     order: int,
 ) -> list[str]:
-    """Return the finer runs that are copies: of one before them, or of the reference.
-
-    A shorter step rounds otherwise, if nothing else: the errors of bodies that do not move evenly
-    with the driver are never the same to the last bit.
-    """
+    """Return the finer runs that are copies: of one before them, or of the reference. A shorter
+    step rounds otherwise, if nothing else: the errors of bodies that do not move evenly with the
+    driver are never the same to the last bit."""
     texts = []
     seen: dict[tuple[float, ...], str] = {}
     for number, rows in zip(parts, runs, strict=True):
@@ -196,8 +185,7 @@ def _copied(
 
 
 def _rounding(drive: Error | None, exact: float) -> float:
-    """Return the position error that rounding explains: a prescribed crank has no other, and at
-    most ``exact``."""
+    """Return the position error that rounding explains: of a set crank, at most ``exact``."""
     of_crank = drive.pure if drive is not None and drive.pure <= exact else 0.0
     return max(AT_ROUNDING, BEHIND_DRIVE * of_crank)
 
@@ -205,10 +193,9 @@ def _rounding(drive: Error | None, exact: float) -> float:
 def worst_place(errors: Errors) -> Error | None:
     """Return the largest total error of angle, displacement or position, as pure numbers; where
     links bend, that of the deflection against the exact chain."""
-    groups = (_worst_of(errors.rows, names) for names in errors.of_links.followed)
+    groups = (_largest_total(errors.rows, names) for names in errors.of_links.followed)
     return next((worst for worst in groups if worst), None)
 
 
-def _worst_of(rows: Iterable[Error], quantities: Collection[str]) -> Error | None:
-    """Return the largest total error of some quantities, as pure numbers."""
+def _largest_total(rows: Iterable[Error], quantities: Collection[str]) -> Error | None:
     return largest(row for row in rows if row.quantity in quantities and row.kind == "total")

@@ -50,14 +50,18 @@ def error_rows(checked: Checked) -> list[dict[str, object]]:
 
 def error_row(error: Error, limits: Mapping[str, Limit] | None = None) -> dict[str, object]:
     """Return one error as a flat row; with limits, also its own."""
-    limit = None
-    if limits is not None:
-        in_force = limits.get(error.tolerance) if error.kind == "total" else None
-        limit = {"limit_pure": None if in_force is None else in_force.number}
+    if limits is None:
+        return flat_error(error)
+    in_force = limits.get(error.tolerance) if error.kind == "total" else None
+    return flat_error(error, limit_pure=None if in_force is None else in_force.number)
+
+
+def flat_error(error: Error, **limit: object) -> dict[str, object]:
+    """Return one error as a flat row, with columns about its ``limit``."""
     return {
         **{name: getattr(error, name) for name in AS_THEY_ARE},
         "maximum_pure": error.pure,
-        **(limit or {}),
+        **limit,
         "time_of_maximum_s": error.time_of_maximum_s,
         "driver_at_maximum_rad": error.driver_at_maximum_rad,
         "reference_bound": error.bound,
@@ -92,18 +96,15 @@ def cell_row(checked: Checked) -> dict[str, object]:
     row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in cell.way.placed))
     convergence = checked.convergence
     row |= cast(ColumnsOf, cell.way.part("columns"))(checked) | {
-        "trend": convergence.trend if convergence else None,
-        "order": convergence.order if convergence else None,
-        "floor": convergence.floor if convergence else None,
+        **{name: getattr(convergence, name, None) for name in ("trend", "order", "floor")},
         "convergence_of": convergence.unit if convergence else None,
         "settings": json.dumps(dict(checked.settings)),
         "warnings": " | ".join(checked.warnings),
     }
-    return row | _force_convergence(checked) if checked.cell.with_forces else row
+    return row | _worst_force(checked) if checked.cell.with_forces else row
 
 
-def _force_convergence(checked: Checked) -> dict[str, object]:
-    """Return the worst force, and its convergence when the step is halved."""
+def _worst_force(checked: Checked) -> dict[str, object]:
     seen = checked.force_convergence
     forces = largest(
         each
@@ -112,9 +113,7 @@ def _force_convergence(checked: Checked) -> dict[str, object]:
     )
     return {
         "force_pure": forces.pure if forces else None,
-        "force_trend": seen.trend if seen else None,
-        "force_order": seen.order if seen else None,
-        "force_floor": seen.floor if seen else None,
+        **{f"force_{name}": getattr(seen, name, None) for name in ("trend", "order", "floor")},
     }
 
 

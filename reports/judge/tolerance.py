@@ -172,28 +172,24 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
 
 
 def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[str, float]:
-    """Parse `angle=1e-4` and the like, also several in one text with commas between.
-
-    ``every`` is the key of a number by itself, where that is permitted.
-
-    Raises CrankcheckError for a text that is not NAME=NUMBER, a name that is no quantity, a number
-    that is not positive.
-    """
+    """Parse `angle=1e-4` and the like, also several in one text with commas between. ``every`` is
+    the key of a number by itself, where that is permitted. Raises CrankcheckError for a text that
+    is not NAME=NUMBER, a name that is no quantity, a number that is not positive."""
     numbers: dict[str, float] = {}
     for text in (part.strip() for whole in texts for part in whole.split(",")):
         name, equals, number = text.rpartition("=")
         place = f"{option} {text!r}"
         if not (equals or every):
             raise CrankcheckError(f"{place}: no `=` in it; write it like {option} angle=1e-4")
-        key = _quantity(name.strip(), place) if equals else every
-        numbers[key] = _positive(number, place)
+        key = _known_quantity(name.strip(), place) if equals else every
+        numbers[key] = _positive_number(number, place)
     return numbers
 
 
 def check_names(scene: Scene) -> None:
     """Refuse a scene whose [tolerance] names an unknown quantity."""
     for name in scene.tolerance:
-        _quantity(name, f"scene {scene.name}, [tolerance] {name}")
+        _known_quantity(name, f"scene {scene.name}, [tolerance] {name}")
 
 
 def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
@@ -209,8 +205,7 @@ def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
 def refuse_of_other_kinds(
     option: str, quantities: Iterable[str], known: Iterable[Mapping[str, Tolerance]]
 ) -> None:
-    """Refuse limits of quantities that none of the cells has, whose limits are the ``known``.
-    Raises CrankcheckError."""
+    """Refuse limits of quantities that none of the ``known`` has. Raises CrankcheckError."""
     names = [name for limits in known for name in limits]
     other = [name for name in quantities if name not in names]
     if other:
@@ -222,16 +217,14 @@ def refuse_of_other_kinds(
         )
 
 
-def _quantity(name: str, place: str) -> str:
-    """Return the name; raise CrankcheckError with similar names for an unknown one."""
+def _known_quantity(name: str, place: str) -> str:
     if name in EVERY:
         return name
     hint = suggestion(name, EVERY, "use one of", 2, 0.6)
     raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
 
 
-def _positive(number: str, place: str) -> float:
-    """Return a finite number above 0."""
+def _positive_number(number: str, place: str) -> float:
     try:
         value = float(number)
     except ValueError:

@@ -88,8 +88,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Gap:
-    """A column with the distance of the bodies at a pin or slider: in its ``unit``, and as
-    ``opening_m`` (T,)."""
+    """A column with the gap at a pin or slider: in its ``unit``, and as ``opening_m`` (T,)."""
 
     column: str
     of: str
@@ -138,21 +137,14 @@ class OwnLog:
 
 
 def logged_motion(
-    log: OwnLog,
-    truth_of: Callable[[Order], Motion],
-    error_of: Callable[[Reading], Array],
-    orders: Sequence[Order] = (0, 1, 2),
+    log: OwnLog, truth_of: Callable[[Order], Motion], error_of: Callable[[Reading], Array]
 ) -> Motion:
-    """Return the positions of a log, or rates of some ``orders``, as a motion; the rest is NaN.
-
+    """Return the positions and rates of a log as a motion; the rest is NaN.
     ``truth_of`` gives the reference at the instants of an order, ``error_of`` the error of a
-    reading: a coordinate of a point that the log lacks equals the reference.
-    """
+    reading: a coordinate of a point that the log lacks equals the reference."""
     bodies: dict[str, dict[str, dict[str, Array]]]
     bodies = {"links": {}, "points": {}, "sliders": {}, "elastic": {}}
     for (kind, body), several in _slots(log).items():
-        if kind.order not in orders:
-            continue
         right = kind.of(truth_of(kind.order), body)
         wrong = _largest([error_of(reading) for reading in several], kind.order)
         fields = bodies[kind.bodies].setdefault(body, {})

@@ -45,17 +45,16 @@ def column_meaning(
             found = Meaning("", None, False, "")
     else:
         found = Meaning(told.of, None, told.kind == "gap", "")
-    return _channel(column, told, found, named, times)
+    return _corrected_channel(column, told, found, named, times)
 
 
-def _channel(
+def _corrected_channel(
     column: str,
     told: ChannelTable | None,
     found: Meaning,
     named: SceneNames,
     times: Mapping[str, str],
 ) -> Channel | GapColumn:
-    """Return a channel by its name, corrected by the map. Raises CrankcheckError."""
     told = told or ChannelTable.model_construct(column=column)
     where = f"[[channel]] {column!r}"
     of = told.of or found.of
@@ -105,7 +104,6 @@ def _channel(
 def _check_roles(
     where: str, scene: Scene, body_kind: str, of: str, relative_to: str, on: str
 ) -> None:
-    """Refuse another link, or a body of a point, that does not exist. Raises CrankcheckError."""
     if relative_to and (body_kind != "link" or relative_to not in scene.links or relative_to == of):
         others = [name for name in scene.links if name != of]
         hint = suggestion(relative_to, others, "use one of")
@@ -126,35 +124,27 @@ DIGITS = 2e-3
 """Largest excess over half a turn by rounding [rad]: that of 3.142."""
 
 
-@dataclass(frozen=True)
-class Reader:
-    """Reader of columns as readings: the instants of the rows, and those of other columns."""
-
-    columns: Columns
-    time_s: Array
-    others: dict[str, Array]
-
-    def reading(self, channel: Channel, told: ChannelTable | None) -> Reading:
-        """Return the numbers of a channel in SI, and their instants."""
-        unit = UNITS[channel.kind.dimension][channel.unit]
-        raw = self.columns.numbers(channel.column)
-        with np.errstate(over="ignore"):  # which is refused
-            values = channel.sign * unit * (raw + channel.offset)
-        _refuse_huge(self.columns, channel, values)
-        if channel.kind.turns:
-            wrapped = told.wrapped if told else None
-            if wrapped is None:
-                wrapped = _is_wrapped(unit * raw)
-            channel = replace(channel, wrapped=wrapped)
-        own = self.others.get(channel.time, self.time_s)
-        if channel.delay_s:
-            own = own + channel.delay_s
-        return Reading(channel, np.asarray(values), own)
+def reading(
+    columns: Columns, channel: Channel, told: ChannelTable | None, instants: Array
+) -> Reading:
+    """Return the numbers of a channel in SI, at ``instants`` [s] but for its delay."""
+    unit = UNITS[channel.kind.dimension][channel.unit]
+    raw = columns.numbers(channel.column)
+    with np.errstate(over="ignore"):  # which is refused
+        values = channel.sign * unit * (raw + channel.offset)
+    _refuse_huge(columns, channel, values)
+    if channel.kind.turns:
+        wrapped = told.wrapped if told else None
+        if wrapped is None:
+            wrapped = _is_wrapped(unit * raw)
+        channel = replace(channel, wrapped=wrapped)
+    if channel.delay_s:
+        instants = instants + channel.delay_s
+    return Reading(channel, np.asarray(values), instants)
 
 
 def _refuse_huge(columns: Columns, of: Channel | GapColumn, values: Array) -> None:
-    """Refuse absurdly large readings [SI]: an angle would lose its place within a turn. Raises
-    CrankcheckError."""
+    """Refuse absurd readings [SI], whose place in a turn is lost. Raises CrankcheckError."""
     angle = isinstance(of, Channel) and of.kind.turns
     most = MOST_TURNS * math.tau if angle else MOST
     row = int(np.argmax(np.abs(values) > most))

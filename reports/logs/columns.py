@@ -34,16 +34,12 @@ class Columns:
     source: str
     raw: Mapping[str, Any]
     first: int = 0
-    rows: int = 0
     passed: Array = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     decimal: str = "."
 
     def numbers(self, name: str) -> Array:
-        """Return a column as numbers, all of them finite.
-
-        Raises CrankcheckError for a cell that is empty, NaN, infinite or no number; the message has
-        its row. Also for durations and dates.
-        """
+        """Return a column as numbers, all of them finite. Raises CrankcheckError for a cell that is
+        empty, NaN, infinite or no number; the message has its row. Also for durations and dates."""
         values = np.asarray(self.raw[name])
         if values.dtype.kind in "mM":  # which numpy would count in nanoseconds
             raise CrankcheckError(
@@ -79,15 +75,13 @@ class Columns:
     def cell(self, name: str, row: int) -> str:
         """Return the content of a cell that is no finite number."""
         found = self.raw[name][row]
-        if found is None or found is pd.NA or (isinstance(found, str) and not found.strip()):
-            return "the cell is empty"
-        return f"found {cut(str(found), 40)}"
+        return "the cell is empty" if _is_empty(found) else f"found {cut(str(found), 40)}"
 
     def _parsed(self, name: str, values: np.ndarray[Any, Any]) -> Array:
         """Return cells that are not all numbers as numbers; NaN for empty ones."""
         found = np.empty(values.shape[0])
         for row, cell in enumerate(values.tolist()):
-            if cell is None or cell is pd.NA or (isinstance(cell, str) and not cell.strip()):
+            if _is_empty(cell):
                 found[row] = np.nan
                 continue
             try:
@@ -103,22 +97,19 @@ class Columns:
         return found
 
 
+def _is_empty(cell: object) -> bool:
+    return cell is None or cell is pd.NA or (isinstance(cell, str) and not cell.strip())
+
+
 def read_columns(
     path: Path, layout: Layout | None = None, wanted: Callable[[str], bool] = lambda name: True
 ) -> Columns:
-    """Read the columns of a log.
+    """Read the columns of a log: text with a header (.csv, .tsv, .txt; the separator is found),
+    .parquet or .xlsx, in the ``layout`` of the user's map. Columns of a text whose names are not
+    ``wanted`` are not read, and only named.
 
     Raises CrankcheckError for no plain file, one of another kind or too large, a damaged or empty
     one, two columns of one name.
-
-    Parameters
-    ----------
-    path : Path
-        Text with a header (.csv, .tsv, .txt; the separator is found), .parquet or .xlsx.
-    layout : Layout or None
-        The format of the file by the user's map.
-    wanted : Callable
-        Test of a name: other columns of a text are not read, and only named.
     """
     layout = layout or Layout()
     ending = path.suffix.lower()
@@ -133,14 +124,13 @@ def read_columns(
             table, every = _parquet(raw, wanted)
             return _named(_of_table(str(path), [table]), every, path)
         if ending == ".xlsx":
-            sheet = sheet_columns(raw, layout.sheet)
-            _refuse_twins(sheet.names, f"log {path}")
-            cells = dict(zip(sheet.names, sheet.columns, strict=True))
-            rows = len(sheet.columns[0])
-            return Columns(str(path), cells, sheet.first, rows, decimal=layout.decimal)
-        text = text_columns(raw, layout, wanted)
-        first, passed, names, tables = text.first, text.passed, text.names, [text.table]
-        del raw, text
+            names, cells, first = sheet_columns(raw, layout.sheet)
+            _refuse_twins(names, f"log {path}")
+            by_name = dict(zip(names, cells, strict=True))
+            return Columns(str(path), by_name, first, decimal=layout.decimal)
+        table, names, first, passed = text_columns(raw, layout, wanted)
+        tables = [table]
+        del raw, table
         columns = _named(_of_table(str(path), tables, first), names, path)
         return replace(columns, passed=passed, decimal=layout.decimal)
     except UnreadableError as error:
@@ -158,20 +148,20 @@ def columns_of(frame: pd.DataFrame, source: str = "the frame") -> Columns:
     names = [str(name) for name in frame.columns]
     _refuse_twins(names, source)
     raw = {name: frame.iloc[:, at].to_numpy() for at, name in enumerate(names)}
-    return Columns(source, raw, rows=len(frame))
+    return Columns(source, raw)
 
 
 def _of_table(source: str, tables: list[pa.Table], first: int = 1) -> Columns:
     """Return the columns of the one arrow table in a list, which is removed from it: each column is
     freed as soon as it is an array, as a long log would be in memory twice. Text stays text."""
     table = tables.pop()
-    rows, names = table.num_rows, [str(name) for name in table.column_names]
-    if rows == 0:
+    names = [str(name) for name in table.column_names]
+    if table.num_rows == 0:
         raise UnreadableError("a header and no rows; a log has rows of numbers")
     parts = table.columns[::-1]
     del table
     raw = {name: _values(parts.pop()) for name in names}
-    return Columns(source, raw, first, rows)
+    return Columns(source, raw, first)
 
 
 def _values(column: pa.ChunkedArray) -> Any:

@@ -50,19 +50,9 @@ class LogForces:
 def log_forces(
     columns: Columns, scene: Scene, time_s: Array, acting_s: Array | None, ignored: set[str]
 ) -> LogForces:
-    """Return the forces in the columns of a log.
-
-    Raises CrankcheckError for no column of forces, two of one, or cells that are no numbers.
-
-    Parameters
-    ----------
-    time_s : Array
-        The instants of the rows [s], (T,).
-    acting_s : Array or None
-        Instants at which the forces act, where they differ.
-    ignored : set of str
-        Columns that the user's map leaves out.
-    """
+    """Return the forces in the columns of a log but those ``ignored`` by the map: at the instants
+    of the rows [s], (T,), or at those at which they are ``acting_s``. Raises CrankcheckError for no
+    column of forces, two of one, or cells that are no numbers."""
     found = _found(columns, scene, ignored)
     if not found:
         raise CrankcheckError(
@@ -124,8 +114,7 @@ def _found(columns: Columns, scene: Scene, ignored: set[str]) -> dict[Place, tup
 def _pin(
     point: str, bodies: tuple[str, ...], read: Mapping[Place, Array], nothing: Array
 ) -> dict[str, Array]:
-    """Return the forces of a pin; where two bodies meet, a component logged on one body only is the
-    opposite on the other."""
+    """Return the forces of a pin: of two bodies, what acts on one is the opposite on the other."""
 
     def component(body: str, axis: int) -> Array:
         own = read.get(("pin", point, body, axis))
@@ -175,8 +164,7 @@ def names_force(column: str, scene: Scene) -> bool:
 
 
 def shown_names(scene: Scene) -> list[str]:
-    """Return the preferred names of columns of forces, one for each: of two bodies at a pin for the
-    second."""
+    """Return the preferred name of each column of forces: at a pin of two bodies for the second."""
     names: dict[Place, str] = {}
     for name, place in force_places(scene).items():
         kind, of, body, _ = place
@@ -227,8 +215,7 @@ def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, floa
 
 
 def _stems(column: str) -> Iterator[tuple[str, str, str]]:
-    """Yield the possible names of a column without its unit, with the kind of unit and its
-    spelling, "" for none."""
+    """Yield names without a unit, with the kind of the unit, and its spelling, if any."""
     bare = re.sub(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", r"_\1", column)
     words = re.sub(r"[\s._·*]+", "_", bare.strip()).strip("_")
     for kind, units in UNITS.items():

@@ -4,11 +4,11 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
 from models.array import Array
 from models.errors import CrankcheckError, cut
-from models.motion import Bound, Motion, Order
+from models.motion import Motion, Order
 from reports.quantities.quantity import FIELDS, MovingKind
 
 Dimension = Literal[
@@ -21,20 +21,15 @@ Dimension = Literal[
     "acceleration",
 ]
 DEG, REV, INCH = math.pi / 180.0, math.tau, 0.0254
+_MOVING = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": INCH, "ft": 12 * INCH}
 UNITS: Mapping[Dimension, Mapping[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
     "angle": {"rad": 1.0, "deg": DEG, "mrad": 1e-3, "rev": REV},
     "angular velocity": {"rad/s": 1.0, "deg/s": DEG, "rpm": REV / 60.0, "rev/s": REV},
     "angular acceleration": {"rad/s^2": 1.0, "deg/s^2": DEG, "rev/s^2": REV},
     "length": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": INCH, "ft": 12 * INCH},
-    "velocity": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "in/s": INCH, "ft/s": 12 * INCH},
-    "acceleration": {
-        "m/s^2": 1.0,
-        "mm/s^2": 1e-3,
-        "cm/s^2": 1e-2,
-        "in/s^2": INCH,
-        "ft/s^2": 12 * INCH,
-    },
+    "velocity": {f"{unit}/s": size for unit, size in _MOVING.items()},
+    "acceleration": {f"{unit}/s^2": size for unit, size in _MOVING.items()},
 }
 """By dimension: each unit in SI, the SI unit first."""
 
@@ -63,17 +58,12 @@ DIMENSION: dict[str, Dimension] = {
 """The dimension of each unit: no two have a unit in common."""
 
 
+_SIGNS = str.maketrans({"²": "2", "°": "deg", "·": " ", "*": " ", "^": ""})
+
+
 def _key(text: str) -> str:
     """Return a spelling without differences of style: rad/s^2, rad_s2 and rad s-2 alike."""
-    text = (
-        text.strip()
-        .lower()
-        .replace("²", "2")
-        .replace("°", "deg")
-        .replace("·", " ")
-        .replace("*", " ")
-    )
-    text = re.sub(r"\s+", " ", text.replace("^", "")).strip()
+    text = re.sub(r"\s+", " ", text.strip().lower().translate(_SIGNS)).strip()
     text = re.sub(r"[ _]?s-?2$|[ _/]s[ _]?2$|/\(s2\)$", "/s2", text)
     text = re.sub(r"(?<=[a-z°])[ _](?=s$)|(?<=[a-z])[ _]?s-1$", "/", text)
     return re.sub(r"/$", "/s", text) if text.endswith("/") else text
@@ -136,13 +126,6 @@ LoggedKind = MovingKind | Literal["elastic"]
 """Kinds of logged bodies: an elastic link is a link, and bends and stretches besides."""
 
 
-_JUDGED: Mapping[str, MovingKind] = {
-    **{kind: kind for kind in get_args(MovingKind)},
-    "elastic": "link",
-}
-"""The kind of body of the quantities of a logged kind."""
-
-
 def plural(body_kind: str) -> str:
     """Return the name of the bodies of a kind in a motion."""
     return {"elastic": "elastic"}.get(body_kind, f"{body_kind}s")
@@ -151,11 +134,8 @@ def plural(body_kind: str) -> str:
 @dataclass(frozen=True)
 class Kind:
     """One kind of reading: ``field`` of the motion of bodies of ``body_kind``, for vectors the
-    component ``axis``, None where it is a number.
-
-    ``quantity`` is its entry in `reports.quantities`; ``order`` 0 is a position, 1 and 2 are its
-    rates.
-    """
+    component ``axis``, None where it is a number. ``quantity`` is its entry in
+    `reports.quantities`; ``order`` 0 is a position, 1 and 2 are its rates."""
 
     name: str
     body_kind: LoggedKind
@@ -173,7 +153,14 @@ class Kind:
     @property
     def judged_of(self) -> MovingKind:
         """The kind of body of its quantity."""
-        return _JUDGED[self.body_kind]
+        return "link" if self.body_kind == "elastic" else self.body_kind
+
+    @property
+    def column(self) -> str:
+        """Our own name of a column, after that of the body (`reports.describe.motion_tables`)."""
+        name = self.field if self.body_kind == "link" else self.name
+        unit = si(self.dimension).replace("/", "_").replace("^", "")
+        return f"slider_{name}_{unit}" if self.body_kind == "slider" else f"{name}_{unit}"
 
     @property
     def bodies(self) -> str:
@@ -184,11 +171,6 @@ class Kind:
         """Return the series (T,) of a body in a motion."""
         series: Array = getattr(getattr(motion, self.bodies)[name], self.field)
         return series if self.axis is None else series[:, self.axis]
-
-    def bound(self, bound: Bound, name: str) -> Array:
-        """Return the uncertainty of the reference (T,)."""
-        series: Array = getattr(getattr(bound, self.bodies)[name], self.field)
-        return series
 
 
 def _kinds() -> Iterator[Kind]:
@@ -219,19 +201,6 @@ ay of a point; displacement, speed, acceleration of a slider; deflection of the 
 link from the line between its pins, and its extension."""
 
 
-OWN: Mapping[tuple[LoggedKind, str], str] = {
-    ("link", "angle"): "theta_rad",
-    ("link", "angular velocity"): "omega_rad_s",
-    ("link", "angular acceleration"): "alpha_rad_s2",
-    ("slider", "displacement"): "slider_displacement_m",
-    ("slider", "speed"): "slider_speed_m_s",
-    ("slider", "acceleration"): "slider_acceleration_m_s2",
-    ("elastic", "deflection"): "deflection_m",
-    ("elastic", "extension"): "extension_m",
-    **{("point", f"{rate}{letter}"): f"{rate}{letter}_{unit}"
-       for rate, unit in (("", "m"), ("v", "m_s"), ("a", "m_s2")) for letter in "xy"},
-}  # fmt: skip
-"""Our own names of columns, after the name of the body (`reports.describe.motion_tables`)."""
 LENGTH = "it is the length of a vector, whose components are judged"
 
 
@@ -248,14 +217,13 @@ class Meaning:
 
 
 def own_meanings(bodies: Mapping[str, tuple[LoggedKind, ...]]) -> Mapping[str, Meaning | str]:
-    """Return the meanings of our own columns of ``bodies``, by name; where two bodies give the same
-    name, of the later one."""
+    """Return the meanings of our own columns of bodies; of a name of two, that of the later."""
     found: dict[str, Meaning | str] = {}
     for body, kinds in bodies.items():
         said: dict[str, Meaning | str] = {
-            name: Meaning(body, KINDS[key], False, si(KINDS[key].dimension))
-            for key, name in OWN.items()
-            if key[0] in kinds
+            kind.column: Meaning(body, kind, False, si(kind.dimension))
+            for kind in KINDS.values()
+            if kind.body_kind in kinds
         }
         if "point" in kinds:
             said |= dict.fromkeys(("v_m_s", "a_m_s2"), LENGTH)

@@ -18,6 +18,7 @@ from models.array import Array
 from models.motion import Forces, Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
+from reports.compare.errors import Error
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
 from reports.quantities import QUANTITIES, named
@@ -64,11 +65,9 @@ class AtCrank(Truth):
 
 @dataclass(frozen=True)
 class LogBeside(Beside):
-    """A log beside the reference: tracks of its own content alone.
-
-    ``step_s`` is the stated step, 0 for none: without one there is no start, and nothing is
-    differenced. A reference `AtCrank` has ``geometry_alone``.
-    """
+    """A log beside the reference: tracks of its own content alone. ``step_s`` is the stated step, 0
+    for none: without one there is no start, and nothing is differenced. A reference `AtCrank` has
+    ``geometry_alone``."""
 
     step_s: float = 0.0
     geometry_alone: bool = False
@@ -188,8 +187,7 @@ def _gaps(log: OwnLog) -> dict[str, Array]:
 
 
 def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
-    """Return the scene's positions, rates and, where requested, forces that the log lacks, quantity
-    by quantity."""
+    """Return positions, rates and, on request, forces that the log lacks, quantity by quantity."""
     held, there = list[tuple[str, str]](), list[tuple[str, str]]()
     way = way_of(log.scene)
     roles = way.roles_of(with_forces=beside.run.with_forces)
@@ -210,13 +208,15 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     return tuple(f"{name} of {body}" for name, body in there if (name, body) not in held)
 
 
-def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
-    """Return the readings by which a quantity of a body is judged."""
+def readings_of(log: OwnLog, error: Error) -> tuple[Reading, ...]:
+    """Return the readings by which the quantity of an error is judged."""
     side = cast(LogSide, way_of(log.scene).part("log"))
     return tuple(
         each
         for each in log.readings
-        if each.channel.of == body and quantity in side.judged_as(log.scene, each.channel)
+        if each.channel.of == error.body
+        and error.quantity in side.judged_as(log.scene, each.channel)
+        and error.body_kind in (each.channel.kind.judged_of, "driver")
     )
 
 

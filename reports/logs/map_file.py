@@ -112,12 +112,11 @@ def read_map(path: Path) -> Map:
 
 
 def map_of(raw: Mapping[str, object], place: str) -> Map:
-    """Return a map of such tables; ``place`` names them in messages. Raises CrankcheckError with
-    every fault."""
+    """Return a map of such tables, at ``place``. Raises CrankcheckError with every fault."""
     try:
         map_ = Map.model_validate(raw)
     except ValidationError as error:
-        faults = [_fault(each["loc"], each["type"], each["msg"], each["input"])
+        faults = [_fault_text(each["loc"], each["type"], each["msg"], each["input"])
                   for each in error.errors()]  # fmt: skip
         raise CrankcheckError(listed(place, faults)) from None
     _check_words(map_, place)
@@ -125,10 +124,7 @@ def map_of(raw: Mapping[str, object], place: str) -> Map:
 
 
 def _check_words(map_: Map, place: str) -> None:
-    """Refuse unknown units and kinds, and repeated columns.
-
-    Raises CrankcheckError with every fault.
-    """
+    """Refuse unknown units and kinds, and repeated columns; the error has every fault."""
     faults = []
     twice = set[str]()
     if map_.time.unit is not None and map_.time.unit not in UNITS["time"]:
@@ -157,16 +153,15 @@ def map_text(log: OwnLog, file: FileTable) -> str:
         "",
         *file_lines(file),
         "[time]",
-        f"column = {toml_text(log.stamp[0])}",
-        f"unit = {toml_text(log.stamp[1])}",
+        *_entries({"column": log.stamp[0], "unit": log.stamp[1]}),
     ]
     if log.zero_s:
         lines.append('zero = "first"')
     for reading in (*log.readings, *log.copies):
         lines += ["", "[[channel]]", *_channel(reading.channel)]
     for gap in log.gaps:
-        lines += ["", "[[channel]]", f"column = {toml_text(gap.column)}"]
-        lines += [f"of = {toml_text(gap.of)}", 'kind = "gap"', f"unit = {toml_text(gap.unit)}"]
+        told = {"column": gap.column, "of": gap.of, "kind": "gap", "unit": gap.unit}
+        lines += ["", "[[channel]]", *_entries(told)]
     for column, reason in log.unused:
         if reason == LEFT_OUT:
             lines += ["", "[[channel]]", f"column = {toml_text(column)}", "ignore = true"]
@@ -183,41 +178,33 @@ def form_lines(column: str, reason: str) -> Sequence[str]:
 
 def file_lines(file: FileTable) -> Sequence[str]:
     """Return the entries of a map on the file as lines of TOML, none where it has none."""
-    told = file.model_dump(exclude_defaults=True)
-    head = ["[file]", *(f"{key} = {toml_text(value)}" for key, value in told.items()), ""]
-    return head if told else []
+    return [*table_lines("[file]", file), ""] if file.model_dump(exclude_defaults=True) else []
 
 
-def told_lines(told: ChannelTable) -> Sequence[str]:
-    """Return the entries of a map on a column, as lines of TOML."""
-    lines = ["[[channel]]"]
-    for key, value in told.model_dump(exclude_defaults=True).items():
-        if isinstance(value, bool):
-            lines.append(f"{key} = {'true' if value else 'false'}")
-        else:
-            lines.append(f"{key} = {toml_text(value) if isinstance(value, str) else repr(value)}")
+def table_lines(head: str, table: MapTable) -> Sequence[str]:
+    """Return a table of a map as lines of TOML, without defaults."""
+    return [head, *_entries(table.model_dump(exclude_defaults=True))]
+
+
+def _entries(told: Mapping[str, object]) -> list[str]:
+    """Return keys with texts, truths and numbers, as lines of TOML."""
+    lines = []
+    for key, value in told.items():
+        shown = toml_text(value) if isinstance(value, str) else repr(value)
+        lines.append(f"{key} = {shown.lower() if isinstance(value, bool) else shown}")
     return lines
 
 
 def _channel(channel: Channel) -> Sequence[str]:
     """Return a channel as lines of TOML, without defaults."""
-    lines = [
-        f"column = {toml_text(channel.column)}",
-        f"of = {toml_text(channel.of)}",
-        f"kind = {toml_text(channel.kind.name)}",
-        f"unit = {toml_text(channel.unit)}",
-    ]
-    if channel.sign != 1:
-        lines.append(f"sign = {channel.sign}")
-    if channel.offset:
-        lines.append(f"offset = {channel.offset!r}")
-    if channel.kind.turns:
-        lines.append(f"wrapped = {'true' if channel.wrapped else 'false'}")
-    texts = {key: getattr(channel, key) for key in ("relative_to", "on", "time")}
-    lines += [f"{key} = {toml_text(value)}" for key, value in texts.items() if value]
-    if channel.delay_s:
-        lines.append(f"delay_s = {channel.delay_s!r}")
-    return lines
+    told = {name: getattr(channel, name) for name in ("column", "of", "kind", "unit")}
+    told["kind"] = channel.kind.name
+    plain = Channel(channel.column, channel.kind, channel.of, channel.unit)
+    for name in ("sign", "offset", "wrapped", "relative_to", "on", "time", "delay_s"):
+        value = getattr(channel, name)
+        if value != getattr(plain, name) or (name == "wrapped" and channel.kind.turns):
+            told[name] = value
+    return _entries(told)
 
 
 def toml_text(value: str) -> str:
@@ -225,8 +212,7 @@ def toml_text(value: str) -> str:
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _fault(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
-    """Return one fault in a line: key, finding, remedy."""
+def _fault_text(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
     key = ".".join(str(part + 1) if isinstance(part, int) else part for part in loc)
     if kind == "missing":
         return f"{key}: missing; add it"

@@ -6,8 +6,8 @@ from dataclasses import replace
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from reports.logs import map_file
-from reports.logs.channel import Channel, OwnLog
-from reports.logs.column_meaning import GapColumn, Reader, column_meaning, gaps_told
+from reports.logs.channel import Channel, OwnLog, Reading
+from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, reading
 from reports.logs.columns import Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
 from reports.logs.kinds import LENGTH
@@ -27,18 +27,12 @@ A_FORCE = "a force, which is judged with --forces"
 def understood(
     columns: Columns, scene: Scene, map_: map_file.Map | None = None, *, forces: bool = False
 ) -> OwnLog:
-    """Return the log of a scene, with its ``forces`` on request.
+    """Return the log of a scene, with its ``forces`` on request; meanings of columns by the user's
+    map replace those by their names.
 
     Raises CrankcheckError for no column of times, or one that goes back; no column of the scene;
     two columns for one quantity; units that contradict their kind; cells that are no numbers; a map
     with unknown names.
-
-    Parameters
-    ----------
-    columns : Columns
-        The content of the file.
-    map_ : Map or None
-        The user's meanings of columns, in place of their names.
     """
     map_ = map_ or map_file.Map()
     times = time_columns(columns, map_)
@@ -59,24 +53,30 @@ def understood(
     unused += spare
     if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
-        raise CrankcheckError(f"{_nothing(columns, scene, unused)} {in_python}")
+        raise CrankcheckError(f"{_nothing_found_text(columns, scene, unused)} {in_python}")
     main = times["time"]
     base = instants(columns, main, unit_of_time(main, map_), holes=map_.file.holes == "meant")
     zero_s = float(base[0]) if map_.time.zero else 0.0
     base = base - zero_s
     refuse_far(columns, main, base, scene)
     others = {c: further_instants(columns, c, zero_s, scene) for c in times.values() if c != main}
-    reader = Reader(columns, base, others)
+
+    def readings(some: Sequence[Channel]) -> tuple[Reading, ...]:
+        return tuple(
+            reading(columns, each, told.get(each.column), others.get(each.time, base))
+            for each in some
+        )
+
     ignored = {column for column, one in told.items() if one.ignore}
     acts = further_instants(columns, TIMES, zero_s, scene) if TIMES in borne else None
     return OwnLog(
         source=columns.source,
         scene=scene,
         time_s=base,
-        readings=tuple(reader.reading(each, told.get(each.column)) for each in channels),
+        readings=readings(channels),
         stamp=(main, unit_of_time(main, map_)),
         zero_s=zero_s,
-        copies=tuple(reader.reading(each, told.get(each.column)) for each in copies),
+        copies=readings(copies),
         gaps=gaps_told(columns, gaps),
         unused=tuple(unused),
         forces=log_forces(columns, scene, base, acts, ignored) if forces else None,
@@ -129,8 +129,7 @@ def _by_meaning(
     return channels, gaps, unused
 
 
-def _nothing(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) -> str:
-    """Return the message for a log without columns of the scene."""
+def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) -> str:
     bodies = few([*scene.links, *scene.pins, *scene.sliders], 12)
     why = f" ({cut(unused[0][0])!r}: {unused[0][1]})" if unused else ""
     return (
@@ -191,11 +190,9 @@ def judged_channels(
 
 
 def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, str] | None:
-    """Return a form of the map of a log with all its columns, and the entries still missing.
-
-    None where names and map give the times and a column of the scene, as the fault is another one
-    then, and where the map names a missing column.
-    """
+    """Return a form of the map of a log with all its columns, and the entries still missing. None
+    where names and map give the times and a column of the scene, as the fault is another one then,
+    and where the map names a missing column."""
     told = {one.column: one for one in map_.channel}
     if not {*told, map_.time.column or next(iter(columns.raw))} <= set(columns.raw):
         return None
@@ -224,11 +221,11 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     for name in others:
         lines.append("")
         if name in told:
-            lines += map_file.told_lines(told[name])
+            lines += map_file.table_lines("[[channel]]", told[name])
         elif name in bodies:
             lines.append(f"# {map_file.toml_text(name)} is taken as its name says")
         else:
-            lines += map_file.form_lines(name, _why_not(name, named))
+            lines += map_file.form_lines(name, _why_no_meaning(name, named))
     return "\n".join(lines) + "\n", "; ".join(lacks)
 
 
@@ -246,16 +243,14 @@ def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
 
 def _time_lines(map_: map_file.Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
     """Return the table of times; with remarks for missing entries."""
-    told = map_.time.model_dump(exclude_defaults=True)
-    lines = ["[time]", *(f"{key} = {map_file.toml_text(value)}" for key, value in told.items())]
+    lines = [*map_file.table_lines("[time]", map_.time)]
     if not times:
         lines += [f"# column = {map_file.toml_text(name)}" for name in names]
         lines.append('# unit = "s"')
     return lines
 
 
-def _why_not(name: str, named: SceneNames) -> str:
-    """Return the reason why a column has no meaning."""
+def _why_no_meaning(name: str, named: SceneNames) -> str:
     try:
         found = meaning(name, named)
     except CrankcheckError as error:

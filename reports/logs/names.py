@@ -9,23 +9,11 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Literal
 
 from models.errors import cut
 from models.scene import GROUND, Scene
-from reports.logs.kinds import (
-    DIMENSION,
-    KINDS,
-    LENGTH,
-    Kind,
-    LoggedKind,
-    Meaning,
-    one_unit,
-    own_meanings,
-    refuse_other_dimension,
-    si,
-    trailing_unit,
-    without_unit,
-)
+from reports.logs import kinds
 
 FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "pin", "slider",
            "block", "log", "sensor", "at", "on", "in", "signal", "value"}  # fmt: skip
@@ -36,22 +24,20 @@ MODEL = re.compile(r"^[./]?model_?\d*(?=[./])", re.IGNORECASE)
 RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 
 
-def meaning(column: str, named: SceneNames, told: str = "") -> Meaning | str:
+def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | str:
     """Return the meaning of a column's name, or the reason for none. A unit ``told`` by the map
-    replaces that in the name.
-
-    Raises CrankcheckError for units that contradict each other, or their kind.
-    """
+    replaces that in the name. Raises CrankcheckError for units that contradict each other, or their
+    kind."""
     if own := named.own.get(column):
         if isinstance(own, str) or not told:
             return own
-        refuse_other_dimension(column, told, own.kind.dimension if own.kind else "length")
+        kinds.refuse_other_dimension(column, told, own.kind.dimension if own.kind else "length")
         return replace(own, unit=told)
-    bodies, words = named.found(re.sub(MODEL, " ", without_unit(column)[0]))
+    bodies, words = named.found(re.sub(MODEL, " ", kinds.without_unit(column)[0]))
     while words and words[-1] in AFTER:
         words.pop()
-    unit, words = trailing_unit(words)
-    unit = told or one_unit(column, unit)
+    unit, words = kinds.trailing_unit(words)
+    unit = told or kinds.one_unit(column, unit)
     if not bodies:
         return "it names no link, point or slider of the scene"
     relative = not RELATIVE.isdisjoint(words)
@@ -62,14 +48,14 @@ def meaning(column: str, named: SceneNames, told: str = "") -> Meaning | str:
     if not of:
         return f"it names {' and '.join(bodies)}; a map says of which it is"
     if words == ["gap"]:
-        refuse_other_dimension(column, unit, "length")
-        return Meaning(of, None, True, unit or "m")
+        kinds.refuse_other_dimension(column, unit, "length")
+        return kinds.Meaning(of, None, True, unit or "m")
     slider = "slider" in re.split(r"[^a-z]+", column.lower())
     kind = kind_of_words(named.kinds_of(of), words, unit, slider=slider)
     if isinstance(kind, str):
         return kind
-    refuse_other_dimension(column, unit, kind.dimension)
-    return Meaning(of, kind, False, unit or si(kind.dimension), relative_to, on)
+    kinds.refuse_other_dimension(column, unit, kind.dimension)
+    return kinds.Meaning(of, kind, False, unit or kinds.si(kind.dimension), relative_to, on)
 
 
 def _roles(bodies: Sequence[str], named: SceneNames, *, relative: bool) -> tuple[str, str, str]:
@@ -91,51 +77,56 @@ def _roles(bodies: Sequence[str], named: SceneNames, *, relative: bool) -> tuple
 PLACES = {"pos", "position", "place", "coordinate", "coord"}
 SPEEDS = {"v", "vel", "velocity", "speed", "rate"}
 ACCELERATIONS = {"a", "acc", "accel", "acceleration"}
-TURNING: Sequence[set[str]] = (
-    {"theta", "angle", "ang", "phi", "rot", "rotation", "orientation", "q", *PLACES},
-    {"omega", "w", "angvel", "thetadot", "dtheta", "qd", *SPEEDS},
-    {"alpha", "angacc", "thetaddot", "qdd", *ACCELERATIONS},
-)
-SLIDING: Sequence[set[str]] = (
-    {"displacement", "disp", "s", "stroke", "travel", *PLACES},
-    {"sdot", *SPEEDS},
-    {"sddot", *ACCELERATIONS},
-)
+DERIVATIVES: Mapping[str, Sequence[set[str]]] = {
+    "link": (
+        {"theta", "angle", "ang", "phi", "rot", "rotation", "orientation", "q", *PLACES},
+        {"omega", "w", "angvel", "thetadot", "dtheta", "qd", *SPEEDS},
+        {"alpha", "angacc", "thetaddot", "qdd", *ACCELERATIONS},
+    ),
+    "slider": (
+        {"displacement", "disp", "s", "stroke", "travel", *PLACES},
+        {"sdot", *SPEEDS},
+        {"sddot", *ACCELERATIONS},
+    ),
+}
+"""Words for a position and its two rates, by kind of body."""
 AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order, prefix in
         enumerate(("", "v", "a"))} | {"px": (0, 0), "py": (0, 1)}  # fmt: skip
 
 
 def kind_of_words(
-    kinds: Sequence[LoggedKind], words: Sequence[str], unit: str, *, slider: bool
-) -> Kind | str:
+    body_kinds: Sequence[kinds.LoggedKind], words: Sequence[str], unit: str, *, slider: bool
+) -> kinds.Kind | str:
     """Return the kind of reading that words and a unit name, or the reason for none."""
-    dimension = DIMENSION.get(unit)
-    if "elastic" in kinds and ("elastic", " ".join(words)) in KINDS:
-        return KINDS["elastic", " ".join(words)]
-    if "link" in kinds:
+    if "elastic" in body_kinds and ("elastic", " ".join(words)) in kinds.KINDS:
+        return kinds.KINDS["elastic", " ".join(words)]
+    if "link" in body_kinds:
         if len(words) > 1 and words[-1] == "z":  # the axis that all turn about
             words = words[:-1]
-        order = _order(words, TURNING)
-        chosen = [k for k in KINDS.values() if k.body_kind == "link" and k.order == order]
-        if not words:
-            chosen = [k for k in KINDS.values() if k.body_kind == "link"]
-            chosen = [k for k in chosen if k.dimension == (dimension or "angle")]
-        return chosen[0] if chosen else _unknown(words, "link", unit)
+        return _kind_of_order("link", words, unit)
     axis = None if slider else _axis(words)
-    if "point" in kinds and axis:
-        order, at = axis
-        of = [k for k in KINDS.values() if k.body_kind == "point"]
-        return next(k for k in of if (k.order, k.axis) == (order, at))
-    if "slider" in kinds:
-        order = _order(words, SLIDING)
-        chosen = [k for k in KINDS.values() if k.body_kind == "slider" and k.order == order]
-        if not words:
-            chosen = [k for k in KINDS.values() if k.body_kind == "slider"]
-            chosen = [k for k in chosen if k.dimension == (dimension or "length")]
-        return chosen[0] if chosen else _unknown(words, "slider", unit)
+    if "point" in body_kinds and axis:
+        every = kinds.KINDS.values()
+        return next(k for k in every if (k.body_kind, k.order, k.axis) == ("point", *axis))
+    if "slider" in body_kinds:
+        return _kind_of_order("slider", words, unit)
     if list(words) in (["v"], ["a"]):
-        return LENGTH
-    return _unknown(words, "point", unit)
+        return kinds.LENGTH
+    return _why_no_kind(words, "point", unit)
+
+
+def _kind_of_order(
+    body_kind: Literal["link", "slider"], words: Sequence[str], unit: str
+) -> kinds.Kind | str:
+    """Return the kind by a derivative that words name, or by the unit; or why there is none."""
+    of_body = [kind for kind in kinds.KINDS.values() if kind.body_kind == body_kind]
+    if words:
+        order = _order(words, DERIVATIVES[body_kind])
+        chosen = [kind for kind in of_body if kind.order == order]
+    else:
+        dimension = kinds.DIMENSION.get(unit, of_body[0].dimension)
+        chosen = [kind for kind in of_body if kind.dimension == dimension]
+    return chosen[0] if chosen else _why_no_kind(words, body_kind, unit)
 
 
 def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
@@ -165,8 +156,7 @@ def _axis(words: Sequence[str]) -> tuple[int, int] | None:
     return order, axis
 
 
-def _unknown(words: Sequence[str], kind: str, unit: str) -> str:
-    """Return the reason why a column of a body has no meaning."""
+def _why_no_kind(words: Sequence[str], kind: str, unit: str) -> str:
     told: Mapping[str, str] = {
         "link": "angle, angular velocity or angular acceleration",
         "point": "x, y, vx, vy, ax or ay",
@@ -174,7 +164,7 @@ def _unknown(words: Sequence[str], kind: str, unit: str) -> str:
     }
     if words:
         return f"{cut(' '.join(words))!r} is no kind of reading of a {kind}: {told[kind]}"
-    of = f"{unit} is a unit of {DIMENSION[unit]}, and" if unit else "it tells no kind:"
+    of = f"{unit} is a unit of {kinds.DIMENSION[unit]}, and" if unit else "it tells no kind:"
     return f"{of} a {kind} has {told[kind]}"
 
 
@@ -200,13 +190,13 @@ class SceneNames:
         return sorted(every, key=lambda name: (-len(name), name))
 
     @cached_property
-    def own(self) -> Mapping[str, Meaning | str]:
+    def own(self) -> Mapping[str, kinds.Meaning | str]:
         """The meanings of the columns that we write ourselves, by name."""
-        return own_meanings({body: self.kinds_of(body) for body in self.bodies})
+        return kinds.own_meanings({body: self.kinds_of(body) for body in self.bodies})
 
-    def kinds_of(self, name: str) -> tuple[LoggedKind, ...]:
+    def kinds_of(self, name: str) -> tuple[kinds.LoggedKind, ...]:
         """Return the kinds of bodies of that name: often a slider and its point have the same."""
-        there: Iterable[tuple[LoggedKind, bool]] = (
+        there: Iterable[tuple[kinds.LoggedKind, bool]] = (
             ("link", name in self.scene.links),
             ("point", name in self.points),
             ("slider", name in self.scene.sliders),

@@ -60,7 +60,7 @@ def header_of(text: Beginning, separator: str, wanted: Callable[[str], bool]) ->
     refuse_columns(len(names))
     # Some programs end all lines, the header as well, in a separator.
     ends = len(names) > 1 and not names[-1] and row.rstrip(" ").endswith(separator)
-    _check_names(header, names[:-1] if ends else names, at, separator)
+    _refuse_missing_names(header, names[:-1] if ends else names, at, separator)
     is_row = marked_rows(names, separator, wanted)
     if not in_remarks:
         below = _required(text, at + 1, "a header and no rows", is_row)
@@ -71,7 +71,7 @@ def header_of(text: Beginning, separator: str, wanted: Callable[[str], bool]) ->
         below = _required(text, below + 1, "a header and units, and no rows", is_row)
     elif units:
         units_told = units_below(fields_of(units, separator), len(names))
-    _check_words(lines, at, below, separator)
+    _refuse_bad_row(lines, at, below, separator)
     return Header(with_units(names, units_told), separator, below, ends)
 
 
@@ -84,8 +84,7 @@ def with_units(names: Sequence[str], units: Sequence[str]) -> list[str]:
 
 
 def units_below(fields: Sequence[str], columns: int) -> list[str]:
-    """Return the units of a row of words alone, some of them known units: "" for a column without,
-    none for another row."""
+    """Return the units in a row of words, some of them known, "" for none; [] for another row."""
     bare = [field.strip("[]() ") for field in fields]
     words = [field for field in bare if field not in UNITLESS]
     if len(bare) != columns or not any(map(spelled_unit, words)) or any(map(is_number, words)):
@@ -151,8 +150,7 @@ def _units_remark(lines: Sequence[str], columns: int, separator: str) -> str:
     return ""
 
 
-def _check_names(header: str, names: Sequence[str], at: int, separator: str) -> None:
-    """Refuse a header without names. Raises UnreadableError."""
+def _refuse_missing_names(header: str, names: Sequence[str], at: int, separator: str) -> None:
     if are_numbers(names):
         raise UnreadableError(
             f"line {at + 1} holds numbers and no names; put a header above them, such as "
@@ -168,9 +166,7 @@ def _check_names(header: str, names: Sequence[str], at: int, separator: str) -> 
         raise UnreadableError(f"line {at + 1}: a quote that is not closed")
 
 
-def _check_words(lines: Sequence[str], at: int, below: int, separator: str) -> None:
-    """Refuse a second line of names, and numbers with only spaces between. Raises
-    UnreadableError."""
+def _refuse_bad_row(lines: Sequence[str], at: int, below: int, separator: str) -> None:
     fields = [field for field in fields_of(lines[below], separator) if field]
     if fields and all(field[0].isalpha() and not is_number(field) for field in fields):
         raise UnreadableError(

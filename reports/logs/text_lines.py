@@ -72,10 +72,8 @@ def beginning(raw: bytes) -> Beginning:
 
 
 def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> Body:
-    """Return the rows of a text from a byte on, without lines that are blank or remarks.
-
-    A line within a quoted field is no remark, nor is a row by ``is_row``.
-    """
+    """Return the rows of a text from a byte on, without lines that are blank or remarks. A line
+    within a quoted field is no remark, nor is a row by ``is_row``."""
     passed: list[int] = []
     kept: list[memoryview] = []
     view = memoryview(raw)

@@ -10,18 +10,8 @@ import pyarrow.csv as pc  # type: ignore[import-untyped]  # ships no types
 from models.array import Array
 from models.errors import cut
 from models.files.inputs import UnreadableError
+from reports.logs import text_lines
 from reports.logs.text_header import TITLE, Header, header_of, marked_rows
-from reports.logs.text_lines import (
-    COMMA,
-    SEPARATORS,
-    Body,
-    beginning,
-    body,
-    fields_of,
-    is_number,
-    refuse_rows,
-    row_line,
-)
 
 DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
 """Part of a number on either side of its decimal comma."""
@@ -31,30 +21,26 @@ HEXADECIMAL = re.compile(rb"0[xX]")
 
 @dataclass(frozen=True)
 class RowReader:
-    """Reader of the rows of a text: the lines ``below`` its header, with decimals after a point or
-    comma."""
+    """Reader of the rows ``below`` the header of a text, with decimals after a point or comma."""
 
     header: Header
-    below: Body
+    below: text_lines.Body
     decimal: str
 
     def table(self, fields: Sequence[str], wanted: Callable[[str], bool]) -> pa.Table:
-        """Return the wanted columns, as numbers where all of their cells are, as text else.
-
-        Raises UnreadableError for rows that do not fit the header, and for too many.
-        """
-        self._check_first(fields)
+        """Return the wanted columns, as numbers where all of their cells are, as text else. Raises
+        UnreadableError for rows that do not fit the header, and for too many."""
+        self._refuse_misfit_first(fields)
         names = self.header.names
         types = {
-            name: pa.float64() if is_number(field) else pa.string()
+            name: pa.float64() if text_lines.is_number(field) else pa.string()
             for name, field in zip(names, fields, strict=True)
             if wanted(name) or not name
         }
         table = self._read(types)
         return self._without_last(table) if self.header.ends else table
 
-    def _check_first(self, fields: Sequence[str]) -> None:
-        """Refuse a first row that does not fit the header. Raises UnreadableError."""
+    def _refuse_misfit_first(self, fields: Sequence[str]) -> None:
         names, separator, at = self.header.names, self.header.separator, self.header.first
         pairs = len(fields) >= 2 * len(names) - 1 and separator == "," and len(names) > 1
         if pairs and all(DIGITS.fullmatch(field) for field in fields):
@@ -63,22 +49,21 @@ class RowReader:
                 "between commas; write decimal points, or separate the columns by semicolons"
             )
         if len(fields) != len(names):
-            _refuse_first(len(fields), len(names), at, separator, ends=not fields[-1])
+            _refuse_count(len(fields), len(names), at, separator, ends=not fields[-1])
         if self.decimal == ".":
             for name, field in zip(names, fields, strict=True):
-                if COMMA.fullmatch(field):
+                if text_lines.COMMA.fullmatch(field):
                     raise UnreadableError(
                         f"row {at + 1}, column {cut(name)!r}: found {cut(field)!r}, a decimal "
                         "comma; write decimal points, or say decimal = ',' in [file] of the map"
                     )
 
     def _read(self, types: Mapping[str, pa.DataType]) -> pa.Table:
-        """Return the rows of the columns that have ``types``. Raises UnreadableError."""
         text = self.below.text
         if self.header.separator == " ":
             clean = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(text)))
             text = memoryview(clean)
-        refuse_rows(_count(text), len(types))
+        text_lines.refuse_rows(_count_lines(text), len(types))
         misfits: list[str] = []
 
         def misfit(row: pc.InvalidRow) -> str:
@@ -120,8 +105,7 @@ class RowReader:
             raise UnreadableError(f"{why}; every row has as many fields as the header") from None
 
     def _without_last(self, table: pa.Table) -> pa.Table:
-        """Return the table without the column after the separator that ends all lines. Raises
-        UnreadableError where it is not empty."""
+        """Return the table without the column after the last separator, which has to be empty."""
         last = table.column("")
         if last.null_count < table.num_rows:
             cells = last.to_pylist()
@@ -134,13 +118,11 @@ class RowReader:
         return table.drop_columns([""])
 
     def _line(self, row: int) -> int:
-        """Return the place of a row to a reader: its line in the file."""
-        return self.header.first + 1 + row_line(self.below.passed, row)
+        return self.header.first + 1 + text_lines.row_line(self.below.passed, row)
 
 
-def _refuse_first(found: int, names: int, at: int, separator: str, *, ends: bool) -> None:
-    """Raise UnreadableError for a first row of another number of fields."""
-    mark = SEPARATORS.get(separator, repr(separator))
+def _refuse_count(found: int, names: int, at: int, separator: str, *, ends: bool) -> None:
+    mark = text_lines.SEPARATORS.get(separator, repr(separator))
     counts = f"line {at + 1} has {found} fields, the header {names}"
     if found == names + 1 and ends:
         raise UnreadableError(
@@ -154,12 +136,11 @@ def _refuse_first(found: int, names: int, at: int, separator: str, *, ends: bool
     )
 
 
-def _count(body: memoryview) -> int:
-    """Return the number of lines."""
+def _count_lines(text: memoryview) -> int:
     count, step = 0, 1 << 24
-    for first in range(0, len(body), step):
-        count += bytes(body[first : first + step]).count(b"\n")
-    return count + (len(body) > 0 and body[-1] != 10)
+    for first in range(0, len(text), step):
+        count += bytes(text[first : first + step]).count(b"\n")
+    return count + (len(text) > 0 and text[-1] != 10)
 
 
 @dataclass(frozen=True)
@@ -171,30 +152,18 @@ class Layout:
     sheet: str = ""
 
 
-@dataclass(frozen=True)
-class TextTable:
-    """The table of a text, all names of its header, the line of its first row, and the lines from
-    there on that are no rows."""
-
-    table: pa.Table
-    names: Sequence[str]
-    first: int
-    passed: Array
-
-
 def text_columns(
-    raw: bytes,
-    layout: Layout,
-    wanted: Callable[[str], bool] = lambda name: True,
-) -> TextTable:
-    """Read the ``wanted`` columns of a text with a header; lines that are blank or remarks are
-    skipped anywhere. Raises UnreadableError for other texts."""
-    start = beginning(raw)
+    raw: bytes, layout: Layout, wanted: Callable[[str], bool]
+) -> tuple[pa.Table, Sequence[str], int, Array]:
+    """Read the ``wanted`` columns of a text with a header: all its names, the line of the first
+    row, and the lines from there on that are no rows; those that are blank or remarks are skipped
+    anywhere. Raises UnreadableError for other texts."""
+    start = text_lines.beginning(raw)
     header = header_of(start, layout.separator, wanted)
     names = header.names
     is_row = marked_rows(names, header.separator, wanted)
-    below = body(raw, start.offsets[header.first], is_row)
-    fields = fields_of(start.lines[header.first], header.separator)
+    below = text_lines.body(raw, start.offsets[header.first], is_row)
+    fields = text_lines.fields_of(start.lines[header.first], header.separator)
     table = RowReader(header, below, layout.decimal).table(fields, wanted)
     kept = names[:-1] if header.ends else names
-    return TextTable(table, kept, header.first + 1, below.passed)
+    return table, kept, header.first + 1, below.passed

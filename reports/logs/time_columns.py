@@ -34,10 +34,8 @@ def time_of(column: str, told: str = "") -> tuple[str, str] | None:
 
 
 def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
-    """Return the columns of times, by kind: that of all rows is ``time``.
-
-    Raises CrankcheckError for none, and for two.
-    """
+    """Return the columns of times, by kind: that of all rows is ``time``. Raises CrankcheckError
+    for none, and for two."""
     found: dict[str, list[str]] = {}
     others = {one.column for one in map_.channel if one.ignore or map_.time.column is not None}
     for column in columns.raw:
@@ -87,16 +85,8 @@ HOLE = 1.9
 
 
 def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -> Array:
-    """Return the times of all rows [s], (T,).
-
-    Raises CrankcheckError for fewer than 2 rows; times that go back or stand still; a hole in an
-    otherwise even log.
-
-    Parameters
-    ----------
-    holes : bool
-        True if missing samples in an even log are intended.
-    """
+    """Return the times of all rows [s], (T,). Raises CrankcheckError for fewer than 2 rows; times
+    that go back or stand still; samples missing in an even log, unless ``holes`` are intended."""
     time_s = columns.numbers(column) * UNITS["time"][unit]
     if time_s.size < 2:
         raise CrankcheckError(f"{columns.source}: {time_s.size} row; a motion has at least 2")
@@ -133,7 +123,6 @@ def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> No
 
 
 def _refuse_holes(columns: Columns, column: str, time_s: Array, steps: Array) -> None:
-    """Refuse an even log that lacks samples in between. Raises CrankcheckError."""
     usual = float(np.median(steps))
     same = np.abs(steps - usual) <= EVEN * usual
     far = np.flatnonzero(steps > HOLE * usual)

@@ -4,7 +4,6 @@ import io
 import warnings
 import zipfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,18 +20,12 @@ MOST_CELLS = 20_000_000
 """Limit of a sheet, from the first cell to the last."""
 
 
-@dataclass(frozen=True)
-class SheetTable:
-    """The columns of a sheet, and the row of its first numbers."""
-
-    names: Sequence[str]
-    columns: Sequence[Any]
-    first: int
+SheetTable = tuple[Sequence[str], Sequence[Any], int]
+"""The names and columns of a sheet, and the row of its first numbers."""
 
 
 def sheet_columns(raw: bytes, asked: str) -> SheetTable:
-    """Read the ``asked`` sheet of a workbook, or the first. Raises UnreadableError for no workbook,
-    and for no log in it."""
+    """Read the ``asked`` sheet, or the first. Raises UnreadableError for no log in it."""
     try:
         with zipfile.ZipFile(io.BytesIO(raw)) as packed:
             unpacked = sum(each.file_size for each in packed.infolist())
@@ -92,7 +85,7 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
     if at is None:
         raise UnreadableError(" is empty; a log has a header and rows of numbers")
     wide = max(map(len, rows))
-    names = _words(rows[at], wide)
+    names = _row_texts(rows[at], wide)
     blank = next((n for n, name in enumerate(names) if not name), None)
     if blank is not None:
         raise UnreadableError(
@@ -105,18 +98,17 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
             "and rocker_deg"
         )
     first = at + 1
-    if first < len(rows) and (units := units_below(_words(rows[first], wide), wide)):
+    if first < len(rows) and (units := units_below(_row_texts(rows[first], wide), wide)):
         names, first = with_units(names, units), first + 1
     if first == len(rows):
         raise UnreadableError(": a header and no rows; a log has rows of numbers")
     refuse_rows(len(rows) - first, wide)
     cells = ([row[n] if n < len(row) else None for row in rows[first:]] for n in range(wide))
     columns = [np.array([plain(cell) for cell in each], dtype=object) for each in cells]
-    return SheetTable(names, columns, first + 1)
+    return names, columns, first + 1
 
 
-def _words(row: Sequence[object], wide: int) -> list[str]:
-    """Return the cells of a row as text."""
+def _row_texts(row: Sequence[object], wide: int) -> list[str]:
     found = ["" if cell is None else str(cell).strip() for cell in row]
     return found + [""] * (wide - len(found))
 

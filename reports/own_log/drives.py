@@ -17,8 +17,7 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.log_beside import MANY, AtCrank
 
 LogDrive = Literal["scene", "fitted", "logged"]
-"""The scene's law; constant speed, fitted to the log; or the crank's angle at each row, for the
-geometry alone."""
+"""The scene's law; a constant speed fitted to the log; or its angles, for geometry alone."""
 STARTS = 24
 """Angles of the start that are tried, where the log lacks the driver's."""
 FIRST = 400
@@ -67,11 +66,8 @@ def chosen_drive(text: str) -> LogDrive:
 
 
 def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
-    """Return the reference, and the fit of its drive.
-
-    Raises CrankcheckError for a drive that the log, or the scene's law, does not allow; a crank
-    that leaves its range.
-    """
+    """Return the reference, and the fit of its drive. Raises CrankcheckError for a drive that the
+    log, or the scene's law, does not allow; a crank that leaves its range."""
     links, points = _compared(log)
     if drive == "scene":
         return Truth(log.scene, links=links, points=points), None
@@ -162,11 +158,10 @@ def _of_crank(log: OwnLog, crank: Reading) -> DriveFit:
     doubt = sigma / math.sqrt(square)
     at_start = sigma * math.sqrt(1.0 / angle.size + mean**2 / square)
     by = f"{angle.size} angles of the crank"
-    return DriveFit(speed, _near(start, log.scene), doubt, at_start, by)
+    return DriveFit(speed, _within_half_a_turn(start, log.scene), doubt, at_start, by)
 
 
-def _near(start_rad: float, scene: Scene) -> float:
-    """Return a start angle within half a turn of the scene's."""
+def _within_half_a_turn(start_rad: float, scene: Scene) -> float:
     told = float(scene.driver.law.at(np.zeros(1))[0][0])
     return told + math.remainder(start_rad - told, math.tau)
 
@@ -200,7 +195,7 @@ def _of_places(log: OwnLog) -> DriveFit:
     channels = "a channel" if len(places) == 1 else f"{len(places)} channels"
     return DriveFit(
         best[0],
-        _near(best[1], log.scene),
+        _within_half_a_turn(best[1], log.scene),
         *doubts,
         f"{count} places of {channels}",
         explains=_size(rest) <= EXPLAINED**2 * count,
@@ -274,8 +269,7 @@ FACTORS = (1.0, 0.5, 0.7, 1.5, 2.0)
 
 
 def speeds(readings: Sequence[Reading], usual_rad_s: float) -> list[float]:
-    """Return speeds of both signs [rad/s], first those that repeat the readings best, then some
-    near the scene's own."""
+    """Return speeds of both signs [rad/s]: of repeating readings, then near the scene's own."""
     found = [usual_rad_s * factor for factor in FACTORS]
     periodic = _frequencies(readings)
     chosen = dict.fromkeys([*periodic, *(abs(each) for each in found)])
@@ -293,18 +287,13 @@ def _frequencies(readings: Sequence[Reading]) -> list[float]:
         return []
     step = max(APART * math.tau / lasts, (fastest - slowest) / MOST)
     tried = np.arange(slowest, fastest, step)
-    signals = _stacked(readings)
+    each_signal = [each for reading in readings for each in _signals(reading)]
+    signals = np.stack(each_signal, axis=-1) if each_signal else np.zeros((time_s.size, 0))
     left = np.array([_left(time_s, signals, each) for each in tried])
     lows = np.flatnonzero(
         (left <= np.roll(left, 1)) & (left <= np.roll(left, -1)) & np.isfinite(left)
     )
     return [float(tried[at]) for at in lows[np.argsort(left[lows])][:BEST]]
-
-
-def _stacked(readings: Sequence[Reading]) -> Array:
-    """Return the signals of all readings, (T, n)."""
-    every = [each for reading in readings for each in _signals(reading)]
-    return np.stack(every, axis=-1) if every else np.zeros((readings[0].values.size, 0))
 
 
 def _signals(reading: Reading) -> list[Array]:

@@ -14,7 +14,7 @@ from reports.compare.beside import Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import left_words
-from reports.judge.rows import AS_THEY_ARE
+from reports.judge.rows import flat_error
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.reference import LEAST
@@ -47,12 +47,9 @@ NOT_OF_LOGS = ("CC110", "CC111", "CC115", "CC117")
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedLog(Evidence):
-    """A log with its results.
-
-    ``beside`` is the comparison, ``fit`` the fitted drive of its reference, if any. ``causes``
-    explain errors out of tolerance, and delays within it; ``not_judged`` are parts of the scene
-    that the log lacks; ``notes`` are further facts.
-    """
+    """A log with its results. ``beside`` is the comparison, ``fit`` the fitted drive of its
+    reference, if any. ``causes`` explain errors out of tolerance, and delays within it;
+    ``not_judged`` are parts of the scene that the log lacks; ``notes`` are further facts."""
 
     log: OwnLog
     beside: LogBeside
@@ -89,7 +86,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     forces that are not judged; an invalid step; a name in ``require`` that the scene lacks; a drive
     that the log does not allow; a range in which the mechanism cannot move.
     """
-    _check_step(log, request.step_s)
+    _refuse_step(log, request.step_s)
     required = [required_name(log.scene, name) for name in request.require]
     if log.forces is None:
         refuse_forces_unasked("--require", (quantity for _, quantity, _ in required))
@@ -119,7 +116,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         placing=_placing(errors),
         absent=absent if required else None,
     )
-    found, notes = _explained(log, truth, fit, evidence, errors)
+    found, notes = _causes_and_notes(log, truth, fit, evidence, errors)
     return JudgedLog(
         **vars(evidence),
         log=log,
@@ -134,10 +131,9 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     )
 
 
-def _explained(
+def _causes_and_notes(
     log: OwnLog, truth: Truth, fit: DriveFit | None, evidence: Evidence, errors: Errors
 ) -> tuple[tuple[Cause, ...], tuple[str, ...]]:
-    """Return the causes, and further notes on a log within tolerance or out."""
     rows = [row for row in errors.rows if row.kind == "total"]
     itself = (ITSELF,) if rows and all(row.maximum == 0.0 for row in rows) else ()
     out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
@@ -161,8 +157,7 @@ def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
     return tuple(replace(finding, cure="") for finding in judge(evidence, rules))
 
 
-def _check_step(log: OwnLog, step_s: float) -> None:
-    """Refuse an invalid step, or one longer than a sample. Raises CrankcheckError."""
+def _refuse_step(log: OwnLog, step_s: float) -> None:
     if not (math.isfinite(step_s) and step_s >= 0.0):
         raise CrankcheckError(f"--step {step_s:g}: give a time above 0, in seconds")
     shortest = float(np.min(np.diff(log.time_s)))
@@ -241,12 +236,7 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
         if error.kind not in KINDS or error.tolerance not in judged.limits:
             continue
         limit = limit_of(error, judged, errors)
-        read = [
-            each
-            for each in readings_of(judged.log, error.quantity, error.body)
-            if error.source == "reported"
-            and (each.channel.kind.judged_of == error.body_kind or error.body_kind == "driver")
-        ]
+        read = readings_of(judged.log, error) if error.source == "reported" else ()
         columns = tuple(each.channel.column for each in read)
         unit = _unit(read, error.unit)
         for gap in judged.log.gaps:
@@ -254,7 +244,7 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
                 columns, unit = (gap.column,), (gap.unit, UNITS["length"][gap.unit])
         if judged.log.forces and (error.quantity, error.body) in judged.log.forces.columns:
             columns = judged.log.forces.columns[error.quantity, error.body]
-        rows.append(LogRow(columns, _what(error), error, limit, *unit))
+        rows.append(LogRow(columns, _error_words(error), error, limit, *unit))
     return rows
 
 
@@ -268,8 +258,7 @@ def _unit(read: Sequence[Reading], otherwise: str) -> tuple[str, float]:
     return first.unit, UNITS[first.kind.dimension][first.unit]
 
 
-def _what(error: Error) -> str:
-    """Return an error in words: quantity, body, and its derivation if not from a column itself."""
+def _error_words(error: Error) -> str:
     quantity = "angle" if error.quantity == "drive" else error.quantity
     driver = ", the driver" if error.body_kind == "driver" else ""
     differenced = ", differenced" if error.source == "differenced" else ""
@@ -283,15 +272,12 @@ def row_table(judged: JudgedLog) -> list[dict[str, object]]:
         {
             "scene": judged.scene.name,
             "columns": " ".join(row.columns),
-            **{name: getattr(row.error, name) for name in AS_THEY_ARE},
-            "maximum_pure": row.error.pure,
-            "limit_pure": row.limit.number,
-            "limit_origin": row.limit.origin,
-            "verdict": row.verdict,
-            "time_of_maximum_s": row.error.time_of_maximum_s,
-            "driver_at_maximum_rad": row.error.driver_at_maximum_rad,
-            "reference_bound": row.error.bound,
-            "samples": row.error.samples,
+            **flat_error(
+                row.error,
+                limit_pure=row.limit.number,
+                limit_origin=row.limit.origin,
+                verdict=row.verdict,
+            ),
         }
         for row in log_rows(judged)
     ]

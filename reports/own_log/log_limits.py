@@ -109,31 +109,27 @@ def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
 
 
 def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[str, float]:
-    """Return the allowed error of each column [SI]: the least limit that it exceeds, or else the
-    largest."""
+    """Return the allowed error of each column [SI]: the least limit exceeded, or the largest."""
     over: dict[str, list[float]] = {}
     under: dict[str, list[float]] = {}
     for row in errors.rows:
         if row.source != "reported" or row.kind == "geometric":
             continue
         limit = limit_of(row, evidence, errors).number
-        for reading in readings_of(log, row.quantity, row.body):
-            if reading.channel.kind.judged_of == row.body_kind or row.body_kind == "driver":
-                side = under if row.pure <= limit else over
-                # Two coordinates may be off by too much together, though neither is alone.
-                axis = reading.channel.kind.axis
-                both = math.sqrt(2.0) if side is over and axis is not None else 1.0
-                side.setdefault(reading.channel.column, []).append(limit * row.scale / both)
+        for reading in readings_of(log, row):
+            side = under if row.pure <= limit else over
+            # Two coordinates may be off by too much together, though neither is alone.
+            axis = reading.channel.kind.axis
+            both = math.sqrt(2.0) if side is over and axis is not None else 1.0
+            side.setdefault(reading.channel.column, []).append(limit * row.scale / both)
     return {column: max(each) for column, each in under.items()} | {
         column: min(each) for column, each in over.items()
     }
 
 
 def required_name(scene: Scene, name: str) -> tuple[str, str, str]:
-    """Return a required name as given, with its quantity and body, "" for any.
-
-    Raises CrankcheckError for one that is neither.
-    """
+    """Return a required name as given, with its quantity and body, "" for any. Raises
+    CrankcheckError for one that is neither."""
     bodies = {*scene.links, *scene.pins, *scene.sliders}
     if name in QUANTITIES:
         return name, name, ""

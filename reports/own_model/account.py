@@ -23,7 +23,7 @@ from reports.own_model.assembly import ModelRequest, assembled, out_of_reach
 from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.engine import Engine, Run
+from sim.engine import Run
 from sim.registry.own_models import Advised, Disturbance, OwnModel, reader, reading_engine
 
 NO_MEMORY = "not allocate memory"
@@ -34,8 +34,7 @@ POSES = 73
 
 @dataclass(frozen=True)
 class ProposedChange:
-    """Settings that may be recommended, and the change of the file: a diff, or words; "" for no
-    change."""
+    """Settings that may be recommended, with the change of the file: a diff, words, or ""."""
 
     advised: Advised
     patch: str
@@ -97,12 +96,6 @@ def read(request: ModelRequest, limits: Limits) -> ModelAccount:
         account = child.call(read_here, request)
     finally:
         child.close()
-    return _unless_lost(account, request, limits)
-
-
-def _unless_lost(
-    account: ModelAccount | Lost, request: ModelRequest, limits: Limits
-) -> ModelAccount:
     if not isinstance(account, Lost):
         return account
     if isinstance(account.error, CrankcheckError) and NO_MEMORY not in str(account.error):
@@ -120,7 +113,7 @@ def read_here(request: ModelRequest) -> ModelAccount:
     found = assembled(own, request)
     scene = found.scene
     check_names(scene)
-    dt_s, steps = _counted(scene, own, request)
+    dt_s, steps = _step_s_and_count(scene, own, request)
     turns = min(dt_s * steps / scene.driver.law.period_s, repeats_after(scene) / math.tau)
     poses = max(POSES, math.ceil(POSES * turns))
     times = np.linspace(0.0, turns * scene.driver.law.period_s, poses)
@@ -171,8 +164,7 @@ def _proposed(touching: bool) -> list[Advised]:
     ]
 
 
-def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
-    """Return step [s] and number of steps. Raises CrankcheckError as `counted`."""
+def _step_s_and_count(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
     given_s = request.dt_s
     if given_s is None and request.steps_per_turn is None:
         if not 0.0 < own.dt_s < math.inf:
@@ -181,13 +173,6 @@ def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float,
             )
         given_s = own.dt_s
     return counted(scene, given_s, request.steps_per_turn, request.turns)
-
-
-def checked_line(line: ModelLine) -> CheckedLine:
-    """Run and judge one line, in this process."""
-    account, request = line.account, line.account.request
-    own = reader()(request.path, request.joint, request.key)
-    return checked(line.cell, own.engine(account.recommended.advised))
 
 
 MOST = 600
@@ -206,16 +191,17 @@ class ErrorCourse:
 
 @dataclass(frozen=True, kw_only=True)
 class CheckedLine(Checked):
-    """A line that was run and judged: also its last turn, and its whole course; without both where
-    it logged nothing."""
+    """A judged line, with its last turn and its whole course where it logged something."""
 
     last_turn: Trace = field(default_factory=dict)
     course: ErrorCourse | None = None
 
 
-def checked(cell: Cell, adapter: Engine) -> CheckedLine:
-    """Run and judge a line in an engine that holds the model."""
-    found, run = examined(cell, adapter=adapter)
+def checked_line(line: ModelLine) -> CheckedLine:
+    """Run and judge one line, in this process."""
+    cell, request = line.cell, line.account.request
+    own = reader()(request.path, request.joint, request.key)
+    found, run = examined(cell, adapter=own.engine(line.account.recommended.advised))
     if run is None or found.errors is None:
         return CheckedLine(**vars(found))
     return CheckedLine(
@@ -224,8 +210,7 @@ def checked(cell: Cell, adapter: Engine) -> CheckedLine:
 
 
 def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
-    """Return the course of a run, None where it logged nothing. Raises CrankcheckError where there
-    is no reference."""
+    """Return the course of a run, None without a log. Raises CrankcheckError for no reference."""
     beside = Beside.of(truth_of(Same(cell.scene)), run)
     if beside is None:
         return None

@@ -23,19 +23,16 @@ from sim.registry.own_models import MOST_TURNS, OwnModel
 MOST_CHOICES = 8
 """Most choices that are tried, two to this power; beyond it the user chooses."""
 ALIKE = 0.1
-"""A pose fits both assemblies if it is nearer to the best than to the next by less than this
-share."""
+"""A pose fits two assemblies if it is nearer to the best than the next by less than this share."""
 TURN = math.tau
 SHOWN = 6
 
 
 @dataclass(frozen=True)
 class AssembledModel:
-    """The scene for the run, and the distance of the drawn pose from it: the largest distance of a
-    body's frame over the longest link, or angle [rad]."""
+    """The scene for the run, with notes on its choice."""
 
     scene: Scene
-    far: float
     notes: tuple[str, ...]
 
 
@@ -56,7 +53,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     try:
         structure = analyse(bare)
     except CrankcheckError as error:
-        raise CrankcheckError(f"{request.path}: {error}{_why_not_one(own, request)}") from None
+        raise CrankcheckError(f"{request.path}: {error}{_why_mobile(own, request)}") from None
     keys = [group.branch_key for group in structure.groups if group.assemblies == 2]
     numbered: dict[str, Sequence[int]] = dict.fromkeys(keys, (1, -1))
     numbered |= {t.branch_key: range(1, MOST_ASSEMBLIES + 1) for t in structure.triads}
@@ -76,7 +73,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
         )
     ranked = sorted(_fits(own, bare, numbered, request.branch), key=lambda fit: fit[0])
     if not ranked:
-        raise CrankcheckError(f"{request.path}: {_not_assembled(own, bare, request)}")
+        raise CrankcheckError(f"{request.path}: {_why_not_assembled(own, bare, request)}")
     far, scene = ranked[0]
     if len(ranked) > 1 and ranked[1][0] - far < ALIKE * ranked[1][0]:
         choices = " or ".join(_words(fit[1].branch) for fit in ranked[:2])
@@ -88,15 +85,14 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     if request.start_deg is not None:
         law = replace(law, start_rad=math.radians(request.start_deg))
         scene = _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
-    return AssembledModel(scene, far, tuple(notes))
+    return AssembledModel(scene, tuple(notes))
 
 
 def _words(branch: Mapping[str, int]) -> str:
     return ", ".join(f"{key} {sign:+d}" for key, sign in branch.items())
 
 
-def _why_not_one(own: OwnModel, request: ModelRequest) -> str:
-    """Return the cause of a mobility other than 1, by joint and weld."""
+def _why_mobile(own: OwnModel, request: ModelRequest) -> str:
     loose, welds = own.loose(), own.welds()
     if loose:
         return f" (with {request.joint} held these still move: {few(loose, SHOWN)})"
@@ -124,7 +120,8 @@ def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
 def _fits(
     own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
 ) -> Iterator[tuple[float, Scene]]:
-    """Yield every assembly, with the distance of the pose from it."""
+    """Yield every assembly, with the distance of the drawn pose from it: the largest distance of a
+    body's frame over the longest link, or angle [rad]."""
     left = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
     for signs in itertools.product(*(choices[key] for key in left)):
@@ -135,31 +132,30 @@ def _fits(
         except CrankcheckError:
             continue
         placed = frames(scene, state)
-        yield max(_off(placed[name], drawn[name], scene.longest_m) for name in drawn), scene
+        yield (
+            max(_distance(placed[name], drawn[name], scene.longest_m) for name in drawn),
+            scene,
+        )
 
 
-def _off(frame: Frame, pose: BodyPose, longest_m: float) -> float:
-    """Return the distance of a body as drawn from its place."""
+def _distance(frame: Frame, pose: BodyPose, longest_m: float) -> float:
     turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, TURN))
     return max(turn, math.dist(frame.origin, pose.origin[0]) / (longest_m or 1.0))
 
 
-def _not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
-    """Return the reason why no assembly holds in the pose."""
+def _why_not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
     try:
         solve(bare, np.zeros(1), bound=False)
     except ReachError as error:
         return out_of_reach(bare, request, str(error))
     except CrankcheckError as error:
-        return f"{error}{_why_not_one(own, request)}"
+        return f"{error}{_why_mobile(own, request)}"
     return "it can not be assembled in this pose"
 
 
 def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
     """Return the requested and the possible range of the driver in words; ``otherwise`` if empty.
-
-    The angle of the driver is its joint's reading, so that all is in the joint's own coordinate.
-    """
+    The angle of the driver is its joint's reading, so that all is in the joint's own coordinate."""
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     way = math.copysign(TURN, request.speed_rad_s)
     end = start + way * request.turns

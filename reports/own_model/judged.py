@@ -41,10 +41,8 @@ class JointGap:
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedModel:
-    """A model as read, and its lines: as written first, recommended last.
-
-    The verdict is that on the model as written.
-    """
+    """A model as read, and its lines: as written first, recommended last. The verdict is that on
+    the model as written."""
 
     account: ModelAccount
     lines: Sequence[CheckedLine]
@@ -87,10 +85,9 @@ class JudgedModel:
         """The other lines worth reporting."""
         names = told(self.account.profiles)
         rest = [one for one in self.lines if one.cell.profile not in names]
-        return [one for one in rest if self._says(one)]
+        return [one for one in rest if self._is_worth_reporting(one)]
 
-    def _says(self, one: Checked) -> bool:
-        """True if a line changes the error, or how the run ends."""
+    def _is_worth_reporting(self, one: Checked) -> bool:
         if one.status != self.own.status:
             return True
         factor = self.gains(one)[0]
@@ -109,8 +106,7 @@ class JudgedModel:
         return first, second, third
 
     def still(self) -> Finding | None:
-        """Return the worst failure of the recommended settings, as a part of its limit; None if
-        there is none."""
+        """Return the worst failure of the recommended settings, as a part of its limit, if any."""
         failures = self.lines[-1].failures
         return max(failures, key=_part, default=None)
 

@@ -1,5 +1,4 @@
-"""Words for an own model: its reading, its possible disturbances, the gain of each line, the
-verdict."""
+"""Words for an own model: its reading, its possible disturbances, gains of lines, the verdict."""
 
 import math
 from collections.abc import Sequence
@@ -37,18 +36,17 @@ class SentenceGroup:
 def reading(account: ModelAccount) -> dict[str, str]:
     """Return words for the reading of the file, its drive, and its start, each under its head."""
     scene = account.scene
-    sliders = f"; {_named(list(scene.sliders), 'slider')}" if scene.sliders else ""
+    sliders = f"; {_count_and_names(list(scene.sliders), 'slider')}" if scene.sliders else ""
     notes = {f"note {n}" if n else "note": text for n, text in enumerate(account.notes)}
     return {
-        "read as": f"{_named(list(scene.links), 'link')}{sliders}",
+        "read as": f"{_count_and_names(list(scene.links), 'link')}{sliders}",
         **notes,
-        "pose": _pose(account),
-        "drive": _drive(account),
+        "pose": _pose_text(account),
+        "drive": _drive_text(account),
     }
 
 
-def _drive(account: ModelAccount) -> str:
-    """Return the words for its drive and start."""
+def _drive_text(account: ModelAccount) -> str:
     request = account.request
     turned = f"{account.steps * account.dt_s / account.scene.driver.law.period_s:.4g}"
     turns = "1 turn" if turned == "1" else f"{turned} turns"
@@ -62,13 +60,11 @@ def _drive(account: ModelAccount) -> str:
     )
 
 
-def _named(names: Sequence[str], noun: str) -> str:
-    """Return a count with names."""
+def _count_and_names(names: Sequence[str], noun: str) -> str:
     return f"{count(len(names), noun)} ({few(names, SHOWN)})"
 
 
-def _pose(account: ModelAccount) -> str:
-    """Return the words for the openings of the file's own pose, and the start of the run."""
+def _pose_text(account: ModelAccount) -> str:
     most = OPEN * (account.scene.longest_m or 1.0)
     gaping = sorted(
         ((gap, name) for name, gap in account.open_m.items() if gap > most), reverse=True
@@ -167,7 +163,7 @@ def verdict_text(judged: JudgedModel) -> str:
     elif own.verdict == "unsupported":
         head = f"NOT RUN as written: {own.reason}"
     else:
-        head = f"OUT OF TOLERANCE as written{_why(judged)}"
+        head = f"OUT OF TOLERANCE as written{_why_out(judged)}"
     if not judged.account.helps:
         return f"{head}; {NO_HELP}"
     better = "within" if last.verdict == "within" else last.verdict
@@ -176,8 +172,7 @@ def verdict_text(judged: JudgedModel) -> str:
     return f"{head}; recommended: {better}{words}"
 
 
-def _why(judged: JudgedModel) -> str:
-    """Return the worst position error of a run that is out, or how it ended."""
+def _why_out(judged: JudgedModel) -> str:
     own = judged.own
     if own.status != "ok":
         return f": {own.status}"

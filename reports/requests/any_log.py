@@ -14,7 +14,7 @@ from models.errors import CrankcheckError, suggestion
 from models.motion import Motion
 from models.scene import Scene
 from reports.logs.channel import OwnLog
-from reports.logs.kinds import KINDS, OWN, Kind, plural, si
+from reports.logs.kinds import KINDS, Kind, plural, si
 from reports.logs.map_file import ChannelTable, Map, TimeTable, map_of, read_map
 from reports.requests.arguments import is_true, one_of, path_of, wrong_kind
 from reports.requests.run import Simulation
@@ -172,7 +172,7 @@ def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> O
         values = _fitting(series, kind, raw[TIME], f"{source}: {body}, {kind.field}")
         if np.all(np.isnan(values)):
             continue
-        column = f"{body}_{OWN[kind.body_kind, kind.name]}"
+        column = f"{body}_{kind.column}"
         raw[column] = values
         channels.append(
             ChannelTable(column=column, of=body, kind=kind.name, unit=si(kind.dimension))
@@ -182,7 +182,7 @@ def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> O
     from reports.logs.columns import Columns
     from reports.logs.meanings import understood
 
-    columns = Columns(source, raw, rows=raw[TIME].size)
+    columns = Columns(source, raw)
     return understood(columns, scene, Map(time=TimeTable(column=TIME), channel=channels))
 
 

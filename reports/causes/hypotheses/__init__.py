@@ -1,6 +1,6 @@
 """The hypotheses by subject, in the order in which equal ones are preferred."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 
 from reports.causes.account import Account
 from reports.causes.hypotheses import other_world
@@ -15,32 +15,25 @@ from reports.causes.hypotheses.two_faults import two_faults
 from reports.causes.inquiry import Inquiry
 
 Hypothesis = Callable[[Inquiry], Iterator[Account | None]]
-OF_SAMPLES: Mapping[str, Hypothesis] = {"turns": turns, "samples": samples}
+Hypotheses = Sequence[Hypothesis]
+OF_SAMPLES: Hypotheses = (turns, samples)
 """Faults of some samples, besides any fault of all samples."""
-OF_CHANNELS: Mapping[str, Hypothesis] = {
-    "straight": straight,
-    "swapped": swapped,
-    "misnamed": misnamed,
-    **OF_SAMPLES,
-    "late": late,
-    "filtered": filtered,
-    "rounded": rounded,
-}
+OF_CHANNELS: Hypotheses = (straight, swapped, misnamed, *OF_SAMPLES, late, filtered, rounded)
 """Faults of some channels."""
-OF_LOGS: Mapping[str, Hypothesis] = {
-    "backwards": other_world.backwards,
-    "assembly": other_world.assembly,
-    "mirrored": other_world.mirrored,
-    "time unit": time_unit,
-    "stamps": stamps,
-    "moved": other_world.moved,
-    "turned": other_world.turned,
-    "sized": other_world.sized,
-    "start angle": other_world.start_angle,
-    "dimension": dimension,
-    "drift": drift,
-    "smoothed": smoothed,
-    "two faults": two_faults,
-}
+OF_LOGS: Hypotheses = (
+    other_world.backwards,
+    other_world.assembly,
+    other_world.mirrored,
+    time_unit,
+    stamps,
+    other_world.moved,
+    other_world.turned,
+    other_world.sized,
+    other_world.start_angle,
+    dimension,
+    drift,
+    smoothed,
+    two_faults,
+)
 """Faults of the log as a whole, or of the scene; the expensive ones come last, for channels without
 a good explanation so far."""

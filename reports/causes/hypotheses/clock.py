@@ -38,11 +38,13 @@ FASTEST = 1e3
 
 @dataclass(frozen=True)
 class ClockFault:
-    """Clock that maps a stamp t [s] of the log to t + start + gain (t - first)."""
+    """Clock that maps a stamp t [s] of the log to t + start + gain (t - first); ``paced`` where the
+    rates are taken over its time."""
 
     first_s: float
     start_s: float
     gain: float
+    paced: bool = False
 
     def __call__(self, stamps: Array) -> Array:
         return stamps + (self.start_s + self.gain * (stamps - self.first_s))
@@ -52,9 +54,9 @@ class ClockFault:
         """True if the clock runs forward, at a plausible pace."""
         return 1.0 / FASTEST < 1.0 + self.gain < FASTEST
 
-    def world(self, world: World, *, paced: bool) -> World:
-        """Return the world by this clock; ``paced`` where the rates are taken over its time."""
-        pace = world.pace * (1.0 + self.gain) if paced else world.pace
+    def world(self, world: World) -> World:
+        """Return the world by this clock."""
+        pace = world.pace * (1.0 + self.gain) if self.paced else world.pace
         return replace(world.stamped(self), pace=pace)
 
 
@@ -98,55 +100,53 @@ def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> ClockFault | None:
     first_s = float(reading.instants[0])
     ages, period = reading.instants - first_s, inquiry.period_s
     least = float(ages[min(LEAST_ROWS, ages.size) - 1])
-    near = ClockFault(first_s, 0.0, 0.0)
-    clock = _grown(inquiry, column, near, max(FIRST * period, least), paced=paced)
+    near = ClockFault(first_s, 0.0, 0.0, paced)
+    clock = _grown(inquiry, column, near, max(FIRST * period, least))
     if clock is not None:
         return clock
     width = max(SCANNED * period, least)
     starts = np.arange(1, SCAN) / SCAN * period
-    clocks = [ClockFault(first_s, float(start), 0.0) for start in starts]
-    there = inquiry.into(column, _rows(ages, width))
-    best = min(clocks, key=lambda each: _rest(there, column, each, paced=paced))
-    return _grown(inquiry, column, best, width, paced=paced)
+    clocks = [replace(near, start_s=float(start)) for start in starts]
+    there = inquiry.into(column, _first_rows(ages, width))
+    best = min(clocks, key=lambda each: _rest(there, column, each))
+    return _grown(inquiry, column, best, width)
 
 
-def _rows(ages: Array, width: float) -> Rows:
-    """Return rows spread over the beginning of a log."""
+def _first_rows(ages: Array, width: float) -> Rows:
     return picked(int(np.searchsorted(ages, width, side="right")), most=ROWS)
 
 
-def _grown(
-    inquiry: Inquiry, column: str, clock: ClockFault, width: float, *, paced: bool
-) -> ClockFault | None:
+def _grown(inquiry: Inquiry, column: str, clock: ClockFault, width: float) -> ClockFault | None:
     """Return the clock near another, fitted to the beginning of a channel, then to all of it."""
     ages = inquiry.excerpts[column].reading.instants - clock.first_s
     while True:
-        there = inquiry.into(column, _rows(ages, width))
-        near = _nearest(there, column, clock, paced=paced)
+        there = inquiry.into(column, _first_rows(ages, width))
+        near = _nearest(there, column, clock)
         if near is None or not near.runs:
             return None
         clock = near
         if width >= ages[-1]:
-            return clock if _rest(there, column, clock, paced=paced) < BROUGHT_WITHIN else None
+            return clock if _rest(there, column, clock) < BROUGHT_WITHIN else None
         width *= GROWTH
 
 
-def _nearest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> ClockFault | None:
+def _nearest(there: Inquiry, column: str, clock: ClockFault) -> ClockFault | None:
     """Return the clock near another with the least residual of a channel at some rows."""
 
+    def tried(numbers: Array) -> ClockFault:
+        return replace(clock, start_s=float(numbers[0]), gain=float(numbers[1]))
+
     def residual(numbers: Array) -> Array:
-        tried = ClockFault(clock.first_s, float(numbers[0]), float(numbers[1]))
-        return there.errors(tried.world(there.world, paced=paced))[column]
+        return there.errors(tried(numbers).world(there.world))[column]
 
-    delta = (1e-6 * there.period_s, 1e-6)
-    found = fitted(residual, (clock.start_s, clock.gain), delta)
-    return None if found is None else ClockFault(clock.first_s, float(found[0]), float(found[1]))
+    found = fitted(residual, (clock.start_s, clock.gain), (1e-6 * there.period_s, 1e-6))
+    return None if found is None else tried(found)
 
 
-def _rest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> float:
+def _rest(there: Inquiry, column: str, clock: ClockFault) -> float:
     """Return the remaining part of the error of a column; infinite where there is no mechanism."""
     try:
-        errors = there.errors(clock.world(there.world, paced=paced))
+        errors = there.errors(clock.world(there.world))
     except CrankcheckError:
         return math.inf
     return there.excerpts[column].rest(errors[column])
@@ -159,7 +159,7 @@ def _told(inquiry: Inquiry, column: str, clock: ClockFault) -> Iterator[Account]
 
     def residual(numbers: Array) -> Array:
         tried = ClockFault(clock.first_s, 0.0, float(numbers[0]))
-        return thin.errors(tried.world(thin.world, paced=False), [column])[column]
+        return thin.errors(tried.world(thin.world), [column])[column]
 
     clocks = [(clock, 2)]
     if excerpt.channel.kind.order == 0:
@@ -179,13 +179,12 @@ def _either(inquiry: Inquiry, column: str, clock: ClockFault, cost: float) -> Ac
     time = inquiry.channel(column).time
     among = [c for c in inquiry.excerpts if inquiry.channel(c).time == time]
     accounts = {
-        paced: inquiry.account_of_world(
-            "drift", cost, clock.world(inquiry.world, paced=paced), "", among
-        )
+        paced: inquiry.account_of_world("drift", cost, each.world(inquiry.world), "", among)
         for paced in (False, True)
+        for each in [replace(clock, paced=paced)]
     }
     plain, fast = accounts[False], accounts[True]
-    of_clock, of_driver = _words(inquiry, clock)
+    of_clock, of_driver = _clock_and_driver_text(inquiry, clock)
     if plain is None or (fast is not None and UNLIKE * _left(fast, plain) < _left(plain, fast)):
         words = f"{of_driver}, or {of_clock} and the rates are taken over its time"
         return fast and replace(fast, phrase=words)
@@ -199,8 +198,7 @@ def _left(account: Account, other: Account) -> float:
     return max(account.rests.get(column, 1.0) for column in (*account.rests, *other.rests))
 
 
-def _words(inquiry: Inquiry, clock: ClockFault) -> tuple[str, str]:
-    """Return a clock in words, and the driver that would show the same."""
+def _clock_and_driver_text(inquiry: Inquiry, clock: ClockFault) -> tuple[str, str]:
     law, pace = inquiry.world.scene.driver.law, 1.0 + clock.gain
     slow = "slow" if clock.gain > 0.0 else "fast"
     of_clock = f"the clock of the log runs {change(1.0 / pace, 1.0).lstrip('+-')} {slow}"
@@ -242,7 +240,7 @@ def stamps(inquiry: Inquiry) -> Iterator[Account | None]:
     world = inquiry.world.stamped(even)
     shaken = float(np.max(np.abs(off)))
     phrase = (
-        f"{_printed(inquiry)}, off by up to {duration(shaken)}: the samples are even, "
+        f"{_stamps_text(inquiry)}, off by up to {duration(shaken)}: the samples are even, "
         f"{interval:.6g} s apart"
     )
     for each in (world, _aligned(inquiry, world, middle, shaken)):
@@ -265,15 +263,13 @@ def _aligned(inquiry: Inquiry, world: World, middle: float, shaken: float) -> Wo
         ).stamped(world.stamps[-1])
 
     def residual(numbers: Array) -> Array:
-        errors = thin.errors(aligned(numbers), columns)
-        return np.concatenate([errors[c] / thin.excerpts[c].size.rms for c in columns])
+        return thin.misfit(aligned(numbers), columns)
 
     found = fitted(residual, (0.0, 0.0), (1e-4, 1e-4))
     return None if found is None or np.max(np.abs(found)) > 1.0 else aligned(found)
 
 
-def _printed(inquiry: Inquiry) -> str:
-    """Return the printed form of the times in words."""
+def _stamps_text(inquiry: Inquiry) -> str:
     log = inquiry.case.log
     column, unit = log.stamp
     size = UNITS["time"].get(unit, 1.0)

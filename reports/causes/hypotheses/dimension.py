@@ -3,6 +3,8 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from models.errors import CrankcheckError, ReachError
 from models.scene import GROUND, Link, Scene, Slider
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, number
 from reports.causes.inquiry import Inquiry
+from reports.causes.world import World
 
 MOST = 60
 """Number of dimensions that are examined."""
@@ -40,6 +43,10 @@ class DimensionFault:
     unit: str = "m"
     point: str = ""
 
+    def other(self, by: float, scene: Scene) -> float:
+        """Return the value changed by a part of the longest link of a scene, or an angle [rad]."""
+        return self.value + by * (scene.longest_m if self.unit == "m" else 1.0)
+
 
 def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of the dimensions that explain most, alone or both of a point."""
@@ -67,7 +74,9 @@ def dimensions(scene: Scene) -> list[DimensionFault]:
     for point, place in scene.ground.items():
         for axis in (0, 1):
             name, where = f"{'xy'[axis]} of the ground pivot {point}", f"ground {point}"
-            found.append(DimensionFault(name, place[axis], _ground(point, axis), point=where))
+            found.append(
+                DimensionFault(name, place[axis], partial(_pivot, point, axis), point=where)
+            )
     for link in scene.links.values():
         found += _of_link(link)
     for slider in scene.sliders.values():
@@ -75,12 +84,9 @@ def dimensions(scene: Scene) -> list[DimensionFault]:
     return found
 
 
-def _ground(point: str, axis: int) -> Callable[[Scene, float], Scene]:
-    def changed(scene: Scene, value: float) -> Scene:
-        place = _with(scene.ground[point], axis, value)
-        return replace(scene, ground={**scene.ground, point: place})
-
-    return changed
+def _pivot(point: str, axis: int, scene: Scene, value: float) -> Scene:
+    place = _with_axis(scene.ground[point], axis, value)
+    return replace(scene, ground={**scene.ground, point: place})
 
 
 def _of_link(link: Link) -> Iterator[DimensionFault]:
@@ -91,37 +97,28 @@ def _of_link(link: Link) -> Iterator[DimensionFault]:
         length = math.hypot(x1 - x0, y1 - y0)
         words = f"length {names[0]}{names[1]} of {link.name}"
         if length > 0.0:
-            yield DimensionFault(words, length, _length(link.name, names[0], names[1]))
+            yield DimensionFault(words, length, partial(_length, link.name, names[0], names[1]))
     for point in names[2:]:
         for axis in (0, 1):
             words = f"{'xy'[axis]} of {point} in the frame of {link.name}"
-            place = f"{link.name} {point}"
-            value = link.points[point][axis]
-            yield DimensionFault(words, value, _place(link.name, point, axis), point=place)
+            changed = partial(_coordinate, link.name, point, axis)
+            where = f"{link.name} {point}"
+            yield DimensionFault(words, link.points[point][axis], changed, point=where)
 
 
-def _length(name: str, first: str, second: str) -> Callable[[Scene, float], Scene]:
-    def changed(scene: Scene, value: float) -> Scene:
-        (x0, y0), (x1, y1) = (scene.links[name].points[point] for point in (first, second))
-        if value <= 0.0:
-            raise ReachError(f"{name} of a length of {value:.4g} m")
-        ratio = value / math.hypot(x1 - x0, y1 - y0)
-        place = (x0 + ratio * (x1 - x0), y0 + ratio * (y1 - y0))
-        return _moved(scene, name, second, place)
-
-    return changed
+def _length(name: str, first: str, second: str, scene: Scene, value: float) -> Scene:
+    (x0, y0), (x1, y1) = (scene.links[name].points[point] for point in (first, second))
+    if value <= 0.0:
+        raise ReachError(f"{name} of a length of {value:.4g} m")
+    ratio = value / math.hypot(x1 - x0, y1 - y0)
+    return _with_point(scene, name, second, (x0 + ratio * (x1 - x0), y0 + ratio * (y1 - y0)))
 
 
-def _place(name: str, point: str, axis: int) -> Callable[[Scene, float], Scene]:
-    def changed(scene: Scene, value: float) -> Scene:
-        place = _with(scene.links[name].points[point], axis, value)
-        return _moved(scene, name, point, place)
-
-    return changed
+def _coordinate(name: str, point: str, axis: int, scene: Scene, value: float) -> Scene:
+    return _with_point(scene, name, point, _with_axis(scene.links[name].points[point], axis, value))
 
 
-def _moved(scene: Scene, name: str, point: str, place: tuple[float, float]) -> Scene:
-    """Return the scene with a point of a link elsewhere in its frame."""
+def _with_point(scene: Scene, name: str, point: str, place: tuple[float, float]) -> Scene:
     link = scene.links[name]
     link = replace(link, points={**link.points, point: place})
     return replace(scene, links={**scene.links, name: link})
@@ -131,16 +128,19 @@ def _of_slider(slider: Slider) -> Iterator[DimensionFault]:
     """Yield the offset of the line to its left from its place in the scene, and its directions."""
     line = f"the line of slider {slider.name}"
     sine, cosine = math.sin(slider.direction_rad), math.cos(slider.direction_rad)
+    x, y = slider.through_m
+
+    def other(scene: Scene, **changed: Any) -> Scene:
+        return replace(scene, sliders={**scene.sliders, slider.name: replace(slider, **changed)})
 
     def beside(scene: Scene, value: float) -> Scene:
-        x, y = slider.through_m
-        return _slid(scene, replace(slider, through_m=(x - value * sine, y + value * cosine)))
+        return other(scene, through_m=(x - value * sine, y + value * cosine))
 
     def turned(scene: Scene, value: float) -> Scene:
-        return _slid(scene, replace(slider, direction_rad=value))
+        return other(scene, direction_rad=value)
 
     def tilted(scene: Scene, value: float) -> Scene:
-        return _slid(scene, replace(slider, angle_rad=value))
+        return other(scene, angle_rad=value)
 
     where = "" if slider.on == GROUND else f" on {slider.on}"
     yield DimensionFault(f"distance of {line}{where} to its left", 0.0, beside)
@@ -149,12 +149,7 @@ def _of_slider(slider: Slider) -> Iterator[DimensionFault]:
         yield DimensionFault(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
 
 
-def _slid(scene: Scene, slider: Slider) -> Scene:
-    return replace(scene, sliders={**scene.sliders, slider.name: slider})
-
-
-def _with(place: tuple[float, float], axis: int, value: float) -> tuple[float, float]:
-    """Return a point with another coordinate."""
+def _with_axis(place: tuple[float, float], axis: int, value: float) -> tuple[float, float]:
     return (value, place[1]) if axis == 0 else (place[0], value)
 
 
@@ -163,17 +158,14 @@ def _residual(
 ) -> Callable[[Array], Array]:
     """Return the residual function of columns, each over its size, for changes of dimensions; it
     raises CrankcheckError where there is no such mechanism."""
-    sizes = {column: inquiry.excerpts[column].size.rms for column in columns}
-    scale = inquiry.world.scene.longest_m
+    return lambda changes: inquiry.misfit(_with_dimensions(inquiry, chosen, changes), columns)
 
-    def residual(changes: Array) -> Array:
-        scene = inquiry.world.scene
-        for one, by in zip(chosen, changes, strict=True):
-            scene = one.change(scene, one.value + float(by) * (scale if one.unit == "m" else 1.0))
-        errors = inquiry.errors(replace(inquiry.world, scene=scene), columns)
-        return np.concatenate([errors[column] / sizes[column] for column in columns])
 
-    return residual
+def _with_dimensions(inquiry: Inquiry, chosen: Sequence[DimensionFault], changes: Array) -> World:
+    scene = inquiry.world.scene
+    for one, by in zip(chosen, changes, strict=True):
+        scene = one.change(scene, one.other(float(by), inquiry.world.scene))
+    return replace(inquiry.world, scene=scene)
 
 
 def _likely(
@@ -215,12 +207,9 @@ def _told(
 
 
 def _account(inquiry: Inquiry, chosen: Sequence[DimensionFault], found: Array) -> Account | None:
-    """Return the account of fitted changes."""
-    scene, longest = inquiry.world.scene, inquiry.world.scene.longest_m
     words = []
     for one, by in zip(chosen, found, strict=True):
-        value = one.value + float(by) * (longest if one.unit == "m" else 1.0)
-        scene = one.change(scene, value)
+        value = one.other(float(by), inquiry.world.scene)
         shown = [value, one.value] if one.unit == "m" else [*map(math.degrees, (value, one.value))]
         unit = "m" if one.unit == "m" else "deg"
         share = f" ({change(*shown)})" if one.value and one.unit == "m" else ""
@@ -229,6 +218,6 @@ def _account(inquiry: Inquiry, chosen: Sequence[DimensionFault], found: Array) -
             f"in the scene{share}"
         )
     cost = CAUSE + CHOICE + NUMBER * len(chosen)
-    world = replace(inquiry.world, scene=scene)
+    world = _with_dimensions(inquiry, chosen, found)
     told = inquiry.account_of_world("length", cost, world, " and ".join(words))
     return told if told and inquiry.no_chance(told) else None

@@ -28,8 +28,7 @@ FARTHEST = 20.0
 """Largest magnitude of the logarithm of a time constant in samples."""
 LEAST_ROWS = 16
 PASSED = 0.1
-"""Least part of a signal that a filter has to pass: below it, no reading would be there to
-explain."""
+"""Least part of a signal that a filter has to pass: less would leave no readings to explain."""
 
 
 def filtered(inquiry: Inquiry) -> Iterator[Account | None]:
@@ -75,17 +74,15 @@ def _low_pass(stretch: Inquiry, column: str) -> Account | None:
     constant = step * math.exp(log_constant)
     if constant > (excerpt.instants[-1] - excerpt.instants[0]):
         return None  # the output would be constant
-    errors = {column: residual(np.array([log_constant]), feed)}
     phrase = (
         f"{{who}} went through a low-pass of first order, time constant {duration(constant)} "
         f"({constant / step:.3g} samples)"
     )
-    return _told(stretch, column, "low-pass", errors[column], phrase)
+    return _told(stretch, column, "low-pass", residual(np.array([log_constant]), feed), phrase)
 
 
 def _told(stretch: Inquiry, column: str, name: str, left: Array, phrase: str) -> Account | None:
-    """Return the account of a filter; None if it passes next to nothing, or if its curve is a mere
-    likeness."""
+    """Return the account of a filter; None if it passes next to nothing, or is a mere likeness."""
     excerpt = stretch.excerpts[column]
     passed = CauseSize.of_signal(excerpt.expected + excerpt.error - left).rms
     if passed < PASSED * CauseSize.of_signal(excerpt.expected).rms or not excerpt.told_apart(left):
@@ -155,11 +152,10 @@ def smoothed(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of smoothing, even or delayed, for channels without a good explanation."""
     for column in inquiry.unexplained:
         for delayed in (False, True):
-            yield _told_of_smooth(inquiry, column, delayed=delayed)
+            yield _smoothing_account(inquiry, column, delayed=delayed)
 
 
-def _told_of_smooth(inquiry: Inquiry, column: str, *, delayed: bool) -> Account | None:
-    """Return the account of smoothing over a fitted width, with a delay or without."""
+def _smoothing_account(inquiry: Inquiry, column: str, *, delayed: bool) -> Account | None:
     period = inquiry.period_s
     excerpt = inquiry.thin.excerpts[column]
 

@@ -12,7 +12,7 @@ from models.scene.laws import ConstantSpeed
 from reports.causes.account import CAUSE, NUMBER, Account, fitted, later
 from reports.causes.cause import EXPLAINED, CauseSize, Excerpt
 from reports.causes.hypotheses.samples import resolution
-from reports.causes.inquiry import MOVED, Inquiry
+from reports.causes.inquiry import Inquiry
 
 NUDGE = 1e-6
 """Change of a delay for its slope, in periods."""
@@ -51,7 +51,7 @@ def late(inquiry: Inquiry) -> Iterator[Account | None]:
     candidates = (*inquiry.open, *_doubtful(inquiry))
     delays = [delay for delay in map(Search(inquiry).delay, candidates) if delay is not None]
     for group in _groups(delays, inquiry.step_s):
-        yield _told(inquiry, group)
+        yield _delay_account(inquiry, group)
 
 
 def _doubtful(inquiry: Inquiry) -> list[str]:
@@ -79,7 +79,7 @@ class Search:
         delta = NUDGE * self.inquiry.period_s
 
         def residual(by: Array) -> Array:
-            return self._error(excerpt, column, float(by[0]))
+            return self._error(excerpt, float(by[0]))
 
         def rest(by: Array) -> float:
             return excerpt.rest(residual(by))
@@ -100,7 +100,7 @@ class Search:
             return None
         return Delay(column, found, left / moving / math.sqrt(excerpt.rows.size))
 
-    def _error(self, excerpt: Excerpt, column: str, by_s: float) -> Array:
+    def _error(self, excerpt: Excerpt, by_s: float) -> Array:
         """Return the error of readings that belong ``by_s`` later. Raises CrankcheckError."""
         world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
         channel = excerpt.channel
@@ -157,8 +157,7 @@ def _groups(delays: Sequence[Delay], step_s: float) -> list[list[Delay]]:
     return sorted(groups, key=len, reverse=True)[:GROUPS]
 
 
-def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
-    """Return the account of one delay of several columns."""
+def _delay_account(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
     weights = np.array([1.0 / max(each.doubt_s, 1e-9 * inquiry.step_s) ** 2 for each in group])
     by_s = float(weights @ np.array([each.by_s for each in group]) / weights.sum())
     world = inquiry.world.stamped(lambda stamps: stamps + by_s)
@@ -179,7 +178,8 @@ def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
         advised = [
             column
             for column in _doubtful(inquiry)
-            if _clearly(inquiry.excerpts[column], errors[column], expected[column])
+            if CLEAR * inquiry.excerpts[column].rest(errors[column]) <= 1.0
+            and inquiry.excerpts[column].moves(expected[column])
         ]
     instants = later(by_s, inquiry.step_s)
     told = inquiry.account(
@@ -193,14 +193,8 @@ def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
     )
     if told is None or not _everything(inquiry, told.columns, expected, errors):
         return told
-    phrase = f"all that is logged belongs {instants}: {_start(inquiry, by_s)}"
+    phrase = f"all that is logged belongs {instants}: {_start_text(inquiry, by_s)}"
     return replace(told, name="start", phrase=phrase, world=world)
-
-
-def _clearly(excerpt: Excerpt, error: Array, expected: Array) -> bool:
-    """True if a delay explains an error within its limit, and would show in it."""
-    change = CauseSize.of(excerpt.beside(expected) - excerpt.error).largest
-    return CLEAR * excerpt.rest(error) <= 1.0 and change > MOVED * excerpt.size.largest
 
 
 def _everything(
@@ -216,8 +210,7 @@ def _everything(
     shown = [
         column
         for column, excerpt in inquiry.excerpts.items()
-        if CauseSize.of(excerpt.beside(expected[column]) - excerpt.error).largest
-        > max(excerpt.limit, MOVED * excerpt.size.largest)
+        if excerpt.moves(expected[column], excerpt.limit)
     ]
     late = [column for column in shown if column in explained]
     places = [column for column in late if inquiry.channel(column).kind.order == 0]
@@ -225,8 +218,7 @@ def _everything(
     return bool(most and places and not inquiry.spoilt(errors))
 
 
-def _start(inquiry: Inquiry, by_s: float) -> str:
-    """Return the words for the other start."""
+def _start_text(inquiry: Inquiry, by_s: float) -> str:
     law = inquiry.world.scene.driver.law
     clock = "the clock of the log starts elsewhere"
     if not isinstance(law, ConstantSpeed):

@@ -1,5 +1,4 @@
-"""Readings of another quantity than the column states: another body, another kind, or relative to
-another link."""
+"""Readings of another quantity than stated: another body or kind, or relative to another link."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -36,15 +35,16 @@ def misnamed(inquiry: Inquiry) -> Iterator[Account | None]:
         key = excerpt.instants.tobytes()
         if key not in motions:
             try:
-                motions[key] = inquiry.world.at(excerpt.instants, _all(inquiry, excerpt.channel))
+                motions[key] = inquiry.world.at(
+                    excerpt.instants, _of_all_bodies(inquiry, excerpt.channel)
+                )
             except CrankcheckError:
                 return
         for other in _meanings(inquiry, excerpt.channel):
-            yield _told(inquiry, excerpt, other, motions[key])
+            yield _account_of_meaning(inquiry, excerpt, other, motions[key])
 
 
-def _bodies(inquiry: Inquiry) -> dict[str, tuple[str, ...]]:
-    """Return the bodies of the scene by their kind."""
+def _bodies_by_kind(inquiry: Inquiry) -> dict[str, tuple[str, ...]]:
     scene = inquiry.world.scene
     return {
         "link": tuple(scene.links),
@@ -54,16 +54,15 @@ def _bodies(inquiry: Inquiry) -> dict[str, tuple[str, ...]]:
     }
 
 
-def _all(inquiry: Inquiry, channel: Channel) -> Iterator[Channel]:
-    """Yield a channel of every body."""
-    for body_kind, names in _bodies(inquiry).items():
+def _of_all_bodies(inquiry: Inquiry, channel: Channel) -> Iterator[Channel]:
+    for body_kind, names in _bodies_by_kind(inquiry).items():
         kind = next(kind for kind in KINDS.values() if kind.body_kind == body_kind)
         yield from (replace(channel, kind=kind, of=name, relative_to="") for name in names)
 
 
 def _meanings(inquiry: Inquiry, channel: Channel) -> Iterator[OtherMeaning]:
     """Yield the meanings of a channel: other bodies, relative to other links, and other kinds."""
-    bodies = _bodies(inquiry)
+    bodies = _bodies_by_kind(inquiry)
     if channel.kind.body_kind == "link":
         yield from _relative(channel, bodies["link"])
     for kind in KINDS.values():
@@ -92,10 +91,9 @@ def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[OtherMeaning
                 yield OtherMeaning("relative", cost + NUMBER, other, any_zero=True)
 
 
-def _told(
+def _account_of_meaning(
     inquiry: Inquiry, excerpt: Excerpt, other: OtherMeaning, motion: Motion
 ) -> Account | None:
-    """Return the account of a meaning."""
     own, channel = excerpt.channel, other.channel
     expected = channel.expected(motion)
     moves = np.ptp(expected) > 1e-9 * np.max(np.abs(expected))
@@ -125,7 +123,6 @@ def _told(
 
 
 def _phrase(own: Channel, other: OtherMeaning, zero: float) -> str:
-    """Return the words for another meaning of the column."""
     channel = other.channel
     if other.name != "relative":
         return f"{{who}} {{has}} the readings of {channel.name}"
@@ -167,7 +164,6 @@ class ColumnContent:
 
 
 def _swap_phrase(inquiry: Inquiry, pairs: list[tuple[str, str]]) -> str:
-    """Return the words for the exchange of readings."""
     if len(pairs) == 2:
         return "{who} have each other's readings"
     rings = ", ".join(f"{inquiry.channel(other).name} in {column}" for column, other in pairs)
@@ -225,8 +221,7 @@ def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
 
 
 def _read_as(values: Array, own: Channel, other: Channel) -> Iterator[tuple[Channel, Array]]:
-    """Yield a column as another channel, with its readings as they are and with its numbers as the
-    map reads the other's."""
+    """Yield a column as another channel: as read, and with its numbers read as the other's."""
     instead = replace(
         other,
         column=own.column,

@@ -13,7 +13,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed, Law
-from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, number
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted_from, number
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
@@ -99,7 +99,7 @@ def backwards(inquiry: Inquiry) -> Iterator[Account | None]:
     law = inquiry.world.scene.driver.law
     names = SIGNED & {each.name for each in fields(law)}  # type: ignore[arg-type]
     signs = {name: -getattr(law, name) for name in names}
-    world = _driven(inquiry.world, replace(law, **signs))  # type: ignore[type-var]
+    world = _with_law(inquiry.world, replace(law, **signs))  # type: ignore[type-var]
     yield inquiry.account_of_world("reversed", CAUSE, world, "the driver turns the other way")
     elsewhere = inquiry.world.stamped(lambda stamps: -stamps)
     phrase = "the driver turns the other way, and the rates have the signs that they have forwards"
@@ -115,21 +115,18 @@ def start_angle(inquiry: Inquiry) -> Iterator[Account | None]:
     thin, columns = inquiry.thin, inquiry.unclaimed
 
     def residual(angle: Array) -> Array:
-        errors = thin.errors(_driven(thin.world, law.turned(float(angle[0]))), columns)
-        return np.concatenate([errors[c] / thin.excerpts[c].size.rms for c in columns])
+        return thin.misfit(_with_law(thin.world, law.turned(float(angle[0]))), columns)
 
-    tried = (fitted(residual, [start], [1e-6]) for start in STARTS)
-    found = [each for each in tried if each is not None]
-    if not found:
+    found = fitted_from(residual, ([start] for start in STARTS), [1e-6])
+    if found is None:
         return
-    angle = float(min(found, key=lambda each: float(np.sum(residual(each) ** 2)))[0])
+    angle = float(found[0])
     phrase = f"the driver starts {math.degrees(angle):+.4g} deg from where it starts in the scene"
-    world = _driven(inquiry.world, law.turned(angle))
+    world = _with_law(inquiry.world, law.turned(angle))
     yield inquiry.account_of_world("start", CAUSE + NUMBER, world, phrase)
 
 
-def _driven(world: World, law: Law) -> World:
-    """Return the world with another law of its driver."""
+def _with_law(world: World, law: Law) -> World:
     scene = world.scene
     return replace(world, scene=replace(scene, driver=replace(scene.driver, law=law)))
 
@@ -147,12 +144,11 @@ def mirrored(inquiry: Inquiry) -> Iterator[Account]:
         )
         told = inquiry.account_of_world("mirrored", CAUSE, world, phrase)
         if told is not None:
-            changes = {c: _turned_round(inquiry.channel(c), axis) for c in told.columns}
+            changes = {c: _for_reversed_axis(inquiry.channel(c), axis) for c in told.columns}
             yield replace(told, corrections=changes)
 
 
-def _turned_round(channel: Channel, axis: str) -> Mapping[str, object]:
-    """Return the map entries of a channel for a reversed axis."""
+def _for_reversed_axis(channel: Channel, axis: str) -> Mapping[str, object]:
     kind = channel.kind
     if kind.axis is not None and "xy"[kind.axis] != axis:
         return {}
@@ -173,7 +169,7 @@ def turned(inquiry: Inquiry) -> Iterator[Account]:
             f"the x-axis of the log lies at {math.degrees(-found.turn_rad):.4g} deg of the scene"
         )
         if count == 3:
-            phrase += f", and {_origin(found)}"
+            phrase += f", and {_origin_text(found)}"
         world = inquiry.world.framed(found)
         told = inquiry.account_of_world("turned", CAUSE + NUMBER * count, world, phrase)
         if told is not None and len(told.columns) > 1:
@@ -193,21 +189,16 @@ def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | N
     if len(columns) < 2:
         return None
     thin, longest = inquiry.thin, inquiry.world.scene.longest_m
-    sizes = {column: thin.excerpts[column].size.rms for column in columns}
 
     def frame(numbers: Array) -> LogFrame:
         turn, x, y = (*(float(each) for each in numbers), 0.0, 0.0)[:3]
         return LogFrame(turn_rad=turn, shift_m=(x, y))
 
     def residual(numbers: Array) -> Array:
-        errors = thin.errors(thin.world.framed(frame(numbers)), columns)
-        return np.concatenate([errors[column] / sizes[column] for column in columns])
+        return thin.misfit(thin.world.framed(frame(numbers)), columns)
 
     delta = (1e-6, 1e-6 * longest, 1e-6 * longest)[:count]
-    starts = ((turn, 0.0, 0.0)[:count] for turn in STARTS)
-    tried = (fitted(residual, start, delta) for start in starts)
-    found = [each for each in tried if each is not None]
-    best = min(found, key=lambda each: float(np.sum(residual(each) ** 2)), default=None)
+    best = fitted_from(residual, ((turn, 0.0, 0.0)[:count] for turn in STARTS), delta)
     return None if best is None else frame(best)
 
 
@@ -221,7 +212,7 @@ def moved(inquiry: Inquiry) -> Iterator[Account]:
         frame = LogFrame(shift_m=(x, y))
         cost = CAUSE + NUMBER * len(axes)
         world = inquiry.world.framed(frame)
-        told = inquiry.account_of_world("moved", cost, world, _origin(frame))
+        told = inquiry.account_of_world("moved", cost, world, _origin_text(frame))
         if told is not None and len(told.columns) > 1:
             yield told
 
@@ -236,8 +227,7 @@ def _shift(inquiry: Inquiry, axis: int) -> float:
     return float(np.median([error.mean() for error in coordinates])) if coordinates else 0.0
 
 
-def _origin(frame: LogFrame) -> str:
-    """Return the words for the origin of the log."""
+def _origin_text(frame: LogFrame) -> str:
     cos, sin = math.cos(frame.turn_rad), math.sin(frame.turn_rad)
     x, y = frame.shift_m
     place = ", ".join(number(each) for each in (-x * cos - y * sin, x * sin - y * cos))

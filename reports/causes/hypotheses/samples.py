@@ -76,10 +76,10 @@ def _stuck(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask
     every = 1 + int(np.median(lengths))
     if len(stuck) > FEW_RUNS and np.mean(repeated) > HELD and np.mean(lengths == every - 1) > HELD:
         phrase = f"{{who}} {{is}} updated at every {every}th sample only, and held between"
-        return _without(inquiry, column, error, off, ("held", CAUSE + CHOICE, phrase))
+        return _without(column, error, off, ("held", CAUSE + CHOICE, phrase))
     phrase = f"{{who}} stick{{s}}: {places_text(inquiry, stuck, 'repeat')} the one before"
     cost = CAUSE + CHOICE * min(len(stuck), 4)
-    return _without(inquiry, column, error, off, ("stuck", cost, phrase))
+    return _without(column, error, off, ("stuck", cost, phrase))
 
 
 def _spikes(
@@ -93,12 +93,10 @@ def _spikes(
         return None
     phrase = f"{{who}} {{is}} off at single samples: {places_text(inquiry, spikes)}"
     cost = CAUSE + CHOICE * min(1 + len(spikes), 4)
-    return _without(inquiry, column, error, off, ("spike", cost, phrase))
+    return _without(column, error, off, ("spike", cost, phrase))
 
 
-def _without(
-    inquiry: Inquiry, column: str, error: Array, off: Mask, said: tuple[str, float, str]
-) -> Account | None:
+def _without(column: str, error: Array, off: Mask, said: tuple[str, float, str]) -> Account | None:
     """Return the account, by name, cost and phrase, of a fault that spares the other samples."""
     rest = float(np.max(np.abs(error[~off]), initial=0.0)) / float(np.max(np.abs(error)))
     if rest > BROUGHT_WITHIN:

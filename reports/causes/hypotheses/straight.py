@@ -44,23 +44,22 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
         if excerpt.nought:
-            yield from _each(
+            yield from _accounts(
                 inquiry, excerpt, [StraightLineFault("offset", CAUSE + NUMBER, 1.0, shifted=True)]
             )
         elif np.ptp(excerpt.expected) <= excerpt.nothing:
             # A channel that stays: a zero explains whatever is there, and is the last thing to be.
             plain = [line for line in _known(excerpt.channel) if not line.shifted]
-            told = list(_each(inquiry, excerpt, plain))
+            told = list(_accounts(inquiry, excerpt, plain))
             zero = [line for line in _known(excerpt.channel) if line.name == "offset"]
-            yield from told or _each(inquiry, excerpt, zero)
+            yield from told or _accounts(inquiry, excerpt, zero)
         else:
-            yield from _each(inquiry, excerpt, [*_known(excerpt.channel), *_fitted(excerpt)])
+            yield from _accounts(inquiry, excerpt, [*_known(excerpt.channel), *_fitted(excerpt)])
 
 
-def _each(
+def _accounts(
     inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[StraightLineFault]
 ) -> Iterator[Account]:
-    """Yield the accounts of the lines that explain a channel."""
     yield from filter(None, (_told(inquiry, excerpt, line) for line in lines))
 
 
@@ -145,7 +144,6 @@ def _correction(line: StraightLineFault, channel: Channel, zero: float) -> dict[
 def _phrase(
     line: StraightLineFault, channel: Channel, zero: float, inquiry: Inquiry, excerpt: Excerpt
 ) -> str:
-    """Return the words for the fault."""
     unit = line.unit or channel.unit
     said = {
         "unit": f"{{is}} in {unit}, not in {channel.unit}",
@@ -166,8 +164,7 @@ def _phrase(
 
 
 def _steady_rate(excerpt: Excerpt) -> float:
-    """Return the rate of a steadily moving reference, for which a zero and a delay are the same; 0
-    where it is not steady."""
+    """Return the steady rate of a reference, for which a zero and a delay are the same, else 0."""
     fine = np.isfinite(excerpt.expected)
     times, signal = excerpt.instants[fine], excerpt.expected[fine]
     times, signal = times - times.mean(), signal - signal.mean()
@@ -203,7 +200,7 @@ def turns(inquiry: Inquiry) -> Iterator[Account | None]:
                 continue
             yield _whole(inquiry, column, values, error)
             yield _half(inquiry, column, values, error)
-        yield _unsigned(inquiry, column)
+        yield _unsigned_account(inquiry, column)
 
 
 def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:
@@ -220,7 +217,7 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
         return _told_of_turns(inquiry, column, left, ("wrapped", CAUSE, phrase), {"wrapped": True})
     if jumps.size > MOST_JUMPS:
         return None
-    phrase = f"{{who}} lose{{s}} whole turns: {_jumps(inquiry, turn, jumps)}"
+    phrase = f"{{who}} lose{{s}} whole turns: {_jumps_text(inquiry, turn, jumps)}"
     cost = CAUSE + CHOICE * min(jumps.size, 4)
     return _told_of_turns(inquiry, column, left, ("lost turn", cost, phrase), {})
 
@@ -270,8 +267,7 @@ def _told_of_turns(
     return Account(name, cost, {column: rest}, {column: over}, phrase, {column: correction})
 
 
-def _jumps(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:
-    """Return the places where turns are lost, and their numbers."""
+def _jumps_text(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:
     times, each = inquiry.case.log.time_s, []
     for place in jumps[:SHOWN]:
         by = int(turn[place] - turn[place - 1])
@@ -281,8 +277,7 @@ def _jumps(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:
     return listed(each)
 
 
-def _unsigned(inquiry: Inquiry, column: str) -> Account | None:
-    """Return the account of readings that have lost their sign."""
+def _unsigned_account(inquiry: Inquiry, column: str) -> Account | None:
     excerpt = inquiry.excerpts[column]
     expected = excerpt.expected
     if excerpt.channel.kind.turns:

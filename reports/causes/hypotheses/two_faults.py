@@ -58,7 +58,7 @@ def two_faults(inquiry: Inquiry) -> Iterator[Account]:
                 except (CrankcheckError, ArithmeticError, ValueError, IndexError):
                     continue
                 yield from (_both(inquiry, column, first, each) for each in found
-                            if _well(first, column, each))  # fmt: skip
+                            if _is_no_chance(first, column, each))  # fmt: skip
 
 
 def _unclear(inquiry: Inquiry) -> list[str]:
@@ -72,8 +72,7 @@ def _unclear(inquiry: Inquiry) -> list[str]:
     return [column for column in inquiry.open if column not in clear]
 
 
-def _well(first: First, column: str, second: Account) -> bool:
-    """True if the residual of two faults is too small for chance."""
+def _is_no_chance(first: First, column: str, second: Account) -> bool:
     excerpt = first.inquiry.excerpts[column]
     largest = second.lefts[column] * CauseSize.of(excerpt.error).largest
     return second.rests[column] <= TIGHT or largest <= excerpt.limit
@@ -98,8 +97,7 @@ def _both(inquiry: Inquiry, column: str, first: First, second: Account) -> Accou
 
 
 def _read_otherwise(inquiry: Inquiry, column: str) -> Iterator[First]:
-    """Yield a channel in other units and of the other sign, if its readings then have the right
-    size, and are nearer."""
+    """Yield a channel in another unit or sign, if it then has the right size and is nearer."""
     excerpt = inquiry.excerpts[column]
     channel = excerpt.channel
     units = UNITS[channel.kind.dimension]
@@ -171,8 +169,7 @@ def _without_samples(inquiry: Inquiry, column: str) -> Iterator[First]:
 
 
 def _stuck(excerpt: Excerpt, values: Array, error: Array) -> Mask:
-    """Return a mask of readings that repeat the one before while they should move by more than
-    their limit."""
+    """Return a mask of readings that repeat the one before, but should move by over their limit."""
     where = np.zeros(values.shape, dtype=bool)
     where[1:] = values[1:] == values[:-1]
     expected = values - error

@@ -50,10 +50,8 @@ def judge(evidence: Evidence, rules: Iterable[Rule] | None = None) -> tuple[Find
 
 
 def _cure(finding: Finding, evidence: Evidence) -> str:
-    """Return the cure of a rule for this profile, with the result of a trial.
-
-    Where a run did not end well only the status needs a cure: the rest follows from it.
-    """
+    """Return the cure of a rule for this profile, with the result of a trial. Where a run did not
+    end well only the status needs a cure: the rest follows from it."""
     if evidence.status != "ok" and finding.rule != "CC101":
         return ""
     cure = RULES[finding.rule].cure

@@ -45,10 +45,8 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Finding:
-    """Finding of one rule on one cell: in words, and as a number against its limit.
-
-    ``cure`` is the remedy for this cell, "" where none is needed.
-    """
+    """Finding of one rule on one cell: in words, and as a number against its limit. ``cure`` is the
+    remedy for this cell, "" where none is needed."""
 
     rule: str
     level: Level

@@ -1,11 +1,8 @@
 """Every fault is named with its channels, and nothing else is; healthy logs have no cause, nor have
-logs of which nothing can be said. In logs of other mechanisms, of parts of what may be logged,
-sampled otherwise, nothing is told that is not so.
-
-A cause with the name of another fault is true as well where it leaves no more than the noise that
-the log had before: a line through the crank's pin that is turned, and a lever whose zero is, are
-one thing.
-"""
+logs of which nothing can be said, of other mechanisms, of parts of what may be logged, or sampled
+otherwise. A cause with the name of another fault is true as well where it leaves no more than the
+noise of the log: a line through the crank's pin that is turned, and a lever whose zero is, are
+one."""
 
 from collections import Counter
 from itertools import cycle, product
@@ -99,8 +96,7 @@ LIMIT = 1e-3
 ALSO = {"low_passed": ("smoothed",)}
 """What a fault may be called as well."""
 TURN_ABOUT = list(zip(product(KINDS, ("healthy", *TEN)), cycle(PARTS), strict=False))
-"""Each fault in each kind, of the parts in turn. Each fifth is looked at at once: each fault in one
-kind or two."""
+"""Each fault in each kind, of the parts in turn; of these a fifth: each in one kind or two."""
 
 
 def false(planted: Sheet, fault: str) -> list[str]:

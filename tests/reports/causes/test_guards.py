@@ -137,7 +137,7 @@ def test_shaken_times_are_told_though_their_line_is_not_quite_that_of_the_sample
 
 def test_the_top_of_an_error_that_grows_and_falls_is_no_spike() -> None:
     wrong = PLAIN.put({COLUMN: ANGLE + 1.005e-3 * np.exp(-(((PLAIN.time_s - 0.5) / 0.05) ** 2))})
-    assert 0 < wrong.case.excerpts[COLUMN].over < 4
+    assert 0 < np.sum(np.abs(wrong.case.excerpts[COLUMN].error) > wrong.limits[COLUMN]) < 4
     assert not causes(wrong.case)
 
 

@@ -95,12 +95,6 @@ def test_a_late_channel_within_its_limit_is_told_of_too() -> None:
     assert "0.50 samples" in only(wide).text
 
 
-def test_a_channel_whose_last_digit_is_all_that_is_off_is_not_late() -> None:
-    plain = of(angle("rocker"), omega("rocker"))
-    rounded = plain.put({c: np.round(v, 4) for c, v in plain.values.items()})
-    assert not causes(rounded.case)
-
-
 def test_readings_that_are_off_by_a_part_of_the_last_digit_are_rounded_all_the_same() -> None:
     off = 2.5e-5 * np.sin(1e3 * PLAIN.time_s)
     rounded = PLAIN.put({"rocker_a": np.round(ANGLE + off, 4)})

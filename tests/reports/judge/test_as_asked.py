@@ -114,7 +114,7 @@ def test_a_body_begun_elsewhere_is_named(
 @SCENES
 @pytest.mark.parametrize("part", [1, 2])
 def test_a_finer_run_is_a_run_of_its_own(scene: str, name: str, part: int) -> None:
-    """With its step cut into so many parts a run stands in the place of the others, with their
+    """With its step cut into so many parts a run stands in place of the others, with their
     words."""
 
     def again(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:

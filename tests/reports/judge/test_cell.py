@@ -31,7 +31,6 @@ from reports.workers.isolated import FEW
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.fake.engine import FakeEngine
-from tests.worlds.tiers import slow
 from tests.worlds.turns import of_turns
 
 BOTH = pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
@@ -55,13 +54,6 @@ def test_a_crank_of_steady_acceleration_is_within_tolerance(
     found = check(of_turns(scene, engine, converge=True))
     assert found.verdict == "within", found.failures
     assert found.convergence.trend == "shrinks"
-
-
-@slow("only here is a crank off by the rounding of a real sum of 250,000 steps")
-def test_the_rounding_of_a_long_run_is_not_taken_for_a_floor(fourbar: Scene) -> None:
-    seen = check(Cell(fourbar, "mujoco", "tuned", 1e-4, 62832)).convergence
-    assert max(seen.error) < 1e-8
-    assert seen.trend in ("shrinks", "at rounding")
 
 
 @pytest.mark.parametrize(("off_s", "trend"), [(2e-11, "at rounding"), (3e-10, "does not shrink")])

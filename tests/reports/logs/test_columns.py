@@ -15,9 +15,9 @@ from reports.logs.text_rows import Layout
 ROWS = [(0.0, 1.5), (0.1, -2.25), (0.2, 3e-7)]
 
 
-def written(tmp_path: Path, text: str | bytes, name: str = "log.csv") -> Path:
+def written(tmp_path: Path, text: str, name: str = "log.csv") -> Path:
     path = tmp_path / name
-    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    path.write_bytes(text.encode())
     return path
 
 
@@ -35,7 +35,6 @@ def assert_rows(found: Columns, rows: object = ROWS, names: Sequence[str] = ("t"
         "t\ta b\n0\t1.5\n0.1\t-2.25\n0.2\t3e-7",
         "# made by a solver, today\n# 2 columns\nt,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
         '\ufeff"t","a b"\n0,1.5\n0.1,-2.25\n\n0.2,3e-7\n',
-        "t,a b,\n0,1.5,\n0.1,-2.25,\n0.2,3e-7,\n",
         "t;a b;\r\n0;1.5;\r\n0.1;-2.25;\r\n0.2;3e-7;\r\n",
         "# t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
         "% a solver, of today, in s\n%t;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
@@ -43,10 +42,6 @@ def assert_rows(found: Columns, rows: object = ROWS, names: Sequence[str] = ("t"
         "'t','a b'\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
         't "a b"\n0 1.5\n0.1  -2.25\n0.2 3e-7\n',
         '"t"\t"a b"\n"0"\t"1.5"\n0.1\t-2.25\n0.2\t3e-7\n',
-        "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done\n",
-        "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done",
-        "t,a b\n#\n0,1.5\n#\n0.1,-2.25\n0.2,3e-7\n#",
-        "t,a b\r\n0,1.5\r\n0.1,-2.25\r\n0.2,3e-7\r\n\r\n# done\r\n",
         "t,a b\n# go\n0,1.5\n  # half, of it\n0.1,-2.25\n   \n% on\n// and on\n0.2,3e-7\n",
         '# don"t\nt,a b\n# "\n0,1.5\n# don"t\n0.1,-2.25\n# "\n0.2,3e-7\n',
         "t,a b\n#0,9\n0,1.5\n#0.05,9\n0.1,-2.25\n0.2,3e-7\n",
@@ -132,16 +127,6 @@ def test_a_cell_below_a_header_among_remarks_is_told_by_its_line(tmp_path: Path)
     assert found.at("ab", 0).endswith("row 2, column 'ab'")
 
 
-@pytest.mark.parametrize("row", range(4))
-def test_a_cell_is_told_by_its_line_whatever_stands_above(tmp_path: Path, row: int) -> None:
-    lines = ["# a", "t,a", "", "0,1", "# b", "  ", "1,1", "2,1", "", "", "# c", "3,1", "# d"]
-    at = [n for n, line in enumerate(lines) if line[:1].isdigit()][row]
-    lines[at] = f"{row},x"
-    found = read_columns(written(tmp_path, "\n".join(lines)))
-    with pytest.raises(CrankcheckError, match=f"row {at + 1}, column 'a': found 'x'"):
-        found.numbers("a")
-
-
 def test_decimal_commas_in_text_cells_of_a_sheet_are_read_too(tmp_path: Path) -> None:
     path = tmp_path / "log.xlsx"
     rows = [["t", "a"], ["s", "deg"], ["0,5", "1,25"], [1.5, 2.5]]
@@ -172,22 +157,18 @@ def test_every_digit_is_kept(tmp_path: Path) -> None:
         ("t,a\n0,1,2\n", "line 2 has 3 fields, the header 2"),
         ("t,a,\n0,1,\n# b\n1,2,3\n", "row 4: found '3' in column 3, which has no name"),
         ("t,a b\n0 1\n", "line 2 has 2 numbers between spaces, and line 1 not as many names"),
-        ("t\t\ta\n0\t\t1\n", "column 2 has no name; .*separator = ' ' in .file. of the map"),
         ("t,x,x\n,x,y\n0,1,2\n", "line 2 holds words and no numbers, below the names in line 1"),
         ("t;a\n0,5;1,25\n", "row 2, column 't': found '0,5', a decimal comma"),
         ("t,a,b\n0,5,1,25,3,5\n", "decimal commas between commas"),
         ("t,a,b\n0,1,25,3,5e-3\n", "decimal commas between commas"),
         ("t,a\n0,1,\n", "line 2 has 3 fields, the header 2: it ends in a separator"),
         ("t,a\n0.5,1.5,2.5\n", "line 2 has 3 fields, the header 2"),
-        ("t,a,\n0,1,\n1,2,3\n", "row 3: found '3' in column 3, which has no name"),
         ("t,a,\n0,1\n", "column 3 has no name"),
         ('t,"a\n0,1\n', "a quote that is not closed"),
         ("# 0,1\n0,1\n", "line 2 holds numbers and no names"),
-        (b"t,a\n0,1\x00\n", "null bytes"),
-        ("t,a\r0,1\r", "lines end in"),
     ],
 )
-def test_what_is_no_log_is_told(tmp_path: Path, text: str | bytes, words: str) -> None:
+def test_what_is_no_log_is_told(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         read_columns(written(tmp_path, text))
 
@@ -195,7 +176,6 @@ def test_what_is_no_log_is_told(tmp_path: Path, text: str | bytes, words: str) -
 @pytest.mark.parametrize(
     ("cell", "words"),
     [
-        ("n/a", "row 3, column 'a': found 'n/a', no number"),
         ("1;5", "row 3, column 'a': found '1;5', no number"),
         ('"1,000"', "row 3, column 'a': found '1,000', no number; write decimal points, or say"),
         ("1'000.5", "row 3, column 'a': found .*no number; write numbers without marks"),

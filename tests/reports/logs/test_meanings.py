@@ -17,7 +17,7 @@ from reports.compare.beside import Truth
 from reports.describe.motion_tables import motion_frame
 from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of
-from reports.logs.kinds import LENGTH, Meaning
+from reports.logs.kinds import KINDS, LENGTH, Meaning
 from reports.logs.map_file import FileTable, map_of, map_text, read_map
 from reports.logs.meanings import understood
 from reports.logs.names import SceneNames, meaning
@@ -89,14 +89,6 @@ def test_a_delay_moves_the_instants_and_velocities_may_have_times_of_their_own()
     told = [{"column": "rocker_rad_s", "delay_s": 0.002}]
     assert worst(log_of(late, channel=told)) < 1e-9
     assert worst(log_of({**late, "velocity_time_s": TIME_S + 0.002})) < 1e-9
-
-
-def test_two_copies_of_a_pin_are_kept_for_their_gap() -> None:
-    x, y = MOTION.points["C"].position.T
-    log = log_of({
-        "t": TIME_S, "coupler.C.x": x, "coupler.C.y": y, "rocker.C.x": x + 3e-6, "rocker.C.y": y
-    })  # fmt: skip
-    assert [each.channel.column for each in log.copies] == ["rocker.C.x", "rocker.C.y"]
 
 
 def test_the_map_that_is_written_is_the_log_that_was_read(tmp_path: Path) -> None:
@@ -226,45 +218,30 @@ SAID: dict[tuple[str, str, str], list[str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("column", "said"), [(column, said) for said, columns in SAID.items() for column in columns]
-)
-def test_a_name_tells_body_kind_and_unit(column: str, said: tuple[str, str, str]) -> None:
-    found = meaning(column, FOURBAR)
-    assert isinstance(found, Meaning)
-    assert (found.of, found.kind.name, found.unit) == said
+OF_SLIDER = {
+    "displacement": ["C_slider_displacement_m", "C_mm", "C.s", "C stroke [mm]"],
+    "speed": ["C.speed_mm_s"],
+    "acceleration": ["C_slider_acceleration_m_s2"],
+    "x": ["C_x_m"],
+}
+"""Of a slider-crank whose slider and point have the same name."""
+NAMES: list[tuple[str, SceneNames, dict[str, object]]] = [
+    *((column, FOURBAR, {"of": of, "kind": KINDS["point" if of == "C" else "link", kind],
+                         "unit": unit})
+      for (of, kind, unit), columns in SAID.items() for column in columns),
+    *((column, SLIDER_CRANK, {"kind": KINDS["point" if kind == "x" else "slider", kind]})
+      for kind, columns in OF_SLIDER.items() for column in columns),
+    ("rocker_rel_coupler_deg", FOURBAR, {"of": "rocker", "relative_to": "coupler"}),
+    ("coupler.C.x_m", FOURBAR, {"of": "C", "on": "coupler"}),
+    ("C_gap_mm", FOURBAR, {"of": "C", "gap": True, "unit": "mm"}),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("column", "kind"),
-    [
-        ("C_slider_displacement_m", "displacement"),
-        ("C_mm", "displacement"),
-        ("C.s", "displacement"),
-        ("C stroke [mm]", "displacement"),
-        ("C.speed_mm_s", "speed"),
-        ("C_slider_acceleration_m_s2", "acceleration"),
-        ("C_x_m", "x"),
-    ],
-)
-def test_a_slider_and_its_point_of_the_same_name_are_told_apart(column: str, kind: str) -> None:
-    found = meaning(column, SLIDER_CRANK)
-    assert isinstance(found, Meaning)
-    assert found.kind.name == kind
-
-
-@pytest.mark.parametrize(
-    ("column", "said"),
-    [
-        ("rocker_rel_coupler_deg", {"of": "rocker", "relative_to": "coupler"}),
-        ("coupler.C.x_m", {"of": "C", "on": "coupler"}),
-        ("C_gap_mm", {"of": "C", "gap": True, "unit": "mm"}),
-    ],
-)
-def test_a_name_tells_the_other_link_the_body_that_has_a_copy_and_a_gap(
-    column: str, said: dict[str, object]
+@pytest.mark.parametrize(("column", "named", "said"), NAMES)
+def test_a_name_tells_body_kind_unit_and_more(
+    column: str, named: SceneNames, said: dict[str, object]
 ) -> None:
-    found = meaning(column, FOURBAR)
+    found = meaning(column, named)
     assert isinstance(found, Meaning)
     assert {name: getattr(found, name) for name in said} == said
 

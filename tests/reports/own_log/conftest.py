@@ -13,8 +13,8 @@ Judge = Callable[..., Result]
 
 @pytest.fixture
 def judge(tmp_path: Path) -> Judge:
-    """Run ``crankcheck judge`` on a log with these bytes, or one that is there already; it has to
-    end with this ``code``."""
+    """Run ``crankcheck judge`` on these bytes, or a log that is there; it has to end with
+    ``code``."""
 
     def run(
         scene: str,

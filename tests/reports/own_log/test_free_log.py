@@ -112,8 +112,7 @@ def test_a_linkage_that_is_open_is_told_from_a_phase_that_runs_away() -> None:
 
 
 def test_geometry_is_that_of_the_readings_where_the_phase_has_run_away() -> None:
-    """One coordinate, and an angle relative to another link: what else there is of them is not
-    that of the same time."""
+    """One coordinate, and an angle relative to another link: the rest is not of the same time."""
     late = kept_motion(load_scene(SWING), 0.4).at(TIME_S * 0.98)
     turned = {name: link.theta for name, link in late.links.items()}
     one = judged(

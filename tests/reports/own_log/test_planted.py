@@ -1,8 +1,5 @@
-"""Ten faults in the log of a stranger, on three linkages: each is out, and the fault is named with
-its channel; nothing else is blamed.
-
-What is planted, and where, says `tests.worlds.stranger_faults`.
-"""
+"""Ten faults in the log of a stranger (`tests.worlds.stranger_faults`), on three linkages: each is
+out, and the fault is named with its channel; nothing else is blamed."""
 
 import json
 import re
@@ -71,13 +68,6 @@ def holds(case: faults.Planted, fault: str, text: str, columns: list[str]) -> No
 def test_a_fault_is_named_with_its_channel(at: tuple[str, str], blamed: Blamed) -> None:
     scene, fault = at
     case = faults.planted(scene, even(LINKAGES[scene], TURNS, PER_TURN))[fault]()
-    holds(case, fault, *blamed(scene, case.log))
-
-
-@slow("only here are times uneven and faults in: what looks for one may count on even steps")
-@pytest.mark.parametrize(("scene", "fault"), EITHER)
-def test_at_uneven_times_too(scene: str, fault: str, blamed: Blamed) -> None:
-    case = faults.planted(scene, uneven(LINKAGES[scene], 2.0, 120))[fault]()
     holds(case, fault, *blamed(scene, case.log))
 
 

@@ -59,8 +59,8 @@ def joint_of(scene: Scene) -> str:
 
 
 def read_back(folder: Path, scene: Scene, drawing: Drawing | None = None) -> Scene:
-    """What a drawing of a scene, or its export, is read as, held in closed-form poses to what
-    MuJoCo makes of it."""
+    """What a drawing of a scene, or its export, is read as, held in poses to what MuJoCo makes of
+    it."""
     path, start = folder / "model.xml", start_of(scene)
     path.write_text(drawn(scene, start, drawing) if drawing else build(scene, start))
     asked = ModelRequest(path, joint_of(scene), 10.0)
