@@ -171,12 +171,7 @@ class Advice:
         )
         caution = f"Caution: {said}." if (said := self.caution(offer)) else ""
         stepping = Stepping(demand.period_s, demand.frame_s / promise.substeps, promise.substeps)
-        return frame_snippet(
-            choice.engine,
-            choice.settings,
-            stepping,
-            [head, caution],
-        )
+        return frame_snippet(choice.engine, choice.settings, stepping, [head, caution])
 
     def _best(self, own: Sequence[Offer]) -> Offer:
         level = [offer for offer in own if self.equal(offer, own[0])]

@@ -8,14 +8,7 @@ from itertools import pairwise
 
 from reports.history.verification import FOLLOWED, FollowedError, VersionResult, errors_of
 from reports.output.numbers import count
-from reports.results.changes import (
-    CellPair,
-    Diff,
-    ErrorChange,
-    compare,
-    floor,
-    other_settings,
-)
+from reports.results.changes import CellPair, Diff, ErrorChange, compare, floor, other_settings
 from reports.results.runs import CellName
 
 STANDS_OUT = 2.0

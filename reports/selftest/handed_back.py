@@ -11,7 +11,6 @@ from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import LinkMotion, Motion
 from models.scene import Scene
-from reports.judge.cell import CellRunner
 from reports.selftest.fault import (
     FOURBAR,
     SHAPER,
@@ -20,6 +19,7 @@ from reports.selftest.fault import (
     Plant,
     in_log,
     integrates,
+    planting,
     switched,
 )
 from reports.selftest.log_edits import last, moved, noisy, to_digits, with_link
@@ -52,10 +52,6 @@ def _through_degrees(motion: Motion) -> Motion:
         for name, link in motion.links.items()
     }
     return replace(motion, links=links)
-
-
-def _next_floats(motion: Motion) -> Motion:
-    return motion.each_series(lambda series: np.asarray(np.nextafter(series, np.inf)))
 
 
 def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
@@ -134,55 +130,33 @@ def _at_the_crank(scene: Scene, done: Run) -> Run:
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
-def _finer_handed_back(size: float) -> CellRunner:
+@planting
+def _finer_handed_back(size: float, scene: Scene, *args: Any, **options: Any) -> Run:
     """Run the engine at the full step, and the closed form at the finer ones."""
-
-    def runner(scene: Scene, *args: Any, **options: Any) -> Run:
-        done = run(scene, *args, **options)
-        return _handed_back(scene, done) if size and options["every"] > 1 else done
-
-    return runner
+    done = run(scene, *args, **options)
+    return _handed_back(scene, done) if size and options["every"] > 1 else done
 
 
 _fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
 FAULTS = (
     _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
     _fault("too-good-degrees", "through degrees and back", "CC111", _each(_through_degrees)),
-    _fault("too-good-next", "every number the next float", "CC111", _each(_next_floats)),
+    _fault("too-good-next", "every number the next float", "CC111",
+           _each(lambda motion: motion.each_series(lambda x: np.nextafter(x, np.inf)))),
     _fault("too-good-link", "of one link only", "CC111", switched(_one_link)),
     _fault("too-good-point", "of one point only", "CC111", switched(_one_point)),
-    _fault(
-        "too-good-slider",
-        "of one slider only",
-        "CC111",
-        switched(_one_slider),
-        scenes=(SLIDER, SHAPER),
-    ),
-    _fault(
-        "too-good-velocity", "of one velocity only", "CC111", switched(_velocity), needs=integrates
-    ),
-    _fault(
-        "too-good-speeds", "of all points and sliders", "CC111", switched(_speeds), needs=integrates
-    ),
-    _fault(
-        "too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut), needs=integrates
-    ),
+    _fault("too-good-slider", "of one slider only", "CC111", switched(_one_slider),
+           scenes=(SLIDER, SHAPER)),
+    _fault("too-good-velocity", "of one velocity only", "CC111", switched(_velocity),
+           needs=integrates),
+    _fault("too-good-speeds", "of all points and sliders", "CC111", switched(_speeds),
+           needs=integrates),
+    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut),
+           needs=integrates),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(noisy), 1e-7, "rad, L"),
-    _fault(
-        "too-good-crank",
-        "at the logged crank angle",
-        "CC111",
-        switched(_at_the_crank),
-        needs=integrates,
-    ),
-    _fault(
-        "too-good-finer",
-        "in the finer runs only",
-        "CC117",
-        _finer_handed_back,
-        says=("which no step of that size allows",),
-        finer=True,
-        needs=integrates,
-    ),
-)
+    _fault("too-good-crank", "at the logged crank angle", "CC111", switched(_at_the_crank),
+           needs=integrates),
+    _fault("too-good-finer", "in the finer runs only", "CC117", _finer_handed_back,
+           says=("which no step of that size allows",), finer=True, needs=integrates),
+)  # fmt: skip

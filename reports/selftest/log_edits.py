@@ -40,6 +40,18 @@ def with_link(done: Run, name: str, **changed: Array) -> Run:
     return replace(done, motion=replace(motion, links=links))
 
 
+def of_output(
+    series: str, change: Callable[[Array, float], Array], link: Callable[[Scene], str] = last
+) -> Callable[[Scene, Run, float], Run]:
+    """Change a series of the last link, or of another, by a size."""
+
+    def changed(scene: Scene, done: Run, size: float) -> Run:
+        own = getattr(moved(done).links[link(scene)], series)
+        return with_link(done, link(scene), **{series: change(own, size)})
+
+    return changed
+
+
 def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
     """Return the run with the positions, velocities and accelerations of all points changed."""
     motion = moved(done)

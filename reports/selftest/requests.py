@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -10,8 +9,17 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene
-from reports.judge.cell import CellRunner
-from reports.selftest import fault
+from reports.selftest.fault import (
+    FOURBAR,
+    PROFILE,
+    SHAPER,
+    SLIDER,
+    Fault,
+    Plant,
+    integrates,
+    planting,
+    switched,
+)
 from reports.selftest.log_edits import moved
 from sim.engine import Run
 from sim.registry import available, engine, offering
@@ -34,20 +42,18 @@ def _wrong(name: str) -> list[WrongSetting]:
     return list(spoiler(name).wrong_settings) if name in offering("spoiler") else []
 
 
-def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> fault.Plant:
+def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> Plant:
     """Run another engine or profile; ``renamed``, under the requested names."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
-            if not size:
-                return run(scene, state, name, profile, **options)
-            asked = setup(scene, state, name, profile, **options)
-            done = run(scene, state, *other(name, profile), **{**options, "settings": None})
-            return replace(done, **vars(asked)) if renamed else done
+    @planting
+    def runner(size: float, scene: Scene, state: Any, *names: str, **options: Any) -> Run:
+        if not size:
+            return run(scene, state, *names, **options)
+        asked = setup(scene, state, *names, **options)
+        done = run(scene, state, *other(*names), **{**options, "settings": None})
+        return replace(done, **vars(asked)) if renamed else done
 
-        return runner
-
-    return plant
+    return runner
 
 
 def _engine_for(name: str, profile: str) -> tuple[str, str]:
@@ -58,18 +64,17 @@ def _profile_for(name: str, profile: str) -> tuple[str, str]:
     return name, next((other for other in engine(name).profiles if other != profile), profile)
 
 
-def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> fault.Plant:
+def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> Plant:
     """Change the options of a run, and let the run say so."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
-            changed = {**options, **(change(scene, name, options) if size else {})}
-            start = changed.pop("state", state)
-            return run(scene, start, name, profile, **changed)
+    @planting
+    def runner(
+        size: float, scene: Scene, state: Any, name: str, profile: str, **options: Any
+    ) -> Run:
+        changed = {"state": state, **options, **(change(scene, name, options) if size else {})}
+        return run(scene, changed.pop("state"), name, profile, **changed)
 
-        return runner
-
-    return plant
+    return runner
 
 
 def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str, Any]:
@@ -79,7 +84,7 @@ def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str
 
 def _one_more(name: str) -> dict[str, Any]:
     """Return a setting that is a whole number, one above profile tuned; none without one."""
-    tuned = engine(name).profiles[fault.PROFILE].settings
+    tuned = engine(name).profiles[PROFILE].settings
     whole = (n for n, setting in tuned.items() if type(setting.value) is int)
     return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}
 
@@ -92,17 +97,9 @@ def _double_step(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, 
     return {"dt_s": 2.0 * options["dt_s"], "steps": options["steps"] // 2}
 
 
-def _thinned(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    return {"every": THIN * options["every"]}
-
-
 def _started_later(scene: Scene, _: str, options: Mapping[str, Any]) -> dict[str, Any]:
     later = np.array([LATER * options["dt_s"]])
     return {"state": solve(scene, later, bound=False).state()}
-
-
-def _of_another_version(_: Scene, done: Run) -> Run:
-    return replace(done, version=f"{done.version}.1")
 
 
 def _silent(_: Scene, done: Run) -> Run:
@@ -119,94 +116,52 @@ def _silent(_: Scene, done: Run) -> Run:
     return replace(done, motion=mute, reports_accelerations=False)
 
 
-def _the_first_again(size: float) -> CellRunner:
+@planting
+def _the_first_again(
+    size: float, *args: Any, dt_s: float, steps: int, every: int, **options: Any
+) -> Run:
     """Put the run at the full step in the place of the finer ones, with their words."""
-
-    def runner(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:
-        if not size:
-            return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
-        first = run(*args, dt_s=dt_s * every, steps=steps // every, every=1, **options)
-        held = engine(first.engine).holds(first.asked, dt_s, first.drive)
-        settings = {**first.settings, **held}
-        return replace(first, dt_s=dt_s, steps=steps, every=every, settings=settings)
-
-    return runner
+    if not size:
+        return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
+    first = run(*args, dt_s=dt_s * every, steps=steps // every, every=1, **options)
+    held = engine(first.engine).holds(first.asked, dt_s, first.drive)
+    settings = {**first.settings, **held}
+    return replace(first, dt_s=dt_s, steps=steps, every=every, settings=settings)
 
 
-_fault = partial(
-    fault.Fault, "request", rule="CC117", scenes=(fault.FOURBAR, fault.SLIDER, fault.SHAPER)
-)
+def _fault(name: str, what: str, plant: Plant, says: str, **more: Any) -> Fault:
+    """Return a fault that shows in the words of a run."""
+    scenes = (FOURBAR, SLIDER, SHAPER)
+    return Fault("request", name, what, "CC117", plant, says=(says,), scenes=scenes, **more)
+
+
 FAULTS = (
-    _fault(
-        "engine-other",
-        "another engine's run",
-        plant=_run_of(_engine_for, renamed=False),
-        says=("engine: asked for",),
-        needs=lambda name: other_engine(name) is not None,
-    ),
-    _fault(
-        "engine-renamed",
-        "the same, under the name asked for",
-        plant=_run_of(_engine_for, renamed=True),
-        says=("as the engine holds it",),
-        needs=lambda name: other_engine(name) is not None,
-    ),
-    _fault(
-        "profile-other",
-        "the run of another profile",
-        plant=_run_of(_profile_for, renamed=False),
-        says=("profile: asked for",),
-    ),
-    _fault(
-        "profile-renamed",
-        "the same, under the name asked for",
-        plant=_run_of(_profile_for, renamed=True),
-        says=("as the engine holds it",),
-    ),
-    _fault(
-        "setting-other",
-        "a setting that was not asked for",
-        plant=_given(_other_setting),
-        says=("setting ",),
-        needs=lambda name: bool(_wrong(name)),
-    ),
-    _fault(
-        "setting-dropped",
-        "the settings of the cell, left out",
-        plant=_given(lambda *_: {"settings": None}),
-        says=("setting ",),
-        settings=_one_more,
-        needs=lambda name: bool(_one_more(name)),
-    ),
-    _fault(
-        "version-other",
-        "another version",
-        plant=fault.switched(_of_another_version),
-        says=("version: ",),
-    ),
-    _fault(
-        "drive-other",
-        "a servo drives, and says so",
-        plant=_given(lambda *_: {"drive": "servo"}),
-        says=("drive: asked for 'prescribed'",),
-    ),
-    _fault("turn-cut", "ten degrees for a turn", plant=_given(_ten_degrees), says=("steps: ",)),
-    _fault("step-double", "twice the step", plant=_given(_double_step), says=("dt_s: ",)),
-    _fault("log-thinned", "every eighth sample", plant=_given(_thinned), says=("every: ",)),
-    _fault("start-later", "a start ten steps later", plant=_given(_started_later), says=("start",)),
-    _fault(
-        "accelerations-kept",
-        "accelerations that are kept back",
-        plant=fault.switched(_silent),
-        says=("reports_accelerations: asked for True",),
-        needs=lambda name: engine(name).reports_accelerations,
-    ),
-    _fault(
-        "halved-again",
-        "the first run, for its own finer ones",
-        plant=_the_first_again,
-        says=("the places are those of dt",),
-        finer=True,
-        needs=fault.integrates,
-    ),
-)
+    _fault("engine-other", "another engine's run", _run_of(_engine_for, renamed=False),
+           "engine: asked for", needs=lambda name: other_engine(name) is not None),
+    _fault("engine-renamed", "the same, under the name asked for",
+           _run_of(_engine_for, renamed=True), "as the engine holds it",
+           needs=lambda name: other_engine(name) is not None),
+    _fault("profile-other", "the run of another profile", _run_of(_profile_for, renamed=False),
+           "profile: asked for"),
+    _fault("profile-renamed", "the same, under the name asked for",
+           _run_of(_profile_for, renamed=True), "as the engine holds it"),
+    _fault("setting-other", "a setting that was not asked for", _given(_other_setting), "setting ",
+           needs=lambda name: bool(_wrong(name))),
+    _fault("setting-dropped", "the settings of the cell, left out",
+           _given(lambda *_: {"settings": None}), "setting ", settings=_one_more,
+           needs=lambda name: bool(_one_more(name))),
+    _fault("version-other", "another version",
+           switched(lambda _, done: replace(done, version=f"{done.version}.1")), "version: "),
+    _fault("drive-other", "a servo drives, and says so", _given(lambda *_: {"drive": "servo"}),
+           "drive: asked for 'prescribed'"),
+    _fault("turn-cut", "ten degrees for a turn", _given(_ten_degrees), "steps: "),
+    _fault("step-double", "twice the step", _given(_double_step), "dt_s: "),
+    _fault("log-thinned", "every eighth sample",
+           _given(lambda _, name, options: {"every": THIN * options["every"]}), "every: "),
+    _fault("start-later", "a start ten steps later", _given(_started_later), "start"),
+    _fault("accelerations-kept", "accelerations that are kept back", switched(_silent),
+           "reports_accelerations: asked for True",
+           needs=lambda name: engine(name).reports_accelerations),
+    _fault("halved-again", "the first run, for its own finer ones", _the_first_again,
+           "the places are those of dt", finer=True, needs=integrates),
+)  # fmt: skip

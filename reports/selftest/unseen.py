@@ -9,39 +9,36 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
-from reports.judge.cell import CellRunner
-from reports.selftest.elastic_changes import at_quarter, in_chain_log
+from reports.selftest.elastic_changes import at_quarter, in_chain_log, in_given
 from reports.selftest.engines import after_a_third
-from reports.selftest.fault import Unseen, in_log, in_scene
-from reports.selftest.free_changes import in_free_scene, of_all_matter
-from reports.selftest.log_edits import last, moved, with_link
+from reports.selftest.fault import Unseen, in_log, in_scene, planting
+from reports.selftest.free_changes import (
+    heavier_by,
+    in_free_scene,
+    of_all_matter,
+    of_link,
+    turning_light,
+)
+from reports.selftest.log_edits import moved, of_output
 from reports.selftest.requests import other_engine
-from reports.selftest.segment_changes import in_chain, segments, springs, stiffer, turning_light
+from reports.selftest.segment_changes import segments, springs, stiffer
 from sim.engine import Cost, Energy, Run
 from sim.registry import engine, offering
 from sim.run import run, setup
 
 
-def _heavier(scene: Scene, share: float) -> Scene:
-    link = scene.links[last(scene)]
-    more = 1.0 + share
-    heavy = replace(link, mass_kg=more * link.mass_kg, inertia_kg_m2=more * link.inertia_kg_m2)
-    return replace(scene, links={**scene.links, link.name: heavy})
-
-
-def _all_renamed(size: float) -> CellRunner:
+@planting
+def _all_renamed(
+    size: float, scene: Scene, state: Any, name: str, profile: str, **options: Any
+) -> Run:
     """Run another engine, with every word as in the requested run."""
-
-    def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
-        asked = setup(scene, state, name, profile, **options)
-        other = other_engine(name)
-        if not size or other is None:
-            return run(scene, state, name, profile, **options)
-        done = run(scene, state, other, profile, **{**options, "settings": None})
-        held = engine(name).holds(asked.asked, asked.dt_s, asked.drive)
-        return replace(done, **vars(asked), settings=held)
-
-    return runner
+    asked = setup(scene, state, name, profile, **options)
+    other = other_engine(name)
+    if not size or other is None:
+        return run(scene, state, name, profile, **options)
+    done = run(scene, state, other, profile, **{**options, "settings": None})
+    held = engine(name).holds(asked.asked, asked.dt_s, asked.drive)
+    return replace(done, **vars(asked), settings=held)
 
 
 def _as_silent(name: str) -> bool:
@@ -76,11 +73,6 @@ def _between(own: Motion, true: Motion, kept: float) -> Motion:
             for n, m in own.sliders.items()
         },
     )
-
-
-def _turns_counted(scene: Scene, done: Run, size: float) -> Run:
-    name = last(scene)
-    return with_link(done, name, theta=moved(done).links[name].theta + 2.0 * np.pi * round(size))
 
 
 def _even_taken(scene: Scene, done: Run, size: float) -> Run:
@@ -137,7 +129,7 @@ UNSEEN = (
         "mass-other",
         "the scene that is run has a heavier link",
         f"{_NO_FORCES} A mass in the engine that is not the scene's is refused (mass-off).",
-        in_scene(_heavier),
+        in_scene(of_link(heavier_by, -1)),
     ),
     Unseen(
         "gravity-midway",
@@ -181,7 +173,7 @@ UNSEEN = (
         "an angle counted from another whole turn",
         "Engines count turns from where they like; one that is gained or lost on the way is seen "
         "(whole-turn).",
-        in_log(_turns_counted),
+        in_log(of_output("theta", lambda theta, size: theta + 2.0 * np.pi * round(size))),
         shows=False,
     ),
     Unseen(
@@ -236,13 +228,13 @@ UNSEEN_ELASTIC = (
         "modulus-hardly",
         "the modulus, by 0.01 %",
         "Within what an engine may be off by at this step; 1 % is seen (modulus-off).",
-        in_chain(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size))),
+        in_given(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size))),
     ),
     Unseen(
         "turning-inertia",
         "segments with 1 % less inertia about their centre",
         "Most of the inertia of a chain is that of its masses across; what rods have about their "
         "own centre falls as 1/n^2, and three times as much of it is seen (inertia-at-ends).",
-        in_chain(segments(lambda link, size: turning_light(link, 1e-2 * size))),
+        in_given(segments(lambda link, size: turning_light(link, 1e-2 * size))),
     ),
 )

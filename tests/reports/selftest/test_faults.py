@@ -191,8 +191,7 @@ def test_float32_arithmetic_is_seen_in_the_drive_alone(place: tuple[str, str]) -
 
 
 PARALLELOGRAM = replace(
-    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),
-    branch={"C": 1},
+    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"), branch={"C": 1}
 )
 NO_FAULT_THERE = {
     "halved-again", "too-good-degrees", "too-good-next", "too-good-link", "too-good-point",

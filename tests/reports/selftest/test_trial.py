@@ -183,9 +183,7 @@ def test_few_faults_are_shown_with_what_the_rule_says() -> None:
     assert "1 of 1 fault caught" in result.output
 
 
-def test_a_blind_rule_lets_its_faults_go_and_ends_with_1(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_blind_rule_lets_its_faults_go_and_ends_with_1(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(RULES, "CC107", Stubborn("CC107", "pass"))
     result = selftest("jump", "spike", engine="mujoco", jobs=1)
     assert result.exit_code == 1

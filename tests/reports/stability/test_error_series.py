@@ -212,9 +212,7 @@ def test_a_throw_is_graded_by_what_its_energy_says(runs: dict[str, Run]) -> None
     assert grade.reason == "rocker went over to the other assembly"
 
 
-def test_falling_back_with_the_energy_is_degraded_by_what_it_lacks(
-    runs: dict[str, Run],
-) -> None:
+def test_falling_back_with_the_energy_is_degraded_by_what_it_lacks(runs: dict[str, Run]) -> None:
     errors, barrier = at_toggle(OVER, runs["short"]), OVER.throw.barrier
     nearest = toggle_passage(barrier, runs["short"]).nearest_rad
     assert outcome(errors, 1e-2).outcome == "degraded"
@@ -222,9 +220,7 @@ def test_falling_back_with_the_energy_is_degraded_by_what_it_lacks(
     assert worst(errors) == pytest.approx(nearest + 0.5 * abs(barrier.open_rad), rel=1e-12)
 
 
-def test_a_run_that_ends_too_soon_is_undecided_and_an_open_one_broken(
-    runs: dict[str, Run],
-) -> None:
+def test_a_run_that_ends_too_soon_is_undecided_and_an_open_one_broken(runs: dict[str, Run]) -> None:
     over, barrier = runs["over"], OVER.throw.barrier
     early = cut(over, 100)
     apart = replace(over, gaps={name: gap + 0.1 for name, gap in over.gaps.items()})
