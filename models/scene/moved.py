@@ -27,6 +27,11 @@ def heavier(link: Link, factor: float) -> Link:
     return replace(link, mass_kg=mass, inertia_kg_m2=inertia)
 
 
+def of_mass(scene: Scene, name: str, factor: float) -> Scene:
+    """The scene with ``factor`` times the mass and inertia of one link."""
+    return replace(scene, links={**scene.links, name: heavier(scene.links[name], factor)})
+
+
 def rotated(scene: Scene, angle_rad: float) -> Scene:
     """The scene turned about the origin, its gravity and its loads with it."""
 

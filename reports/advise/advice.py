@@ -65,7 +65,6 @@ def timings(demand: Demand, found: Sequence[SearchResult]) -> int:
 def _price(
     demand: Demand, one: SearchResult, timings: Sequence[tuple[Repeats, Repeats] | None]
 ) -> Price | None:
-    """Return the price of the dearest scene."""
     least = [min(*timing[0], *timing[1]) for timing in timings if timing is not None]
     if one.promise is None or len(least) < len(demand.scenes):
         return None

@@ -161,7 +161,6 @@ def _forces_of_their_own(scene: Scene) -> str:
 
 
 def _steps(line: Line) -> MeasuredSteps:
-    """Return the cells of a line."""
     columns = ("steps_per_turn", "status", "place_pure")
     rows = zip(*(line.cells[name] for name in columns), strict=True)
     errors = (

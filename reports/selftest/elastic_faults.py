@@ -68,7 +68,6 @@ def _fault(
     needs: Callable[[str], bool] = lambda _: True,
     whole: bool = False,
 ) -> Fault:
-    """Return a fault of the elastic links of a scene."""
     return Fault(
         group, name, what, rule, plant, size, unit, scenes=(scene,), needs=needs, whole=whole
     )

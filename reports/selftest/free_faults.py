@@ -76,7 +76,6 @@ def _fault(
     rule: str = "CC127",
     finer: bool = False,
 ) -> Fault:
-    """Return a fault of the machine that the engine is given in the place of a scene."""
     plant = in_free_scene(change)
     return Fault("dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer)
 

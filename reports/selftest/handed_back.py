@@ -96,7 +96,6 @@ def _speeds(scene: Scene, done: Run) -> Run:
 
 
 def _shut(_: Scene, done: Run) -> Run:
-    """Close every joint."""
     return replace(done, gaps={name: np.zeros_like(gap) for name, gap in done.gaps.items()})
 
 

@@ -65,7 +65,6 @@ def _one_sided(scene: Scene, done: Run, steps: float) -> Run:
 
 
 def _times(change: Distortion) -> Plant:
-    """Change all time stamps."""
     return in_log(lambda _, done, size: with_times(done, lambda time_s: change(time_s, size)))
 
 
@@ -147,7 +146,6 @@ def _all_of(change: Callable[[Array], Array]) -> Distortion:
 
 
 def _at(samples: int | slice) -> Distortion:
-    """Add the size to some samples."""
     return lambda series, size: spoilt(series, samples, size)
 
 

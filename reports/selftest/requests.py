@@ -130,7 +130,6 @@ def _the_first_again(
 
 
 def _fault(name: str, what: str, plant: Plant, says: str, **more: Any) -> Fault:
-    """Return a fault that shows in the words of a run."""
     scenes = (FOURBAR, SLIDER, SHAPER)
     return Fault("request", name, what, "CC117", plant, says=(says,), scenes=scenes, **more)
 

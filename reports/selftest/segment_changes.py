@@ -12,10 +12,10 @@ from models.motion import State
 from models.scene import Link, Scene
 from models.scene.cut_scenes import SegmentedScene
 from models.scene.loads import PinSpring
-from models.scene.moved import with_link
+from models.scene.moved import of_mass, with_link
 from reports.selftest.elastic_changes import truth_of_chain
 from reports.selftest.fault import Plant, SceneChange, planting
-from reports.selftest.free_changes import LinkChange, heavier_by, scaled_points
+from reports.selftest.free_changes import LinkChange, scaled_points
 from sim.engine import Run
 from sim.run import run
 
@@ -114,8 +114,7 @@ def modulus_and_mass(scene: Scene, share: float) -> Scene:
     """Make an elastic link softer by a share, and as much heavier."""
     name, own = next(iter(scene.elastic.items()))
     soft = replace(own, flexural_n_m2=own.flexural_n_m2 / (1.0 + share))
-    links = {**scene.links, name: heavier_by(scene.links[name], share)}
-    return replace(scene, links=links, elastic={**scene.elastic, name: soft})
+    return replace(of_mass(scene, name, 1.0 + share), elastic={**scene.elastic, name: soft})
 
 
 def longer(scene: Scene, share: float) -> Scene:

@@ -220,7 +220,6 @@ def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken
 
 
 def _taken(halves: Sequence[Sequence[float]], steps_per_turn: int) -> Taken:
-    """Return sums over the scenes."""
     us = sum(min(half) for half in halves)
     a, b = (sum(half[k] for half in halves) for k in (0, 1))
     return Taken(us, 1e-6 * us * steps_per_turn, abs(a - b) / min(a, b))

@@ -155,7 +155,6 @@ def _unfelt(subject: Subject, changed: Scene, share: float) -> Iterator[str]:
 
 
 def _change(one: Forces, other: Forces) -> dict[str, Array]:
-    """Return the differences of all series."""
     before = dict(named(other))
     return {name: each - before[name] for name, each in named(one)}
 
@@ -165,6 +164,5 @@ def _kind(name: str) -> str:
 
 
 def _most(series: dict[str, Array], kind: str) -> float:
-    """Return the largest number in the series of a kind."""
     each = [np.nanmax(np.abs(values)) for name, values in series.items() if _kind(name) == kind]
     return max(map(float, each), default=0.0)

@@ -184,7 +184,6 @@ def _by_rate(inertia: float) -> Polynomial:
 
 
 def _settling(scene: Scene, load: Load) -> Scene:
-    """Return the scene for the duration of settling."""
     driver = Driver(scene.driver.link, Released(BASE_RAD, 0.0, SETTLED / RATE))
     return replace(scene, loads={load.name: load}, driver=driver)
 

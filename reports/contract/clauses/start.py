@@ -41,7 +41,6 @@ def is_other(subject: Subject) -> bool:
 
 
 def _other_scene(subject: Subject, profile: str) -> str:
-    """Return the fault of the start."""
     facts = subject.opened(profile).facts()
     try:
         refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")

@@ -7,6 +7,7 @@ from functools import cache, partial
 from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
+from models.scene.moved import of_mass
 from reports.stability.case import Case, Trial
 
 BENT = "fourbar-elastic"
@@ -26,17 +27,11 @@ def _bent(ratio: float = RATIO, stiffness: float = 1.0, height: float = 1.0) -> 
     scene = load_scene(BENT)
     name, own = next(iter(scene.elastic.items()))
     stiff = replace(own, flexural_n_m2=own.flexural_n_m2 * stiffness * height**3)
-    link = scene.links[name]
-    heavy = replace(link, mass_kg=height * link.mass_kg, inertia_kg_m2=height * link.inertia_kg_m2)
     law = scene.driver.law
     assert isinstance(law, ConstantSpeed)
     slow = replace(law, speed_rad_s=law.speed_rad_s * RATIO / ratio)
-    return replace(
-        scene,
-        links={**scene.links, name: heavy},
-        elastic={name: stiff},
-        driver=replace(scene.driver, law=slow),
-    )
+    driver = replace(scene.driver, law=slow)
+    return replace(of_mass(scene, name, height), elastic={name: stiff}, driver=driver)
 
 
 def _run(scene: Scene, steps: float = STEPS, segments: int = SEGMENTS) -> Trial:
