@@ -101,13 +101,9 @@ def _truth(scene: str, *, beams: bool) -> ElasticTruth:
     return truth
 
 
-def sound_run(given: Scene, name: str, profile: str, options: Items) -> Run:
-    """Return the run of the given scene without any fault, the same for all sizes."""
-    return _sound_run(given.name, bool(given.beams), name, profile, options)
-
-
 @lru_cache(maxsize=3)
-def _sound_run(scene: str, beams: bool, name: str, profile: str, options: Items) -> Run:
+def sound_run(scene: str, beams: bool, name: str, profile: str, options: Items) -> Run:
+    """Return the run of an elastic scene without any fault, the same for all sizes."""
     truth = _truth(scene, beams=beams)
     return run(truth.given, truth.start, name, profile, **dict(options))
 
@@ -122,8 +118,8 @@ def in_chain_log(change: NodeChange) -> Plant:
     def runner(
         size: float, scene: Scene, _: object, name: str, profile: str, **options: Any
     ) -> Run:
-        asked = {key: value for key, value in options.items() if key != "settings"}
-        done = sound_run(scene, name, profile, tuple(sorted(asked.items())))
+        asked = tuple(sorted(item for item in options.items() if item[0] != "settings"))
+        done = sound_run(scene.name, bool(scene.beams), name, profile, asked)
         if not size:
             return done
         return replace(done, motion=change(truth_of_given(scene), moved(done), size))

@@ -46,7 +46,7 @@ from reports.selftest.free_changes import (
     turned_gravity,
     without_flywheel,
 )
-from reports.selftest.log_edits import moved, of_output
+from reports.selftest.log_edits import moved, of_output, taken
 from reports.selftest.log_faults import late
 from sim.engine import Energy, Run
 
@@ -165,20 +165,11 @@ def _in_other_assembly(scene: Scene, done: Run) -> Run:
     """Log the driver angle as it is, and all places of the other assembly there."""
     own = moved(done)
     crank = own.links[scene.driver.link]
-    other = replace(scene, branch={key: -sign for key, sign in scene.branch.items()})
+    across = replace(scene, branch={key: -sign for key, sign in scene.branch.items()})
     still = np.zeros_like(crank.theta)
-    there = solve_driven(other, crank.theta, crank.omega, still, own.time_s, bound=False)
-    links = {
-        name: replace(link, theta=there.links[name].theta, omega=there.links[name].omega)
-        for name, link in own.links.items()
-    }
-    points = {
-        name: replace(
-            point, position=there.points[name].position, velocity=there.points[name].velocity
-        )
-        for name, point in own.points.items()
-    }
-    return replace(done, motion=replace(own, links=links, points=points))
+    there = solve_driven(across, crank.theta, crank.omega, still, own.time_s, bound=False)
+    other = taken(own, there, links=["theta", "omega"], points=["position", "velocity"])
+    return replace(done, motion=other)
 
 
 def _leaking(_: Scene, done: Run, share: float) -> Run:

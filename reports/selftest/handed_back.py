@@ -22,7 +22,7 @@ from reports.selftest.fault import (
     planting,
     switched,
 )
-from reports.selftest.log_edits import last, moved, noisy, to_digits, with_link
+from reports.selftest.log_edits import last, moved, noisy, taken, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
 
@@ -90,13 +90,7 @@ def _speeds(scene: Scene, done: Run) -> Run:
     assert done.velocity_time_s is not None
     own = moved(done)
     true = solve(scene, done.velocity_time_s, bound=False)
-    points = {n: replace(m, velocity=true.points[n].velocity) for n, m in own.points.items()}
-    sliders = {n: replace(m, speed=true.sliders[n].speed) for n, m in own.sliders.items()}
-    return replace(done, motion=replace(own, points=points, sliders=sliders))
-
-
-def _shut(_: Scene, done: Run) -> Run:
-    return replace(done, gaps={name: np.zeros_like(gap) for name, gap in done.gaps.items()})
+    return replace(done, motion=taken(own, true, points=["velocity"], sliders=["speed"]))
 
 
 def _one_point(scene: Scene, done: Run) -> Run:
@@ -136,6 +130,9 @@ def _finer_handed_back(size: float, scene: Scene, *args: Any, **options: Any) ->
     return _handed_back(scene, done) if size and options["every"] > 1 else done
 
 
+_shut = switched(
+    lambda _, done: replace(done, gaps={n: np.zeros_like(gap) for n, gap in done.gaps.items()})
+)
 _fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
 FAULTS = (
     _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
@@ -150,7 +147,7 @@ FAULTS = (
            needs=integrates),
     _fault("too-good-speeds", "of all points and sliders", "CC111", switched(_speeds),
            needs=integrates),
-    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut),
+    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", _shut,
            needs=integrates),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(noisy), 1e-7, "rad, L"),

@@ -1,7 +1,8 @@
 """Change one part of a log, and leave the rest."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,24 @@ def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
     motion = moved(done)
     points = {n: PointMotion(*map(change, vars(p).values())) for n, p in motion.points.items()}
     return replace(done, motion=replace(motion, points=points))
+
+
+def taken(
+    own: Motion,
+    other: Motion,
+    change: Callable[[Array, Array], Array] = lambda _, right: right,
+    **series: Sequence[str],
+) -> Motion:
+    """Return a motion with some ``series`` of its links, points or sliders taken from another, or
+    changed by those of it."""
+
+    def body(kind: str, name: str, one: Any) -> Any:
+        right = getattr(other, kind)[name]
+        changed = {each: change(getattr(one, each), getattr(right, each)) for each in series[kind]}
+        return replace(one, **changed)
+
+    bodies = {kind: {n: body(kind, n, m) for n, m in getattr(own, kind).items()} for kind in series}
+    return replace(own, **bodies)
 
 
 def spoilt(series: Array, at: int | slice, value: float) -> Array:

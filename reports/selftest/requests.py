@@ -20,7 +20,7 @@ from reports.selftest.fault import (
     planting,
     switched,
 )
-from reports.selftest.log_edits import moved
+from reports.selftest.log_edits import moved, taken
 from sim.engine import Run
 from sim.registry import available, engine, offering
 from sim.run import run, setup
@@ -89,14 +89,6 @@ def _one_more(name: str) -> dict[str, Any]:
     return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}
 
 
-def _ten_degrees(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    return {"steps": max(options["steps"] * DEGREES // 360, 1)}
-
-
-def _double_step(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    return {"dt_s": 2.0 * options["dt_s"], "steps": options["steps"] // 2}
-
-
 def _started_later(scene: Scene, _: str, options: Mapping[str, Any]) -> dict[str, Any]:
     later = np.array([LATER * options["dt_s"]])
     return {"state": solve(scene, later, bound=False).state()}
@@ -105,14 +97,8 @@ def _started_later(scene: Scene, _: str, options: Mapping[str, Any]) -> dict[str
 def _silent(_: Scene, done: Run) -> Run:
     """Set accelerations to NaN, and say that the engine reports none."""
     motion = moved(done)
-    none = np.full_like(motion.time_s, np.nan)
-    links = {name: replace(link, alpha=none) for name, link in motion.links.items()}
-    points = {
-        name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
-        for name, point in motion.points.items()
-    }
-    sliders = {n: replace(slider, acceleration=none) for n, slider in motion.sliders.items()}
-    mute = replace(motion, links=links, points=points, sliders=sliders)
+    series = {"links": ["alpha"], "points": ["acceleration"], "sliders": ["acceleration"]}
+    mute = taken(motion, motion, lambda own, _: np.full_like(own, np.nan), **series)
     return replace(done, motion=mute, reports_accelerations=False)
 
 
@@ -153,10 +139,14 @@ FAULTS = (
            switched(lambda _, done: replace(done, version=f"{done.version}.1")), "version: "),
     _fault("drive-other", "a servo drives, and says so", _given(lambda *_: {"drive": "servo"}),
            "drive: asked for 'prescribed'"),
-    _fault("turn-cut", "ten degrees for a turn", _given(_ten_degrees), "steps: "),
-    _fault("step-double", "twice the step", _given(_double_step), "dt_s: "),
+    _fault("turn-cut", "ten degrees for a turn",
+           _given(lambda s, n, asked: {"steps": max(asked["steps"] * DEGREES // 360, 1)}),
+           "steps: "),
+    _fault("step-double", "twice the step",
+           _given(lambda s, n, asked: {"dt_s": 2.0 * asked["dt_s"], "steps": asked["steps"] // 2}),
+           "dt_s: "),
     _fault("log-thinned", "every eighth sample",
-           _given(lambda _, name, options: {"every": THIN * options["every"]}), "every: "),
+           _given(lambda s, n, asked: {"every": THIN * asked["every"]}), "every: "),
     _fault("start-later", "a start ten steps later", _given(_started_later), "start"),
     _fault("accelerations-kept", "accelerations that are kept back", switched(_silent),
            "reports_accelerations: asked for True",

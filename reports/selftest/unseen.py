@@ -1,17 +1,16 @@
 """Deviations that no rule sees, and need not: planted all the same, and shown with the reason."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from models.array import Array
-from models.motion import Motion
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
 from reports.selftest.elastic_changes import at_quarter, in_chain_log, in_given
 from reports.selftest.engines import after_a_third
-from reports.selftest.fault import Unseen, in_log, in_scene, planting
+from reports.selftest.fault import Plant, Unseen, in_log, in_scene, planting, switched
 from reports.selftest.free_changes import (
     heavier_by,
     in_free_scene,
@@ -19,7 +18,7 @@ from reports.selftest.free_changes import (
     of_link,
     turning_light,
 )
-from reports.selftest.log_edits import moved, of_output
+from reports.selftest.log_edits import moved, of_output, taken
 from reports.selftest.requests import other_engine
 from reports.selftest.segment_changes import segments, springs, stiffer
 from sim.engine import Cost, Energy, Run
@@ -52,27 +51,9 @@ def _tenth(scene: Scene, done: Run, size: float) -> Run:
     own = moved(done)
     true = truth_of(Same(scene)).at(own.time_s)
     kept = 1.0 - 0.9 * size
-    return replace(done, motion=_between(own, true, kept))
-
-
-def _between(own: Motion, true: Motion, kept: float) -> Motion:
-    def near(series: Array, right: Array) -> Array:
-        return np.asarray(right + kept * (series - right))
-
-    return replace(
-        own,
-        links={
-            n: replace(m, theta=near(m.theta, true.links[n].theta)) for n, m in own.links.items()
-        },
-        points={
-            n: replace(m, position=near(m.position, true.points[n].position))
-            for n, m in own.points.items()
-        },
-        sliders={
-            n: replace(m, displacement=near(m.displacement, true.sliders[n].displacement))
-            for n, m in own.sliders.items()
-        },
-    )
+    places = {"links": ["theta"], "points": ["position"], "sliders": ["displacement"]}
+    near = taken(own, true, lambda one, right: right + kept * (one - right), **places)
+    return replace(done, motion=near)
 
 
 def _even_taken(scene: Scene, done: Run, size: float) -> Run:
@@ -96,28 +77,22 @@ def _cheaper(_: Scene, done: Run, size: float) -> Run:
     return replace(done, cost=replace(cost, wall_s=cost.wall_s * (1.0 - 0.5 * size)))
 
 
-def _even(_: Scene, done: Run, size: float) -> Run:
+def _of_energy(change: Callable[[Energy], Energy]) -> Plant:
+    """Change the energy in the log of a healthy run."""
+    return switched(lambda _, done: replace(done, energy=done.energy and change(done.energy)))
+
+
+def _even(energy: Energy) -> Energy:
     """Put the energy of the start at every instant."""
-    if not (size and done.energy):
-        return done
-    level = np.full_like(done.energy.kinetic_j, done.energy.total_j[0])
-    return replace(done, energy=Energy(done.energy.kinetic_j, level - done.energy.kinetic_j))
+    level = np.full_like(energy.kinetic_j, energy.total_j[0])
+    return Energy(energy.kinetic_j, level - energy.kinetic_j)
 
 
-def _parts(_: Scene, done: Run, size: float) -> Run:
-    """Exchange the names of both parts of the energy."""
-    if not (size and done.energy):
-        return done
-    return replace(done, energy=Energy(done.energy.potential_j, done.energy.kinetic_j))
-
-
-def _half_a_step(_: Scene, done: Run, size: float) -> Run:
+def _half_a_step(energy: Energy) -> Energy:
     """Put the potential energy of half a step before beside the kinetic energy of the sample."""
-    if not (size and done.energy):
-        return done
-    late = done.energy.potential_j.copy()
-    late[1:] -= 0.5 * size * np.diff(late)
-    return replace(done, energy=Energy(done.energy.kinetic_j, late))
+    late = energy.potential_j.copy()
+    late[1:] -= 0.5 * np.diff(late)
+    return Energy(energy.kinetic_j, late)
 
 
 _NO_FORCES = (
@@ -198,20 +173,20 @@ UNSEEN_FREE = (
         "the energy of the start at every instant",
         "The energy is worked out of the logged motion here, and not told by an engine: what "
         "damps or drives that motion is seen in it (damping-left-on, energy-fed).",
-        in_log(_even),
+        _of_energy(_even),
     ),
     Unseen(
         "energy-half-step",
         "potential energy of half a step before",
         "The total comes and goes with the motion by as much as a step makes of it, as that of an "
         "engine does; its drift is judged, and the motion itself.",
-        in_log(_half_a_step),
+        _of_energy(_half_a_step),
     ),
     Unseen(
         "energy-parts",
         "kinetic energy told as potential",
         "The total is judged: both parts are worked out of the logged motion here.",
-        in_log(_parts),
+        _of_energy(lambda energy: Energy(energy.potential_j, energy.kinetic_j)),
         shows=False,  # a sum does not know its order
     ),
 )

@@ -98,16 +98,12 @@ def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
     truth = solve(subject.scene, held.time_s, bound=False)
     dt_s, rates = subject.dt_s(STEPS), []
     turning = subject.scene.pace_rad_s**order
-    for name, link in held.links.items():
-        true = truth.links[name].alpha
-        reported = link.omega if order == 1 else link.alpha
-        paths = _differences(link.theta, reported, true, dt_s, order)
-        rates.append(_Rate(f"link {name}", *paths, turning))
-    for name, point in held.points.items():
-        true = truth.points[name].acceleration
-        reported = point.velocity if order == 1 else point.acceleration
-        paths = _differences(point.position, reported, true, dt_s, order)
-        rates.append(_Rate(f"point {name}", *paths, subject.scene.longest_m * turning))
+    for kind, scale in (("link", turning), ("point", subject.scene.longest_m * turning)):
+        others = getattr(truth, f"{kind}s")
+        for name, body in getattr(held, f"{kind}s").items():
+            series, (*_, true) = [*vars(body).values()], vars(others[name]).values()
+            paths = _differences(series[0], series[order], true, dt_s, order)
+            rates.append(_Rate(f"{kind} {name}", *paths, scale))
     return rates
 
 

@@ -76,10 +76,6 @@ MASSES = (
 LONGEST_M = 0.3
 
 
-def _sized(longest_m: float) -> Trial:
-    return Trial(scaled(load_scene(SOURCE), longest_m / LONGEST_M))
-
-
 def _offset(lengths: float) -> Trial:
     scene = load_scene(SOURCE)
     return Trial(moved(scene, (lengths * scene.longest_m, -0.7 * lengths * scene.longest_m)))
@@ -95,7 +91,12 @@ _same = partial(
     truth="closed form; a mechanism does not know where it stands, nor how large it is",
     expected="the same error as a pure number",
 )
-_size = partial(_same, parameter="longest link", unit="m", trial=_sized)
+_size = partial(
+    _same,
+    parameter="longest link",
+    unit="m",
+    trial=lambda longest_m: Trial(scaled(load_scene(SOURCE), longest_m / LONGEST_M)),
+)
 SCALES = (
     _size(name="small", title="Smaller and smaller", values=(1.0, 0.1, 1e-2, 1e-3, 1e-4)),
     _size(name="large", title="Larger and larger", values=(1.0, 10.0, 100.0, 1e3, 1e4)),
