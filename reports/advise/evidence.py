@@ -63,8 +63,7 @@ class MeasuredStudy:
     def missed(
         self, scene: Scene, choice: Choice, steps_per_turn: float, target: float
     ) -> float | None:
-        """Return the fewest steps in a turn, of more than so many, known to miss a target; or
-        None."""
+        """Return the fewest steps in a turn, of more than so many, known to miss a target."""
         steps = self._of(scene, choice)
         return None if steps is None else steps.missed(steps_per_turn, target)
 

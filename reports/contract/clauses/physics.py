@@ -147,8 +147,7 @@ def _speed(subject: Subject) -> Iterator[str]:
 
 
 def pure_errors(subject: Subject) -> Mapping[str, float]:
-    """Return the largest reported error of each quantity, over a turn and a half, after the
-    start."""
+    """Return the largest reported error of each quantity, over 1.5 turns, after the start."""
     done = subject.ran(400, 1.5)
     errors = subject.errors(done)
     if errors is None or done.status != "ok":

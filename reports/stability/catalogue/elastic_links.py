@@ -15,8 +15,7 @@ RATIO = 10.5
 """First frequency of the scene's coupler over the driver's speed."""
 SEGMENTS, STEPS = 4, 1440.0
 STEPS_OF_RATIO = 100.0
-"""Steps in a turn per unit of frequency ratio: twice the need of explicit steps for these
-segments."""
+"""Steps a turn per unit of frequency ratio: twice the need of explicit steps for these segments."""
 
 
 @cache
