@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from reports.selftest import engines
 from reports.selftest.elastic_changes import (
     BENT,
     ELASTIC_RUNS,
@@ -22,14 +23,6 @@ from reports.selftest.elastic_changes import (
     of_exact_chain,
     started,
     stiffer_beam,
-)
-from reports.selftest.engines import (
-    TIMES,
-    after_a_third,
-    after_look,
-    done_to,
-    explicit,
-    now_and_then,
 )
 from reports.selftest.fault import Fault, Plant
 from reports.selftest.free_changes import heavier_by, later, of_link, of_load, reversed_load
@@ -103,13 +96,13 @@ FAULTS = (
            rule="CC103"),
     _chain("start-straight", "starts straight, and rings", started("straight")),
     _chain("start-unswung", "starts as if it did not swing", started("quasi-static")),
-    _inside("vibration-damped", "something damps all joints", after_look(lambda tools: tools.damp),
-            1.0, "1/s"),
-    _inside("bending-explicit", "explicit steps: it is flung out", explicit, 1.0, "of it"),
-    _inside("vibration-fed", f"speeds made larger, {TIMES} times",
-            done_to(lambda tools: tools.quicken, now_and_then), 1e-2, "of it"),
+    _inside("vibration-damped", "something damps all joints",
+            engines.after_look(lambda tools: tools.damp), 1.0, "1/s"),
+    _inside("bending-explicit", "explicit steps: it is flung out", engines.explicit, 1.0, "of it"),
+    _inside("vibration-fed", f"speeds made larger, {engines.TIMES} times",
+            engines.done_to(lambda tools: tools.quicken, engines.now_and_then), 1e-2, "of it"),
     _inside("weight-later", "gravity is switched on in mid-run",
-            after_a_third(lambda tools: tools.pull), 1.0, "m/s^2"),
+            engines.after_a_third(lambda tools: tools.pull), 1.0, "m/s^2"),
     _log("deflection-sign", "the deflection has the other sign",
          in_chain_log(bent_by(lambda off, _: np.negative(off)))),
     _log("deflection-scaled", "the deflection is too large",
@@ -146,5 +139,5 @@ FAULTS = (
     _loose("loose-rocker-heavy", "let go: what it moves is too heavy",
            in_given(of_link(heavier_by, -1)), 1e-2, "of it", rule="CC127"),
     _inside("loose-damped", "let go: something damps all joints",
-            after_look(lambda tools: tools.damp), 1.0, "1/s", scene=LOOSE, rule="CC129"),
+            engines.after_look(lambda tools: tools.damp), 1.0, "1/s", scene=LOOSE, rule="CC129"),
 )  # fmt: skip

@@ -11,17 +11,7 @@ from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import LinkMotion, Motion
 from models.scene import Scene
-from reports.selftest.fault import (
-    FOURBAR,
-    SHAPER,
-    SLIDER,
-    Fault,
-    Plant,
-    in_log,
-    integrates,
-    planting,
-    switched,
-)
+from reports.selftest import fault
 from reports.selftest.log_edits import last, moved, noisy, taken, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
@@ -33,14 +23,14 @@ def _handed_back(scene: Scene, done: Run) -> Run:
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
-def _each(change: Callable[[Motion], Motion]) -> Plant:
+def _each(change: Callable[[Motion], Motion]) -> fault.Plant:
     """Return the closed form, changed a little."""
 
     def changed(scene: Scene, done: Run) -> Run:
         back = _handed_back(scene, done)
         return replace(back, motion=change(moved(back)))
 
-    return switched(changed)
+    return fault.switched(changed)
 
 
 def _through_degrees(motion: Motion) -> Motion:
@@ -54,7 +44,7 @@ def _through_degrees(motion: Motion) -> Motion:
     return replace(motion, links=links)
 
 
-def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
+def _spoilt(change: Callable[[Array, float], Array]) -> fault.Plant:
     """Return the closed form, with its places changed by a size, in radians and longest links."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
@@ -67,7 +57,7 @@ def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
         motion = replace(own, links=links, points=points)
         return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
-    return in_log(changed)
+    return fault.in_log(changed)
 
 
 def _one_link(scene: Scene, done: Run) -> Run:
@@ -123,36 +113,35 @@ def _at_the_crank(scene: Scene, done: Run) -> Run:
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
-@planting
+@fault.planting
 def _finer_handed_back(size: float, scene: Scene, *args: Any, **options: Any) -> Run:
     """Run the engine at the full step, and the closed form at the finer ones."""
     done = run(scene, *args, **options)
     return _handed_back(scene, done) if size and options["every"] > 1 else done
 
 
-_shut = switched(
+_shut = fault.switched(
     lambda _, done: replace(done, gaps={n: np.zeros_like(gap) for n, gap in done.gaps.items()})
 )
-_fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
+_fault = partial(fault.Fault, "reference", scenes=(fault.FOURBAR, fault.SLIDER, fault.SHAPER))
 FAULTS = (
-    _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
+    _fault("too-good", "the reference, handed back", "CC111", fault.switched(_handed_back)),
     _fault("too-good-degrees", "through degrees and back", "CC111", _each(_through_degrees)),
     _fault("too-good-next", "every number the next float", "CC111",
            _each(lambda motion: motion.each_series(lambda x: np.nextafter(x, np.inf)))),
-    _fault("too-good-link", "of one link only", "CC111", switched(_one_link)),
-    _fault("too-good-point", "of one point only", "CC111", switched(_one_point)),
-    _fault("too-good-slider", "of one slider only", "CC111", switched(_one_slider),
-           scenes=(SLIDER, SHAPER)),
-    _fault("too-good-velocity", "of one velocity only", "CC111", switched(_velocity),
-           needs=integrates),
-    _fault("too-good-speeds", "of all points and sliders", "CC111", switched(_speeds),
-           needs=integrates),
-    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", _shut,
-           needs=integrates),
+    _fault("too-good-link", "of one link only", "CC111", fault.switched(_one_link)),
+    _fault("too-good-point", "of one point only", "CC111", fault.switched(_one_point)),
+    _fault("too-good-slider", "of one slider only", "CC111", fault.switched(_one_slider),
+           scenes=(fault.SLIDER, fault.SHAPER)),
+    _fault("too-good-velocity", "of one velocity only", "CC111", fault.switched(_velocity),
+           needs=fault.integrates),
+    _fault("too-good-speeds", "of all points and sliders", "CC111", fault.switched(_speeds),
+           needs=fault.integrates),
+    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", _shut, needs=fault.integrates),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(noisy), 1e-7, "rad, L"),
-    _fault("too-good-crank", "at the logged crank angle", "CC111", switched(_at_the_crank),
-           needs=integrates),
+    _fault("too-good-crank", "at the logged crank angle", "CC111", fault.switched(_at_the_crank),
+           needs=fault.integrates),
     _fault("too-good-finer", "in the finer runs only", "CC117", _finer_handed_back,
-           says=("which no step of that size allows",), finer=True, needs=integrates),
+           says=("which no step of that size allows",), finer=True, needs=fault.integrates),
 )  # fmt: skip

@@ -9,17 +9,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene
-from reports.selftest.fault import (
-    FOURBAR,
-    PROFILE,
-    SHAPER,
-    SLIDER,
-    Fault,
-    Plant,
-    integrates,
-    planting,
-    switched,
-)
+from reports.selftest import fault
 from reports.selftest.log_edits import moved, taken
 from sim.engine import Run
 from sim.registry import available, engine, offering
@@ -42,10 +32,10 @@ def _wrong(name: str) -> list[WrongSetting]:
     return list(spoiler(name).wrong_settings) if name in offering("spoiler") else []
 
 
-def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> Plant:
+def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> fault.Plant:
     """Run another engine or profile; ``renamed``, under the requested names."""
 
-    @planting
+    @fault.planting
     def runner(size: float, scene: Scene, state: Any, *names: str, **options: Any) -> Run:
         if not size:
             return run(scene, state, *names, **options)
@@ -64,10 +54,10 @@ def _profile_for(name: str, profile: str) -> tuple[str, str]:
     return name, next((other for other in engine(name).profiles if other != profile), profile)
 
 
-def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> Plant:
+def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> fault.Plant:
     """Change the options of a run, and let the run say so."""
 
-    @planting
+    @fault.planting
     def runner(
         size: float, scene: Scene, state: Any, name: str, profile: str, **options: Any
     ) -> Run:
@@ -84,7 +74,7 @@ def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str
 
 def _one_more(name: str) -> dict[str, Any]:
     """Return a setting that is a whole number, one above profile tuned; none without one."""
-    tuned = engine(name).profiles[PROFILE].settings
+    tuned = engine(name).profiles[fault.PROFILE].settings
     whole = (n for n, setting in tuned.items() if type(setting.value) is int)
     return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}
 
@@ -102,7 +92,7 @@ def _silent(_: Scene, done: Run) -> Run:
     return replace(done, motion=mute, reports_accelerations=False)
 
 
-@planting
+@fault.planting
 def _the_first_again(
     size: float, *args: Any, dt_s: float, steps: int, every: int, **options: Any
 ) -> Run:
@@ -115,9 +105,9 @@ def _the_first_again(
     return replace(first, dt_s=dt_s, steps=steps, every=every, settings=settings)
 
 
-def _fault(name: str, what: str, plant: Plant, says: str, **more: Any) -> Fault:
-    scenes = (FOURBAR, SLIDER, SHAPER)
-    return Fault("request", name, what, "CC117", plant, says=(says,), scenes=scenes, **more)
+def _fault(name: str, what: str, plant: fault.Plant, says: str, **more: Any) -> fault.Fault:
+    scenes = (fault.FOURBAR, fault.SLIDER, fault.SHAPER)
+    return fault.Fault("request", name, what, "CC117", plant, says=(says,), scenes=scenes, **more)
 
 
 FAULTS = (
@@ -136,7 +126,7 @@ FAULTS = (
            _given(lambda *_: {"settings": None}), "setting ", settings=_one_more,
            needs=lambda name: bool(_one_more(name))),
     _fault("version-other", "another version",
-           switched(lambda _, done: replace(done, version=f"{done.version}.1")), "version: "),
+           fault.switched(lambda _, done: replace(done, version=f"{done.version}.1")), "version: "),
     _fault("drive-other", "a servo drives, and says so", _given(lambda *_: {"drive": "servo"}),
            "drive: asked for 'prescribed'"),
     _fault("turn-cut", "ten degrees for a turn",
@@ -148,9 +138,9 @@ FAULTS = (
     _fault("log-thinned", "every eighth sample",
            _given(lambda s, n, asked: {"every": THIN * asked["every"]}), "every: "),
     _fault("start-later", "a start ten steps later", _given(_started_later), "start"),
-    _fault("accelerations-kept", "accelerations that are kept back", switched(_silent),
+    _fault("accelerations-kept", "accelerations that are kept back", fault.switched(_silent),
            "reports_accelerations: asked for True",
            needs=lambda name: engine(name).reports_accelerations),
     _fault("halved-again", "the first run, for its own finer ones", _the_first_again,
-           "the places are those of dt", finer=True, needs=integrates),
+           "the places are those of dt", finer=True, needs=fault.integrates),
 )  # fmt: skip

@@ -8,16 +8,10 @@ import numpy as np
 
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
+from reports.selftest import free_changes
 from reports.selftest.elastic_changes import at_quarter, in_chain_log, in_given
 from reports.selftest.engines import after_a_third
 from reports.selftest.fault import Plant, Unseen, in_log, in_scene, planting, switched
-from reports.selftest.free_changes import (
-    heavier_by,
-    in_free_scene,
-    of_all_matter,
-    of_link,
-    turning_light,
-)
 from reports.selftest.log_edits import moved, of_output, taken
 from reports.selftest.requests import other_engine
 from reports.selftest.segment_changes import segments, springs, stiffer
@@ -104,7 +98,7 @@ UNSEEN = (
         "mass-other",
         "the scene that is run has a heavier link",
         f"{_NO_FORCES} A mass in the engine that is not the scene's is refused (mass-off).",
-        in_scene(of_link(heavier_by, -1)),
+        in_scene(free_changes.of_link(free_changes.heavier_by, -1)),
     ),
     Unseen(
         "gravity-midway",
@@ -165,7 +159,7 @@ UNSEEN_FREE = (
         "every mass and inertia twice",
         "Under weight alone a mechanism moves as it does, whatever the factor of all its masses; "
         "its reactions differ, which --forces plants. One mass of several is seen (mass-wrong).",
-        in_free_scene(of_all_matter),
+        free_changes.in_free_scene(free_changes.of_all_matter),
         shows=False,  # of a factor of two not one bit changes in some engines
     ),
     Unseen(
@@ -210,6 +204,6 @@ UNSEEN_ELASTIC = (
         "segments with 1 % less inertia about their centre",
         "Most of the inertia of a chain is that of its masses across; what rods have about their "
         "own centre falls as 1/n^2, and three times as much of it is seen (inertia-at-ends).",
-        in_given(segments(lambda link, size: turning_light(link, 1e-2 * size))),
+        in_given(segments(lambda link, size: free_changes.turning_light(link, 1e-2 * size))),
     ),
 )
