@@ -19,7 +19,6 @@ from reports.stability.running import critical
 from reports.workers.isolated import Lost
 from tests.worlds.command_line import crank, crank_alone, flat, refused
 from tests.worlds.in_process import Here, in_this_process
-from tests.worlds.tiers import slow
 
 PYMUNK = ("stability", "wrong-branch", "--engine", "pymunk")
 
@@ -145,14 +144,6 @@ def test_what_comes_of_a_lost_run(call: Callable[..., Lost], code: int, words: s
         result = crank(*LONG, "as-shipped", "--limit-s", 0.05)
     assert result.exit_code == code, result.output
     assert words in flat(result.output)
-
-
-@slow("a real process that its limit ends: 10,000 turns take seconds anywhere")
-@pytest.mark.parametrize(("profile", "limit_s"), [("tuned", 0.3), ("as-shipped", 0.05)])
-def test_a_run_over_its_limit_is_ended(profile: str, limit_s: float) -> None:
-    result = crank(*LONG, profile, "--limit-s", limit_s)
-    assert result.exit_code == 1, result.output
-    assert f"crashed no end within {limit_s:g} s" in flat(result.stdout)
 
 
 def test_the_report_of_a_folder_is_its_page(stored: Result, folder: Path, tmp_path: Path) -> None:
