@@ -17,7 +17,7 @@ from models.files.reading import load_scene
 from models.scene.joints import line_ends, mass_of
 from models.scene.loads import PinSpring
 from reports.compare.free_truth import free_truth
-from reports.judge.cell import CellRunner, check, examined
+from reports.judge.cell import CellRunner, examined
 from reports.selftest import segment_changes
 from reports.selftest.elastic_changes import (
     BEAM_RUNS,
@@ -41,7 +41,7 @@ from reports.selftest.free_changes import (
 )
 from reports.selftest.free_faults import FREE_RUNS, PRESS, PULSE, SQUEEZER, SWING
 from reports.selftest.log_edits import WHEN, moved, output, rows
-from reports.selftest.trial import FAULTS, RUNS, _passed, chosen_faults, passes
+from reports.selftest.trial import FAULTS, RUNS, _passed, chosen_faults
 from reports.selftest.unseen import UNSEEN_ELASTIC, UNSEEN_FREE
 from sim.engine import Run
 from sim.registry import engine
@@ -336,14 +336,12 @@ CELL = elastic_cell(BENT, ENGINE)
 GIVEN = truth_of_chain(CELL.scene).given
 
 
-def test_without_a_fault_every_rule_passes_and_every_option_has_its_own_faults() -> None:
-    assert passes(check(CELL))
+def test_every_option_has_faults_and_runs_of_its_own() -> None:
     assert len(ELASTIC) >= 20
     assert not ELASTIC & {fault.name for fault in chosen_faults((), (ENGINE,))}
     beams = elastic_cell(BENT, BEAM_ENGINE, runs=BEAM_RUNS)
     assert beams.springs == "beam"
     assert truth_of_given(beams.given).given.beams
-    assert passes(check(beams))
     assert len(BEAMS) >= 9
     for engine_name in ("mujoco", "pymunk"):
         assert not any(FAULTS[name].possible(engine_name) for name in BEAMS)
