@@ -60,11 +60,15 @@ def _spoilt(change: Callable[[Array, float], Array]) -> fault.Plant:
     return fault.in_log(changed)
 
 
-def _one_link(scene: Scene, done: Run) -> Run:
-    """Give the last link the numbers of the closed form, and keep the rest of the engine."""
-    own, name = moved(done), last(scene)
-    true = solve(scene, own.time_s, bound=False).links[name]
-    return replace(done, motion=replace(own, links={**own.links, name: true}))
+def _one(bodies: str, name: Callable[[Scene], str]) -> fault.Plant:
+    """Give a link, point or slider the numbers of the closed form; keep the rest of the engine."""
+
+    def changed(scene: Scene, done: Run) -> Run:
+        own, body = moved(done), name(scene)
+        true = getattr(solve(scene, own.time_s, bound=False), bodies)[body]
+        return replace(done, motion=replace(own, **{bodies: {**getattr(own, bodies), body: true}}))
+
+    return fault.switched(changed)
 
 
 def _velocity(scene: Scene, done: Run) -> Run:
@@ -81,20 +85,6 @@ def _speeds(scene: Scene, done: Run) -> Run:
     own = moved(done)
     true = solve(scene, done.velocity_time_s, bound=False)
     return replace(done, motion=taken(own, true, points=["velocity"], sliders=["speed"]))
-
-
-def _one_point(scene: Scene, done: Run) -> Run:
-    """Give the pin at the end of the last link its places, likewise."""
-    own, name = moved(done), _moving_pin(scene)
-    true = solve(scene, own.time_s, bound=False).points[name]
-    return replace(done, motion=replace(own, points={**own.points, name: true}))
-
-
-def _one_slider(scene: Scene, done: Run) -> Run:
-    """Give the first slider its places, likewise."""
-    own, name = moved(done), next(iter(scene.sliders))
-    true = solve(scene, own.time_s, bound=False).sliders[name]
-    return replace(done, motion=replace(own, sliders={**own.sliders, name: true}))
 
 
 def _moving_pin(scene: Scene) -> str:
@@ -129,9 +119,10 @@ FAULTS = (
     _fault("too-good-degrees", "through degrees and back", "CC111", _each(_through_degrees)),
     _fault("too-good-next", "every number the next float", "CC111",
            _each(lambda motion: motion.each_series(lambda x: np.nextafter(x, np.inf)))),
-    _fault("too-good-link", "of one link only", "CC111", fault.switched(_one_link)),
-    _fault("too-good-point", "of one point only", "CC111", fault.switched(_one_point)),
-    _fault("too-good-slider", "of one slider only", "CC111", fault.switched(_one_slider),
+    _fault("too-good-link", "of one link only", "CC111", _one("links", last)),
+    _fault("too-good-point", "of one point only", "CC111", _one("points", _moving_pin)),
+    _fault("too-good-slider", "of one slider only", "CC111",
+           _one("sliders", lambda scene: next(iter(scene.sliders))),
            scenes=(fault.SLIDER, fault.SHAPER)),
     _fault("too-good-velocity", "of one velocity only", "CC111", fault.switched(_velocity),
            needs=fault.integrates),

@@ -183,7 +183,8 @@ def _line(child: Isolated[GradedPicture], given: CaseLine) -> Held:
 def _graded(
     given: CaseLine, value: float, child: Isolated[GradedPicture], *, grid: bool
 ) -> GradedPicture:
-    """Return a run of the child process, with its picture where it is of the grid.
+    """Return a run of the child process, with its picture where it is of the grid; one that its
+    process did not survive has crashed.
 
     Raises CrankcheckError for a run without a reference, or a request that the engine can not take:
     these are no faults of the engine.
@@ -194,26 +195,12 @@ def _graded(
         return replace(found, grid=grid), drawn
     if isinstance(answer.error, CrankcheckError):
         raise CrankcheckError(f"case {given.case} at {label(value)}: {answer.error}")
-    return _lost(given, value, answer, grid), None
+    trial, names = CATALOGUE[given.case].trial(value), (given.case, given.engine, given.profile)
+    lost = Graded(*names, value, label(value), "crashed", answer.reason, grid=grid)
+    return replace(lost, steps=trial.steps, dt_s=trial.dt_s), None
 
 
 def graded_by_name(given: CaseLine, value: float, draw: bool) -> GradedPicture:
     """Grade as `grading.graded`, by the name of the case: little travels to the child process."""
     case = CATALOGUE[given.case]
     return graded(case, given.engine, given.profile, value, draw=draw, forces=given.forces)
-
-
-def _lost(given: CaseLine, value: float, lost: Lost, grid: bool) -> Graded:
-    trial = CATALOGUE[given.case].trial(value)
-    return Graded(
-        case=given.case,
-        engine=given.engine,
-        profile=given.profile,
-        value=value,
-        label=label(value),
-        outcome="crashed",
-        reason=lost.reason,
-        steps=trial.steps,
-        dt_s=trial.dt_s,
-        grid=grid,
-    )

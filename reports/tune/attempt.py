@@ -45,16 +45,9 @@ class Goal:
 
     def cell(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Cell:
         """Return a run with complete settings."""
-        dt_s, steps = counted(scene, None, steps_per_turn, self.turns)
+        step = counted(scene, None, steps_per_turn, self.turns)
         return Cell(
-            scene=scene,
-            engine=self.engine,
-            profile=self.profile,
-            dt_s=dt_s,
-            steps=steps,
-            gated=False,
-            converge=False,
-            settings=settings,
+            scene, self.engine, self.profile, *step, gated=False, converge=False, settings=settings
         )
 
 

@@ -153,7 +153,6 @@ def measured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Path]:
 
 
 def test_two_versions_are_compared(history: History, measured: list[Path], tmp_path: Path) -> None:
-    """One of them is missing."""
     versions = ("3.7.0", "9.9.9", "3.6.0")
     code, output, _ = history(*versions, folder=tmp_path / "out", cache=tmp_path / "cache")
     assert (code, len(measured)) == (2, 2)
@@ -257,7 +256,6 @@ if __name__ == "__main__":
 
 
 def gone(group: int) -> bool:
-    """Whether the processes of a group are all gone."""
     try:
         os.killpg(group, 0)
     except ProcessLookupError:

@@ -258,7 +258,6 @@ def test_the_order_in_which_runs_come_does_not_matter(name: str, order: str) -> 
 
 @functools.cache
 def parabola(floor: float) -> LineFit:
-    """The fit of errors of second order over a floor."""
     return fit_line(STEPS, floor + 10.0 * STEPS**2)
 
 

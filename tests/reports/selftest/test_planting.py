@@ -58,7 +58,6 @@ def start(scene_name: str, engine_name: str) -> tuple[Any, ...]:
 
 
 def planted(plant: Plant, engine_name: str, size: float = 1.0, scene_name: str = FOURBAR) -> Run:
-    """A run with a fault of that size in it."""
     dt_s = load_scene(scene_name).driver.law.period_s / STEPS
     return plant(size)(*start(scene_name, engine_name), dt_s=dt_s, steps=STEPS, every=1)
 
@@ -205,7 +204,6 @@ THIRD = 200
 
 @cache
 def let_go(plant: Plant, engine_name: str, size: float = 1.0) -> Run:
-    """A run of what swings, with a fault of that size in it."""
     scene, (dt_s, _) = load_scene(SWING), FREE_RUNS[SWING]
     begun = free_truth(scene, 3 * THIRD, dt_s).start
     options = {"dt_s": dt_s, "steps": 3 * THIRD, "every": 1, "drive": "free"}
@@ -217,7 +215,6 @@ def joules(done: Run) -> Array:
 
 
 def loss(name: str, engine_name: str, size: float) -> float:
-    """What a fault takes of the energy."""
     before, after = let_go(nothing, engine_name), let_go(FAULTS[name].plant, engine_name, size)
     return float(joules(before)[-1] - joules(after)[-1])
 

@@ -135,8 +135,6 @@ def test_gravity_that_is_hardly_too_strong_is_looked_for_at_finer_steps(given: G
 
 @dataclass(frozen=True)
 class Logged:
-    """A run of which only its motion is asked for."""
-
     motion: Any
 
 

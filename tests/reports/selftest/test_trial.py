@@ -28,8 +28,6 @@ OTHER_RULE = replace(SPIKE, rule="CC102")
 
 
 class Stubborn:
-    """A rule that always says the same."""
-
     def __init__(self, rule: str, level: Level) -> None:
         sharp = RULES[rule]
         self.id, self.title, self.level = rule, sharp.title, level
@@ -152,7 +150,6 @@ ENGINES = ("mujoco", "pymunk")
 
 
 def selftest(*faults: str, **options: object) -> Result:
-    """The command with some of the faults, and options of it."""
     asked = [(f"--{name}", value) for name, value in options.items()]
     words = [*(("--fault", fault) for fault in faults), *asked]
     return crank("selftest", *(word for pair in words for word in pair))

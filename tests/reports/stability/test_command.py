@@ -30,7 +30,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def stored(folder: Path) -> Result:
-    """A case in two profiles, printed and stored."""
     args = ["stability", "grashof-excess", "wrong-branch", "--engine", "mujoco"]
     return crank_alone(*args, "-o", folder, "--jobs", 1)
 
@@ -202,7 +201,6 @@ def test_a_number_that_is_missing_is_still_missing(matrix: Matrix, tmp_path: Pat
 
 
 def edited(text: str, table: str, **changed: object) -> str:
-    """The text with some of the first row of a table changed."""
     content = json.loads(text)
     content[table][0] |= changed
     return json.dumps(content)

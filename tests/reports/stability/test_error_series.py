@@ -35,7 +35,6 @@ def done(trial: Trial, start: Any = None, **other: Any) -> Run:
 
 
 def with_link(found: Run, name: str, theta: Array) -> Run:
-    """The run with other angles of a link."""
     links = {**found.motion.links, name: replace(found.motion.links[name], theta=theta)}
     return replace(found, motion=replace(found.motion, links=links))
 
@@ -48,14 +47,12 @@ def cut(found: Run, samples: int) -> Run:
 
 
 def with_gap(found: Run, gap: float) -> Run:
-    """One joint open in mid-run."""
     opened = found.gaps["C"].copy()
     opened[len(opened) // 2] = gap
     return replace(found, gaps={**found.gaps, "C": opened})
 
 
 def stuck(found: Run) -> Run:
-    """The crank never moves."""
     theta = found.motion.links["crank"].theta
     return with_link(found, "crank", np.full_like(theta, theta[0]))
 
@@ -199,7 +196,6 @@ OVER, SHORT = (CATALOGUE[f"toggle-{name}"].trial(1e-2) for name in ("over", "sho
 
 @pytest.fixture(scope="module")
 def runs() -> dict[str, Run]:
-    """A run that gets over, and one that falls back."""
     thrown = {"over": OVER, "short": SHORT}
     return {name: done(one, thrown_start(one)) for name, one in thrown.items()}
 

@@ -32,7 +32,6 @@ def told(request: TuneRequest) -> tuple[int, str]:
 
 
 def line(text: str, label: str) -> list[str]:
-    """The cells of a row of the table."""
     return next(row for row in text.splitlines() if row.startswith(label))[len(label) :].split()
 
 
@@ -43,7 +42,6 @@ def whole() -> tuple[int, str]:
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The file of a search that was begun."""
     path = tmp_path_factory.mktemp("kept") / "kept.db"
     told(replace(SMALL, budget=1, output=path))
     return path
