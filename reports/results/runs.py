@@ -19,7 +19,8 @@ from reports.way.length import SECONDS, TURNS, Clock, clock_of, common_clock
 COMPARED = EVERY
 """Compared quantities: the largest error of each, as a pure number."""
 CellRow = Mapping[str, object]
-Key, Value = TypeVar("Key"), TypeVar("Value")
+Key = TypeVar("Key")
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)

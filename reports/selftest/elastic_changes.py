@@ -197,7 +197,8 @@ class _BentLink:
         """Unit vector across the line from the first pin to the last (T, 2)."""
         first, end = (self.motion.points[node].position for node in (self.nodes[0], self.nodes[-1]))
         way = end - first
-        return np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
+        across = np.stack([-way[:, 1], way[:, 0]], axis=1)
+        return np.asarray(across / np.hypot(*way.T)[:, None])
 
     def off(self, node: str) -> Array:
         """Return the distance of a node from that line (T,) [m]."""

@@ -66,7 +66,8 @@ def _one(bodies: str, name: Callable[[Scene], str]) -> fault.Plant:
     def changed(scene: Scene, done: Run) -> Run:
         own, body = moved(done), name(scene)
         true = getattr(solve(scene, own.time_s, bound=False), bodies)[body]
-        return replace(done, motion=replace(own, **{bodies: {**getattr(own, bodies), body: true}}))
+        other: dict[str, Any] = {bodies: {**getattr(own, bodies), body: true}}
+        return replace(done, motion=replace(own, **other))
 
     return fault.switched(changed)
 

@@ -74,8 +74,11 @@ def taken(
         changed = {each: change(getattr(one, each), getattr(right, each)) for each in series[kind]}
         return replace(one, **changed)
 
-    bodies = {kind: {n: body(kind, n, m) for n, m in getattr(own, kind).items()} for kind in series}
-    return replace(own, **bodies)
+    changed: dict[str, Any] = {
+        kind: {name: body(kind, name, one) for name, one in getattr(own, kind).items()}
+        for kind in series
+    }
+    return replace(own, **changed)
 
 
 def spoilt(series: Array, at: int | slice, value: float) -> Array:
