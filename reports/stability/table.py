@@ -27,7 +27,11 @@ NARROW = 80
 """Columns of a terminal below which a case is shown in words alone."""
 BARE = ("X", "!", "-")
 """Letters without an error: it says nothing."""
-STYLES: Mapping[Outcome, str] = {"degraded": "yellow", "drifts": "yellow", "unsupported": "dim"}
+STYLES: Mapping[Outcome, str] = {
+    "degraded": "yellow",
+    "drifts": "yellow",
+    "unsupported": "dim",
+}
 
 
 def show(console: Console, matrix: Matrix) -> None:
