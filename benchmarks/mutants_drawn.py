@@ -32,6 +32,7 @@ CHANGED = {
         "load.direction_rad - lean",
         "(load.direction_rad + lean)",
     ),
+    24: ("if error is not None:", "error is not None", "(not (error is not None))"),
     38: (
         "(-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned",
         "-k2",

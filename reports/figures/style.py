@@ -237,8 +237,8 @@ Of = TypeVar("Of", bound=Solved)
 
 @dataclass(frozen=True)
 class FigureSet(Generic[Of]):
-    """Figures by the name of their file, and ``of``, their subject in words. Each gives None where
-    there is nothing to draw. To add one, add a function and its line."""
+    """Figures by the name of their file, and ``of``, their subject in words, if they have one. Each
+    gives None where there is nothing to draw. To add one, add a function and its line."""
 
     of: str
     draws: Mapping[str, Callable[[Of], Figure | None]]
@@ -261,8 +261,8 @@ class FigureSet(Generic[Of]):
             for kind in FORMATS:
                 write(folder / f"{name}.{kind}", self._saved(solved, name, figure, kind))
         kinds = " and ".join(f".{kind}" for kind in FORMATS)
-        figures = count(len(names), "figure")
-        return f"{folder}: {figures} of {self.of}, each as {kinds}: {', '.join(names)}"
+        figures = count(len(names), "figure") + f" of {self.of}" * bool(self.of)
+        return f"{folder}: {figures}, each as {kinds}: {', '.join(names)}"
 
     def _drawn(self, solved: Of) -> Iterator[tuple[str, Figure]]:
         for name, draw in self.draws.items():

@@ -16,7 +16,7 @@ from reports.compare import compare as comparing
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.judge.tolerance import check_names
-from reports.output.console import plain_table, say
+from reports.output.console import grid, say
 from reports.output.numbers import short
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
@@ -64,7 +64,6 @@ class Comparison(Shown):
         return pd.DataFrame([error_row(error) for error in self.errors.rows])
 
     def show(self, console: Console) -> None:
-
         show_errors(console, self.scene, self.source, self.errors)
 
     def _drawn(self) -> str:
@@ -197,13 +196,10 @@ PARTS: Mapping[ErrorKind, str] = {
 
 def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> None:
     """Print the worst body of each quantity, source and kind."""
-    table = plain_table(f"{scene.name}: {source}")
-    for head in ("quantity", "", "worst body"):
-        table.add_column(head, no_wrap=True)
-    for head in ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver_unit(scene)}"):
-        table.add_column(head, justify="right", no_wrap=True)
-    for worst in worst_rows(errors):
-        table.add_row(
+    names = ("quantity", "", "worst body")
+    numbers = ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver_unit(scene)}")
+    rows = (
+        (
             worst.tolerance,
             PARTS.get(worst.kind, ""),
             f"{worst.body_kind} {worst.body}",
@@ -212,7 +208,10 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             f"{worst.time_of_maximum_s:.4g}",
             _driver(worst),
         )
-    console.print(table, "")
+        for worst in worst_rows(errors)
+    )
+    heads = (*names, *(f"{head}:" for head in numbers))
+    console.print(grid(heads, rows, f"{scene.name}: {source}", gap=1, whole=names), "")
     say(console, errors.compared_with(), "dim")
     for note in errors.notes:
         say(console, note, "yellow")

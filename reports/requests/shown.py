@@ -35,14 +35,12 @@ class Shown:
         return ""
 
     def __str__(self) -> str:
-
         return as_text(self.show)
 
     def __repr__(self) -> str:
         return str(self)
 
     def _repr_html_(self) -> str:
-
         return as_html(self._drawn(), self.show)
 
     __eq__ = object.__eq__

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,8 +23,7 @@ from reports.judge.tolerance import (
     refuse_of_other_kinds,
 )
 from reports.output.console import say_whole, tell
-from reports.output.formats import csv, junit, parquet
-from reports.output.numbers import finite
+from reports.output.formats import csv, json_text, junit, parquet
 from reports.output.write import Outputs, check_outputs, provenance
 from reports.plan import chosen, requirements
 from reports.plan.singular import gives_forces, silent_note
@@ -276,4 +274,4 @@ def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping
         "scenes": dict(digests),
         "cells": cells,
     }
-    return json.dumps(finite(content), indent=1) + "\n"
+    return json_text(content)
