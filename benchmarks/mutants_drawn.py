@@ -83,6 +83,11 @@ CHANGED = {
         "1e-2",
         "0.0125",
     ),
+    103: (
+        "return run(scene, state, name, *args, settings={**(settings or {}), **wrong}, **more)",
+        "(settings or {})",
+        "(name or {})",
+    ),
     106: ("return omega * 30.0 / np.pi", "omega * 30.0 / np.pi", "(omega * 30.0 * np.pi)"),
 }
 """Lines that read otherwise since then, and the piece of each before and after the fault."""

@@ -1,16 +1,35 @@
 """Rigid motions and scalings of a scene: turned, moved, mirrored or scaled with its loads.
 
 The physics does not depend on the location, so errors as pure numbers must not change either.
+Besides, a scene with another link.
 """
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 from models.scene.driver import Released
 from models.scene.joints import turned
 from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.scene.loads import CoulombFriction, Friction, Load, PinSpring, Spring
+
+
+def with_link(scene: Scene, name: str, **changes: Any) -> Scene:
+    """The scene with changes of one link."""
+    link = replace(scene.links[name], **changes)
+    return replace(scene, links={**scene.links, name: link})
+
+
+def heavier(link: Link, factor: float) -> Link:
+    """The link with ``factor`` times its mass and inertia: of the same shape."""
+    mass, inertia = factor * link.mass_kg, factor * link.inertia_kg_m2
+    return replace(link, mass_kg=mass, inertia_kg_m2=inertia)
+
+
+def of_mass(scene: Scene, name: str, factor: float) -> Scene:
+    """The scene with ``factor`` times the mass and inertia of one link."""
+    return replace(scene, links={**scene.links, name: heavier(scene.links[name], factor)})
 
 
 def rotated(scene: Scene, angle_rad: float) -> Scene:

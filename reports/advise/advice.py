@@ -10,6 +10,7 @@ from reports.advise.evidence import MeasuredStudy
 from reports.advise.search import LIMITS, SearchResult
 from reports.output.numbers import count, short
 from reports.results.cost import apart, equal, noise_of
+from reports.results.runs import grouped
 from reports.sweep.measured import Repeats, timed_in_turns
 from reports.workers.isolated import Isolated
 from sim.registry import engine, offering
@@ -65,7 +66,6 @@ def timings(demand: Demand, found: Sequence[SearchResult]) -> int:
 def _price(
     demand: Demand, one: SearchResult, timings: Sequence[tuple[Repeats, Repeats] | None]
 ) -> Price | None:
-    """Return the price of the dearest scene."""
     least = [min(*timing[0], *timing[1]) for timing in timings if timing is not None]
     if one.promise is None or len(least) < len(demand.scenes):
         return None
@@ -113,9 +113,7 @@ class Advice:
     def best(self) -> tuple[Offer, ...]:
         """Cheapest promise of each engine, of the steady ones where there are any; among promises
         that cost the same, within the noise, the one with the least error."""
-        by_engine: dict[str, list[Offer]] = {}
-        for offer in self.promises:
-            by_engine.setdefault(offer.reached.choice.engine, []).append(offer)
+        by_engine = grouped((offer.reached.choice.engine, offer) for offer in self.promises)
         best = (self._best([o for o in own if self.steady(o)] or own) for own in by_engine.values())
         return tuple(sorted(best, key=lambda offer: offer.place))
 
@@ -171,12 +169,7 @@ class Advice:
         )
         caution = f"Caution: {said}." if (said := self.caution(offer)) else ""
         stepping = Stepping(demand.period_s, demand.frame_s / promise.substeps, promise.substeps)
-        return frame_snippet(
-            choice.engine,
-            choice.settings,
-            stepping,
-            [head, caution],
-        )
+        return frame_snippet(choice.engine, choice.settings, stepping, [head, caution])
 
     def _best(self, own: Sequence[Offer]) -> Offer:
         level = [offer for offer in own if self.equal(offer, own[0])]

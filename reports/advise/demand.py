@@ -68,16 +68,11 @@ class Demand:
     def cell(self, scene: Scene, choice: Choice, substeps: int, longer: float = 1.0) -> Cell:
         """Return a run with a frame cut into equal parts, ``longer`` times the demanded length, as
         far as steps are run."""
-        steps = math.ceil(self.turns * self.steps_per_turn(substeps) * (1 - 1e-12))
+        least = math.ceil(self.turns * self.steps_per_turn(substeps) * (1 - 1e-12))
+        steps = max(least, min(math.ceil(longer * least), MOST_SEARCHED))
+        names, dt_s = (choice.engine, choice.profile), self.frame_s / substeps
         return Cell(
-            scene=scene,
-            engine=choice.engine,
-            profile=choice.profile,
-            dt_s=self.frame_s / substeps,
-            steps=max(steps, min(math.ceil(longer * steps), MOST_SEARCHED)),
-            gated=False,
-            converge=False,
-            settings=choice.settings,
+            scene, *names, dt_s, steps, gated=False, converge=False, settings=choice.settings
         )
 
 

@@ -63,8 +63,7 @@ class MeasuredStudy:
     def missed(
         self, scene: Scene, choice: Choice, steps_per_turn: float, target: float
     ) -> float | None:
-        """Return the fewest steps in a turn, of more than so many, known to miss a target; or
-        None."""
+        """Return the fewest steps in a turn, of more than so many, known to miss a target."""
         steps = self._of(scene, choice)
         return None if steps is None else steps.missed(steps_per_turn, target)
 
@@ -161,7 +160,6 @@ def _forces_of_their_own(scene: Scene) -> str:
 
 
 def _steps(line: Line) -> MeasuredSteps:
-    """Return the cells of a line."""
     columns = ("steps_per_turn", "status", "place_pure")
     rows = zip(*(line.cells[name] for name in columns), strict=True)
     errors = (

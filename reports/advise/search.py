@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -14,7 +13,7 @@ from reports.compare.beside import Truth
 from reports.judge.cell import Cell
 from reports.plan.steps import coarsest
 from reports.stability.error_series import ErrorSeries, error_series
-from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
+from reports.workers.isolated import Isolated, Limits, Lost, as_they_end, in_order
 from sim.run import run
 
 GROWS = 1.05
@@ -74,7 +73,6 @@ def look(cell: Cell) -> TriedRun:
 
 
 def _seen(series: ErrorSeries) -> TriedRun:
-    """Return the result of the errors of a run."""
     if series.status != "ok":
         return TriedRun(math.inf, series.status, series.reason)
     if series.departure is not None:
@@ -138,13 +136,8 @@ def search_all(
     done: Callable[[SearchResult], None] = lambda _: None,
 ) -> list[SearchResult]:
     """Search for every choice, several at a time, each in a process that it may crash."""
-    results: dict[int, SearchResult] = {}
     work = partial(_reached, demand, known)
-    with closing(as_they_end(work, wanted, jobs, LIMITS)) as ends:
-        for index, reached in ends:
-            results[index] = reached
-            done(reached)
-    return [results[index] for index in range(len(wanted))]
+    return in_order(as_they_end(work, wanted, jobs, LIMITS), done)
 
 
 class EndedError(Exception):
@@ -233,7 +226,6 @@ class _TriedRuns:
 def _reached(
     demand: Demand, known: MeasuredStudy, child: Isolated[TriedRun], choice: Choice
 ) -> SearchResult:
-    """Search for one choice."""
     looks = _TriedRuns(demand, known, child, choice)
     at_frame, promise, nearest, last = None, None, None, None
     try:

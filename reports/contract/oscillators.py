@@ -145,10 +145,7 @@ def rod_state(scene: Scene, theta: float, omega: float, alpha: float) -> State:
         },
         acceleration={
             **dict.fromkeys(scene.ground, (0.0, 0.0)),
-            "B": (
-                -alpha * tip[1] - omega**2 * tip[0],
-                alpha * tip[0] - omega**2 * tip[1],
-            ),
+            "B": (-alpha * tip[1] - omega**2 * tip[0], alpha * tip[0] - omega**2 * tip[1]),
         },
         displacement={},
         speed={},

@@ -15,7 +15,7 @@ from models.files.reading import load_scene
 from reports.contract.clauses import CLAUSES
 from reports.contract.subject import Clause, NotTriedError, Subject
 from reports.output.numbers import count
-from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
+from reports.workers.isolated import Isolated, Limits, Lost, as_they_end, in_order
 from sim.engine import Engine
 from sim.own_engine.spelling import failure
 from sim.own_engine.watched import BrokenContractError
@@ -78,7 +78,6 @@ def put_to(subject: Engine, clause: Clause, scenes: Sequence[str] = SCENES) -> R
 
 
 def _raised(error: Exception) -> str:
-    """Return the words for an engine's unexpected error."""
     if isinstance(error, BrokenContractError):
         return error.fault
     return str(error) if isinstance(error, EngineError) else f"raised {failure(error)}"
@@ -98,12 +97,7 @@ def put_to_all(
     done: Callable[[Ruling], None] = lambda _: None,
 ) -> list[Ruling]:
     """Return the rulings on clauses, by their ids, in that order; ``done`` gets each as it ends."""
-    results: dict[int, Ruling] = {}
-    with closing(as_they_end(partial(_apart, name), clauses, jobs, limits)) as ends:
-        for index, result in ends:
-            results[index] = result
-            done(result)
-    return [results[index] for index in range(len(clauses))]
+    return in_order(as_they_end(partial(_apart, name), clauses, jobs, limits), done)
 
 
 def named(name: str, limits: Limits) -> tuple[str, str]:
@@ -166,7 +160,6 @@ def show(console: Console, called: str, rulings: Sequence[Ruling], scenes: Seque
 
 
 def _below(ruling: Ruling) -> list[str]:
-    """Return the lines below a clause that is not held."""
     if ruling.answer == "held":
         return []
     if ruling.answer == "not tried":

@@ -160,3 +160,10 @@ class Clause:
     cure: str
     check: Check
     of_scenes: bool = True
+
+
+def clause(
+    id: str, title: str, why: str, cure: str, *, of_scenes: bool = True
+) -> Callable[[Check], Clause]:
+    """Return the decorator that makes a clause of its check."""
+    return lambda check: Clause(id, title, why, cure, check, of_scenes)

@@ -8,7 +8,14 @@ from dataclasses import dataclass
 from reports.output.numbers import count
 from reports.results.changes import CellPair, Diff, ErrorChange, Word, other_settings
 from reports.results.cost import equal, noise_of
-from reports.results.runs import CellName, StoredCell, StoredRun, each_once, steps_told
+from reports.results.runs import (
+    CellName,
+    StoredCell,
+    StoredRun,
+    each_once,
+    grouped,
+    steps_told,
+)
 
 REASON = 120
 """Characters of an engine's reason for its ending."""
@@ -43,12 +50,8 @@ def verdict(diff: Diff, strict: bool = False) -> str:
 
 def lines(diff: Diff, word: Word) -> list[PrintedRow]:
     """Return the cells that are worse, or better, one row for those that differ in step only."""
-    compared: dict[tuple[object, ...], list[float]] = {}
-    for pair in diff.pairs:
-        compared.setdefault(pair.name.line, []).append(pair.name.steps_per_turn)
-    groups: dict[tuple[object, ...], list[CellPair]] = {}
-    for pair in diff.those(word):
-        groups.setdefault(pair.name.line, []).append(pair)
+    compared = grouped((pair.name.line, pair.name.steps_per_turn) for pair in diff.pairs)
+    groups = grouped((pair.name.line, pair) for pair in diff.those(word))
     several = _several(diff)
     return [
         _line(members, compared[line], _engine(members[0], several))
@@ -58,12 +61,8 @@ def lines(diff: Diff, word: Word) -> list[PrintedRow]:
 
 def left_out(cells: Iterable[StoredCell]) -> list[str]:
     """Return the cells of one run, one text for those that differ in step only."""
-    groups: dict[tuple[object, ...], list[CellName]] = {}
-    for cell in cells:
-        groups.setdefault(cell.name.line, []).append(cell.name)
-    return [
-        f"{names[0].scene}, {_called(names[0])}, {steps_told(names)}" for names in groups.values()
-    ]
+    groups = grouped((cell.name.line, cell.name) for cell in cells).values()
+    return [f"{names[0].scene}, {_called(names[0])}, {steps_told(names)}" for names in groups]
 
 
 def remarks(diff: Diff) -> list[str]:
@@ -103,9 +102,7 @@ def origin(run: StoredRun) -> str:
 
 def versions(diff: Diff) -> str:
     """Return the versions of every engine, old and new, each pair once."""
-    by_engine: dict[str, list[str]] = {}
-    for pair in diff.pairs:
-        by_engine.setdefault(pair.name.engine, []).append(_versions(pair))
+    by_engine = grouped((pair.name.engine, _versions(pair)) for pair in diff.pairs)
     return "; ".join(f"{engine} {each_once(each)}" for engine, each in by_engine.items())
 
 

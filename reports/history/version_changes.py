@@ -8,15 +8,8 @@ from itertools import pairwise
 
 from reports.history.verification import FOLLOWED, FollowedError, VersionResult, errors_of
 from reports.output.numbers import count
-from reports.results.changes import (
-    CellPair,
-    Diff,
-    ErrorChange,
-    compare,
-    floor,
-    other_settings,
-)
-from reports.results.runs import CellName
+from reports.results.changes import CellPair, Diff, ErrorChange, compare, floor, other_settings
+from reports.results.runs import CellName, grouped
 
 STANDS_OUT = 2.0
 """Factor from which on a changed error is described in words."""
@@ -125,11 +118,11 @@ def largest(changes: Iterable[FollowedChange]) -> FollowedChange | None:
 
 def _ended(step: VersionStep) -> list[Headline]:
     """Return runs that end well in one version alone: a line per profile and ending."""
-    groups: dict[tuple[str, str, str], list[CellPair]] = {}
-    for pair in step.diff.pairs:
-        if pair.turned:
-            key = (pair.name.variant, pair.old.status, pair.new.status)
-            groups.setdefault(key, []).append(pair)
+    groups = grouped(
+        ((pair.name.variant, pair.old.status, pair.new.status), pair)
+        for pair in step.diff.pairs
+        if pair.turned
+    )
     lines = []
     for (profile, was, now), (first, *others) in groups.items():
         more = f" and {count(len(others), 'more scene')}" if others else ""
@@ -144,10 +137,11 @@ def _ended(step: VersionStep) -> list[Headline]:
 
 def _judged(step: VersionStep) -> list[Headline]:
     """Return cells that come within tolerance, or leave it: a line per profile and direction."""
-    groups: dict[tuple[str, str], list[CellPair]] = {}
-    for pair in step.diff.pairs:
-        if pair.old.ok and pair.new.ok and pair.old.verdict != pair.new.verdict:
-            groups.setdefault((pair.name.variant, pair.new.verdict), []).append(pair)
+    groups = grouped(
+        ((pair.name.variant, pair.new.verdict), pair)
+        for pair in step.diff.pairs
+        if pair.old.ok and pair.new.ok and pair.old.verdict != pair.new.verdict
+    )
     words = {"within": ("within", "out of it"), "out": ("out of", "within it")}
     return [
         Headline(
@@ -169,10 +163,9 @@ def _factors(changes: Sequence[FollowedChange]) -> list[Headline]:
 
     Rates are included only where no place stands out: they follow from the places.
     """
-    groups: dict[tuple[str, str], list[FollowedChange]] = {}
-    for change in changes:
-        if change.stands_out:
-            groups.setdefault((change.cell.variant, change.word()), []).append(change)
+    groups = grouped(
+        ((change.cell.variant, change.word()), change) for change in changes if change.stands_out
+    )
     lines: list[tuple[bool, float, Headline]] = []
     for (profile, word), members in groups.items():
         shown = [change for change in members if not change.about.rate] or members
@@ -213,7 +206,5 @@ def times(factor: float) -> str:
 
 def by_cell(results: Sequence[VersionResult]) -> dict[tuple[str, CellName], list[FollowedChange]]:
     """Return the changes of each version against the one before it, cell by cell."""
-    changes: dict[tuple[str, CellName], list[FollowedChange]] = {}
-    for change in (change for step in steps(results) for change in step.changes):
-        changes.setdefault((change.after, change.cell), []).append(change)
-    return changes
+    changes = (change for step in steps(results) for change in step.changes)
+    return grouped(((change.after, change.cell), change) for change in changes)

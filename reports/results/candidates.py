@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from reports.results.cost import mean, time_to
-from reports.results.lines import Line, called, numbers
+from reports.results.lines import Line, called, named, numbers
 from reports.way.length import clock_of
 from reports.way.way import WAYS, ResultKind, Way, way
 from sim.engine import Drive, SettingValue
@@ -72,23 +72,10 @@ class Candidate:
         """Largest error over the scenes; infinite where one has no run that ended well."""
         return math.inf if self.faults else max(self.errors.values(), default=math.inf)
 
-    def same_settings(self, other: Candidate) -> bool:
-        """True if another candidate differs in its step at most."""
-        return (self.engine, self.variant, self.drive, self.settings) == (
-            other.engine,
-            other.variant,
-            other.drive,
-            other.settings,
-        )
-
-    def holds(self, line: Line) -> bool:
-        """True if a line has these settings."""
-        return (self.engine, self.variant, self.drive, self.settings) == (
-            line.engine,
-            line.variant,
-            line.drive,
-            line.settings,
-        )
+    def holds(self, other: Candidate | Line) -> bool:
+        """True if a line, or another candidate, has these settings."""
+        names = ("engine", "variant", "drive", "settings")
+        return all(getattr(self, name) == getattr(other, name) for name in names)
 
     def reaching(self, target: float) -> int:
         """Return the number of scenes with an error of at most ``target``."""
@@ -109,13 +96,11 @@ def candidates(lines: Sequence[Line]) -> tuple[Candidate, ...]:
     groups: dict[tuple[str, ...], dict[str, Line]] = {}
     for line in lines:
         settings = json.dumps(dict(line.settings), sort_keys=True)
-        same = (line.engine, line.variant, line.drive, settings)
-        groups.setdefault(same, {})[line.scene] = line
+        groups.setdefault((*named(line), settings), {})[line.scene] = line
     return tuple(one for group in groups.values() for one in _each_step(group, scenes))
 
 
 def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candidate]:
-    """Return the candidates of one set of settings."""
     by_step: dict[float, dict[str, pd.Series]] = {}
     for scene, line in group.items():
         for _, row in line.cells.iterrows():
@@ -191,7 +176,6 @@ def _unbeaten(points: Iterable[tuple[CellKey, float, float]], noise: float) -> l
 
 
 def _known(noise: float) -> float:
-    """Return the noise, 0 where it was not measured."""
     return noise if math.isfinite(noise) else 0.0
 
 

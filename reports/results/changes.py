@@ -201,7 +201,6 @@ def _same_scene(old: StoredCell, new: StoredCell) -> bool:
 
 
 def _pair(old: StoredCell, new: StoredCell, factor: float) -> CellPair:
-    """Judge a cell of both runs."""
     if not (old.ok and new.ok):
         word: Word = "equal" if old.ok == new.ok else "better" if new.ok else "worse"
         return CellPair(old, new, (), word, factor)

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from reports.results.floor_fit import interpolate
-from reports.results.lines import Line, comparable
+from reports.results.lines import Line, Named, comparable, named
 from reports.store.reader import Stored
 from sim.engine import Drive
 
@@ -125,17 +125,17 @@ class Costs:
 def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ...]:
     """Return the costs of each variant."""
     scenes = len({line.scene for line in lines})
-    groups: dict[tuple[str, str, Drive], list[Line]] = {}
+    groups: dict[Named, list[Line]] = {}
     for line in lines:
-        groups.setdefault((line.engine, line.variant, line.drive), []).append(line)
+        groups.setdefault(named(line), []).append(line)
     costs = []
-    for named, group in groups.items():
+    for name, group in groups.items():
         timed = [x for line in group if len(x := line.cells.dropna(subset=["us_per_step"]))]
         cells = pd.concat(timed or [group[0].cells.iloc[:0]])
         times = {target: [t for x in group if (t := time_to(x, target))] for target in targets}
         costs.append(
             Costs(
-                *named,
+                *name,
                 us_per_step=mean(cells["us_per_step"]),
                 us_per_step_median=mean(cells["us_per_step_median"].dropna()),
                 timed=len(timed),

@@ -205,7 +205,6 @@ def _mask(indices: Sequence[int], number: int) -> tuple[bool, ...]:
 
 
 def _farthest(value: float, bounds: tuple[float, float]) -> float:
-    """Return the distance of the farther bound from the value."""
     return max(bounds[1] - value, value - bounds[0])
 
 
@@ -306,7 +305,6 @@ def _told(fit: LineFit, unit: str) -> str:
 
 
 def _order(fit: LineFit) -> str:
-    """Return the words for an order without a floor."""
     if fit.order + fit.order_error < fit_forms.LEVEL:
         return f"order {fit.order:.1f}: slower than any integrator, a floor may be near"
     vague = f" +- {fit.order_error:.1f}" if fit.order_error > VAGUE else ""

@@ -140,7 +140,6 @@ def numbers(version: str) -> tuple[int, ...]:
 
 
 def _line(rows: pd.DataFrame, quantity: str) -> Line:
-    """Return the line of some rows."""
     first = rows.iloc[0]
     fit = fit_line(
         [float(dt) for dt in rows["dt_s"]],
@@ -216,7 +215,6 @@ def comparable(cells: pd.DataFrame) -> pd.DataFrame:
 
 
 def _timed(cells: pd.DataFrame) -> pd.DataFrame:
-    """Return the cells with a time."""
     if "processor" not in cells.columns:  # a store without timings
         return cells.iloc[:0].assign(processor="", made="")
     return cells[cells["us_per_step"].notna()]

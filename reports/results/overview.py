@@ -182,7 +182,6 @@ def study(lines: Sequence[Line]) -> str:
 
 
 def _where(lines: Sequence[Line]) -> str:
-    """Return the scenes and variants."""
     scenes = dict.fromkeys(line.scene for line in lines)
     where = next(iter(scenes)) if len(scenes) == 1 else count(len(scenes), "scene")
     return f"Study: {where}, {count(len({named(line) for line in lines}), 'variant')}"

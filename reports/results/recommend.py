@@ -90,7 +90,6 @@ def recommendations(
 def _of_lines(
     every: Sequence[Line], targets: Sequence[float], within: float
 ) -> tuple[Recommendation, ...]:
-    """Return one for each engine and target, of some lines."""
     choice = candidates(every)
     engines = dict.fromkeys(line.engine for line in every)
     return tuple(
@@ -103,7 +102,6 @@ def _of_lines(
 def _recommended(
     target: float, choice: Sequence[Candidate], every: Sequence[Line], within: float
 ) -> Recommendation:
-    """Return the recommendation of one engine."""
     good = [one for one in choice if one.reaches(target)]
     timed = [one for one in good if math.isfinite(one.s_per_turn)]
     if not timed:
@@ -170,7 +168,7 @@ def broken(one: Candidate, choice: Sequence[Candidate], target: float) -> str:
     finer = [
         c
         for c in choice
-        if c.same_settings(one) and c.steps_per_turn > one.steps_per_turn and _missed(c, target)
+        if c.holds(one) and c.steps_per_turn > one.steps_per_turn and _missed(c, target)
     ]
     if not finer:
         return ""

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 from models.errors import few
 from reports.judge.cell import Cell, Checked
@@ -18,6 +19,8 @@ from reports.way.length import SECONDS, TURNS, Clock, clock_of, common_clock
 COMPARED = EVERY
 """Compared quantities: the largest error of each, as a pure number."""
 CellRow = Mapping[str, object]
+Key = TypeVar("Key")
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -236,6 +239,14 @@ def number(value: object) -> float | None:
 def text(value: object) -> str:
     """Return a text of a table, empty where there is none."""
     return value if isinstance(value, str) else ""
+
+
+def grouped(pairs: Iterable[tuple[Key, Value]]) -> dict[Key, list[Value]]:
+    """Return the values of each key, in order."""
+    groups: dict[Key, list[Value]] = {}
+    for key, value in pairs:
+        groups.setdefault(key, []).append(value)
+    return groups
 
 
 def each_once(values: Iterable[str], most: int = 4) -> str:

@@ -60,7 +60,6 @@ def scene_digests(names: Iterable[str]) -> dict[str, str]:
 
 
 def _contents(folder: Path) -> Contents:
-    """Return the contents of a folder, by its kind."""
     kinds: dict[str, Callable[[Path], Contents]] = {MANIFEST: _store, CELLS: _verification}
     try:
         there = [name for name in kinds if (folder / name).is_file()]

@@ -2,24 +2,24 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
 from analytic.elastic.discretisation import REFERENCE, Discretisation
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.engine_start import node_start
+from analytic.elastic.engine_start import node_start, segment_start
 from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion, State
 from models.scene import Scene
 from models.scene.cut_links import CutScene
-from models.scene.cut_scenes import BeamedScene
+from models.scene.cut_scenes import BeamedScene, SegmentedScene
 from models.scene.elastic import Beam, Shape
 from reports.compare.elastic_truth import ChainTruth, ElasticTruth
-from reports.judge.cell import Cell, CellRunner
-from reports.selftest.fault import PROFILE, Items, Plant
+from reports.judge.cell import Cell
+from reports.selftest.fault import PROFILE, Items, Plant, SceneChange, in_scene, planting
 from reports.selftest.log_edits import WHEN, moved
 from reports.way.length import Springs
 from reports.way.way import way_of
@@ -60,10 +60,7 @@ BEAM_RUNS: dict[str, ElasticRun] = {BENT: ElasticRun(8, 2880, "beam")}
 """Runs by scene, for engines with their own beams: elements within the reference's own doubt."""
 
 
-@cache
-def _once(name: str) -> Scene:
-    """Read the elastic scene of that name, once."""
-    return load_scene(name)
+_once = cache(load_scene)
 
 
 def elastic_cell(
@@ -104,13 +101,9 @@ def _truth(scene: str, *, beams: bool) -> ElasticTruth:
     return truth
 
 
-def sound_run(given: Scene, name: str, profile: str, options: Items) -> Run:
-    """Return the run of the given scene without any fault, the same for all sizes."""
-    return _sound_run(given.name, bool(given.beams), name, profile, options)
-
-
 @lru_cache(maxsize=3)
-def _sound_run(scene: str, beams: bool, name: str, profile: str, options: Items) -> Run:
+def sound_run(scene: str, beams: bool, name: str, profile: str, options: Items) -> Run:
+    """Return the run of an elastic scene without any fault, the same for all sizes."""
     truth = _truth(scene, beams=beams)
     return run(truth.given, truth.start, name, profile, **dict(options))
 
@@ -121,29 +114,27 @@ NodeChange = Callable[[ElasticTruth, Motion, float], Motion]
 def in_chain_log(change: NodeChange) -> Plant:
     """Run the engine without a fault, and change its log afterwards."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, _: object, name: str, profile: str, **options: Any) -> Run:
-            asked = {key: value for key, value in options.items() if key != "settings"}
-            done = sound_run(scene, name, profile, tuple(sorted(asked.items())))
-            if not size:
-                return done
-            return replace(done, motion=change(truth_of_given(scene), moved(done), size))
+    @planting
+    def runner(
+        size: float, scene: Scene, _: object, name: str, profile: str, **options: Any
+    ) -> Run:
+        asked = tuple(sorted(item for item in options.items() if item[0] != "settings"))
+        done = sound_run(scene.name, bool(scene.beams), name, profile, asked)
+        if not size:
+            return done
+        return replace(done, motion=change(truth_of_given(scene), moved(done), size))
 
-        return runner
-
-    return plant
+    return runner
 
 
 def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
     """Move all nodes to the changed distance from the line between the pins."""
 
     def changed(truth: ElasticTruth, motion: Motion, size: float) -> Motion:
-        name = next(iter(truth.scene.elastic))
-        nodes = truth.cut.nodes(name)
-        first, across = _line(motion, nodes)
-        for node in nodes[1:-1]:
-            off = ((motion.points[node].position - first) * across).sum(axis=1)
-            motion = _moved(motion, node, (change(off, size) - off)[:, None] * across)
+        bent = _first_link(truth, motion)
+        for node in bent.nodes[1:-1]:
+            off = bent.off(node)
+            motion = bent.moved(motion, node, change(off, size) - off)
         return motion
 
     return changed
@@ -151,26 +142,18 @@ def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
 
 def at_next_node(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
     """Log the middle where the node before it is, with its deflection."""
-    name = next(iter(truth.scene.elastic))
-    nodes = truth.cut.nodes(name)
-    first, across = _line(motion, nodes)
-    middle = len(nodes) // 2
-    off, near = (
-        ((motion.points[nodes[k]].position - first) * across).sum(axis=1)
-        for k in (middle, middle - 1)
-    )
-    return _moved(motion, nodes[middle], (near - off)[:, None] * across)
+    bent = _first_link(truth, motion)
+    before, middle = bent.nodes[len(bent.nodes) // 2 - 1 :][:2]
+    return bent.moved(motion, middle, bent.off(before) - bent.off(middle))
 
 
 def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
     """Move the first node, away from the middle, by a share of the deflection there, after the
     start has been looked at."""
-    name = next(iter(truth.scene.elastic))
-    nodes = truth.cut.nodes(name)
-    first, across = _line(motion, nodes)
-    off = ((motion.points[nodes[1]].position - first) * across).sum(axis=1)
+    bent = _first_link(truth, motion)
+    off = bent.off(bent.nodes[1])
     off[:WHEN] = 0.0
-    return _moved(motion, nodes[1], share * off[:, None] * across)
+    return bent.moved(motion, bent.nodes[1], share * off)
 
 
 def of_beam(*, stiffened: bool, by: Discretisation = REFERENCE) -> NodeChange:
@@ -196,25 +179,41 @@ def _given_back(chain: CutScene, own: Motion, other: Motion) -> Motion:
     links = {**own.links, **{n: each for n, each in other.links.items() if n in own.links}}
     motion = replace(own, links=links, points={**own.points, **other.points})
     for name in chain.scene.elastic:
-        nodes = chain.nodes(name)
-        first, across = _line(motion, nodes)
-        middle = nodes[chain.count // 2]
-        off = ((motion.points[middle].position - first) * across).sum(axis=1)
-        by = other.elastic[name].middle - off
-        motion = _moved(motion, middle, by[:, None] * across)
+        bent = _BentLink(motion, chain.nodes(name))
+        middle = bent.nodes[chain.count // 2]
+        motion = bent.moved(motion, middle, other.elastic[name].middle - bent.off(middle))
     return motion
 
 
-def _line(motion: Motion, nodes: tuple[str, ...]) -> tuple[Array, Array]:
-    """Return the first pin, and the unit vector across the line from it to the last (T, 2)."""
-    first, end = (motion.points[node].position for node in (nodes[0], nodes[-1]))
-    way = end - first
-    return first, np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
+@dataclass(frozen=True)
+class _BentLink:
+    """An elastic link in a log, by its ``nodes``."""
+
+    motion: Motion
+    nodes: tuple[str, ...]
+
+    @cached_property
+    def across(self) -> Array:
+        """Unit vector across the line from the first pin to the last (T, 2)."""
+        first, end = (self.motion.points[node].position for node in (self.nodes[0], self.nodes[-1]))
+        way = end - first
+        across = np.stack([-way[:, 1], way[:, 0]], axis=1)
+        return np.asarray(across / np.hypot(*way.T)[:, None])
+
+    def off(self, node: str) -> Array:
+        """Return the distance of a node from that line (T,) [m]."""
+        first = self.motion.points[self.nodes[0]].position
+        return np.asarray(((self.motion.points[node].position - first) * self.across).sum(axis=1))
+
+    def moved(self, motion: Motion, node: str, by_m: Array) -> Motion:
+        """Return a motion with a node so much farther off the line (T,)."""
+        own = motion.points[node]
+        there = replace(own, position=own.position + by_m[:, None] * self.across)
+        return replace(motion, points={**motion.points, node: there})
 
 
-def _moved(motion: Motion, node: str, by: Array) -> Motion:
-    own = motion.points[node]
-    return replace(motion, points={**motion.points, node: replace(own, position=own.position + by)})
+def _first_link(truth: ElasticTruth, motion: Motion) -> _BentLink:
+    return _BentLink(motion, truth.cut.nodes(next(iter(truth.scene.elastic))))
 
 
 BeamChange = Callable[[Beam, float], Beam]
@@ -223,46 +222,40 @@ BeamChange = Callable[[Beam, float], Beam]
 def in_beam(change: BeamChange) -> Plant:
     """Give the engine another beam, which starts where the right one does."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
-            beams = {name: change(beam, size) for name, beam in scene.beams.items()}
-            links = dict(scene.links)
-            for name, beam in beams.items():
-                more = beam.density_kg_m / scene.beams[name].density_kg_m
-                for node in beam.nodes:
-                    links[node] = replace(links[node], mass_kg=more * links[node].mass_kg)
-            return run(replace(scene, links=links, beams=beams), state, *args, **options)
+    def changed(scene: Scene, size: float) -> Scene:
+        beams = {name: change(beam, size) for name, beam in scene.beams.items()}
+        links = dict(scene.links)
+        for name, beam in beams.items():
+            more = beam.density_kg_m / scene.beams[name].density_kg_m
+            for node in beam.nodes:
+                links[node] = replace(links[node], mass_kg=more * links[node].mass_kg)
+        return replace(scene, links=links, beams=beams)
 
-        return runner
-
-    return plant
+    return in_given(changed)
 
 
-def begun(shape: Shape) -> Plant:
-    """Start the right beam with another shape, or as it should with a size of 0."""
+def in_given(change: SceneChange) -> Plant:
+    """Give the engine another chain or beam, which starts where the right one does."""
+    return in_scene(change, lambda _wrong, state, _dt_s: state)
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
-            cut = truth_of_given(scene).cut
-            assert isinstance(cut, BeamedScene)
-            return run(scene, node_start(cut, shape) if size else state, *args, **options)
 
-        return runner
+def started(shape: Shape) -> Plant:
+    """Start the right chain or beam with another shape, or as it should with a size of 0."""
 
-    return plant
+    @planting
+    def runner(size: float, scene: Scene, state: State, *args: Any, **options: Any) -> Run:
+        return run(scene, _start(scene, shape) if size else state, *args, **options)
+
+    return runner
+
+
+def _start(given: Scene, shape: Shape) -> State:
+    cut = truth_of_given(given).cut
+    if isinstance(cut, BeamedScene):
+        return node_start(cut, shape)
+    assert isinstance(cut, SegmentedScene)
+    return segment_start(cut, shape)
 
 
 def stiffer_beam(beam: Beam, share: float) -> Beam:
     return replace(beam, flexural_n_m2=(1.0 + share) * beam.flexural_n_m2)
-
-
-def stretchier(beam: Beam, share: float) -> Beam:
-    return replace(beam, axial_n=beam.axial_n / (1.0 + share))
-
-
-def heavier_beam(beam: Beam, share: float) -> Beam:
-    return replace(beam, density_kg_m=(1.0 + share) * beam.density_kg_m)
-
-
-def damped_beam(beam: Beam, time_s: float) -> Beam:
-    return replace(beam, damping_s=beam.damping_s + time_s)

@@ -6,12 +6,13 @@ size of 0 goes the same way and changes nothing, which must not be noticed.
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 
 from analytic.kinematics import solve
+from models.motion import State
 from models.scene import Same, Scene
 from reports.judge.cell import Cell, CellRunner
 from reports.way.length import Planned
@@ -28,6 +29,8 @@ FOURBAR, SLIDER, SHAPER = "fourbar-lecture-1", "slider-crank-offset", "shaper"
 REFUSED = "the engine does not hold"
 """Words of `sim.run.check` where the model in the engine is not the scene."""
 Plant = Callable[[float], CellRunner]
+SceneChange = Callable[[Scene, float], Scene]
+"""Change of a scene by a size."""
 Items = tuple[tuple[str, Any], ...]
 RunKind = str
 """Kind of the runs that faults are planted in, by name (`FaultRuns`)."""
@@ -105,17 +108,29 @@ class Unseen:
     shows: bool = True
 
 
-def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
-    """Give the engine another scene than the reference, well assembled."""
+def planting(runner: Callable[..., Run]) -> Plant:
+    """Return the plant of a runner that takes the size first, before the arguments of a run."""
+    return lambda size: partial(runner, size)
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, _state: object, *args: Any, **options: Any) -> Run:
-            wrong = change(scene, size)
-            return run(wrong, solve(wrong, np.zeros(1)).state(), *args, **options)
 
-        return runner
+def _assembled(wrong: Scene, _: State, dt_s: float) -> State:
+    return solve(wrong, np.zeros(1)).state()
 
-    return plant
+
+def in_scene(
+    change: SceneChange, start: Callable[[Scene, State, float], State] = _assembled
+) -> Plant:
+    """Give the engine another scene than the reference, well assembled, or with the ``start`` that
+    the wrong scene, the start of the right one and the step [s] give."""
+
+    @planting
+    def runner(
+        size: float, scene: Scene, state: State, *args: Any, dt_s: float, **options: Any
+    ) -> Run:
+        wrong = change(scene, size)
+        return run(wrong, start(wrong, state, dt_s), *args, dt_s=dt_s, **options)
+
+    return runner
 
 
 def integrates(name: str) -> bool:
@@ -133,17 +148,20 @@ def can_set(what: WrongSetting) -> Callable[[str], bool]:
 def in_settings(what: WrongSetting) -> Plant:
     """Set the engine otherwise than requested."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(
-            scene: Scene, state: Any, name: str, *args: Any, settings: Any = None, **options: Any
-        ) -> Run:
-            wrong = spoiler(name).wrong_settings[what](size) if size else {}
-            changed = {**(settings or {}), **wrong}
-            return run(scene, state, name, *args, settings=changed, **options)
+    @planting
+    def runner(
+        size: float,
+        scene: Scene,
+        state: Any,
+        name: str,
+        *args: Any,
+        settings: Any = None,
+        **more: Any,
+    ) -> Run:
+        wrong = spoiler(name).wrong_settings[what](size) if size else {}
+        return run(scene, state, name, *args, settings={**(settings or {}), **wrong}, **more)
 
-        return runner
-
-    return plant
+    return runner
 
 
 def in_engine(
@@ -156,40 +174,30 @@ def in_engine(
     share.
     """
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: Any, name: str, *args: Any, **options: Any) -> Run:
-            steps = options["steps"]
+    @planting
+    def runner(size: float, scene: Scene, state: Any, name: str, *args: Any, **options: Any) -> Run:
+        steps = options["steps"]
 
-            def act(tools: Spoiler, session: Session, opening: Opening, done: int) -> None:
-                spoil(tools, session, opening, size, done / steps)
+        def act(tools: Spoiler, session: Session, opening: Opening, done: int) -> None:
+            spoil(tools, session, opening, size, done / steps)
 
-            broken = spoilt(engine(name), tuple(at(steps)), act)
-            return run(scene, state, broken, *args, **options)
+        broken = spoilt(engine(name), tuple(at(steps)), act)
+        return run(scene, state, broken, *args, **options)
 
-        return runner
-
-    return plant
+    return runner
 
 
 def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
     """Run the scene without a fault, and change the log afterwards."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(
-            scene: Scene,
-            _: object,
-            name: str,
-            profile: str,
-            *,
-            settings: Any = None,
-            **options: Any,
-        ) -> Run:
-            asked = (tuple(sorted(each.items())) for each in (settings or {}, options))
-            return change(scene, _healthy(Same(scene), name, profile, *asked), size)
+    @planting
+    def runner(
+        size: float, scene: Scene, _: object, *names: str, settings: Any = None, **options: Any
+    ) -> Run:
+        asked = (tuple(sorted(each.items())) for each in (settings or {}, options))
+        return change(scene, _healthy(Same(scene), *names, *asked), size)
 
-        return runner
-
-    return plant
+    return runner
 
 
 @lru_cache(maxsize=3)

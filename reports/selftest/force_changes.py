@@ -4,8 +4,9 @@ A log without an inertia or a weight, or of another mechanism, is the healthy lo
 difference that kinetostatics makes of it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from itertools import chain, repeat
 
 import numpy as np
 
@@ -15,32 +16,32 @@ from models.motion import Forces, SliderForces
 from models.scene import Scene
 from models.scene.characteristics import Sine
 from models.scene.loads import Load
-from reports.selftest.fault import Plant, in_log
+from reports.selftest.fault import Plant, SceneChange, in_log
 from reports.selftest.log_edits import last, moved, spoilt
 from sim.engine import Run
 from sim.registry import engine
 
-Change = Callable[[Scene, Run, Forces, float], Forces]
+ForceChange = Callable[[Scene, Run, Forces, float], Forces | None]
+"""Change of logged forces by a size."""
 QUARTER = np.pi / 2
 
 
-def in_forces(change: Change) -> Plant:
+def in_forces(change: ForceChange) -> Plant:
     """Change the forces of a healthy log by a size; leave them for a size of 0."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
         motion = moved(done)
         if motion.forces is None or not size:
             return done
-        return replace(
-            done, motion=replace(motion, forces=change(scene, done, motion.forces, size))
-        )
+        forces = change(scene, done, motion.forces, size)
+        return replace(done, motion=replace(motion, forces=forces))
 
     return in_log(changed)
 
 
-def each_force(change: Callable[[Array, float], Array]) -> Plant:
+def each_force(change: Callable[[Array, float], Array]) -> ForceChange:
     """Change every series of forces by a size."""
-    return in_forces(lambda scene, done, own, size: own.each_series(lambda x: change(x, size)))
+    return lambda scene, done, own, size: own.each_series(lambda x: change(x, size))
 
 
 def each_pin(own: Forces, change: Callable[[str, str, Array], Array]) -> Forces:
@@ -52,10 +53,11 @@ def each_pin(own: Forces, change: Callable[[str, str, Array], Array]) -> Forces:
     return replace(own, pins=pins)
 
 
-def _last_pin(own: Forces, change: Callable[[Array], Array]) -> Forces:
-    """Change the reactions of the last pin."""
-    last = list(own.pins)[-1]
-    return each_pin(own, lambda point, _, force: change(force) if point == last else force)
+def _last_pin(own: Forces, change: Callable[[list[Array]], Iterable[Array]]) -> Forces:
+    """Change the reactions of the last pin, one of each body."""
+    point, bodies = list(own.pins.items())[-1]
+    changed = zip(bodies, change(list(bodies.values())), strict=True)
+    return replace(own, pins={**own.pins, point: dict(changed)})
 
 
 def each_slider(own: Forces, change: Callable[[SliderForces], SliderForces]) -> Forces:
@@ -95,10 +97,7 @@ def rows_late(_: Scene, done: Run, own: Forces, samples: float) -> Forces:
 
 def of_the_giver(_: Scene, done: Run, own: Forces, size: float) -> Forces:
     """Exchange the reactions of both bodies in the last pin."""
-    last = list(own.pins)[-1]
-    bodies = own.pins[last]
-    reverse = dict(zip(bodies, reversed(list(bodies.values())), strict=True))
-    return replace(own, pins={**own.pins, last: reverse})
+    return _last_pin(own, reversed)
 
 
 def pins_swapped(_: Scene, done: Run, own: Forces, size: float) -> Forces:
@@ -111,9 +110,8 @@ def pins_swapped(_: Scene, done: Run, own: Forces, size: float) -> Forces:
     return replace(own, pins={**own.pins, **swapped})
 
 
-def of_another(change: Callable[[Scene, float], Scene]) -> Change:
+def of_another(change: SceneChange) -> ForceChange:
     """Return the forces that another scene would have, at the same instants."""
-
     return lambda scene, _, own, size: changed_by_scene(own, scene, change(scene, size))
 
 
@@ -139,22 +137,6 @@ def changed_by_scene(own: Forces, right: Scene, wrong: Scene) -> Forces:
     }
     torque = own.torque + after.torque - before.torque
     return replace(own, pins=pins, sliders=sliders, torque=torque)
-
-
-def lighter(scene: Scene, share: float) -> Scene:
-    """Leave out the mass and inertia of the link that is pinned to the driver."""
-    name = list(scene.links)[1]
-    link, left = scene.links[name], 1.0 - share
-    light = replace(link, mass_kg=left * link.mass_kg, inertia_kg_m2=left * link.inertia_kg_m2)
-    return replace(scene, links={**scene.links, name: light})
-
-
-def turning_lighter(scene: Scene, share: float) -> Scene:
-    """Leave out the inertia of that link alone."""
-    name = list(scene.links)[1]
-    link = scene.links[name]
-    light = replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
-    return replace(scene, links={**scene.links, name: light})
 
 
 def weighed(scene: Scene, more_m_s2: float) -> Scene:
@@ -186,30 +168,20 @@ def about_another_point(scene: Scene, done: Run, own: Forces, share: float) -> F
     return each_slider(own, lambda one: replace(one, moment=one.moment + arm * one.normal))
 
 
-def spoilt_pin(at: int | slice) -> Change:
+def spoilt_pin(at: int | slice) -> ForceChange:
     """Change the reactions of the last pin at some samples, opposite on its bodies."""
 
     def changed(_: Scene, done: Run, own: Forces, share: float) -> Forces:
-        last = list(own.pins)[-1]
-        signs = dict(zip(own.pins[last], (-1.0, 1.0), strict=False))
         off = share * largest_n(own)
-
-        def spoil(point: str, body: str, force: Array) -> Array:
-            return spoilt(force, at, signs.get(body, 0.0) * off) if point == last else force
-
-        return each_pin(own, spoil)
+        by = chain((-off, off), repeat(0.0))
+        return _last_pin(own, lambda forces: [spoilt(x, at, next(by)) for x in forces])
 
     return changed
 
 
 def one_sided(_: Scene, done: Run, own: Forces, share: float) -> Forces:
     """Let a pin push one of its bodies more than the other."""
-    last = list(own.pins)[-1]
-    body = next(iter(own.pins[last]))
-    return each_pin(
-        own,
-        lambda point, b, force: force * (1.0 + share) if (point, b) == (last, body) else force,
-    )
+    return _last_pin(own, lambda forces: [forces[0] * (1.0 + share), *forces[1:]])
 
 
 def without_last_pin(_: Scene, done: Run, own: Forces, size: float) -> Forces:
@@ -217,11 +189,11 @@ def without_last_pin(_: Scene, done: Run, own: Forces, size: float) -> Forces:
 
 
 def nan_at_end(_: Scene, done: Run, own: Forces, size: float) -> Forces:
-    return _last_pin(own, lambda force: spoilt(force, slice(-1, None), np.nan))
+    return _last_pin(own, lambda forces: [spoilt(x, slice(-1, None), np.nan) for x in forces])
 
 
-def in_torque(change: Callable[[Array, float], Array]) -> Plant:
-    return in_forces(lambda scene, done, own, size: replace(own, torque=change(own.torque, size)))
+def of_torque(change: Callable[[Array, float], Array]) -> ForceChange:
+    return lambda scene, done, own, size: replace(own, torque=change(own.torque, size))
 
 
 def turned_aside(_: Scene, done: Run, own: Forces, size: float) -> Forces:
@@ -231,15 +203,11 @@ def turned_aside(_: Scene, done: Run, own: Forces, size: float) -> Forces:
     return each_pin(own, lambda point, body, force: force @ turn)
 
 
-def dropped(_: Scene, done: Run, size: float) -> Run:
-    return replace(done, motion=replace(moved(done), forces=None)) if size else done
-
-
 def gives(name: str) -> bool:
     return engine(name).forces_of != "nothing"
 
 
-def of_load(wrong: Callable[[Load, Run, float], Load | None]) -> Change:
+def of_load(wrong: Callable[[Load, Run, float], Load | None]) -> ForceChange:
     """Let a load, as large as the largest reaction, be felt otherwise than it acts, or not at all.
     Loads add up linearly, so that the scene need have none."""
 

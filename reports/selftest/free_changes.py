@@ -1,51 +1,70 @@
-"""Make another machine of a scene in free motion: its matter, its weight, its loads and springs."""
+"""Make another machine of a scene: its links, its weight, its loads and springs."""
 
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from analytic.free.release import release
-from models.scene import Link, Scene
+from models.scene import Link, Point, Scene
 from models.scene.characteristics import Constant, Pulse
 from models.scene.driver import Released
 from models.scene.joints import line_ends
 from models.scene.loads import LineSpring, Load, SlideSpring
+from models.scene.moved import heavier, with_link
 from models.scene.tabulated import Tabulated
-from reports.judge.cell import CellRunner
-from reports.selftest.fault import Plant
-from sim.engine import Run
-from sim.run import run
+from reports.selftest.fault import Plant, SceneChange, in_scene
 
 
-def in_free_scene(change: Callable[[Scene, float], Scene]) -> Plant:
+def in_free_scene(change: SceneChange) -> Plant:
     """Give the engine another scene than the reference, with the accelerations of its start: all of
     it is sound, and another machine."""
-
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, _state: object, *args: Any, **options: Any) -> Run:
-            wrong = change(scene, size)
-            start = release(wrong, options["dt_s"]).at(np.zeros(1)).state()
-            return run(wrong, start, *args, **options)
-
-        return runner
-
-    return plant
+    return in_scene(change, lambda wrong, _, dt_s: release(wrong, dt_s).at(np.zeros(1)).state())
 
 
-def of_coupler(change: Callable[[Link, float], Link]) -> Callable[[Scene, float], Scene]:
-    """Change the link that is pinned to the driver."""
+LinkChange = Callable[[Link, float], Link]
+
+
+def of_link(change: LinkChange, at: int) -> SceneChange:
+    """Change the link in the place ``at`` of the scene: 0 the first, -1 the last."""
 
     def changed(scene: Scene, size: float) -> Scene:
-        link = change(list(scene.links.values())[1], size)
+        link = change(list(scene.links.values())[at], size)
         return replace(scene, links={**scene.links, link.name: link})
 
     return changed
 
 
-def heavier(link: Link, share: float) -> Link:
+def of_coupler(change: LinkChange) -> SceneChange:
+    """Change the link that is pinned to the driver."""
+    return of_link(change, 1)
+
+
+def heavier_by(link: Link, share: float) -> Link:
+    return heavier(link, 1.0 + share)
+
+
+def lighter_by(link: Link, share: float) -> Link:
+    return heavier(link, 1.0 - share)
+
+
+def turning_light(link: Link, share: float) -> Link:
+    """Put points in the place of rods."""
+    return replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
+
+
+def scaled_points(link: Link, factor: float) -> dict[str, Point]:
+    """Return the points of a link, all of them so many times as far out."""
+    return {name: (factor * x, factor * y) for name, (x, y) in link.points.items()}
+
+
+def long_by(link: Link, share: float) -> Link:
+    """Lengthen a link by a share, its matter as before."""
+    return replace(link, points=scaled_points(link, 1.0 + share))
+
+
+def of_more_mass(link: Link, share: float) -> Link:
     return replace(link, mass_kg=(1.0 + share) * link.mass_kg)
 
 
@@ -63,19 +82,14 @@ def off_centre(link: Link, share: float) -> Link:
 
 def of_all_matter(scene: Scene, share: float) -> Scene:
     """Scale every mass and inertia by the same factor."""
-    more = 1.0 + share
-    links = {
-        name: replace(link, mass_kg=more * link.mass_kg, inertia_kg_m2=more * link.inertia_kg_m2)
-        for name, link in scene.links.items()
-    }
+    links = {name: heavier(link, 1.0 + share) for name, link in scene.links.items()}
     return replace(scene, links=links)
 
 
 def without_flywheel(scene: Scene, share: float) -> Scene:
     """Reduce the inertia that turns with the driver by a share."""
-    link = scene.links[scene.driver.link]
-    light = replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
-    return replace(scene, links={**scene.links, link.name: light})
+    light = turning_light(scene.links[scene.driver.link], share)
+    return replace(scene, links={**scene.links, light.name: light})
 
 
 def stronger_gravity(scene: Scene, share: float) -> Scene:
@@ -95,9 +109,10 @@ def faster_start(scene: Scene, share: float) -> Scene:
     return replace(scene, driver=replace(scene.driver, law=faster))
 
 
-def of_load(
-    name: str, change: Callable[[Scene, Load, float], Load]
-) -> Callable[[Scene, float], Scene]:
+LoadChange = Callable[[Scene, Load, float], Load]
+
+
+def of_load(name: str, change: LoadChange) -> SceneChange:
     """Change a load of the scene."""
 
     def changed(scene: Scene, size: float) -> Scene:
@@ -106,14 +121,14 @@ def of_load(
     return changed
 
 
-def later(delay_s: float) -> Callable[[Scene, Load, float], Load]:
+def later(delay_s: float) -> LoadChange:
     """Delay a load over time by a multiple of a time."""
     return lambda _, load, times: replace(
         load, characteristic=load.characteristic.carried(1.0, shift=times * delay_s)
     )
 
 
-def lasting(longer_s: float) -> Callable[[Scene, Load, float], Load]:
+def lasting(longer_s: float) -> LoadChange:
     """Lengthen a pulse by a multiple of a time."""
 
     def changed(_: Scene, load: Load, times: float) -> Load:
@@ -152,19 +167,12 @@ def spring_elsewhere(scene: Scene, off_m: float) -> Scene:
     spring = next(iter(scene.springs.values()))
     assert isinstance(spring, LineSpring)
     (name, (x, y)), _ = line_ends(scene, spring)
-    link = scene.links[name]
-    moved = replace(link, points={**link.points, "moved": (x + off_m, y)})
+    scene = with_link(scene, name, points={**scene.links[name].points, "moved": (x + off_m, y)})
     other = replace(spring, points=("moved", spring.points[1]))
-    return replace(
-        scene,
-        links={**scene.links, name: moved},
-        springs={**scene.springs, spring.name: other},
-    )
+    return replace(scene, springs={**scene.springs, spring.name: other})
 
 
-def of_spring(
-    change: Callable[[SlideSpring, float, float], SlideSpring],
-) -> Callable[[Scene, float], Scene]:
+def of_spring(change: Callable[[SlideSpring, float, float], SlideSpring]) -> SceneChange:
     """Change the spring of a slider by a size, and by that size over the longest link."""
 
     def changed(scene: Scene, size: float) -> Scene:

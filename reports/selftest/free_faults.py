@@ -1,6 +1,5 @@
 """Faults of free motion: of the machine that an engine is given, in its steps, in its log."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -9,45 +8,19 @@ import numpy as np
 from analytic.kinematics import solve_driven
 from models.scene import Scene
 from reports.compare.free_truth import free_truth
-from reports.selftest.engines import (
-    TIMES,
-    after_a_third,
-    after_look,
-    done_to,
-    explicit,
-    now_and_then,
-)
+from reports.selftest import engines
+from reports.selftest import free_changes as change
 from reports.selftest.fault import (
     REFUSED,
     Fault,
+    SceneChange,
     can_set,
     in_log,
     in_settings,
     switched,
 )
-from reports.selftest.free_changes import (
-    about_pin,
-    along_lines,
-    faster_start,
-    heavier,
-    held_at_start,
-    in_free_scene,
-    lasting,
-    later,
-    of_coupler,
-    of_load,
-    of_spring,
-    off_centre,
-    on_last_link,
-    reversed_load,
-    spring_elsewhere,
-    stronger_gravity,
-    turned_gravity,
-    without_flywheel,
-)
-from reports.selftest.log_edits import last, moved, output, with_link
+from reports.selftest.log_edits import moved, of_output, taken
 from reports.selftest.log_faults import late
-from reports.selftest.mechanism import long_coupler
 from sim.engine import Energy, Run
 
 SWING, PULSE = "fourbar-swing", "fourbar-pulse"
@@ -68,7 +41,7 @@ _STEP_S = FREE_RUNS[PULSE][0]
 def _fault(
     name: str,
     what: str,
-    change: Callable[[Scene, float], Scene],
+    changed: SceneChange,
     size: float | None = None,
     unit: str = "",
     *,
@@ -76,193 +49,82 @@ def _fault(
     rule: str = "CC127",
     finer: bool = False,
 ) -> Fault:
-    """Return a fault of the machine that the engine is given in the place of a scene."""
-    plant = in_free_scene(change)
+    plant = change.in_free_scene(changed)
     return Fault("dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer)
 
 
 DYNAMICS = (
-    _fault("mass-wrong", "a link is too heavy", of_coupler(heavier), 0.1, "of it"),
-    _fault(
-        "inertia-at-pin", "inertia about a pin, not the centre", of_coupler(about_pin), 1.0, "m d^2"
-    ),
-    _fault("centre-moved", "a centre of mass is elsewhere", of_coupler(off_centre), 0.1, "of it"),
-    _fault("gravity-scaled", "gravity is too strong", stronger_gravity, 1e-3, "of it"),
-    _fault(
-        "gravity-hardly",
-        "the same, within this step's limit",
-        stronger_gravity,
-        1e-4,
-        "of it",
-        rule="CC110",
-        finer=True,
-    ),
-    _fault("gravity-turned", "gravity is not straight down", turned_gravity, 1e-2, "rad"),
-    _fault("start-faster", "the driver starts too fast", faster_start, 1e-2, "w", scene=SPRING),
-    _fault(
-        "torque-late",
-        "a torque over time acts late",
-        of_load("pulse", later(_STEP_S)),
-        1.0,
-        "steps",
-        scene=PULSE,
-    ),
-    _fault(
-        "torque-lasts",
-        "a torque over time ends late",
-        of_load("pulse", lasting(_STEP_S)),
-        1.0,
-        "steps",
-        scene=PULSE,
-    ),
-    _fault(
-        "torque-reversed",
-        "a torque turns the other way",
-        of_load("pulse", reversed_load),
-        scene=PULSE,
-    ),
-    _fault(
-        "torque-elsewhere",
-        "a torque acts on another link",
-        of_load("pulse", on_last_link),
-        scene=PULSE,
-    ),
-    _fault(
-        "motor-held", "a motor keeps its first torque", of_load("motor", held_at_start), scene=PRESS
-    ),
-    _fault(
-        "table-in-lines",
-        "a table read along straight lines",
-        of_load("work", along_lines),
-        scene=PRESS,
-    ),
-    _fault(
-        "flywheel-lost", "the flywheel is forgotten", without_flywheel, 0.9, "of it", scene=PRESS
-    ),
-    _fault(
-        "spring-stiff",
-        "a spring is too stiff",
-        of_spring(lambda one, share, _: replace(one, rate=(1.0 + share) * one.rate)),
-        0.1,
-        "of it",
-        scene=SPRING,
-    ),
-    _fault(
-        "spring-reversed",
-        "a spring pushes where it should pull",
-        of_spring(lambda one, swap, _: replace(one, rate=(1.0 - 2.0 * swap) * one.rate)),
-        scene=SPRING,
-    ),
-    _fault(
-        "spring-long",
-        "a spring is slack elsewhere",
-        of_spring(lambda one, _, off_m: replace(one, free=one.free + off_m)),
-        0.1,
-        "L",
-        scene=SPRING,
-    ),
-    _fault(
-        "spring-elsewhere",
-        "a spring pulls at another point",
-        spring_elsewhere,
-        1e-2,
-        "m",
-        scene=SQUEEZER,
-    ),
-    _fault(
-        "damper-lost",
-        "a damper is forgotten",
-        of_spring(lambda one, share, _: replace(one, damping=(1.0 - share) * one.damping)),
-        1.0,
-        "of it",
-        scene=SPRING,
-    ),
-    _fault(
-        "damper-reversed",
-        "a damper drives",
-        of_spring(lambda one, swap, _: replace(one, damping=(1.0 - 2.0 * swap) * one.damping)),
-        scene=SPRING,
-        rule="CC129",
-    ),
-    _fault("coupler-long", "a link is too long", long_coupler, 1e-2, "of it", rule="CC128"),
-)
+    _fault("mass-wrong", "a link is too heavy", change.of_coupler(change.of_more_mass),
+           0.1, "of it"),
+    _fault("inertia-at-pin", "inertia about a pin, not the centre",
+           change.of_coupler(change.about_pin), 1.0, "m d^2"),
+    _fault("centre-moved", "a centre of mass is elsewhere", change.of_coupler(change.off_centre),
+           0.1, "of it"),
+    _fault("gravity-scaled", "gravity is too strong", change.stronger_gravity, 1e-3, "of it"),
+    _fault("gravity-hardly", "the same, within this step's limit", change.stronger_gravity,
+           1e-4, "of it", rule="CC110", finer=True),
+    _fault("gravity-turned", "gravity is not straight down", change.turned_gravity, 1e-2, "rad"),
+    _fault("start-faster", "the driver starts too fast", change.faster_start, 1e-2, "w",
+           scene=SPRING),
+    _fault("torque-late", "a torque over time acts late",
+           change.of_load("pulse", change.later(_STEP_S)), 1.0, "steps", scene=PULSE),
+    _fault("torque-lasts", "a torque over time ends late",
+           change.of_load("pulse", change.lasting(_STEP_S)), 1.0, "steps", scene=PULSE),
+    _fault("torque-reversed", "a torque turns the other way",
+           change.of_load("pulse", change.reversed_load), scene=PULSE),
+    _fault("torque-elsewhere", "a torque acts on another link",
+           change.of_load("pulse", change.on_last_link), scene=PULSE),
+    _fault("motor-held", "a motor keeps its first torque",
+           change.of_load("motor", change.held_at_start), scene=PRESS),
+    _fault("table-in-lines", "a table read along straight lines",
+           change.of_load("work", change.along_lines), scene=PRESS),
+    _fault("flywheel-lost", "the flywheel is forgotten", change.without_flywheel, 0.9, "of it",
+           scene=PRESS),
+    _fault("spring-stiff", "a spring is too stiff",
+           change.of_spring(lambda x, share, _: replace(x, rate=(1.0 + share) * x.rate)),
+           0.1, "of it", scene=SPRING),
+    _fault("spring-reversed", "a spring pushes where it should pull",
+           change.of_spring(lambda x, swap, _: replace(x, rate=(1.0 - 2.0 * swap) * x.rate)),
+           scene=SPRING),
+    _fault("spring-long", "a spring is slack elsewhere",
+           change.of_spring(lambda x, _, off_m: replace(x, free=x.free + off_m)), 0.1, "L",
+           scene=SPRING),
+    _fault("spring-elsewhere", "a spring pulls at another point", change.spring_elsewhere,
+           1e-2, "m", scene=SQUEEZER),
+    _fault("damper-lost", "a damper is forgotten",
+           change.of_spring(lambda x, share, _: replace(x, damping=(1.0 - share) * x.damping)),
+           1.0, "of it", scene=SPRING),
+    _fault("damper-reversed", "a damper drives",
+           change.of_spring(lambda x, swap, _: replace(x, damping=(1.0 - 2.0 * swap) * x.damping)),
+           scene=SPRING, rule="CC129"),
+    _fault("coupler-long", "a link is too long", change.of_coupler(change.long_by), 1e-2, "of it",
+           rule="CC128"),
+)  # fmt: skip
 
 
 _stepping = partial(Fault, "stepping", scenes=(SWING,))
 STEPPING = (
-    _stepping(
-        "damping-left-on",
-        "something damps all joints",
-        "CC129",
-        after_look(lambda tools: tools.damp),
-        0.1,
-        "1/s",
-    ),
-    _stepping(
-        "armature-left-on",
-        "the last joint is slow to turn",
-        "CC127",
-        after_look(lambda tools: tools.slow),
-        1.0,
-        "of it",
-    ),
-    _stepping(
-        "mass-later",
-        "a body becomes heavier",
-        "CC127",
-        after_a_third(lambda tools: tools.load),
-        1.0,
-        "of it",
-    ),
-    _stepping(
-        "gravity-later",
-        "more gravity in mid-run",
-        "CC127",
-        after_a_third(lambda tools: tools.pull),
-        1.0,
-        "m/s^2",
-    ),
-    _stepping(
-        "start-contradicts",
-        "a link starts at a speed of its own",
-        "CC101",
-        done_to(lambda tools: tools.spin),
-        1e-3,
-        "rad/s",
-        says=(REFUSED, "turns at"),
-    ),
-    _stepping("explicit-euler", "explicit steps: energy grows", "CC129", explicit, 1.0, "of it"),
-    _stepping(
-        "energy-fed",
-        f"speeds made larger, {TIMES} times",
-        "CC129",
-        done_to(lambda tools: tools.quicken, now_and_then),
-        1e-3,
-        "of it",
-    ),
-    _stepping(
-        "loop-slips",
-        "a joint slips on its link in mid-run",
-        "CC128",
-        after_a_third(lambda tools: tools.slip),
-        1e-3,
-        "m",
-    ),
-    _stepping(
-        "semi-implicit",
-        "semi-implicit Euler for RK4",
-        "CC127",
-        in_settings("semi-implicit"),
-        needs=can_set("semi-implicit"),
-    ),
-    _stepping(
-        "bias-left-on",
-        "gaps closed slowly: first order",
-        "CC129",
-        in_settings("first-order"),
-        needs=can_set("first-order"),
-    ),
-)
+    _stepping("damping-left-on", "something damps all joints", "CC129",
+              engines.after_look(lambda tools: tools.damp), 0.1, "1/s"),
+    _stepping("armature-left-on", "the last joint is slow to turn", "CC127",
+              engines.after_look(lambda tools: tools.slow), 1.0, "of it"),
+    _stepping("mass-later", "a body becomes heavier", "CC127",
+              engines.after_a_third(lambda tools: tools.load), 1.0, "of it"),
+    _stepping("gravity-later", "more gravity in mid-run", "CC127",
+              engines.after_a_third(lambda tools: tools.pull), 1.0, "m/s^2"),
+    _stepping("start-contradicts", "a link starts at a speed of its own", "CC101",
+              engines.done_to(lambda tools: tools.spin), 1e-3, "rad/s", says=(REFUSED, "turns at")),
+    _stepping("explicit-euler", "explicit steps: energy grows", "CC129", engines.explicit,
+              1.0, "of it"),
+    _stepping("energy-fed", f"speeds made larger, {engines.TIMES} times", "CC129",
+              engines.done_to(lambda tools: tools.quicken, engines.now_and_then), 1e-3, "of it"),
+    _stepping("loop-slips", "a joint slips on its link in mid-run", "CC128",
+              engines.after_a_third(lambda tools: tools.slip), 1e-3, "m"),
+    _stepping("semi-implicit", "semi-implicit Euler for RK4", "CC127", in_settings("semi-implicit"),
+              needs=can_set("semi-implicit")),
+    _stepping("bias-left-on", "gaps closed slowly: first order", "CC129",
+              in_settings("first-order"), needs=can_set("first-order")),
+)  # fmt: skip
 
 
 def _copied(scene: Scene, done: Run) -> Run:
@@ -277,32 +139,15 @@ def _copied(scene: Scene, done: Run) -> Run:
     )
 
 
-def _quick(scene: Scene, done: Run, share: float) -> Run:
-    return with_link(done, last(scene), omega=(1.0 + share) * output(scene, done).omega)
-
-
 def _in_other_assembly(scene: Scene, done: Run) -> Run:
     """Log the driver angle as it is, and all places of the other assembly there."""
     own = moved(done)
     crank = own.links[scene.driver.link]
-    other = replace(scene, branch={key: -sign for key, sign in scene.branch.items()})
+    across = replace(scene, branch={key: -sign for key, sign in scene.branch.items()})
     still = np.zeros_like(crank.theta)
-    there = solve_driven(other, crank.theta, crank.omega, still, own.time_s, bound=False)
-    links = {
-        name: replace(link, theta=there.links[name].theta, omega=there.links[name].omega)
-        for name, link in own.links.items()
-    }
-    points = {
-        name: replace(
-            point, position=there.points[name].position, velocity=there.points[name].velocity
-        )
-        for name, point in own.points.items()
-    }
-    return replace(done, motion=replace(own, links=links, points=points))
-
-
-def _without_energy(_: Scene, done: Run) -> Run:
-    return replace(done, energy=None)
+    there = solve_driven(across, crank.theta, crank.omega, still, own.time_s, bound=False)
+    other = taken(own, there, links=["theta", "omega"], points=["position", "velocity"])
+    return replace(done, motion=other)
 
 
 def _leaking(_: Scene, done: Run, share: float) -> Run:
@@ -316,17 +161,13 @@ def _leaking(_: Scene, done: Run, share: float) -> Run:
 _record = partial(Fault, "record", scenes=(SWING,))
 RECORD = (
     _record("row-later", "every sample is a later one", "CC127", late, 1.0, "sample", whole=True),
-    _record("rate-off", "a logged velocity is too large", "CC106", in_log(_quick), 0.1, "of it"),
+    _record("rate-off", "a logged velocity is too large", "CC106",
+            in_log(of_output("omega", lambda omega, share: (1.0 + share) * omega)), 0.1, "of it"),
     _record("energy-leaks", "energy that is lost evenly", "CC129", in_log(_leaking), 1e-2, "T"),
-    _record(
-        "other-assembly", "the other assembly is logged", "CC101", switched(_in_other_assembly)
-    ),
-    _record("energy-missing", "no energy is in the log", "CC109", switched(_without_energy)),
-    _record(
-        "free-copied",
-        "the reference, handed back",
-        "CC111",
-        switched(_copied),
-        scenes=(SWING, SPRING),
-    ),
-)
+    _record("other-assembly", "the other assembly is logged", "CC101",
+            switched(_in_other_assembly)),
+    _record("energy-missing", "no energy is in the log", "CC109",
+            switched(lambda _, done: replace(done, energy=None))),
+    _record("free-copied", "the reference, handed back", "CC111", switched(_copied),
+            scenes=(SWING, SPRING)),
+)  # fmt: skip

@@ -11,18 +11,8 @@ from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import LinkMotion, Motion
 from models.scene import Scene
-from reports.judge.cell import CellRunner
-from reports.selftest.fault import (
-    FOURBAR,
-    SHAPER,
-    SLIDER,
-    Fault,
-    Plant,
-    in_log,
-    integrates,
-    switched,
-)
-from reports.selftest.log_edits import last, moved, noisy, to_digits, with_link
+from reports.selftest import fault
+from reports.selftest.log_edits import last, moved, noisy, taken, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
 
@@ -33,14 +23,14 @@ def _handed_back(scene: Scene, done: Run) -> Run:
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
-def _each(change: Callable[[Motion], Motion]) -> Plant:
+def _each(change: Callable[[Motion], Motion]) -> fault.Plant:
     """Return the closed form, changed a little."""
 
     def changed(scene: Scene, done: Run) -> Run:
         back = _handed_back(scene, done)
         return replace(back, motion=change(moved(back)))
 
-    return switched(changed)
+    return fault.switched(changed)
 
 
 def _through_degrees(motion: Motion) -> Motion:
@@ -54,11 +44,7 @@ def _through_degrees(motion: Motion) -> Motion:
     return replace(motion, links=links)
 
 
-def _next_floats(motion: Motion) -> Motion:
-    return motion.each_series(lambda series: np.asarray(np.nextafter(series, np.inf)))
-
-
-def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
+def _spoilt(change: Callable[[Array, float], Array]) -> fault.Plant:
     """Return the closed form, with its places changed by a size, in radians and longest links."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
@@ -71,14 +57,19 @@ def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
         motion = replace(own, links=links, points=points)
         return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
-    return in_log(changed)
+    return fault.in_log(changed)
 
 
-def _one_link(scene: Scene, done: Run) -> Run:
-    """Give the last link the numbers of the closed form, and keep the rest of the engine."""
-    own, name = moved(done), last(scene)
-    true = solve(scene, own.time_s, bound=False).links[name]
-    return replace(done, motion=replace(own, links={**own.links, name: true}))
+def _one(bodies: str, name: Callable[[Scene], str]) -> fault.Plant:
+    """Give a link, point or slider the numbers of the closed form; keep the rest of the engine."""
+
+    def changed(scene: Scene, done: Run) -> Run:
+        own, body = moved(done), name(scene)
+        true = getattr(solve(scene, own.time_s, bound=False), bodies)[body]
+        other: dict[str, Any] = {bodies: {**getattr(own, bodies), body: true}}
+        return replace(done, motion=replace(own, **other))
+
+    return fault.switched(changed)
 
 
 def _velocity(scene: Scene, done: Run) -> Run:
@@ -94,28 +85,7 @@ def _speeds(scene: Scene, done: Run) -> Run:
     assert done.velocity_time_s is not None
     own = moved(done)
     true = solve(scene, done.velocity_time_s, bound=False)
-    points = {n: replace(m, velocity=true.points[n].velocity) for n, m in own.points.items()}
-    sliders = {n: replace(m, speed=true.sliders[n].speed) for n, m in own.sliders.items()}
-    return replace(done, motion=replace(own, points=points, sliders=sliders))
-
-
-def _shut(_: Scene, done: Run) -> Run:
-    """Close every joint."""
-    return replace(done, gaps={name: np.zeros_like(gap) for name, gap in done.gaps.items()})
-
-
-def _one_point(scene: Scene, done: Run) -> Run:
-    """Give the pin at the end of the last link its places, likewise."""
-    own, name = moved(done), _moving_pin(scene)
-    true = solve(scene, own.time_s, bound=False).points[name]
-    return replace(done, motion=replace(own, points={**own.points, name: true}))
-
-
-def _one_slider(scene: Scene, done: Run) -> Run:
-    """Give the first slider its places, likewise."""
-    own, name = moved(done), next(iter(scene.sliders))
-    true = solve(scene, own.time_s, bound=False).sliders[name]
-    return replace(done, motion=replace(own, sliders={**own.sliders, name: true}))
+    return replace(done, motion=taken(own, true, points=["velocity"], sliders=["speed"]))
 
 
 def _moving_pin(scene: Scene) -> str:
@@ -134,55 +104,36 @@ def _at_the_crank(scene: Scene, done: Run) -> Run:
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
-def _finer_handed_back(size: float) -> CellRunner:
+@fault.planting
+def _finer_handed_back(size: float, scene: Scene, *args: Any, **options: Any) -> Run:
     """Run the engine at the full step, and the closed form at the finer ones."""
-
-    def runner(scene: Scene, *args: Any, **options: Any) -> Run:
-        done = run(scene, *args, **options)
-        return _handed_back(scene, done) if size and options["every"] > 1 else done
-
-    return runner
+    done = run(scene, *args, **options)
+    return _handed_back(scene, done) if size and options["every"] > 1 else done
 
 
-_fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
+_shut = fault.switched(
+    lambda _, done: replace(done, gaps={n: np.zeros_like(gap) for n, gap in done.gaps.items()})
+)
+_fault = partial(fault.Fault, "reference", scenes=(fault.FOURBAR, fault.SLIDER, fault.SHAPER))
 FAULTS = (
-    _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
+    _fault("too-good", "the reference, handed back", "CC111", fault.switched(_handed_back)),
     _fault("too-good-degrees", "through degrees and back", "CC111", _each(_through_degrees)),
-    _fault("too-good-next", "every number the next float", "CC111", _each(_next_floats)),
-    _fault("too-good-link", "of one link only", "CC111", switched(_one_link)),
-    _fault("too-good-point", "of one point only", "CC111", switched(_one_point)),
-    _fault(
-        "too-good-slider",
-        "of one slider only",
-        "CC111",
-        switched(_one_slider),
-        scenes=(SLIDER, SHAPER),
-    ),
-    _fault(
-        "too-good-velocity", "of one velocity only", "CC111", switched(_velocity), needs=integrates
-    ),
-    _fault(
-        "too-good-speeds", "of all points and sliders", "CC111", switched(_speeds), needs=integrates
-    ),
-    _fault(
-        "too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut), needs=integrates
-    ),
+    _fault("too-good-next", "every number the next float", "CC111",
+           _each(lambda motion: motion.each_series(lambda x: np.nextafter(x, np.inf)))),
+    _fault("too-good-link", "of one link only", "CC111", _one("links", last)),
+    _fault("too-good-point", "of one point only", "CC111", _one("points", _moving_pin)),
+    _fault("too-good-slider", "of one slider only", "CC111",
+           _one("sliders", lambda scene: next(iter(scene.sliders))),
+           scenes=(fault.SLIDER, fault.SHAPER)),
+    _fault("too-good-velocity", "of one velocity only", "CC111", fault.switched(_velocity),
+           needs=fault.integrates),
+    _fault("too-good-speeds", "of all points and sliders", "CC111", fault.switched(_speeds),
+           needs=fault.integrates),
+    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", _shut, needs=fault.integrates),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(noisy), 1e-7, "rad, L"),
-    _fault(
-        "too-good-crank",
-        "at the logged crank angle",
-        "CC111",
-        switched(_at_the_crank),
-        needs=integrates,
-    ),
-    _fault(
-        "too-good-finer",
-        "in the finer runs only",
-        "CC117",
-        _finer_handed_back,
-        says=("which no step of that size allows",),
-        finer=True,
-        needs=integrates,
-    ),
-)
+    _fault("too-good-crank", "at the logged crank angle", "CC111", fault.switched(_at_the_crank),
+           needs=fault.integrates),
+    _fault("too-good-finer", "in the finer runs only", "CC117", _finer_handed_back,
+           says=("which no step of that size allows",), finer=True, needs=fault.integrates),
+)  # fmt: skip

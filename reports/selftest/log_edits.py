@@ -1,7 +1,8 @@
 """Change one part of a log, and leave the rest."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,11 +41,44 @@ def with_link(done: Run, name: str, **changed: Array) -> Run:
     return replace(done, motion=replace(motion, links=links))
 
 
+def of_output(
+    series: str, change: Callable[[Array, float], Array], link: Callable[[Scene], str] = last
+) -> Callable[[Scene, Run, float], Run]:
+    """Change a series of the last link, or of another, by a size."""
+
+    def changed(scene: Scene, done: Run, size: float) -> Run:
+        own = getattr(moved(done).links[link(scene)], series)
+        return with_link(done, link(scene), **{series: change(own, size)})
+
+    return changed
+
+
 def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
     """Return the run with the positions, velocities and accelerations of all points changed."""
     motion = moved(done)
     points = {n: PointMotion(*map(change, vars(p).values())) for n, p in motion.points.items()}
     return replace(done, motion=replace(motion, points=points))
+
+
+def taken(
+    own: Motion,
+    other: Motion,
+    change: Callable[[Array, Array], Array] = lambda _, right: right,
+    **series: Sequence[str],
+) -> Motion:
+    """Return a motion with some ``series`` of its links, points or sliders taken from another, or
+    changed by those of it."""
+
+    def body(kind: str, name: str, one: Any) -> Any:
+        right = getattr(other, kind)[name]
+        changed = {each: change(getattr(one, each), getattr(right, each)) for each in series[kind]}
+        return replace(one, **changed)
+
+    changed: dict[str, Any] = {
+        kind: {name: body(kind, name, one) for name, one in getattr(own, kind).items()}
+        for kind in series
+    }
+    return replace(own, **changed)
 
 
 def spoilt(series: Array, at: int | slice, value: float) -> Array:

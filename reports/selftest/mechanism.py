@@ -11,27 +11,12 @@ import numpy as np
 from models.array import Array
 from models.motion import PointMotion
 from models.scene import Link, Scene
-from models.scene.laws import ConstantSpeed, Law
-from models.scene.moved import scaled
-from reports.judge.cell import CellRunner
-from reports.selftest.fault import FOURBAR, SLIDER, Fault, Plant, in_log, in_scene, switched
+from models.scene.laws import ConstantSpeed
+from models.scene.moved import scaled, with_link
+from reports.selftest import fault
+from reports.selftest.free_changes import long_by, of_coupler, scaled_points
 from reports.selftest.log_edits import every_series, last, moved, with_points
 from sim.engine import Run
-
-
-def long_coupler(scene: Scene, share: float) -> Scene:
-    """Lengthen the link that is pinned to the driver."""
-    name = list(scene.links)[1]
-    return _with_link(scene, _scaled(scene.links[name], 1.0 + share))
-
-
-def _scaled(link: Link, factor: float) -> Link:
-    points = {name: (factor * x, factor * y) for name, (x, y) in link.points.items()}
-    return replace(link, points=points)
-
-
-def _with_link(scene: Scene, link: Link) -> Scene:
-    return replace(scene, links={**scene.links, link.name: link})
 
 
 def _moved_pin(scene: Scene, share: float) -> Scene:
@@ -51,17 +36,12 @@ def _turned_line(scene: Scene, angle_rad: float) -> Scene:
     return replace(scene, sliders={slider.name: aside})
 
 
-def _larger(scene: Scene, share: float) -> Scene:
-    """Scale every length: the angles stay the same."""
-    return scaled(scene, 1.0 + share)
-
-
 def _swapped(scene: Scene, swap: float) -> Scene:
     """Exchange the lengths of the last two links."""
     inner, outer = list(scene.links.values())[-2:]
     factor = _length(outer) / _length(inner) if swap else 1.0
-    scene = _with_link(scene, _scaled(inner, factor))
-    return _with_link(scene, _scaled(outer, 1.0 / factor))
+    scene = with_link(scene, inner.name, points=scaled_points(inner, factor))
+    return with_link(scene, outer.name, points=scaled_points(outer, 1.0 / factor))
 
 
 def _length(link: Link) -> float:
@@ -69,71 +49,44 @@ def _length(link: Link) -> float:
     return float((x * x + y * y) ** 0.5)
 
 
-def _driven(scene: Scene, law: Law) -> Scene:
-    return replace(scene, driver=replace(scene.driver, law=law))
-
-
-def _sped_up(scene: Scene, factor: float) -> Law:
+def _sped_up(scene: Scene, factor: float) -> Scene:
     law = scene.driver.law
     assert isinstance(law, ConstantSpeed)
-    return replace(law, speed_rad_s=law.speed_rad_s * factor)
-
-
-def _faster(scene: Scene, share: float) -> Scene:
-    return _driven(scene, _sped_up(scene, 1.0 + share))
+    other = replace(law, speed_rad_s=law.speed_rad_s * factor)
+    return replace(scene, driver=replace(scene.driver, law=other))
 
 
 def _ahead(scene: Scene, angle_rad: float) -> Scene:
-    return _driven(scene, scene.driver.law.turned(angle_rad))
+    law = scene.driver.law.turned(angle_rad)
+    return replace(scene, driver=replace(scene.driver, law=law))
 
 
-def _backwards(scene: Scene, swap: float) -> Scene:
-    return _driven(scene, _sped_up(scene, -1.0 if swap else 1.0))
-
-
-def other_branch(scene: Scene, swap: float) -> Scene:
+def _other_branch(scene: Scene, swap: float) -> Scene:
     sign = -1 if swap else 1
     return replace(scene, branch={name: sign * way for name, way in scene.branch.items()})
 
 
-_scene = partial(Fault, "scene")
+_scene = partial(fault.Fault, "scene")
 MECHANISM = (
-    _scene("link-too-long", "a link is too long", "CC103", in_scene(long_coupler), 1e-3, "of it"),
-    _scene(
-        "pin-moved",
-        "a pin or a slider's line is elsewhere",
-        "CC110",
-        in_scene(_moved_pin),
-        1e-4,
-        "L",
-        finer=True,
-    ),
-    _scene(
-        "line-turned",
-        "the slider's line points elsewhere",
-        "CC104",
-        in_scene(_turned_line),
-        1e-3,
-        "rad",
-        scenes=(SLIDER,),
-    ),
-    _scene(
-        "other-scale", "right shape, every length scaled", "CC113", in_scene(_larger), 1e-3, "of it"
-    ),
-    _scene(
-        "lengths-swapped",
-        "two links have each other's length",
-        "CC103",
-        in_scene(_swapped),
-        scenes=(FOURBAR,),
-    ),
-    _scene("wrong-branch", "the other of the two assemblies", "CC103", in_scene(other_branch)),
-    _scene("speed-off", "the crank turns too fast", "CC102", in_scene(_faster), 1e-5, "w"),
-    _scene(
-        "start-off", "the crank starts at another angle", "CC102", in_scene(_ahead), 1e-6, "rad"
-    ),
-    _scene("turns-backwards", "the crank turns clockwise", "CC102", in_scene(_backwards)),
-)
+    _scene("link-too-long", "a link is too long", "CC103", fault.in_scene(of_coupler(long_by)),
+           1e-3, "of it"),
+    _scene("pin-moved", "a pin or a slider's line is elsewhere", "CC110",
+           fault.in_scene(_moved_pin), 1e-4, "L", finer=True),
+    _scene("line-turned", "the slider's line points elsewhere", "CC104",
+           fault.in_scene(_turned_line), 1e-3, "rad", scenes=(fault.SLIDER,)),
+    _scene("other-scale", "right shape, every length scaled", "CC113",
+           fault.in_scene(lambda scene, share: scaled(scene, 1.0 + share)), 1e-3, "of it"),
+    _scene("lengths-swapped", "two links have each other's length", "CC103",
+           fault.in_scene(_swapped), scenes=(fault.FOURBAR,)),
+    _scene("wrong-branch", "the other of the two assemblies", "CC103",
+           fault.in_scene(_other_branch)),
+    _scene("speed-off", "the crank turns too fast", "CC102",
+           fault.in_scene(lambda scene, share: _sped_up(scene, 1.0 + share)), 1e-5, "w"),
+    _scene("start-off", "the crank starts at another angle", "CC102", fault.in_scene(_ahead),
+           1e-6, "rad"),
+    _scene("turns-backwards", "the crank turns clockwise", "CC102",
+           fault.in_scene(lambda scene, swap: _sped_up(scene, -1.0 if swap else 1.0))),
+)  # fmt: skip
 
 
 def _links_swapped(_scene: Scene, done: Run) -> Run:
@@ -144,21 +97,9 @@ def _links_swapped(_scene: Scene, done: Run) -> Run:
     return replace(done, motion=replace(motion, links=links))
 
 
-def _points(change: Callable[[Array], Array]) -> Plant:
+def _points(change: Callable[[Array], Array]) -> fault.Plant:
     """Change positions, velocities and accelerations of all points, or leave them for size 0."""
-    return switched(lambda _, done: with_points(done, change))
-
-
-def _exchanged(series: Array) -> Array:
-    return np.asarray(series[:, ::-1])
-
-
-def _y_down(series: Array) -> Array:
-    return np.asarray(series * np.array([1.0, -1.0]))
-
-
-def _in_mm(series: Array) -> Array:
-    return 1000.0 * series
+    return fault.switched(lambda _, done: with_points(done, change))
 
 
 def _centre_logged(scene: Scene, done: Run) -> Run:
@@ -180,17 +121,13 @@ def _displaced(scene: Scene, done: Run, share: float) -> Run:
     return replace(done, motion=replace(motion, sliders={name: off}))
 
 
-def _other_midway(size: float) -> CellRunner:
+@fault.planting
+def _other_midway(size: float, *args: Any, **options: Any) -> Run:
     """Take the second half of the log from a run of the other assembly."""
-
-    def runner(scene: Scene, *args: Any, **options: Any) -> Run:
-        one = in_scene(other_branch)(0.0)(scene, *args, **options)
-        two = in_scene(other_branch)(size)(scene, *args, **options)
-        half = len(moved(one).time_s) // 2
-        pairs = {id(a): b for a, b in zip(_series(one), _series(two), strict=True)}
-        return every_series(one, lambda a: np.concatenate([a[:half], pairs[id(a)][half:]]))
-
-    return runner
+    one, two = (fault.in_scene(_other_branch)(each)(*args, **options) for each in (0.0, size))
+    half = len(moved(one).time_s) // 2
+    pairs = {id(a): b for a, b in zip(_series(one), _series(two), strict=True)}
+    return every_series(one, lambda a: np.concatenate([a[:half], pairs[id(a)][half:]]))
 
 
 def _series(done: Run) -> list[Array]:
@@ -200,35 +137,19 @@ def _series(done: Run) -> list[Array]:
     return [series for body in bodies for series in vars(body).values()] + list(done.gaps.values())
 
 
-_misplaced = partial(Fault, "misplaced")
+_misplaced = partial(fault.Fault, "misplaced")
 MISPLACED = (
-    _misplaced(
-        "columns-swapped",
-        "two links in each other's place",
-        "CC103",
-        switched(_links_swapped),
-        scenes=(FOURBAR,),
-    ),
-    _misplaced("xy-swapped", "x and y in each other's place", "CC113", _points(_exchanged)),
-    _misplaced("y-down", "mirrored plane: y counted downwards", "CC113", _points(_y_down)),
-    _misplaced("millimetres", "points in mm", "CC113", _points(_in_mm)),
-    _misplaced(
-        "centre-logged", "a centre of gravity in a pin's place", "CC113", switched(_centre_logged)
-    ),
-    _misplaced(
-        "origin-off",
-        "a displacement from another origin",
-        "CC104",
-        in_log(_displaced),
-        1e-3,
-        "L",
-        scenes=(SLIDER,),
-    ),
-    _misplaced(
-        "branch-midway",
-        "the other assembly from mid-turn on",
-        "CC101",
-        _other_midway,
-        says=("left its branch",),
-    ),
-)
+    _misplaced("columns-swapped", "two links in each other's place", "CC103",
+               fault.switched(_links_swapped), scenes=(fault.FOURBAR,)),
+    _misplaced("xy-swapped", "x and y in each other's place", "CC113",
+               _points(lambda series: series[:, ::-1])),
+    _misplaced("y-down", "mirrored plane: y counted downwards", "CC113",
+               _points(lambda series: series * np.array([1.0, -1.0]))),
+    _misplaced("millimetres", "points in mm", "CC113", _points(lambda series: 1000.0 * series)),
+    _misplaced("centre-logged", "a centre of gravity in a pin's place", "CC113",
+               fault.switched(_centre_logged)),
+    _misplaced("origin-off", "a displacement from another origin", "CC104",
+               fault.in_log(_displaced), 1e-3, "L", scenes=(fault.SLIDER,)),
+    _misplaced("branch-midway", "the other assembly from mid-turn on", "CC101", _other_midway,
+               says=("left its branch",)),
+)  # fmt: skip

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -10,9 +9,8 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene
-from reports.judge.cell import CellRunner
 from reports.selftest import fault
-from reports.selftest.log_edits import moved
+from reports.selftest.log_edits import moved, taken
 from sim.engine import Run
 from sim.registry import available, engine, offering
 from sim.run import run, setup
@@ -37,17 +35,15 @@ def _wrong(name: str) -> list[WrongSetting]:
 def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> fault.Plant:
     """Run another engine or profile; ``renamed``, under the requested names."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
-            if not size:
-                return run(scene, state, name, profile, **options)
-            asked = setup(scene, state, name, profile, **options)
-            done = run(scene, state, *other(name, profile), **{**options, "settings": None})
-            return replace(done, **vars(asked)) if renamed else done
+    @fault.planting
+    def runner(size: float, scene: Scene, state: Any, *names: str, **options: Any) -> Run:
+        if not size:
+            return run(scene, state, *names, **options)
+        asked = setup(scene, state, *names, **options)
+        done = run(scene, state, *other(*names), **{**options, "settings": None})
+        return replace(done, **vars(asked)) if renamed else done
 
-        return runner
-
-    return plant
+    return runner
 
 
 def _engine_for(name: str, profile: str) -> tuple[str, str]:
@@ -61,15 +57,14 @@ def _profile_for(name: str, profile: str) -> tuple[str, str]:
 def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> fault.Plant:
     """Change the options of a run, and let the run say so."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
-            changed = {**options, **(change(scene, name, options) if size else {})}
-            start = changed.pop("state", state)
-            return run(scene, start, name, profile, **changed)
+    @fault.planting
+    def runner(
+        size: float, scene: Scene, state: Any, name: str, profile: str, **options: Any
+    ) -> Run:
+        changed = {"state": state, **options, **(change(scene, name, options) if size else {})}
+        return run(scene, changed.pop("state"), name, profile, **changed)
 
-        return runner
-
-    return plant
+    return runner
 
 
 def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str, Any]:
@@ -84,129 +79,68 @@ def _one_more(name: str) -> dict[str, Any]:
     return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}
 
 
-def _ten_degrees(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    return {"steps": max(options["steps"] * DEGREES // 360, 1)}
-
-
-def _double_step(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    return {"dt_s": 2.0 * options["dt_s"], "steps": options["steps"] // 2}
-
-
-def _thinned(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    return {"every": THIN * options["every"]}
-
-
 def _started_later(scene: Scene, _: str, options: Mapping[str, Any]) -> dict[str, Any]:
     later = np.array([LATER * options["dt_s"]])
     return {"state": solve(scene, later, bound=False).state()}
 
 
-def _of_another_version(_: Scene, done: Run) -> Run:
-    return replace(done, version=f"{done.version}.1")
-
-
 def _silent(_: Scene, done: Run) -> Run:
     """Set accelerations to NaN, and say that the engine reports none."""
     motion = moved(done)
-    none = np.full_like(motion.time_s, np.nan)
-    links = {name: replace(link, alpha=none) for name, link in motion.links.items()}
-    points = {
-        name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
-        for name, point in motion.points.items()
-    }
-    sliders = {n: replace(slider, acceleration=none) for n, slider in motion.sliders.items()}
-    mute = replace(motion, links=links, points=points, sliders=sliders)
+    series = {"links": ["alpha"], "points": ["acceleration"], "sliders": ["acceleration"]}
+    mute = taken(motion, motion, lambda own, _: np.full_like(own, np.nan), **series)
     return replace(done, motion=mute, reports_accelerations=False)
 
 
-def _the_first_again(size: float) -> CellRunner:
+@fault.planting
+def _the_first_again(
+    size: float, *args: Any, dt_s: float, steps: int, every: int, **options: Any
+) -> Run:
     """Put the run at the full step in the place of the finer ones, with their words."""
-
-    def runner(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:
-        if not size:
-            return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
-        first = run(*args, dt_s=dt_s * every, steps=steps // every, every=1, **options)
-        held = engine(first.engine).holds(first.asked, dt_s, first.drive)
-        settings = {**first.settings, **held}
-        return replace(first, dt_s=dt_s, steps=steps, every=every, settings=settings)
-
-    return runner
+    if not size:
+        return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
+    first = run(*args, dt_s=dt_s * every, steps=steps // every, every=1, **options)
+    held = engine(first.engine).holds(first.asked, dt_s, first.drive)
+    settings = {**first.settings, **held}
+    return replace(first, dt_s=dt_s, steps=steps, every=every, settings=settings)
 
 
-_fault = partial(
-    fault.Fault, "request", rule="CC117", scenes=(fault.FOURBAR, fault.SLIDER, fault.SHAPER)
-)
+def _fault(name: str, what: str, plant: fault.Plant, says: str, **more: Any) -> fault.Fault:
+    scenes = (fault.FOURBAR, fault.SLIDER, fault.SHAPER)
+    return fault.Fault("request", name, what, "CC117", plant, says=(says,), scenes=scenes, **more)
+
+
 FAULTS = (
-    _fault(
-        "engine-other",
-        "another engine's run",
-        plant=_run_of(_engine_for, renamed=False),
-        says=("engine: asked for",),
-        needs=lambda name: other_engine(name) is not None,
-    ),
-    _fault(
-        "engine-renamed",
-        "the same, under the name asked for",
-        plant=_run_of(_engine_for, renamed=True),
-        says=("as the engine holds it",),
-        needs=lambda name: other_engine(name) is not None,
-    ),
-    _fault(
-        "profile-other",
-        "the run of another profile",
-        plant=_run_of(_profile_for, renamed=False),
-        says=("profile: asked for",),
-    ),
-    _fault(
-        "profile-renamed",
-        "the same, under the name asked for",
-        plant=_run_of(_profile_for, renamed=True),
-        says=("as the engine holds it",),
-    ),
-    _fault(
-        "setting-other",
-        "a setting that was not asked for",
-        plant=_given(_other_setting),
-        says=("setting ",),
-        needs=lambda name: bool(_wrong(name)),
-    ),
-    _fault(
-        "setting-dropped",
-        "the settings of the cell, left out",
-        plant=_given(lambda *_: {"settings": None}),
-        says=("setting ",),
-        settings=_one_more,
-        needs=lambda name: bool(_one_more(name)),
-    ),
-    _fault(
-        "version-other",
-        "another version",
-        plant=fault.switched(_of_another_version),
-        says=("version: ",),
-    ),
-    _fault(
-        "drive-other",
-        "a servo drives, and says so",
-        plant=_given(lambda *_: {"drive": "servo"}),
-        says=("drive: asked for 'prescribed'",),
-    ),
-    _fault("turn-cut", "ten degrees for a turn", plant=_given(_ten_degrees), says=("steps: ",)),
-    _fault("step-double", "twice the step", plant=_given(_double_step), says=("dt_s: ",)),
-    _fault("log-thinned", "every eighth sample", plant=_given(_thinned), says=("every: ",)),
-    _fault("start-later", "a start ten steps later", plant=_given(_started_later), says=("start",)),
-    _fault(
-        "accelerations-kept",
-        "accelerations that are kept back",
-        plant=fault.switched(_silent),
-        says=("reports_accelerations: asked for True",),
-        needs=lambda name: engine(name).reports_accelerations,
-    ),
-    _fault(
-        "halved-again",
-        "the first run, for its own finer ones",
-        plant=_the_first_again,
-        says=("the places are those of dt",),
-        finer=True,
-        needs=fault.integrates,
-    ),
-)
+    _fault("engine-other", "another engine's run", _run_of(_engine_for, renamed=False),
+           "engine: asked for", needs=lambda name: other_engine(name) is not None),
+    _fault("engine-renamed", "the same, under the name asked for",
+           _run_of(_engine_for, renamed=True), "as the engine holds it",
+           needs=lambda name: other_engine(name) is not None),
+    _fault("profile-other", "the run of another profile", _run_of(_profile_for, renamed=False),
+           "profile: asked for"),
+    _fault("profile-renamed", "the same, under the name asked for",
+           _run_of(_profile_for, renamed=True), "as the engine holds it"),
+    _fault("setting-other", "a setting that was not asked for", _given(_other_setting), "setting ",
+           needs=lambda name: bool(_wrong(name))),
+    _fault("setting-dropped", "the settings of the cell, left out",
+           _given(lambda *_: {"settings": None}), "setting ", settings=_one_more,
+           needs=lambda name: bool(_one_more(name))),
+    _fault("version-other", "another version",
+           fault.switched(lambda _, done: replace(done, version=f"{done.version}.1")), "version: "),
+    _fault("drive-other", "a servo drives, and says so", _given(lambda *_: {"drive": "servo"}),
+           "drive: asked for 'prescribed'"),
+    _fault("turn-cut", "ten degrees for a turn",
+           _given(lambda s, n, asked: {"steps": max(asked["steps"] * DEGREES // 360, 1)}),
+           "steps: "),
+    _fault("step-double", "twice the step",
+           _given(lambda s, n, asked: {"dt_s": 2.0 * asked["dt_s"], "steps": asked["steps"] // 2}),
+           "dt_s: "),
+    _fault("log-thinned", "every eighth sample",
+           _given(lambda s, n, asked: {"every": THIN * asked["every"]}), "every: "),
+    _fault("start-later", "a start ten steps later", _given(_started_later), "start"),
+    _fault("accelerations-kept", "accelerations that are kept back", fault.switched(_silent),
+           "reports_accelerations: asked for True",
+           needs=lambda name: engine(name).reports_accelerations),
+    _fault("halved-again", "the first run, for its own finer ones", _the_first_again,
+           "the places are those of dt", finer=True, needs=fault.integrates),
+)  # fmt: skip

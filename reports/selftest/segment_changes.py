@@ -11,11 +11,11 @@ from analytic.elastic.engine_start import segment_start
 from models.motion import State
 from models.scene import Link, Scene
 from models.scene.cut_scenes import SegmentedScene
-from models.scene.elastic import Shape
 from models.scene.loads import PinSpring
-from reports.judge.cell import CellRunner
+from models.scene.moved import of_mass, with_link
 from reports.selftest.elastic_changes import truth_of_chain
-from reports.selftest.fault import Plant
+from reports.selftest.fault import Plant, SceneChange, planting
+from reports.selftest.free_changes import LinkChange, scaled_points
 from sim.engine import Run
 from sim.run import run
 
@@ -23,51 +23,24 @@ SpringChange = Callable[[PinSpring, int, float], PinSpring]
 """Change of a spring of a chain of so many segments, by a size."""
 
 
-def in_chain(change: Callable[[Scene, float], Scene]) -> Plant:
-    """Give the engine another chain, which starts where the right one does."""
-
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
-            return run(change(scene, size), state, *args, **options)
-
-        return runner
-
-    return plant
-
-
-def in_elastic_scene(change: Callable[[Scene, float], Scene]) -> Plant:
+def in_elastic_scene(change: SceneChange) -> Plant:
     """Give the engine the segments of another scene, on its periodic motion: sound, but another."""
 
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, _: State, *args: Any, **options: Any) -> Run:
-            right = truth_of_chain(scene)
-            wrong = SegmentedScene(change(right.scene, size), right.chain.count)
-            return run(wrong.rigid, segment_start(wrong, right.theory.shape), *args, **options)
+    @planting
+    def runner(size: float, scene: Scene, _: State, *args: Any, **options: Any) -> Run:
+        right = truth_of_chain(scene)
+        wrong = SegmentedScene(change(right.scene, size), right.chain.count)
+        return run(wrong.rigid, segment_start(wrong, right.theory.shape), *args, **options)
 
-        return runner
-
-    return plant
+    return runner
 
 
-def started(shape: Shape) -> Plant:
-    """Start the right chain with another shape, or as it should with a size of 0."""
-
-    def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
-            other = segment_start(truth_of_chain(scene).chain, shape) if size else state
-            return run(scene, other, *args, **options)
-
-        return runner
-
-    return plant
-
-
-def springs(change: SpringChange) -> Callable[[Scene, float], Scene]:
+def springs(change: SpringChange) -> SceneChange:
     """Change every spring between segments."""
     return lambda scene, size: _sprung(scene, size, change, slice(None))
 
 
-def middle_spring(change: SpringChange) -> Callable[[Scene, float], Scene]:
+def middle_spring(change: SpringChange) -> SceneChange:
     """Change the spring in the middle alone."""
 
     def changed(scene: Scene, size: float) -> Scene:
@@ -120,7 +93,7 @@ def reversed_spring(spring: PinSpring, _: int, swap: float) -> PinSpring:
     return replace(spring, rate=(1.0 - 2.0 * swap) * spring.rate)
 
 
-def segments(change: Callable[[Link, float], Link]) -> Callable[[Scene, float], Scene]:
+def segments(change: LinkChange) -> SceneChange:
     """Change every segment."""
 
     def changed(scene: Scene, size: float) -> Scene:
@@ -132,78 +105,46 @@ def segments(change: Callable[[Link, float], Link]) -> Callable[[Scene, float], 
     return changed
 
 
-def heavier(link: Link, share: float) -> Link:
-    more = 1.0 + share
-    return replace(link, mass_kg=more * link.mass_kg, inertia_kg_m2=more * link.inertia_kg_m2)
-
-
 def at_its_ends(link: Link, share: float) -> Link:
     """Put the mass of a rod into its ends: three times the inertia, or a share of the way there."""
     return replace(link, inertia_kg_m2=(1.0 + 2.0 * share) * link.inertia_kg_m2)
-
-
-def turning_light(link: Link, share: float) -> Link:
-    """Put points in the place of rods."""
-    return replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
-
-
-def heavy_rocker(scene: Scene, share: float) -> Scene:
-    """Make the link that the elastic link moves heavier."""
-    name = list(scene.links)[-1]
-    return replace(scene, links={**scene.links, name: heavier(scene.links[name], share)})
 
 
 def modulus_and_mass(scene: Scene, share: float) -> Scene:
     """Make an elastic link softer by a share, and as much heavier."""
     name, own = next(iter(scene.elastic.items()))
     soft = replace(own, flexural_n_m2=own.flexural_n_m2 / (1.0 + share))
-    links = {**scene.links, name: heavier(scene.links[name], share)}
-    return replace(scene, links=links, elastic={**scene.elastic, name: soft})
+    return replace(of_mass(scene, name, 1.0 + share), elastic={**scene.elastic, name: soft})
 
 
 def longer(scene: Scene, share: float) -> Scene:
     """Lengthen the elastic link by a share, with the spring rates of its new length."""
     name, link = next((n, scene.links[n]) for n in scene.elastic)
     more = 1.0 + share
-    points = {point: (more * x, more * y) for point, (x, y) in link.points.items()}
     centre = (more * link.centre_m[0], more * link.centre_m[1])
-    wrong = replace(link, points=points, centre_m=centre)
-    return replace(scene, links={**scene.links, name: wrong})
+    return with_link(scene, name, points=scaled_points(link, more), centre_m=centre)
 
 
-def node_moved(share: float) -> CellRunner:
+@planting
+def node_moved(share: float, scene: Scene, state: State, *args: Any, **options: Any) -> Run:
     """Lengthen the first segment by a share of it, and shorten the second as much; both start where
     they still meet, with the speeds that keep them together."""
-
-    def runner(scene: Scene, state: State, *args: Any, **options: Any) -> Run:
-        if not share:
-            return run(scene, state, *args, **options)
-        chain = truth_of_chain(scene).chain
-        name = next(iter(chain.scene.elastic))
-        parts, nodes = chain.segments(name)[:2], chain.nodes(name)[:3]
-        sizes = [
-            _length(scene.links[part]) * by for part, by in zip(parts, _shares(share), strict=True)
-        ]
-        links = {
-            p: _stretched(scene.links[p], by) for p, by in zip(parts, _shares(share), strict=True)
-        }
-        wrong = replace(scene, links={**scene.links, **links})
-        return run(wrong, _met(state, parts, nodes, sizes), *args, **options)
-
-    return runner
-
-
-def _shares(share: float) -> tuple[float, float]:
-    return 1.0 + share, 1.0 - share
+    if not share:
+        return run(scene, state, *args, **options)
+    chain = truth_of_chain(scene).chain
+    name = next(iter(chain.scene.elastic))
+    parts, nodes = chain.segments(name)[:2], chain.nodes(name)[:3]
+    sizes = []
+    for part, more in zip(parts, (1.0 + share, 1.0 - share), strict=True):
+        link = scene.links[part]
+        sizes.append(_length(link) * more)
+        centre = (more * link.centre_m[0], link.centre_m[1])
+        scene = with_link(scene, part, points=scaled_points(link, more), centre_m=centre)
+    return run(scene, _met(state, parts, nodes, sizes), *args, **options)
 
 
 def _length(link: Link) -> float:
     return math.dist(*list(link.points.values())[:2])
-
-
-def _stretched(link: Link, more: float) -> Link:
-    points = {point: (more * x, more * y) for point, (x, y) in link.points.items()}
-    return replace(link, points=points, centre_m=(more * link.centre_m[0], link.centre_m[1]))
 
 
 def _met(state: State, parts: tuple[str, ...], nodes: tuple[str, ...], sizes: list[float]) -> State:

@@ -200,8 +200,6 @@ def passes(checked: Checked) -> bool:
 
 
 def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) -> FaultTrial:
-    """Try a fault in one place."""
-
     def planted(size: float) -> Checked:
         cell = RUNS[fault.kind].cell(scene, engine, steps, fault.finer)
         cell = replace(cell, settings=fault.settings(engine))

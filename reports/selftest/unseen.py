@@ -1,47 +1,37 @@
 """Deviations that no rule sees, and need not: planted all the same, and shown with the reason."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from models.array import Array
-from models.motion import Motion
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
-from reports.judge.cell import CellRunner
-from reports.selftest.elastic_changes import at_quarter, in_chain_log
+from reports.selftest import free_changes
+from reports.selftest.elastic_changes import at_quarter, in_chain_log, in_given
 from reports.selftest.engines import after_a_third
-from reports.selftest.fault import Unseen, in_log, in_scene
-from reports.selftest.free_changes import in_free_scene, of_all_matter
-from reports.selftest.log_edits import last, moved, with_link
+from reports.selftest.fault import Plant, Unseen, in_log, in_scene, planting, switched
+from reports.selftest.log_edits import moved, of_output, taken
 from reports.selftest.requests import other_engine
-from reports.selftest.segment_changes import in_chain, segments, springs, stiffer, turning_light
+from reports.selftest.segment_changes import segments, springs, stiffer
 from sim.engine import Cost, Energy, Run
 from sim.registry import engine, offering
 from sim.run import run, setup
 
 
-def _heavier(scene: Scene, share: float) -> Scene:
-    link = scene.links[last(scene)]
-    more = 1.0 + share
-    heavy = replace(link, mass_kg=more * link.mass_kg, inertia_kg_m2=more * link.inertia_kg_m2)
-    return replace(scene, links={**scene.links, link.name: heavy})
-
-
-def _all_renamed(size: float) -> CellRunner:
+@planting
+def _all_renamed(
+    size: float, scene: Scene, state: Any, name: str, profile: str, **options: Any
+) -> Run:
     """Run another engine, with every word as in the requested run."""
-
-    def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
-        asked = setup(scene, state, name, profile, **options)
-        other = other_engine(name)
-        if not size or other is None:
-            return run(scene, state, name, profile, **options)
-        done = run(scene, state, other, profile, **{**options, "settings": None})
-        held = engine(name).holds(asked.asked, asked.dt_s, asked.drive)
-        return replace(done, **vars(asked), settings=held)
-
-    return runner
+    asked = setup(scene, state, name, profile, **options)
+    other = other_engine(name)
+    if not size or other is None:
+        return run(scene, state, name, profile, **options)
+    done = run(scene, state, other, profile, **{**options, "settings": None})
+    held = engine(name).holds(asked.asked, asked.dt_s, asked.drive)
+    return replace(done, **vars(asked), settings=held)
 
 
 def _as_silent(name: str) -> bool:
@@ -55,32 +45,9 @@ def _tenth(scene: Scene, done: Run, size: float) -> Run:
     own = moved(done)
     true = truth_of(Same(scene)).at(own.time_s)
     kept = 1.0 - 0.9 * size
-    return replace(done, motion=_between(own, true, kept))
-
-
-def _between(own: Motion, true: Motion, kept: float) -> Motion:
-    def near(series: Array, right: Array) -> Array:
-        return np.asarray(right + kept * (series - right))
-
-    return replace(
-        own,
-        links={
-            n: replace(m, theta=near(m.theta, true.links[n].theta)) for n, m in own.links.items()
-        },
-        points={
-            n: replace(m, position=near(m.position, true.points[n].position))
-            for n, m in own.points.items()
-        },
-        sliders={
-            n: replace(m, displacement=near(m.displacement, true.sliders[n].displacement))
-            for n, m in own.sliders.items()
-        },
-    )
-
-
-def _turns_counted(scene: Scene, done: Run, size: float) -> Run:
-    name = last(scene)
-    return with_link(done, name, theta=moved(done).links[name].theta + 2.0 * np.pi * round(size))
+    places = {"links": ["theta"], "points": ["position"], "sliders": ["displacement"]}
+    near = taken(own, true, lambda one, right: right + kept * (one - right), **places)
+    return replace(done, motion=near)
 
 
 def _even_taken(scene: Scene, done: Run, size: float) -> Run:
@@ -104,28 +71,22 @@ def _cheaper(_: Scene, done: Run, size: float) -> Run:
     return replace(done, cost=replace(cost, wall_s=cost.wall_s * (1.0 - 0.5 * size)))
 
 
-def _even(_: Scene, done: Run, size: float) -> Run:
+def _of_energy(change: Callable[[Energy], Energy]) -> Plant:
+    """Change the energy in the log of a healthy run."""
+    return switched(lambda _, done: replace(done, energy=done.energy and change(done.energy)))
+
+
+def _even(energy: Energy) -> Energy:
     """Put the energy of the start at every instant."""
-    if not (size and done.energy):
-        return done
-    level = np.full_like(done.energy.kinetic_j, done.energy.total_j[0])
-    return replace(done, energy=Energy(done.energy.kinetic_j, level - done.energy.kinetic_j))
+    level = np.full_like(energy.kinetic_j, energy.total_j[0])
+    return Energy(energy.kinetic_j, level - energy.kinetic_j)
 
 
-def _parts(_: Scene, done: Run, size: float) -> Run:
-    """Exchange the names of both parts of the energy."""
-    if not (size and done.energy):
-        return done
-    return replace(done, energy=Energy(done.energy.potential_j, done.energy.kinetic_j))
-
-
-def _half_a_step(_: Scene, done: Run, size: float) -> Run:
+def _half_a_step(energy: Energy) -> Energy:
     """Put the potential energy of half a step before beside the kinetic energy of the sample."""
-    if not (size and done.energy):
-        return done
-    late = done.energy.potential_j.copy()
-    late[1:] -= 0.5 * size * np.diff(late)
-    return replace(done, energy=Energy(done.energy.kinetic_j, late))
+    late = energy.potential_j.copy()
+    late[1:] -= 0.5 * np.diff(late)
+    return Energy(energy.kinetic_j, late)
 
 
 _NO_FORCES = (
@@ -137,7 +98,7 @@ UNSEEN = (
         "mass-other",
         "the scene that is run has a heavier link",
         f"{_NO_FORCES} A mass in the engine that is not the scene's is refused (mass-off).",
-        in_scene(_heavier),
+        in_scene(free_changes.of_link(free_changes.heavier_by, -1)),
     ),
     Unseen(
         "gravity-midway",
@@ -181,7 +142,7 @@ UNSEEN = (
         "an angle counted from another whole turn",
         "Engines count turns from where they like; one that is gained or lost on the way is seen "
         "(whole-turn).",
-        in_log(_turns_counted),
+        in_log(of_output("theta", lambda theta, size: theta + 2.0 * np.pi * round(size))),
         shows=False,
     ),
     Unseen(
@@ -198,7 +159,7 @@ UNSEEN_FREE = (
         "every mass and inertia twice",
         "Under weight alone a mechanism moves as it does, whatever the factor of all its masses; "
         "its reactions differ, which --forces plants. One mass of several is seen (mass-wrong).",
-        in_free_scene(of_all_matter),
+        free_changes.in_free_scene(free_changes.of_all_matter),
         shows=False,  # of a factor of two not one bit changes in some engines
     ),
     Unseen(
@@ -206,20 +167,20 @@ UNSEEN_FREE = (
         "the energy of the start at every instant",
         "The energy is worked out of the logged motion here, and not told by an engine: what "
         "damps or drives that motion is seen in it (damping-left-on, energy-fed).",
-        in_log(_even),
+        _of_energy(_even),
     ),
     Unseen(
         "energy-half-step",
         "potential energy of half a step before",
         "The total comes and goes with the motion by as much as a step makes of it, as that of an "
         "engine does; its drift is judged, and the motion itself.",
-        in_log(_half_a_step),
+        _of_energy(_half_a_step),
     ),
     Unseen(
         "energy-parts",
         "kinetic energy told as potential",
         "The total is judged: both parts are worked out of the logged motion here.",
-        in_log(_parts),
+        _of_energy(lambda energy: Energy(energy.potential_j, energy.kinetic_j)),
         shows=False,  # a sum does not know its order
     ),
 )
@@ -236,13 +197,13 @@ UNSEEN_ELASTIC = (
         "modulus-hardly",
         "the modulus, by 0.01 %",
         "Within what an engine may be off by at this step; 1 % is seen (modulus-off).",
-        in_chain(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size))),
+        in_given(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size))),
     ),
     Unseen(
         "turning-inertia",
         "segments with 1 % less inertia about their centre",
         "Most of the inertia of a chain is that of its masses across; what rods have about their "
         "own centre falls as 1/n^2, and three times as much of it is seen (inertia-at-ends).",
-        in_chain(segments(lambda link, size: turning_light(link, 1e-2 * size))),
+        in_given(segments(lambda link, size: free_changes.turning_light(link, 1e-2 * size))),
     ),
 )

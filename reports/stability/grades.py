@@ -176,16 +176,12 @@ RULES: tuple[GradeRule, ...] = (
     ),
     GradeRule("branch-changed", "the loops are closed, in the other assembly", _branch_changed),
     GradeRule("locked", "the loops are closed, and the crank stands short of its command", _locked),
-    GradeRule(
-        "silently-open",
-        "a joint has come apart; a driven one looks fine",
-        _silently_open,
-    ),
+    GradeRule("silently-open", "a joint has come apart; a driven one looks fine", _silently_open),
     GradeRule("drifts", "the error is over the class and grows with the turns", _drifts),
     GradeRule("degraded", "the error is over the class, and does not blow up", _degraded),
     GradeRule("ok", "within the class throughout", lambda *_: ("", None)),
 )
 MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {
-    "unsupported": "the engine cannot hold the scene",
+    "unsupported": "the engine cannot hold the scene"
 }
 """Meaning of each outcome, for people."""

@@ -11,7 +11,7 @@ from models.errors import CrankcheckError
 from reports.stability.case import Case
 from reports.stability.grading import CATALOGUE, GradedPicture, graded
 from reports.stability.matrix import Critical, Graded, Picture, label
-from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
+from reports.workers.isolated import Isolated, Limits, Lost, as_they_end, in_order
 
 LOOKS = 7
 """Most runs of a bisection: a factor of 10 is then known to 2 %."""
@@ -150,13 +150,9 @@ def run_lines(
 
     ``done`` is called with each as it ends, in this thread.
     """
-    order = sorted(range(len(lines)), key=lambda index: -_work(CATALOGUE[lines[index].case]))
-    results: dict[int, Held] = {}
-    with closing(as_they_end(_line, [lines[index] for index in order], jobs, limits)) as ends:
-        for place, held in ends:
-            results[order[place]] = held
-            done(held)
-    return [results[index] for index in range(len(lines))]
+    longest = sorted(lines, key=lambda line: -_work(CATALOGUE[line.case]))
+    every = in_order(as_they_end(_line, longest, jobs, limits), done)
+    return sorted(every, key=lambda held: lines.index(held.line))
 
 
 def run_one(given: CaseLine, value: float, limits: Limits) -> Graded:
@@ -171,7 +167,6 @@ def _work(case: Case) -> int:
 
 
 def _line(child: Isolated[GradedPicture], given: CaseLine) -> Held:
-    """Run one line in a child process."""
     case = CATALOGUE[given.case]
     pictures: list[Picture] = []
 
@@ -188,7 +183,8 @@ def _line(child: Isolated[GradedPicture], given: CaseLine) -> Held:
 def _graded(
     given: CaseLine, value: float, child: Isolated[GradedPicture], *, grid: bool
 ) -> GradedPicture:
-    """Return a run of the child process, with its picture where it is of the grid.
+    """Return a run of the child process, with its picture where it is of the grid; one that its
+    process did not survive has crashed.
 
     Raises CrankcheckError for a run without a reference, or a request that the engine can not take:
     these are no faults of the engine.
@@ -199,27 +195,12 @@ def _graded(
         return replace(found, grid=grid), drawn
     if isinstance(answer.error, CrankcheckError):
         raise CrankcheckError(f"case {given.case} at {label(value)}: {answer.error}")
-    return _lost(given, value, answer, grid), None
+    trial, names = CATALOGUE[given.case].trial(value), (given.case, given.engine, given.profile)
+    lost = Graded(*names, value, label(value), "crashed", answer.reason, grid=grid)
+    return replace(lost, steps=trial.steps, dt_s=trial.dt_s), None
 
 
 def graded_by_name(given: CaseLine, value: float, draw: bool) -> GradedPicture:
     """Grade as `grading.graded`, by the name of the case: little travels to the child process."""
     case = CATALOGUE[given.case]
     return graded(case, given.engine, given.profile, value, draw=draw, forces=given.forces)
-
-
-def _lost(given: CaseLine, value: float, lost: Lost, grid: bool) -> Graded:
-    """Return a run that its process did not survive."""
-    trial = CATALOGUE[given.case].trial(value)
-    return Graded(
-        case=given.case,
-        engine=given.engine,
-        profile=given.profile,
-        value=value,
-        label=label(value),
-        outcome="crashed",
-        reason=lost.reason,
-        steps=trial.steps,
-        dt_s=trial.dt_s,
-        grid=grid,
-    )

@@ -45,16 +45,9 @@ class Goal:
 
     def cell(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Cell:
         """Return a run with complete settings."""
-        dt_s, steps = counted(scene, None, steps_per_turn, self.turns)
+        step = counted(scene, None, steps_per_turn, self.turns)
         return Cell(
-            scene=scene,
-            engine=self.engine,
-            profile=self.profile,
-            dt_s=dt_s,
-            steps=steps,
-            gated=False,
-            converge=False,
-            settings=settings,
+            scene, self.engine, self.profile, *step, gated=False, converge=False, settings=settings
         )
 
 
@@ -220,7 +213,6 @@ def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken
 
 
 def _taken(halves: Sequence[Sequence[float]], steps_per_turn: int) -> Taken:
-    """Return sums over the scenes."""
     us = sum(min(half) for half in halves)
     a, b = (sum(half[k] for half in halves) for k in (0, 1))
     return Taken(us, 1e-6 * us * steps_per_turn, abs(a - b) / min(a, b))

@@ -228,12 +228,20 @@ def run_all(
         ends = ((index, work(item)) for index, item in enumerate(items))
     else:
         ends = as_they_end(partial(_one, work, lost), items, jobs, limits)
+    return in_order(ends, done)
+
+
+def in_order(
+    ends: Generator[tuple[int, Result]], done: Callable[[Result], None] = lambda _: None
+) -> list[Result]:
+    """Return the results of `as_they_end` in the order of its items; ``done`` is called with each,
+    as it ends, in this thread."""
     results: dict[int, Result] = {}
     with closing(ends):
         for index, result in ends:
             results[index] = result
             done(result)
-    return [results[index] for index in range(len(items))]
+    return [results[index] for index in sorted(results)]
 
 
 def as_they_end(

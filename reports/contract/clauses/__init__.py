@@ -12,12 +12,7 @@ from reports.contract.clauses import (
 )
 from reports.contract.subject import Clause
 
-CLAUSES: dict[str, Clause] = {
-    clause.id: clause
-    for clauses in (
-        *(declared.CLAUSES, start.CLAUSES, sessions.CLAUSES, rates.CLAUSES, physics.CLAUSES),
-        *(start.REFUSALS, reactions.CLAUSES, felt.CLAUSES, freed.CLAUSES),
-    )
-    for clause in clauses
-}
+MODULES = (declared, start, sessions, rates, physics, reactions, felt, freed)
+_ALL = [one for module in MODULES for one in vars(module).values() if isinstance(one, Clause)]
+CLAUSES = {one.id: one for one in sorted(_ALL, key=lambda one: one.id)}
 """The clauses by their ids."""

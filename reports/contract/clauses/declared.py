@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from models.errors import EngineError, few, shown
-from reports.contract.subject import STEPS, Clause, Subject, numbers
+from reports.contract.subject import STEPS, Subject, clause, numbers
 from sim.engine import SettingValue
 from sim.engine.settings import SettingError, profile_of, resolved
 
@@ -19,6 +19,14 @@ UNLIKELY = (0, -1, 0.5)
 """Whole numbers that one setting or another may have, and a broken one: none has them all."""
 
 
+@clause(
+    "EC11",
+    "profiles as-shipped and tuned are complete, and say why",
+    "A setting that is not told can not be repeated, nor compared with another's.",
+    "Give every profile all settings that influence accuracy, each as Setting(value, reason) "
+    "with an int, a float or a str.",
+    of_scenes=False,
+)
 def _profiles(subject: Subject) -> Iterator[str]:
     profiles = subject.engine.profiles
     for name in PROFILES:
@@ -42,6 +50,13 @@ def _profiles(subject: Subject) -> Iterator[str]:
                 yield f"profile {name}: {setting} is {shown(value.value)}, no int, float or str"
 
 
+@clause(
+    "EC12",
+    "the version is a text, the same in the facts",
+    "Results of two versions are kept apart by it.",
+    "Return the version of what steps, and hand the same to Facts.",
+    of_scenes=False,
+)
 def _version(subject: Subject) -> Iterator[str]:
     version = subject.engine.version()
     if not isinstance(version, str) or not version.strip() or len(version) > 60:
@@ -50,6 +65,13 @@ def _version(subject: Subject) -> Iterator[str]:
         yield f"version() gives {shown(version)}, and the facts of a session {shown(held)}"
 
 
+@clause(
+    "EC13",
+    "a wrong setting is refused with SettingError",
+    "A value that an engine passes over is taken for one that it has.",
+    "In check, call check_ranges for the numbers and check_choices for the words.",
+    of_scenes=False,
+)
 def _settings(subject: Subject) -> Iterator[str]:
     for name, profile in subject.engine.profiles.items():
         if text := _refusal(subject, resolved(profile, None)):
@@ -96,6 +118,13 @@ def _refused_at_open(subject: Subject, settings: dict[str, SettingValue]) -> boo
     return False
 
 
+@clause(
+    "EC14",
+    "the settings told back are those asked for, and profiles that differ run otherwise",
+    "A setting that did not arrive makes two results of one, or one of two.",
+    "Read Facts.settings from the engine itself, and see that open hands each of them on; "
+    "where it holds something else than was asked, say so in Engine.holds.",
+)
 def _told_back(subject: Subject) -> Iterator[str]:
     for name in subject.engine.profiles:
         asked = resolved(profile_of(subject.engine, name), None)
@@ -129,40 +158,3 @@ def _same(held: object, asked: SettingValue) -> bool:
     if isinstance(asked, float) and isinstance(held, float):
         return math.isclose(held, asked, rel_tol=1e-9)
     return held == asked
-
-
-CLAUSES = (
-    Clause(
-        "EC11",
-        "profiles as-shipped and tuned are complete, and say why",
-        "A setting that is not told can not be repeated, nor compared with another's.",
-        "Give every profile all settings that influence accuracy, each as Setting(value, reason) "
-        "with an int, a float or a str.",
-        _profiles,
-        of_scenes=False,
-    ),
-    Clause(
-        "EC12",
-        "the version is a text, the same in the facts",
-        "Results of two versions are kept apart by it.",
-        "Return the version of what steps, and hand the same to Facts.",
-        _version,
-        of_scenes=False,
-    ),
-    Clause(
-        "EC13",
-        "a wrong setting is refused with SettingError",
-        "A value that an engine passes over is taken for one that it has.",
-        "In check, call check_ranges for the numbers and check_choices for the words.",
-        _settings,
-        of_scenes=False,
-    ),
-    Clause(
-        "EC14",
-        "the settings told back are those asked for, and profiles that differ run otherwise",
-        "A setting that did not arrive makes two results of one, or one of two.",
-        "Read Facts.settings from the engine itself, and see that open hands each of them on; "
-        "where it holds something else than was asked, say so in Engine.holds.",
-        _told_back,
-    ),
-)

@@ -14,7 +14,7 @@ from models.scene.characteristics import Constant, Sine
 from models.scene.joints import blocks, bodies, centre_of, joined_at, mass_of
 from models.scene.loads import ConstantFriction, Load
 from reports.contract.clauses.reactions import LATE, OFF, START, STEPS, largest, late_by, named
-from reports.contract.subject import Clause, NotTriedError, Subject, numbers
+from reports.contract.subject import NotTriedError, Subject, clause, numbers
 
 SHARE = 0.98
 """Share of all samples that have to be within `OFF`: where a joint turns back friction jumps, and
@@ -24,6 +24,13 @@ CENTRE = "centre of mass"
 """A point that no scene has, as names hold no space."""
 
 
+@clause(
+    "EC85",
+    "loads are felt as the scene has them, where they are said to be applied",
+    "A load that is left out, or late, or in another frame, is another machine.",
+    "Apply each load of scene.loads at every step, at its point, in its frame, as large as "
+    "load_magnitudes says at the time that forces belong to; or leave applies_loads False.",
+)
 def _loads(subject: Subject) -> Iterator[str]:
     engine, scene = subject.engine, subject.scene
     if not engine.applies_loads:
@@ -87,6 +94,13 @@ def _weighed(scene: Scene, pull: float, down_rad: float) -> Scene:
     return replace(scene, links=links, loads=loads)
 
 
+@clause(
+    "EC86",
+    "constant friction is felt as the scene has it, where it is said to be applied",
+    "Friction that pushes along, or on one body alone, is none.",
+    "Let it act on both bodies of the joint, against the speed that each has as seen from the "
+    "other; or leave applies_constant_friction False.",
+)
 def _friction(subject: Subject) -> Iterator[str]:
     engine, scene = subject.engine, subject.scene
     if not engine.applies_constant_friction:
@@ -141,7 +155,6 @@ def _unfelt(subject: Subject, changed: Scene, share: float) -> Iterator[str]:
 
 
 def _change(one: Forces, other: Forces) -> dict[str, Array]:
-    """Return the differences of all series."""
     before = dict(named(other))
     return {name: each - before[name] for name, each in named(one)}
 
@@ -151,26 +164,5 @@ def _kind(name: str) -> str:
 
 
 def _most(series: dict[str, Array], kind: str) -> float:
-    """Return the largest number in the series of a kind."""
     each = [np.nanmax(np.abs(values)) for name, values in series.items() if _kind(name) == kind]
     return max(map(float, each), default=0.0)
-
-
-CLAUSES = (
-    Clause(
-        "EC85",
-        "loads are felt as the scene has them, where they are said to be applied",
-        "A load that is left out, or late, or in another frame, is another machine.",
-        "Apply each load of scene.loads at every step, at its point, in its frame, as large as "
-        "load_magnitudes says at the time that forces belong to; or leave applies_loads False.",
-        _loads,
-    ),
-    Clause(
-        "EC86",
-        "constant friction is felt as the scene has it, where it is said to be applied",
-        "Friction that pushes along, or on one body alone, is none.",
-        "Let it act on both bodies of the joint, against the speed that each has as seen from the "
-        "other; or leave applies_constant_friction False.",
-        _friction,
-    ),
-)

@@ -32,7 +32,7 @@ from reports.contract.oscillators import (
     rod_scene,
     rod_state,
 )
-from reports.contract.subject import Clause, NotTriedError, Subject
+from reports.contract.subject import NotTriedError, Subject, clause
 from sim.engine.measure import energy, motion
 from sim.run.check import refuse_other_model
 
@@ -51,6 +51,14 @@ SPEED_OFF = 0.02
 """Largest difference to its closed form, over its whole change."""
 
 
+@clause(
+    "EC91",
+    "springs are told back as the scene has them, where they are said to be applied",
+    "A spring that is not there, or another, is another machine; run refuses it.",
+    "Give Facts.springs: rate, damping and free length or angle of each spring of "
+    "scene.springs, as the engine holds them; or leave applies_springs False.",
+    of_scenes=False,
+)
 def _held(subject: Subject) -> Iterator[str]:
     def check(one: Oscillator, own: Subject) -> Iterator[str]:
         steps = PERIODS * SAMPLES * STEPS
@@ -63,6 +71,15 @@ def _held(subject: Subject) -> Iterator[str]:
     yield from _each_spring(subject, check)
 
 
+@clause(
+    "EC92",
+    "springs pull as their rate, damping, free length and ends say, where they are applied",
+    "What springs hold swings at a pace, dies away and comes to rest by these alone.",
+    "Pull q back with rate (q - free) + damping q': q the distance of two points (line_ends "
+    "says where on which bodies), the angle of a pin's second body against the first with its "
+    "whole turns, or the displacement of a slider; alike on both bodies.",
+    of_scenes=False,
+)
 def _swings(subject: Subject) -> Iterator[str]:
     def check(one: Oscillator, own: Subject) -> Iterator[str]:
         steps = PERIODS * SAMPLES * STEPS
@@ -100,6 +117,13 @@ def _each_spring(
         raise refusals[0]
 
 
+@clause(
+    "EC93",
+    "what is free keeps its energy for a period, but for what shrinks with the step",
+    "What an engine adds or takes looks like a motor or a brake that the scene has not.",
+    "Look for damping that is left on, for joints whose correction moves bodies, and for "
+    "positions that are moved with velocities of another instant; or refuse drive free.",
+)
 def _energy(subject: Subject) -> Iterator[str]:
     coarse, fine = (_drift(subject, steps) for steps in ENERGY_STEPS)
     if not fine <= ENERGY_OFF and not fine <= SHRUNK * coarse:
@@ -122,6 +146,14 @@ def _drift(subject: Subject, steps: int) -> float:
     return float(np.abs(kept.total_j - kept.total_j[0]).max()) / exchanged
 
 
+@clause(
+    "EC94",
+    "loads over a speed are as large as the speed of their instant makes them",
+    "A motor that does not feel its own speed never settles.",
+    "Ask Load.size at each step for what load_magnitudes does not know ahead, with the angular "
+    "velocity of the load's own body, and the speed of its slider.",
+    of_scenes=False,
+)
 def _by_speed(subject: Subject) -> Iterator[str]:
     if not subject.engine.applies_loads:
         raise NotTriedError("applies_loads says that it takes no loads")
@@ -152,7 +184,6 @@ def _by_rate(inertia: float) -> Polynomial:
 
 
 def _settling(scene: Scene, load: Load) -> Scene:
-    """Return the scene for the duration of settling."""
     driver = Driver(scene.driver.link, Released(BASE_RAD, 0.0, SETTLED / RATE))
     return replace(scene, loads={load.name: load}, driver=driver)
 
@@ -172,43 +203,3 @@ def _unsettled(
             f"{words}: after {poses.time_s[worst]:.3g} s the speed is {found[worst]:.4g}, and "
             f"{wanted[worst]:.4g} is what it settles by"
         )
-
-
-CLAUSES = (
-    Clause(
-        "EC91",
-        "springs are told back as the scene has them, where they are said to be applied",
-        "A spring that is not there, or another, is another machine; run refuses it.",
-        "Give Facts.springs: rate, damping and free length or angle of each spring of "
-        "scene.springs, as the engine holds them; or leave applies_springs False.",
-        _held,
-        of_scenes=False,
-    ),
-    Clause(
-        "EC92",
-        "springs pull as their rate, damping, free length and ends say, where they are applied",
-        "What springs hold swings at a pace, dies away and comes to rest by these alone.",
-        "Pull q back with rate (q - free) + damping q': q the distance of two points (line_ends "
-        "says where on which bodies), the angle of a pin's second body against the first with its "
-        "whole turns, or the displacement of a slider; alike on both bodies.",
-        _swings,
-        of_scenes=False,
-    ),
-    Clause(
-        "EC93",
-        "what is free keeps its energy for a period, but for what shrinks with the step",
-        "What an engine adds or takes looks like a motor or a brake that the scene has not.",
-        "Look for damping that is left on, for joints whose correction moves bodies, and for "
-        "positions that are moved with velocities of another instant; or refuse drive free.",
-        _energy,
-    ),
-    Clause(
-        "EC94",
-        "loads over a speed are as large as the speed of their instant makes them",
-        "A motor that does not feel its own speed never settles.",
-        "Ask Load.size at each step for what load_magnitudes does not know ahead, with the angular "
-        "velocity of the load's own body, and the speed of its slider.",
-        _by_speed,
-        of_scenes=False,
-    ),
-)

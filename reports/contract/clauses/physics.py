@@ -16,7 +16,7 @@ from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import places
 from reports.compare.errors import largest
 from reports.contract.oscillators import centres
-from reports.contract.subject import Clause, NotTriedError, Subject
+from reports.contract.subject import NotTriedError, Subject, clause
 from reports.judge.halving import PLACES
 from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import convergence
@@ -40,6 +40,13 @@ FALL_OFF = 0.1
 of steps and of joints that give way, far below a body without weight or with another's mass."""
 
 
+@clause(
+    "EC51",
+    "a prescribed crank is where the driver's law has it",
+    "What the crank is off by, all links are off by; a motor of limited gain is a servo.",
+    "Move the crank yourself: drive.angles, drive.chords and drive.pushes say where to and "
+    "how fast; or refuse the drive with EngineError.",
+)
 def _crank(subject: Subject) -> Iterator[str]:
     law = subject.scene.driver.law
     if text := _drive_fault(subject, 3.0):
@@ -63,6 +70,13 @@ def _drive_fault(subject: Subject, turns: float) -> str:
     return "" if off <= DRIVE_RAD else f"the crank is off by {off:.2g} rad over {turns:g} turns"
 
 
+@clause(
+    "EC52",
+    "errors of place shrink with the step, at the order that is declared, down to a floor",
+    "verify takes an error for a fault of the step or of the model by this order.",
+    "Set Engine.order to what is measured; where order 1 is not meant, look for places that "
+    "are moved with the velocity of another instant.",
+)
 def _shrinking(subject: Subject) -> Iterator[str]:
     if subject.engine.placing(subject.settings()) == "solved":
         raise NotTriedError("placing is solved, where errors need not shrink")
@@ -88,6 +102,13 @@ def _shrinking(subject: Subject) -> Iterator[str]:
         )
 
 
+@clause(
+    "EC53",
+    "places come about as `placing` says",
+    "Places that are nearer to the reference than steps can bring them were taken from it.",
+    "Let Engine.placing give solved where joints are solved for in each step; raise "
+    "Engine.order where errors shrink faster than it says.",
+)
 def _placing(subject: Subject) -> Iterator[str]:
     engine = subject.engine
     placing = engine.placing(subject.settings())
@@ -107,6 +128,12 @@ def _placing(subject: Subject) -> Iterator[str]:
             )
 
 
+@clause(
+    "EC54",
+    "errors depend on the steps in a turn, not on the speed or its sign",
+    "Advice for one speed is carried over to others.",
+    "Name what is a time of its own, such as a damping, in Engine.in_seconds.",
+)
 def _speed(subject: Subject) -> Iterator[str]:
     law = subject.scene.driver.law
     if timed := subject.engine.in_seconds(subject.settings()):
@@ -120,8 +147,7 @@ def _speed(subject: Subject) -> Iterator[str]:
 
 
 def pure_errors(subject: Subject) -> Mapping[str, float]:
-    """Return the largest reported error of each quantity, over a turn and a half, after the
-    start."""
+    """Return the largest reported error of each quantity, over 1.5 turns, after the start."""
     done = subject.ran(400, 1.5)
     errors = subject.errors(done)
     if errors is None or done.status != "ok":
@@ -139,6 +165,13 @@ def unlike(plain: Mapping[str, float], other: Mapping[str, float], words: str) -
             yield f"{words}, {name} is off by {two:.2g}, and {one:.2g} as it is"
 
 
+@clause(
+    "EC55",
+    "what is free moves as its masses, its speeds and gravity have it",
+    "A mechanism that nothing drives, and that falls otherwise, is not the scene.",
+    "Set the engine's gravity to scene.gravity_m_s2, for every body, give each its own mass "
+    "and inertia, and take no speed away; or refuse drive free with EngineError.",
+)
 def _gravity(subject: Subject) -> Iterator[str]:
     fall_s = FALL_STEPS * subject.dt_s()
     pull = FALL * subject.scene.longest_m / (0.5 * fall_s**2)
@@ -188,6 +221,12 @@ CHANGES: Mapping[str, Callable[[Scene], Scene]] = {
 }
 
 
+@clause(
+    "EC61",
+    "a scene that is turned, moved, mirrored or scaled errs as much",
+    "A sign or a number that suits one scene alone is seen on another, or not at all.",
+    "Look for signs of angles, lines that are taken as level, and tolerances in metres.",
+)
 def _elsewhere(subject: Subject) -> Iterator[str]:
     plain = pure_errors(subject)
     for words, change in CHANGES.items():
@@ -195,53 +234,3 @@ def _elsewhere(subject: Subject) -> Iterator[str]:
             yield from unlike(plain, pure_errors(subject.in_scene(change(subject.scene))), words)
         except NotTriedError as refused:
             yield f"{words}, it is refused: {refused}"
-
-
-CLAUSES = (
-    Clause(
-        "EC51",
-        "a prescribed crank is where the driver's law has it",
-        "What the crank is off by, all links are off by; a motor of limited gain is a servo.",
-        "Move the crank yourself: drive.angles, drive.chords and drive.pushes say where to and "
-        "how fast; or refuse the drive with EngineError.",
-        _crank,
-    ),
-    Clause(
-        "EC52",
-        "errors of place shrink with the step, at the order that is declared, down to a floor",
-        "verify takes an error for a fault of the step or of the model by this order.",
-        "Set Engine.order to what is measured; where order 1 is not meant, look for places that "
-        "are moved with the velocity of another instant.",
-        _shrinking,
-    ),
-    Clause(
-        "EC53",
-        "places come about as `placing` says",
-        "Places that are nearer to the reference than steps can bring them were taken from it.",
-        "Let Engine.placing give solved where joints are solved for in each step; raise "
-        "Engine.order where errors shrink faster than it says.",
-        _placing,
-    ),
-    Clause(
-        "EC54",
-        "errors depend on the steps in a turn, not on the speed or its sign",
-        "Advice for one speed is carried over to others.",
-        "Name what is a time of its own, such as a damping, in Engine.in_seconds.",
-        _speed,
-    ),
-    Clause(
-        "EC55",
-        "what is free moves as its masses, its speeds and gravity have it",
-        "A mechanism that nothing drives, and that falls otherwise, is not the scene.",
-        "Set the engine's gravity to scene.gravity_m_s2, for every body, give each its own mass "
-        "and inertia, and take no speed away; or refuse drive free with EngineError.",
-        _gravity,
-    ),
-    Clause(
-        "EC61",
-        "a scene that is turned, moved, mirrored or scaled errs as much",
-        "A sign or a number that suits one scene alone is seen on another, or not at all.",
-        "Look for signs of angles, lines that are taken as level, and tolerances in metres.",
-        _elsewhere,
-    ),
-)

@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
-from reports.contract.subject import Clause, Subject
+from reports.contract.subject import Subject, clause
 from sim.engine import Session
 from sim.engine.measure import motion
 
@@ -52,6 +52,14 @@ class _Rate:
         return float(np.abs(self.reported - self.own - shift_s * self.change).max()) / size
 
 
+@clause(
+    "EC41",
+    "velocities belong to the instant that the facts say, and to the places",
+    "Half a step of an angle's acceleration is more than most errors of velocity.",
+    "Set Facts.velocity_shift (in steps) and Poses.lag_s (velocity_shift * dt_s): -0.5 where "
+    "velocities are stepped before places, 0.5 where after them, 0 where both are of one "
+    "instant.",
+)
 def _velocities(subject: Subject) -> Iterator[str]:
     session = subject.opened(steps=STEPS)
     said, lag_s = session.facts().velocity_shift, session.facts().start.lag_s
@@ -62,6 +70,13 @@ def _velocities(subject: Subject) -> Iterator[str]:
         yield f"Poses.lag_s is {lag:.3g} steps, and Facts.velocity_shift {said:.3g}"
 
 
+@clause(
+    "EC42",
+    "accelerations are reported as declared, and belong to the instant that the facts say",
+    "What an engine has not is no zero, and what it had a step ago is not what it has.",
+    "Give NaN for all where there are none, with reports_accelerations=False; else set "
+    "Facts.acceleration_shift.",
+)
 def _accelerations(subject: Subject) -> Iterator[str]:
     reports, log = subject.engine.reports_accelerations, subject.opened().record(20, 1)
     for name, body in log.poses.bodies.items():
@@ -83,16 +98,12 @@ def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
     truth = solve(subject.scene, held.time_s, bound=False)
     dt_s, rates = subject.dt_s(STEPS), []
     turning = subject.scene.pace_rad_s**order
-    for name, link in held.links.items():
-        true = truth.links[name].alpha
-        reported = link.omega if order == 1 else link.alpha
-        paths = _differences(link.theta, reported, true, dt_s, order)
-        rates.append(_Rate(f"link {name}", *paths, turning))
-    for name, point in held.points.items():
-        true = truth.points[name].acceleration
-        reported = point.velocity if order == 1 else point.acceleration
-        paths = _differences(point.position, reported, true, dt_s, order)
-        rates.append(_Rate(f"point {name}", *paths, subject.scene.longest_m * turning))
+    for kind, scale in (("link", turning), ("point", subject.scene.longest_m * turning)):
+        others = getattr(truth, f"{kind}s")
+        for name, body in getattr(held, f"{kind}s").items():
+            series, (*_, true) = [*vars(body).values()], vars(others[name]).values()
+            paths = _differences(series[0], series[order], true, dt_s, order)
+            rates.append(_Rate(f"{kind} {name}", *paths, scale))
     return rates
 
 
@@ -130,24 +141,3 @@ def _faults(rates: list[_Rate], said: float, dt_s: float, what: str, where: str)
         if not off[worst] <= OFF:
             yield f"the {what} of {worst} is not that of its places: off by {off[worst]:.2g}"
             return
-
-
-CLAUSES = (
-    Clause(
-        "EC41",
-        "velocities belong to the instant that the facts say, and to the places",
-        "Half a step of an angle's acceleration is more than most errors of velocity.",
-        "Set Facts.velocity_shift (in steps) and Poses.lag_s (velocity_shift * dt_s): -0.5 where "
-        "velocities are stepped before places, 0.5 where after them, 0 where both are of one "
-        "instant.",
-        _velocities,
-    ),
-    Clause(
-        "EC42",
-        "accelerations are reported as declared, and belong to the instant that the facts say",
-        "What an engine has not is no zero, and what it had a step ago is not what it has.",
-        "Give NaN for all where there are none, with reports_accelerations=False; else set "
-        "Facts.acceleration_shift.",
-        _accelerations,
-    ),
-)

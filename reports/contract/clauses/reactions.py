@@ -13,7 +13,7 @@ from models.array import Array
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
 from models.scene.joints import block_name, centre_of, joined_at, local_point, mass_of
-from reports.contract.subject import Clause, Subject, numbers
+from reports.contract.subject import Subject, clause, numbers
 
 STEPS = 800
 """Number of steps in one turn."""
@@ -32,6 +32,12 @@ PULL = 0.5
 """Gravity for the tests of forces, over the acceleration of the longest link's end."""
 
 
+@clause(
+    "EC81",
+    "with forces the motion is the same, to the last bit",
+    "Errors of places are of runs without forces, and have to be those of runs with them.",
+    "Let record_forces step as record does, and read the forces beside it.",
+)
 def _same_motion(subject: Subject) -> Iterator[str]:
     subject.reports_forces()
     for profile in subject.engine.profiles:
@@ -41,6 +47,14 @@ def _same_motion(subject: Subject) -> Iterator[str]:
             yield f"profile {profile}: record_forces logs another motion than record"
 
 
+@clause(
+    "EC82",
+    "every pin and slider has its forces, as declared, and those of a pin add up to nothing",
+    "What is missing or doubled is taken for a force of 0, or for another joint's.",
+    "Give Forces.pins as joined_at(scene) names them, each force that of the pin on the body, "
+    "in the ground's frame; NaN for what is not known, and at the start where forces_of is "
+    "steps.",
+)
 def _declared(subject: Subject) -> Iterator[str]:
     scene = subject.scene
     forces = subject.acting(STEPS)
@@ -88,6 +102,14 @@ def largest(forces: Forces) -> float:
     return max(float(np.nan_to_num(np.abs(force)).max(initial=0.0)) for force in each)
 
 
+@clause(
+    "EC83",
+    "forces, inertia and gravity hold each body in equilibrium",
+    "A force with a wrong sign, frame or body is as large as a true one.",
+    "Turn forces into the ground's frame, and give that of the pin ON the body; normal along "
+    "the line turned by +90 deg and moment about the slider's point, both of the guide on what "
+    "slides; torque of the drive on the driver, without what turns a flywheel.",
+)
 def _equilibrium(subject: Subject) -> Iterator[str]:
     scene = pulled(subject.scene)
     forces = subject.in_scene(scene).acting(STEPS).stretch(slice(START, None))
@@ -183,6 +205,13 @@ def _matter(scene: Scene, body: str) -> tuple[float, float]:
     return (0.0, 0.0) if body in massless else mass_of(scene, body)
 
 
+@clause(
+    "EC84",
+    "forces belong to the instants that they say",
+    "Half a step is most of the error of a force.",
+    "Set Forces.time_s to when they act: an impulse over a step to its middle or, where "
+    "velocities are stepped with new places, its end.",
+)
 def _instants(subject: Subject) -> Iterator[str]:
     scene = pulled(subject.scene)
     forces = subject.in_scene(scene).acting(STEPS).stretch(slice(START, None))
@@ -207,40 +236,3 @@ def late_by(own: Mapping[str, Array], true: Mapping[str, Array], dt_s: float) ->
             shift = float(((own[name] - true[name])[told] * rate[told]).sum()) / square
             late[name] = -shift / dt_s
     return late
-
-
-CLAUSES = (
-    Clause(
-        "EC81",
-        "with forces the motion is the same, to the last bit",
-        "Errors of places are of runs without forces, and have to be those of runs with them.",
-        "Let record_forces step as record does, and read the forces beside it.",
-        _same_motion,
-    ),
-    Clause(
-        "EC82",
-        "every pin and slider has its forces, as declared, and those of a pin add up to nothing",
-        "What is missing or doubled is taken for a force of 0, or for another joint's.",
-        "Give Forces.pins as joined_at(scene) names them, each force that of the pin on the body, "
-        "in the ground's frame; NaN for what is not known, and at the start where forces_of is "
-        "steps.",
-        _declared,
-    ),
-    Clause(
-        "EC83",
-        "forces, inertia and gravity hold each body in equilibrium",
-        "A force with a wrong sign, frame or body is as large as a true one.",
-        "Turn forces into the ground's frame, and give that of the pin ON the body; normal along "
-        "the line turned by +90 deg and moment about the slider's point, both of the guide on what "
-        "slides; torque of the drive on the driver, without what turns a flywheel.",
-        _equilibrium,
-    ),
-    Clause(
-        "EC84",
-        "forces belong to the instants that they say",
-        "Half a step is most of the error of a force.",
-        "Set Forces.time_s to when they act: an impulse over a step to its middle or, where "
-        "velocities are stepped with new places, its end.",
-        _instants,
-    ),
-)

@@ -10,13 +10,19 @@ from pathlib import Path
 
 import numpy as np
 
-from reports.contract.subject import ROUNDING, Clause, Subject, apart, numbers
+from reports.contract.subject import ROUNDING, Subject, apart, clause, numbers
 from sim.run import stretch
 
 TURNS = 2.2
 """Turns of the driver, for angles over whole turns."""
 
 
+@clause(
+    "EC31",
+    "step, record and read come to the same state",
+    "Errors are recorded and times are stepped: both have to be of the same thing.",
+    "Let record call what step calls, and read give the state as the last sample has it.",
+)
 def _step_and_record(subject: Subject) -> Iterator[str]:
     for profile in subject.engine.profiles:
         stepped, recorded = subject.opened(profile), subject.opened(profile)
@@ -29,6 +35,12 @@ def _step_and_record(subject: Subject) -> Iterator[str]:
             yield f"profile {profile}: the last sample and what read gives differ by {off:.2g}"
 
 
+@clause(
+    "EC32",
+    "a log holds the current sample and every n-th after it",
+    "Samples are held to the reference at k dt: one too many, or too late, is an error of place.",
+    "Log before the first step and after every n-th: steps // every + 1 samples, at start + k dt.",
+)
 def _every_nth(subject: Subject) -> Iterator[str]:
     full, thin = subject.opened().record(40, 1), subject.opened().record(40, 8)
     for log, every in ((full, 1), (thin, 8)):
@@ -49,6 +61,12 @@ def _few(times: np.ndarray) -> str:
     return ", ".join(f"{time:.4g}" for time in times[:3]) + f", ... ({len(times)} of them)"
 
 
+@clause(
+    "EC33",
+    "two stretches are one",
+    "Long runs are recorded in stretches.",
+    "Keep all state in the session: the number of steps done, and what a solver starts with.",
+)
 def _stretches(subject: Subject) -> Iterator[str]:
     for profile in subject.engine.profiles:
         whole, parts = subject.opened(profile), subject.opened(profile)
@@ -64,6 +82,13 @@ def _stretches(subject: Subject) -> Iterator[str]:
             yield f"profile {profile}: 20 and 30 steps differ from 50 by {off:.2g}"
 
 
+@clause(
+    "EC34",
+    "what was logged does not change afterwards",
+    "Arrays that the session goes on to write to change a result that is already out.",
+    "Hand out copies.",
+    of_scenes=False,
+)
 def _kept(subject: Subject) -> Iterator[str]:
     session = subject.opened()
     log, now = session.record(10, 1).poses, session.read()
@@ -75,6 +100,13 @@ def _kept(subject: Subject) -> Iterator[str]:
             yield f"what {what} gave changes while the session goes on"
 
 
+@clause(
+    "EC35",
+    "two sessions side by side do not disturb each other",
+    "Runs at a step, its half and its quarter, and their times, are of sessions of their own.",
+    "Keep nothing in the module or the class that a step changes.",
+    of_scenes=False,
+)
 def _side_by_side(subject: Subject) -> Iterator[str]:
     alone = subject.opened().record(30, 1).poses
     a, b = subject.opened(), subject.opened()
@@ -87,6 +119,12 @@ def _side_by_side(subject: Subject) -> Iterator[str]:
             return
 
 
+@clause(
+    "EC36",
+    "the same input gives the same numbers, to the last bit",
+    "A result that can not be repeated can not be compared.",
+    "Seed what is random, and keep the order of bodies and joints.",
+)
 def _twice(subject: Subject) -> Iterator[str]:
     for profile in subject.engine.profiles:
         one, other = (subject.opened(profile).record(100, 1).poses for _ in range(2))
@@ -94,6 +132,12 @@ def _twice(subject: Subject) -> Iterator[str]:
             yield f"profile {profile}: 100 steps twice differ by {apart(one, other):.2g}"
 
 
+@clause(
+    "EC37",
+    "angles go on over whole turns",
+    "An angle that is wrapped jumps by 2 pi, and stands a turn behind.",
+    "Report the angle as it is integrated, or add the turns.",
+)
 def _turns(subject: Subject) -> Iterator[str]:
     scene = subject.scene
     steps = round(TURNS * 600)
@@ -108,6 +152,13 @@ def _turns(subject: Subject) -> Iterator[str]:
             yield f"{name} jumps by {jump:.3g} rad from one sample to the next"
 
 
+@clause(
+    "EC38",
+    "a session writes nothing to the terminal, nor into the working folder",
+    "Ninety thousand warnings hide the one line that counts.",
+    "Silence the engine, and hand its warnings on in Log.warnings.",
+    of_scenes=False,
+)
 def _quiet(subject: Subject) -> Iterator[str]:
     with _listening() as (words, files):
         session = subject.opened()
@@ -156,68 +207,3 @@ def _flush() -> None:
             stream.flush()
     with suppress(OSError, AttributeError, TypeError):
         ctypes.CDLL(None).fflush(None)
-
-
-CLAUSES = (
-    Clause(
-        "EC31",
-        "step, record and read come to the same state",
-        "Errors are recorded and times are stepped: both have to be of the same thing.",
-        "Let record call what step calls, and read give the state as the last sample has it.",
-        _step_and_record,
-    ),
-    Clause(
-        "EC32",
-        "a log holds the current sample and every n-th after it",
-        "Samples are held to the reference at k dt: one too many, or too late, is an error of "
-        "place.",
-        "Log before the first step and after every n-th: steps // every + 1 samples, at "
-        "start + k dt.",
-        _every_nth,
-    ),
-    Clause(
-        "EC33",
-        "two stretches are one",
-        "Long runs are recorded in stretches.",
-        "Keep all state in the session: the number of steps done, and what a solver starts with.",
-        _stretches,
-    ),
-    Clause(
-        "EC34",
-        "what was logged does not change afterwards",
-        "Arrays that the session goes on to write to change a result that is already out.",
-        "Hand out copies.",
-        _kept,
-        of_scenes=False,
-    ),
-    Clause(
-        "EC35",
-        "two sessions side by side do not disturb each other",
-        "Runs at a step, its half and its quarter, and their times, are of sessions of their own.",
-        "Keep nothing in the module or the class that a step changes.",
-        _side_by_side,
-        of_scenes=False,
-    ),
-    Clause(
-        "EC36",
-        "the same input gives the same numbers, to the last bit",
-        "A result that can not be repeated can not be compared.",
-        "Seed what is random, and keep the order of bodies and joints.",
-        _twice,
-    ),
-    Clause(
-        "EC37",
-        "angles go on over whole turns",
-        "An angle that is wrapped jumps by 2 pi, and stands a turn behind.",
-        "Report the angle as it is integrated, or add the turns.",
-        _turns,
-    ),
-    Clause(
-        "EC38",
-        "a session writes nothing to the terminal, nor into the working folder",
-        "Ninety thousand warnings hide the one line that counts.",
-        "Silence the engine, and hand its warnings on in Log.warnings.",
-        _quiet,
-        of_scenes=False,
-    ),
-)

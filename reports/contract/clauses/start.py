@@ -9,7 +9,7 @@ import numpy as np
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
 from models.scene import Scene
-from reports.contract.subject import Clause, NotTriedError, Subject
+from reports.contract.subject import NotTriedError, Subject, clause
 from sim.engine import Drive
 from sim.engine.measure import motion
 from sim.own_engine.spelling import failure
@@ -21,6 +21,13 @@ LATER = 0.3
 """Part of a period."""
 
 
+@clause(
+    "EC21",
+    "a session opens as the scene, at the state, with closed joints",
+    "Another mass, place or speed at the start is another mechanism, whatever comes after it.",
+    "Take masses from mass_of, centres from centre_of, places and velocities from "
+    "frames(scene, state, velocity_shift * dt_s), and read all of them back from the engine.",
+)
 def _the_scene(subject: Subject) -> Iterator[str]:
     by_profile = {name: _other_scene(subject, name) for name in subject.engine.profiles}
     for text in dict.fromkeys(filter(None, by_profile.values())):
@@ -30,11 +37,10 @@ def _the_scene(subject: Subject) -> Iterator[str]:
 
 def is_other(subject: Subject) -> bool:
     """True if a session is not the scene to begin with; one clause reports it."""
-    return any(_the_scene(subject))
+    return any(_the_scene.check(subject))
 
 
 def _other_scene(subject: Subject, profile: str) -> str:
-    """Return the fault of the start."""
     facts = subject.opened(profile).facts()
     try:
         refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")
@@ -49,6 +55,12 @@ def _other_scene(subject: Subject, profile: str) -> str:
     return ""
 
 
+@clause(
+    "EC22",
+    "a session may start at any time of the driver's law",
+    "A run that goes on from another, or from a later state, is driven by the time of its state.",
+    "Count time from state.time_s, in Poses.time_s and in what drives the crank.",
+)
 def _at_any_time(subject: Subject) -> Iterator[str]:
     if is_other(subject):
         raise NotTriedError("it does not open as the scene at time 0 (EC21)")
@@ -72,26 +84,13 @@ def _crank_off(subject: Subject, bodies: object, time_s: float) -> float:
     return float(abs(np.remainder(crank.theta[0] - angle + np.pi, 2 * np.pi) - np.pi))
 
 
-CLAUSES = (
-    Clause(
-        "EC21",
-        "a session opens as the scene, at the state, with closed joints",
-        "Another mass, place or speed at the start is another mechanism, whatever comes after it.",
-        "Take masses from mass_of, centres from centre_of, places and velocities from "
-        "frames(scene, state, velocity_shift * dt_s), and read all of them back from the engine.",
-        _the_scene,
-    ),
-    Clause(
-        "EC22",
-        "a session may start at any time of the driver's law",
-        "A run that goes on from another, or from a later state, is driven by the time of its "
-        "state.",
-        "Count time from state.time_s, in Poses.time_s and in what drives the crank.",
-        _at_any_time,
-    ),
+@clause(
+    "EC71",
+    "a scene or a drive that it can not have is refused with EngineError, before the first step",
+    "A refusal is a row with a reason; anything else looks like a fault of the scene.",
+    "Raise EngineError in open, with the words that say what is lacking.",
+    of_scenes=False,
 )
-
-
 def _every_scene(subject: Subject) -> Iterator[str]:
     scenes, other = [load_scene(name) for name in shipped()], is_other(subject)
     for scene in [*scenes, _massless(load_scene("fourbar-lecture-1"))]:
@@ -122,16 +121,3 @@ def _massless(scene: Scene) -> Scene:
     link = next(name for name in reversed(list(scene.links)) if name != scene.driver.link)
     bare = replace(scene.links[link], mass_kg=0.0, inertia_kg_m2=0.0)
     return replace(scene, links={**scene.links, link: bare})
-
-
-REFUSALS = (
-    Clause(
-        "EC71",
-        "a scene or a drive that it can not have is refused with EngineError, before the first "
-        "step",
-        "A refusal is a row with a reason; anything else looks like a fault of the scene.",
-        "Raise EngineError in open, with the words that say what is lacking.",
-        _every_scene,
-        of_scenes=False,
-    ),
-)

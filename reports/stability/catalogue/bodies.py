@@ -10,7 +10,7 @@ from analytic.kinematics import solve
 from models.files.reading import load_scene
 from models.motion import State
 from models.scene import Scene
-from models.scene.moved import moved, rotated, scaled
+from models.scene.moved import moved, of_mass, rotated, scaled
 from reports.stability.case import Case, Trial
 
 SOURCE = "fourbar-lecture-1"
@@ -21,15 +21,10 @@ LIGHT = (1.0, 1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0)
 
 def _link(name: str, factor: float) -> Trial:
     """Return the four-bar with the mass of one link times ``factor``, of the same shape."""
-    scene = load_scene(SOURCE)
-    link = scene.links[name]
-    mass, inertia = link.mass_kg * factor, link.inertia_kg_m2 * factor
-    heavy = replace(link, mass_kg=mass, inertia_kg_m2=inertia)
-    return Trial(replace(scene, links={**scene.links, name: heavy}))
+    return Trial(of_mass(load_scene(SOURCE), name, factor))
 
 
 def _block(factor: float) -> Trial:
-    """Return the slider-crank with a block of ``factor`` times the mass of its rod."""
     scene = load_scene(SLIDER_CRANK)
     rod = scene.links["rod"].mass_kg
     sliders = {n: replace(s, mass_kg=rod * factor) for n, s in scene.sliders.items()}
@@ -81,10 +76,6 @@ MASSES = (
 LONGEST_M = 0.3
 
 
-def _sized(longest_m: float) -> Trial:
-    return Trial(scaled(load_scene(SOURCE), longest_m / LONGEST_M))
-
-
 def _offset(lengths: float) -> Trial:
     scene = load_scene(SOURCE)
     return Trial(moved(scene, (lengths * scene.longest_m, -0.7 * lengths * scene.longest_m)))
@@ -100,7 +91,12 @@ _same = partial(
     truth="closed form; a mechanism does not know where it stands, nor how large it is",
     expected="the same error as a pure number",
 )
-_size = partial(_same, parameter="longest link", unit="m", trial=_sized)
+_size = partial(
+    _same,
+    parameter="longest link",
+    unit="m",
+    trial=lambda longest_m: Trial(scaled(load_scene(SOURCE), longest_m / LONGEST_M)),
+)
 SCALES = (
     _size(name="small", title="Smaller and smaller", values=(1.0, 0.1, 1e-2, 1e-3, 1e-4)),
     _size(name="large", title="Larger and larger", values=(1.0, 10.0, 100.0, 1e3, 1e4)),

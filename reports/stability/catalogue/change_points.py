@@ -31,14 +31,6 @@ def _triad_excess(margin_m: float) -> Trial:
     return Trial(hard.triad_platform(name, TRIAD_CRANK_M - margin_m, source=source))
 
 
-def _parallelogram(steps: float) -> Trial:
-    return four_turns(hard.fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=GRASHOF), steps)
-
-
-def _kite(steps: float) -> Trial:
-    return four_turns(hard.fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=GRASHOF), steps)
-
-
 CHANGE_POINTS = (
     Case(
         name="grashof-excess",
@@ -68,7 +60,9 @@ CHANGE_POINTS = (
         source=GRASHOF,
         truth="the coupler keeps its direction, by smooth continuation",
         expected="goes on smoothly: inertia carries it through",
-        trial=_parallelogram,
+        trial=partial(
+            four_turns, hard.fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=GRASHOF)
+        ),
     ),
     through(
         name="kite",
@@ -76,7 +70,7 @@ CHANGE_POINTS = (
         source=GRASHOF,
         truth="A and C stay mirror images in the line BD, by smooth continuation",
         expected="goes on smoothly: inertia carries it through",
-        trial=_kite,
+        trial=partial(four_turns, hard.fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=GRASHOF)),
     ),
 )
 
@@ -86,10 +80,6 @@ EXCEL = 'Paper "Phan tich dong hoc co cau tay quay con truot bang phan mem Excel
 
 def _short_rod(excess: float) -> Trial:
     return Trial(hard.slider_crank("short-rod", 0.1, 0.1 * (1.0 + excess), source="L/R runs to 1"))
-
-
-def _isosceles(steps: float) -> Trial:
-    return four_turns(hard.slider_crank("isosceles", 0.1, 0.1, source="L = R"), steps)
 
 
 SLIDER_CRANKS = (
@@ -109,7 +99,7 @@ SLIDER_CRANKS = (
         source="L = R: the change point of the slider-crank",
         truth="the pin runs through the crank's pivot, x = 2 R cos(theta), by smooth continuation",
         expected="goes on smoothly through the pivot",
-        trial=_isosceles,
+        trial=partial(four_turns, hard.slider_crank("isosceles", 0.1, 0.1, source="L = R")),
     ),
 )
 
@@ -126,12 +116,6 @@ def _swinging(excess: float) -> Trial:
 def _turning(excess: float) -> Trial:
     crank_m = CRANK_M * (1.0 + excess)
     return Trial(hard.slotted_lever("turning-lever", crank_m, CRANK_M, source="AB/AC to 1"))
-
-
-def _lever_through(steps: float) -> Trial:
-    return four_turns(
-        hard.slotted_lever("lever-through-pivot", CRANK_M, CRANK_M, source="AB = AC"), steps
-    )
 
 
 _near = partial(
@@ -158,21 +142,20 @@ LEVERS = (
         source=CULISSE,
         truth="the lever turns at half the crank's speed, by smooth continuation",
         expected="goes on smoothly through the pivot",
-        trial=_lever_through,
+        trial=partial(
+            four_turns,
+            hard.slotted_lever("lever-through-pivot", CRANK_M, CRANK_M, source="AB = AC"),
+        ),
     ),
 )
 
 
+THREE_ROCKERS = hard.double_parallelogram(
+    "double-parallelogram", source="mobility 0 by count, really 1"
+)
 DURATION_S = 2.5
 """Time in which the chain turns over once and falls on, four times through flat positions."""
 DT_S = 1e-3
-
-
-def _three_rockers(steps: float) -> Trial:
-    scene = hard.double_parallelogram(
-        "double-parallelogram", source="mobility 0 by count, really 1"
-    )
-    return four_turns(scene, steps)
 
 
 def _windows(number: float) -> Trial:
@@ -196,7 +179,7 @@ REDUNDANCY = (
         source="mobility by count 0, really 1",
         truth="the coupler keeps its direction, by smooth continuation",
         expected="moves, and passes its flat positions smoothly",
-        trial=_three_rockers,
+        trial=partial(four_turns, THREE_ROCKERS),
     ),
     Case(
         name="n-fourbar",

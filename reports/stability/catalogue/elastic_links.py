@@ -7,6 +7,7 @@ from functools import cache, partial
 from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
+from models.scene.moved import of_mass
 from reports.stability.case import Case, Trial
 
 BENT = "fourbar-elastic"
@@ -14,8 +15,7 @@ RATIO = 10.5
 """First frequency of the scene's coupler over the driver's speed."""
 SEGMENTS, STEPS = 4, 1440.0
 STEPS_OF_RATIO = 100.0
-"""Steps in a turn per unit of frequency ratio: twice the need of explicit steps for these
-segments."""
+"""Steps a turn per unit of frequency ratio: twice the need of explicit steps for these segments."""
 
 
 @cache
@@ -26,17 +26,11 @@ def _bent(ratio: float = RATIO, stiffness: float = 1.0, height: float = 1.0) -> 
     scene = load_scene(BENT)
     name, own = next(iter(scene.elastic.items()))
     stiff = replace(own, flexural_n_m2=own.flexural_n_m2 * stiffness * height**3)
-    link = scene.links[name]
-    heavy = replace(link, mass_kg=height * link.mass_kg, inertia_kg_m2=height * link.inertia_kg_m2)
     law = scene.driver.law
     assert isinstance(law, ConstantSpeed)
     slow = replace(law, speed_rad_s=law.speed_rad_s * RATIO / ratio)
-    return replace(
-        scene,
-        links={**scene.links, name: heavy},
-        elastic={name: stiff},
-        driver=replace(scene.driver, law=slow),
-    )
+    driver = replace(scene.driver, law=slow)
+    return replace(of_mass(scene, name, height), elastic={name: stiff}, driver=driver)
 
 
 def _run(scene: Scene, steps: float = STEPS, segments: int = SEGMENTS) -> Trial:

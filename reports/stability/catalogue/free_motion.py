@@ -16,6 +16,7 @@ from models.scene import Scene
 from models.scene.driver import Released
 from models.scene.hard import fourbar
 from models.scene.loads import SlideSpring
+from models.scene.moved import of_mass
 from reports.stability.case import Case, Throw, Trial
 
 SWING, SLIDER_CRANK = "fourbar-swing", "slider-crank-spring"
@@ -46,10 +47,7 @@ def _swing(scene: Scene, dt_s: float = DT_S) -> Trial:
 
 def _heavier(name: str, ratio: float) -> Trial:
     """Return the swinging four-bar with the mass of one link times ``ratio``, of the same shape."""
-    scene = load_scene(SWING)
-    link = scene.links[name]
-    heavy = replace(link, mass_kg=link.mass_kg * ratio, inertia_kg_m2=link.inertia_kg_m2 * ratio)
-    return _swing(replace(scene, links={**scene.links, name: heavy}))
+    return _swing(of_mass(load_scene(SWING), name, ratio))
 
 
 def _stiff(steps: float) -> Trial:

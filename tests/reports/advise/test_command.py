@@ -195,7 +195,6 @@ def test_scenes_that_no_engine_can_hold_are_bad_input(tmp_path: Path) -> None:
 
 
 def link(folder: Path) -> str:
-    """A link in the place of a file."""
     (folder / "other").touch()
     (folder / "link.json").symlink_to(folder / "other")
     return str(folder / "link.json")

@@ -38,8 +38,6 @@ FOURBAR = load_scene(SCENES[0])
 
 @dataclass(frozen=True)
 class Study:
-    """A store, and what is read of it."""
-
     stored: Stored
     lines: tuple[Line, ...]
 
@@ -47,7 +45,6 @@ class Study:
         return evidence(self.stored, self.lines, demand, texts, EVERY.values())
 
     def error(self, choice: Choice, steps: float) -> float:
-        """That of the four-bar, as it stands in the store."""
         named = (FOURBAR.name, choice.label)
         (line,) = [x for x in self.lines if (x.scene, f"{x.engine} {x.variant}") == named]
         cells = line.cells
@@ -161,7 +158,6 @@ CHOICE = Choice("fake", "tuned", "tuned", {})
 
 
 def asked(*scenes: Scene, **changes: Any) -> Demand:
-    """60 Hz at 10 rad/s, but for some of it."""
     numbers = {"speed_rad_s": 10.0, "frame_s": 1 / 60, "target": 1e-3, "turns": 10.0}
     return demanded(scenes or (FOURBAR,), **(numbers | changes))
 

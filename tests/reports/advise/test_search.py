@@ -195,7 +195,6 @@ FAST = demanded([load_scene("slider-crank-central")], 50.0, 0.002, 1e-3, 4.0)
 
 
 def series(place: np.ndarray, turns: float = 4.0) -> ErrorSeries:
-    """Errors of place over so many turns."""
     time_s, none = np.linspace(0.0, turns, place.size), np.zeros_like(place)
     return ErrorSeries("ok", "", time_s, time_s, place, none, none, none, 1.0, 1.0)
 

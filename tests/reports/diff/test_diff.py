@@ -27,8 +27,6 @@ STEPS = (90.0, 180.0, 360.0, 720.0)
 
 
 def planted(growth: float, column: str = "position_pure") -> Callable[[pd.DataFrame], None]:
-    """Plants the growth of one error of the first cell: MuJoCo, tuned."""
-
     def plant(frame: pd.DataFrame) -> None:
         frame.loc[0, column] *= growth
 

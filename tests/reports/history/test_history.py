@@ -18,7 +18,7 @@ from reports.history import verification
 from reports.history.environments import EngineVersion, NotMeasuredError
 from reports.requests.history import HistoryRequest
 from reports.workers.signals import Ended
-from tests.worlds.command import COMMAND, PYTHON, script, shadows
+from tests.worlds.command import PYTHON, script, shadows
 from tests.worlds.command_line import flat
 from tests.worlds.fake_installer import fake_installer
 from tests.worlds.programs import Start, until
@@ -153,7 +153,6 @@ def measured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Path]:
 
 
 def test_two_versions_are_compared(history: History, measured: list[Path], tmp_path: Path) -> None:
-    """One of them is missing."""
     versions = ("3.7.0", "9.9.9", "3.6.0")
     code, output, _ = history(*versions, folder=tmp_path / "out", cache=tmp_path / "cache")
     assert (code, len(measured)) == (2, 2)
@@ -182,19 +181,6 @@ def test_another_text_of_a_scene_is_not_answered_from_the_cache(
         path.write_text(content, encoding="utf-8")
         history("3.7.0", scenes=[str(path)], cache=tmp_path)
         assert len(measured) == count
-
-
-@posix
-@slow("a start of the command, and what it finds there as well; in this process it is above")
-def test_packages_of_our_names_in_the_folder_change_nothing(
-    programs: Start, installer: Path, tmp_path: Path
-) -> None:
-    options = ("--turns", 1, "--steps-per-turn", 360, "--cache", installer / "cache", "-o", "out")
-    command = (COMMAND, "history", "mujoco", "3.7.0", "--scene", SCENE, *options)
-    done = programs(*command, cwd=shadows(tmp_path / "mine"), more=path_with(installer))
-    _, complaint = done.communicate()
-    assert done.returncode == 0, complaint
-    assert (tmp_path / "mine" / "out" / "mujoco-3.7.0" / "verify.csv").is_file()
 
 
 def test_another_code_has_another_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -270,7 +256,6 @@ if __name__ == "__main__":
 
 
 def gone(group: int) -> bool:
-    """Whether the processes of a group are all gone."""
     try:
         os.killpg(group, 0)
     except ProcessLookupError:

@@ -46,7 +46,6 @@ def change(old: float, new: float) -> FollowedChange:
 
 
 def told(before: list[StoredCell], after: list[StoredCell]) -> list[str]:
-    """The headlines of version 2 against version 1."""
     (step,) = steps([result("1", *before), result("2", *after)])
     return [line.text for line in headlines(step)]
 

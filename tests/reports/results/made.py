@@ -37,7 +37,6 @@ def table(text: str, **other: object) -> list[Row]:
 
 
 def untimed(row: Row) -> Row:
-    """The cell without its timing."""
     times = {name: math.nan for name in row if name.startswith("us_") or name == "s_per_turn"}
     return row | times | {"processor": None, "made": None}
 
@@ -45,6 +44,5 @@ def untimed(row: Row) -> Row:
 def stored(
     rows: Iterable[Row], scenes: Iterable[str] = (), runs: tuple[Mapping[str, object], ...] = ()
 ) -> Stored:
-    """A store of the rows."""
     manifest = Manifest(dict.fromkeys(scenes, ""), runs)
     return Stored(Path("made-up"), manifest, pd.DataFrame(list(rows)), pd.DataFrame())

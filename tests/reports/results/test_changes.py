@@ -282,8 +282,6 @@ def spoil(name: str, content: str) -> Change:
 
 
 def column(name: str, value: object) -> Change:
-    """Replace a column of the cells."""
-
     def change(folder: Path) -> None:
         frame = pd.read_csv(folder / "verify.csv")
         frame.assign(**{name: value}).to_csv(folder / "verify.csv", index=False)

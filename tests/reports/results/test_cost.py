@@ -126,7 +126,6 @@ def test_over_all_scenes_an_error_is_the_worst_and_a_failure_bars() -> None:
 
 
 def share(profile: pd.DataFrame, variant: str, factor: float) -> float:
-    """The height of a stair at a factor."""
     own = profile[(profile["variant"] == variant) & (profile["factor"] <= factor)]
     return float(own["share"].iloc[-1])
 

@@ -19,7 +19,6 @@ Traces = dict[str, Trace]
 
 
 def line_of(error: Callable[[float], float], steps: tuple[int, ...] = STEPS) -> Line:
-    """A line with these largest errors at steps dt [s]."""
     (found,) = lines(stored([cell("s", "v", n, error(PERIOD_S / n), 1.0) for n in steps]))
     return found
 

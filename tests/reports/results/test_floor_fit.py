@@ -48,12 +48,10 @@ def test_a_larger_misfit_allows_more_orders_and_floors() -> None:
     assert wide.order[0] < narrow.order[0] <= 1.0 <= narrow.order[1] < wide.order[1]
 
 
-def aligned(
-    errors: np.ndarray, *more: float, unit: float = 1.0
-) -> tuple[ErrorCurve, list[Allowed]]:
+def aligned(errors: np.ndarray, *more: float) -> tuple[ErrorCurve, list[Allowed]]:
     """The curve of errors, and what is allowed where its misfit may be so much larger."""
-    curve = added(unit * DTS, unit * errors)
-    return curve, within(unit * DTS, unit * errors, curve, [each**2 for each in more], ALIGNMENTS)
+    curve = added(DTS, errors)
+    return curve, within(DTS, errors, curve, [each**2 for each in more], ALIGNMENTS)
 
 
 @pytest.mark.parametrize("alignment", [-0.5, 0.0, 0.3, 0.7, 1.0])
@@ -77,9 +75,3 @@ def test_what_is_found_is_allowed_where_no_curve_of_the_grid_is() -> None:
     curve, (found,) = aligned(near(1.0, 1.234), 0.0)
     assert found.floor[0] <= curve.floor <= found.floor[1]
     assert found.order[0] <= curve.order <= found.order[1]
-
-
-def test_errors_and_steps_may_come_in_any_unit() -> None:
-    (_, (one,)), (_, (other,)) = (aligned(near(0.3, 2.0), 0.02, unit=unit) for unit in (1.0, 1e3))
-    assert other.floor == pytest.approx([1e3 * floor for floor in one.floor], rel=1e-4)
-    assert other.order == pytest.approx(one.order, rel=1e-4)

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from reports.judge.three_steps import AT_ROUNDING
 from reports.results.floor_fit import interpolate, reach
 from reports.results.line_fit import FitKind, LineFit, fit_line
-from tests.worlds.strategies import examples
-from tests.worlds.tiers import few, slow, slowly
+from tests.worlds.tiers import few, slowly
 
 MORE = "more draws say the same more sharply"
 STEPS = 1e-2 / 2.0 ** np.arange(6)
@@ -230,8 +229,9 @@ ERRORS: dict[str, tuple[FitKind, np.ndarray]] = {
 }
 
 
-def check_units(name: str, error: float, dt: float) -> None:
-    """Two fits are one, but for units of error and of time."""
+@pytest.mark.parametrize("name", ERRORS)
+@pytest.mark.parametrize(("error", "dt"), [(1e-3, 1e3), (1e3, 1e-3), (700.0, 300.0)])
+def test_units_of_error_and_time_do_not_matter(name: str, error: float, dt: float) -> None:
     kind, errors = ERRORS[name]
     fit = fit_line(STEPS, errors)
     other = fit_line(dt * STEPS, error * errors, rounding=error * AT_ROUNDING)
@@ -245,8 +245,10 @@ def check_units(name: str, error: float, dt: float) -> None:
         assert others == pytest.approx(dt * own)
 
 
-def check_order(name: str, places: list[int]) -> None:
-    _, errors = ERRORS[name]
+@pytest.mark.parametrize("name", ERRORS)
+@pytest.mark.parametrize("order", ["543210", "120543", "350142"])
+def test_the_order_in_which_runs_come_does_not_matter(name: str, order: str) -> None:
+    places, (_, errors) = [int(each) for each in order], ERRORS[name]
     fit, other = fit_line(STEPS, errors), fit_line(STEPS[places], errors[places])
     assert tuple(np.array(other.used)[np.argsort(places)]) == fit.used
     assert other.kind == fit.kind
@@ -254,34 +256,8 @@ def check_order(name: str, places: list[int]) -> None:
         assert getattr(other, number) == pytest.approx(getattr(fit, number), nan_ok=True)
 
 
-@pytest.mark.parametrize("name", ERRORS)
-@pytest.mark.parametrize(("error", "dt"), [(1e-3, 1e3), (1e3, 1e-3), (700.0, 300.0)])
-def test_units_of_error_and_time_do_not_matter(name: str, error: float, dt: float) -> None:
-    check_units(name, error, dt)
-
-
-@pytest.mark.parametrize("name", ERRORS)
-@pytest.mark.parametrize("order", ["543210", "120543", "350142"])
-def test_the_order_in_which_runs_come_does_not_matter(name: str, order: str) -> None:
-    check_order(name, [int(each) for each in order])
-
-
-UNITS = st.floats(1e-3, 1e3)
-
-
-@slow("units and orders that nobody has chosen: a threshold that is not relative shows at some")
-@examples(15)
-@given(st.sampled_from(list(ERRORS)), UNITS, UNITS, st.permutations(range(6)))
-def test_no_unit_and_no_order_at_random_matters(
-    name: str, error: float, dt: float, places: list[int]
-) -> None:
-    check_units(name, error, dt)
-    check_order(name, places)
-
-
 @functools.cache
 def parabola(floor: float) -> LineFit:
-    """The fit of errors of second order over a floor."""
     return fit_line(STEPS, floor + 10.0 * STEPS**2)
 
 

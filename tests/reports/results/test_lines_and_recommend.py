@@ -20,7 +20,6 @@ def of(text: str, *rows: Row, **other: object) -> Recommendation:
 
 
 def variant(found: Recommendation) -> str | None:
-    """The variant that is recommended, if any."""
     return None if found.reason else found.best.variant
 
 

@@ -58,7 +58,6 @@ def timed(_: object, cells: Sequence[tuple[Cell, float]], *__: object) -> list[o
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory: pytest.TempPathFactory) -> Stored:
-    """A sweep of the lecture's four-bar."""
     folder = tmp_path_factory.mktemp("store")
     study = folder.with_suffix(".yaml")
     study.write_text(STUDY, encoding="utf-8")
@@ -146,7 +145,6 @@ def attributes(model: Xml.Element, path: str) -> dict[str, str]:
 
 
 def same(text: dict[str, str], values: object) -> bool:
-    """Whether attributes hold these values."""
     assert isinstance(values, dict)
     assert text.keys() == values.keys()
     for name, value in values.items():

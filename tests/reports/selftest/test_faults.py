@@ -47,7 +47,6 @@ UNSEEN_AT_90 = {
 
 @cache
 def planted(name: str, scene: str, engine: str, steps: int = trial.STEPS) -> FaultTrial:
-    """The fault at its own size and at size 0, in one place."""
     return trial._place(FAULTS[name], load_scene(scene), engine, steps, search=False)
 
 
@@ -57,7 +56,6 @@ def engines_of(name: str) -> tuple[str, ...]:
 
 
 def places_of(name: str) -> list[tuple[str, str]]:
-    """The scenes and engines that a fault is planted in."""
     fault = FAULTS[name]
     return [(s, e) for s, e in product(fault.scenes, engines_of(name)) if fault.possible(e)]
 
@@ -191,8 +189,7 @@ def test_float32_arithmetic_is_seen_in_the_drive_alone(place: tuple[str, str]) -
 
 
 PARALLELOGRAM = replace(
-    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),
-    branch={"C": 1},
+    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"), branch={"C": 1}
 )
 NO_FAULT_THERE = {
     "halved-again", "too-good-degrees", "too-good-next", "too-good-link", "too-good-point",

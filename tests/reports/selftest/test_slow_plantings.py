@@ -14,7 +14,7 @@ from analytic.free.release import release
 from models.files.reading import load_scene
 from models.scene import Link, Scene
 from models.scene.cut_scenes import SegmentedScene
-from reports.selftest import elastic_changes, free_changes, segment_changes
+from reports.selftest import elastic_changes, segment_changes
 from reports.selftest.elastic_changes import BEAM_RUNS, BENT, LOOSE, elastic_cell
 from reports.selftest.free_faults import SWING
 from reports.selftest.trial import FAULTS
@@ -34,8 +34,10 @@ def given(monkeypatch: pytest.MonkeyPatch) -> Given:
 
     def find(name: str, scene: Scene) -> tuple[Any, Any]:
         asked: list[tuple[object, ...]] = []
-        for module in (free_changes, segment_changes):
-            monkeypatch.setattr(module, "run", lambda *given, **_: asked.append(given))
+        for module in ("fault", "segment_changes"):
+            monkeypatch.setattr(
+                f"reports.selftest.{module}.run", lambda *given, **_: asked.append(given)
+            )
         for size in (FAULTS[name].planted, 0.0):
             FAULTS[name].plant(size)(scene, "the start", ENGINE, "tuned", dt_s=STEP_S)
         (wrong, start, *names), (right, *_) = asked
@@ -133,8 +135,6 @@ def test_gravity_that_is_hardly_too_strong_is_looked_for_at_finer_steps(given: G
 
 @dataclass(frozen=True)
 class Logged:
-    """A run of which only its motion is asked for."""
-
     motion: Any
 
 

@@ -28,8 +28,6 @@ OTHER_RULE = replace(SPIKE, rule="CC102")
 
 
 class Stubborn:
-    """A rule that always says the same."""
-
     def __init__(self, rule: str, level: Level) -> None:
         sharp = RULES[rule]
         self.id, self.title, self.level = rule, sharp.title, level
@@ -152,7 +150,6 @@ ENGINES = ("mujoco", "pymunk")
 
 
 def selftest(*faults: str, **options: object) -> Result:
-    """The command with some of the faults, and options of it."""
     asked = [(f"--{name}", value) for name, value in options.items()]
     words = [*(("--fault", fault) for fault in faults), *asked]
     return crank("selftest", *(word for pair in words for word in pair))
@@ -183,9 +180,7 @@ def test_few_faults_are_shown_with_what_the_rule_says() -> None:
     assert "1 of 1 fault caught" in result.output
 
 
-def test_a_blind_rule_lets_its_faults_go_and_ends_with_1(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_blind_rule_lets_its_faults_go_and_ends_with_1(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(RULES, "CC107", Stubborn("CC107", "pass"))
     result = selftest("jump", "spike", engine="mujoco", jobs=1)
     assert result.exit_code == 1

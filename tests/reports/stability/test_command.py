@@ -19,7 +19,6 @@ from reports.stability.running import critical
 from reports.workers.isolated import Lost
 from tests.worlds.command_line import crank, crank_alone, flat, refused
 from tests.worlds.in_process import Here, in_this_process
-from tests.worlds.tiers import slow
 
 PYMUNK = ("stability", "wrong-branch", "--engine", "pymunk")
 
@@ -31,7 +30,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def stored(folder: Path) -> Result:
-    """A case in two profiles, printed and stored."""
     args = ["stability", "grashof-excess", "wrong-branch", "--engine", "mujoco"]
     return crank_alone(*args, "-o", folder, "--jobs", 1)
 
@@ -147,14 +145,6 @@ def test_what_comes_of_a_lost_run(call: Callable[..., Lost], code: int, words: s
     assert words in flat(result.output)
 
 
-@slow("a real process that its limit ends: 10,000 turns take seconds anywhere")
-@pytest.mark.parametrize(("profile", "limit_s"), [("tuned", 0.3), ("as-shipped", 0.05)])
-def test_a_run_over_its_limit_is_ended(profile: str, limit_s: float) -> None:
-    result = crank(*LONG, profile, "--limit-s", limit_s)
-    assert result.exit_code == 1, result.output
-    assert f"crashed no end within {limit_s:g} s" in flat(result.stdout)
-
-
 def test_the_report_of_a_folder_is_its_page(stored: Result, folder: Path, tmp_path: Path) -> None:
     made = crank("report", folder, "-o", tmp_path / "page.html")
     assert made.exit_code == 0, made.output
@@ -211,7 +201,6 @@ def test_a_number_that_is_missing_is_still_missing(matrix: Matrix, tmp_path: Pat
 
 
 def edited(text: str, table: str, **changed: object) -> str:
-    """The text with some of the first row of a table changed."""
     content = json.loads(text)
     content[table][0] |= changed
     return json.dumps(content)

@@ -35,7 +35,6 @@ def done(trial: Trial, start: Any = None, **other: Any) -> Run:
 
 
 def with_link(found: Run, name: str, theta: Array) -> Run:
-    """The run with other angles of a link."""
     links = {**found.motion.links, name: replace(found.motion.links[name], theta=theta)}
     return replace(found, motion=replace(found.motion, links=links))
 
@@ -48,14 +47,12 @@ def cut(found: Run, samples: int) -> Run:
 
 
 def with_gap(found: Run, gap: float) -> Run:
-    """One joint open in mid-run."""
     opened = found.gaps["C"].copy()
     opened[len(opened) // 2] = gap
     return replace(found, gaps={**found.gaps, "C": opened})
 
 
 def stuck(found: Run) -> Run:
-    """The crank never moves."""
     theta = found.motion.links["crank"].theta
     return with_link(found, "crank", np.full_like(theta, theta[0]))
 
@@ -199,7 +196,6 @@ OVER, SHORT = (CATALOGUE[f"toggle-{name}"].trial(1e-2) for name in ("over", "sho
 
 @pytest.fixture(scope="module")
 def runs() -> dict[str, Run]:
-    """A run that gets over, and one that falls back."""
     thrown = {"over": OVER, "short": SHORT}
     return {name: done(one, thrown_start(one)) for name, one in thrown.items()}
 
@@ -212,9 +208,7 @@ def test_a_throw_is_graded_by_what_its_energy_says(runs: dict[str, Run]) -> None
     assert grade.reason == "rocker went over to the other assembly"
 
 
-def test_falling_back_with_the_energy_is_degraded_by_what_it_lacks(
-    runs: dict[str, Run],
-) -> None:
+def test_falling_back_with_the_energy_is_degraded_by_what_it_lacks(runs: dict[str, Run]) -> None:
     errors, barrier = at_toggle(OVER, runs["short"]), OVER.throw.barrier
     nearest = toggle_passage(barrier, runs["short"]).nearest_rad
     assert outcome(errors, 1e-2).outcome == "degraded"
@@ -222,9 +216,7 @@ def test_falling_back_with_the_energy_is_degraded_by_what_it_lacks(
     assert worst(errors) == pytest.approx(nearest + 0.5 * abs(barrier.open_rad), rel=1e-12)
 
 
-def test_a_run_that_ends_too_soon_is_undecided_and_an_open_one_broken(
-    runs: dict[str, Run],
-) -> None:
+def test_a_run_that_ends_too_soon_is_undecided_and_an_open_one_broken(runs: dict[str, Run]) -> None:
     over, barrier = runs["over"], OVER.throw.barrier
     early = cut(over, 100)
     apart = replace(over, gaps={name: gap + 0.1 for name, gap in over.gaps.items()})

@@ -24,7 +24,6 @@ NOUGHT = 0.0 * TURN
 
 
 def run(**changed: object) -> ErrorSeries:
-    """A run without a fault, with some of it changed."""
     small = 1e-3 * (1.0 + np.sin(math.tau * TURN)) / 2.0
     driver = math.tau * TURN
     series = {"place": small, "gap": 0.5 * small, "drive": NOUGHT, "crank": driver}

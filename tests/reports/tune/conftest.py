@@ -36,7 +36,6 @@ def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int) -> list[o
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """Where a search may be kept."""
     return tmp_path / "kept.db"
 
 

@@ -54,7 +54,6 @@ def two() -> Bench:
 
 
 def errors(bench: Bench, steps: int) -> list[float]:
-    """Those of the scenes."""
     cells = [bench.goal.cell(scene, SETTINGS, steps) for scene in bench.goal.scenes]
     return [error_of(measured(cell, False).row) for cell in cells]
 

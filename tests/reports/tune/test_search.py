@@ -257,7 +257,6 @@ def notes(path: Path) -> None:
 
 
 def shop(path: Path) -> None:
-    """A database of something else."""
     with contextlib.closing(sqlite3.connect(path)) as base:
         base.execute("CREATE TABLE orders (number INTEGER)")
         base.commit()

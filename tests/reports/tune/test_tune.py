@@ -3,7 +3,6 @@
 import io
 import re
 import signal
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,9 +19,6 @@ from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.mujoco.knobs import EVALUATIONS
 from sim.registry.offers import Knob, search_space
-from tests.worlds.command import PYTHON, script
-from tests.worlds.programs import Start
-from tests.worlds.tiers import slow
 from tests.worlds.workshop import mujoco_disturbance
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
@@ -36,7 +32,6 @@ def told(request: TuneRequest) -> tuple[int, str]:
 
 
 def line(text: str, label: str) -> list[str]:
-    """The cells of a row of the table."""
     return next(row for row in text.splitlines() if row.startswith(label))[len(label) :].split()
 
 
@@ -47,7 +42,6 @@ def whole() -> tuple[int, str]:
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The file of a search that was begun."""
     path = tmp_path_factory.mktemp("kept") / "kept.db"
     told(replace(SMALL, budget=1, output=path))
     return path
@@ -190,35 +184,9 @@ def test_a_run_through_a_singular_position_is_refused(tmp_path: Path) -> None:
         told(replace(SMALL, scenes=(str(nearly),)))
 
 
-SCRIPT = """
-import os, signal, sys, threading
-from pathlib import Path
-from reports.cli import guarded
-from reports.requests.tune import TuneRequest
-from reports.workers.signals import install
-from reports.output.console import terminal
-from reports.tune.attempt import Bench
-
-calls = 0
-
-def attempt(bench, settings, best, real=Bench.attempt):
-    global calls
-    calls += 1
-    if calls == 3:
-        threading.Timer(0.01, os.killpg, (os.getpgid(0), signal.SIGINT)).start()
-    return real(bench, settings, best)
-
-if __name__ == "__main__":
-    path = Path(sys.argv[1])
-    Bench.attempt = attempt
-    with guarded():
-        install()
-        request = TuneRequest(("fourbar-lecture-1",), "pymunk", 1e-2, budget=1000, output=path)
-        request.run(terminal(), terminal(stderr=True))
-"""
-
-
-def test_a_stopped_search_says_what_it_keeps(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stopped_search_says_what_it_keeps_and_optuna_nothing(
+    path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     progress, real, calls = io.StringIO(), Bench.attempt, []
 
     def attempt(bench: Bench, settings: Settings, best: Attempt | None) -> Attempt:
@@ -235,21 +203,7 @@ def test_a_stopped_search_says_what_it_keeps(path: Path, monkeypatch: pytest.Mon
             replace(SMALL, output=path).run(Console(quiet=True), Console(file=progress))
         wanted += f"{number} of 6 trials are kept in {path}; the same command goes on from there\n"
         assert progress.getvalue() == wanted
-
-
-@slow("a process with children, that imports Optuna: `make test` stops a search in its own")
-@pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
-def test_ctrl_c_keeps_the_trials_and_leaves_no_process(programs: Start, path: Path) -> None:
-    program = path.with_name("run.py")
-    program.write_text(script(SCRIPT), encoding="utf-8")
-    running = programs(PYTHON, program, path)
-    # The pipes end when the last process that holds them does.
-    output, complaint = running.communicate(timeout=300)
-    assert (running.returncode, output) == (130, "")
-    study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
-    kept = len(study.get_trials(states=(TrialState.COMPLETE,)))
-    assert kept > 0
-    here = f"{kept} of 1000 trials are kept in {path}; the same command goes on from there"
-    assert complaint.splitlines() == [here, "crankcheck: interrupted"]  # Optuna says nothing
-    names = sorted(each.name for each in path.parent.iterdir())
-    assert names == [".kept.db.lock", "kept.db", "run.py"]
+    assert capsys.readouterr() == ("", "")
+    kept = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
+    assert len(kept.get_trials(states=(TrialState.COMPLETE,))) == 4
+    assert sorted(each.name for each in path.parent.iterdir()) == [".kept.db.lock", "kept.db"]

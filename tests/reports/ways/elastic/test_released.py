@@ -16,7 +16,8 @@ from reports.plan.requirements import counted_released, few_swings_s, shortened_
 from reports.requests.compare import compare
 from reports.requests.judge import judge
 from reports.requests.run import run as simulated
-from reports.selftest.segment_changes import in_chain, springs, stiffer
+from reports.selftest.elastic_changes import in_given
+from reports.selftest.segment_changes import springs, stiffer
 from reports.verify.table import footer
 from reports.way.way import way_of
 from tests.worlds.facts import with_facts
@@ -120,7 +121,7 @@ def test_the_words_under_errors_are_those_of_what_links_were_given_as(checked: C
 
 
 def test_springs_that_are_a_part_in_a_hundred_too_stiff_are_out() -> None:
-    found, _ = examined(cell(), in_chain(springs(stiffer))(0.01))
+    found, _ = examined(cell(), in_given(springs(stiffer))(0.01))
     assert "CC132" in {finding.rule for finding in found.failures}
 
 

@@ -14,8 +14,8 @@ from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.plan.requirements import held_steps
-from reports.selftest.elastic_changes import in_beam, stiffer_beam
-from reports.selftest.segment_changes import in_chain, springs, stiffer
+from reports.selftest.elastic_changes import in_beam, in_given, stiffer_beam
+from reports.selftest.segment_changes import springs, stiffer
 from tests.worlds.tiers import few, slow, slowly
 from tests.worlds.turns import of_turns
 
@@ -73,7 +73,7 @@ def test_a_cell_says_what_its_links_were_given_as(checked: Checked, slider_crank
 
 
 def test_springs_that_are_a_part_in_a_hundred_too_stiff_are_out() -> None:
-    found, _ = examined(cell(steps=4 * USUAL), in_chain(springs(stiffer))(0.01))
+    found, _ = examined(cell(steps=4 * USUAL), in_given(springs(stiffer))(0.01))
     assert {finding.rule for finding in found.failures} == {"CC132"}
 
 
