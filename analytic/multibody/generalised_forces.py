@@ -205,19 +205,17 @@ class Switch:
 
 def switches(forces: GeneralisedForces) -> tuple[Switch, ...]:
     """Return the switches of all loads of a scene that depend on the state."""
-    return tuple(_switches(forces))
-
-
-def _switches(forces: GeneralisedForces) -> Iterator[Switch]:
+    found = []
     for load in forces.scene.loads.values():
         kinks = load.characteristic.kinks
         if load.over != "time" and kinks:
             period = load.characteristic.repeats_after
             if period is not None and kinks[-1] - kinks[0] > period * (1.0 - 1e-9):
                 kinks = kinks[:-1]  # the first of the next period
-            yield Switch(load, kinks, period, turning=False)
+            found.append(Switch(load, kinks, period, turning=False))
         if load.stroke != "both":
-            yield Switch(load, (0.0,), None, turning=True)
+            found.append(Switch(load, (0.0,), None, turning=True))
+    return tuple(found)
 
 
 def state_cells(own: tuple[Switch, ...], forces: GeneralisedForces, state: Array) -> Array:

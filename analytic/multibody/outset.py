@@ -281,7 +281,6 @@ class StartPoses:
                     self._place(name, {p: at for p, at in link.points.items() if p in self._known})
 
     def _place(self, name: str, known: dict[str, Point]) -> None:
-        """Place a link with points in known places."""
         if name not in self.angles and len(known) >= 2:
             (p, a), (q, b) = list(known.items())[:2]
             (px, py), (qx, qy) = self._known[p], self._known[q]
@@ -319,7 +318,6 @@ class StartPoses:
                 self._settle_at(body, slider.point, name)
 
     def _settle_at(self, body: str, point: str, name: str) -> None:
-        """Place a sliding body whose point has a known place."""
         place = self._known[point]
         if self._scene.sliders[name].link is None:
             self.origins[body] = place

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import RIGID, Assembly
 from analytic.multibody.bodies import Flexible
 from analytic.multibody.dynamics import Dynamics, Saddle
@@ -61,18 +61,6 @@ def release_multibody(
     check_duration(scene.name, until_s)
     dynamics, q, rates = ready(scene, near, flexible, acting)
     return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
-
-
-def start_state(scene: Scene, near: State | None = None) -> State:
-    """Return the state of a scene at its release, with accelerations; of any mobility.
-
-    Parameters and errors as in `release_multibody`.
-    """
-    dynamics, q, rates = ready(scene, near)
-    now = dynamics.assembly.at_rates(q[None], rates[None])
-    at = np.zeros(1)
-    seconds, _ = dynamics.solve(at, now)
-    return as_motion(dynamics.assembly, at, now, seconds).state()
 
 
 def ready(
@@ -166,7 +154,8 @@ def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
     start, as their rates are.
     """
     assembly, outset = dynamics.assembly, Outset(dynamics.assembly)
-    free, inverse = assembly.coefficients, np.linalg.inv(elastic_stiffness(assembly))
+    stiffness = block_diag(*(body.stiffness for body, _ in assembly.elastic.values()))
+    free, inverse = assembly.coefficients, np.linalg.inv(stiffness)
     q, rates = outset.find(near)
     _check_free(dynamics, q)
     last = np.inf
@@ -214,14 +203,3 @@ def _held(dynamics: Dynamics, free: NDArray[np.intp], q: Array, rates: Array) ->
     saddle = Saddle(mass[0], rows, redundant=dynamics.redundant)
     bottom = np.concatenate([assembly.joints.gamma(now)[0], np.zeros(len(free))])
     return saddle.solve(right[0], bottom)[1][assembly.joints.count :]
-
-
-def elastic_stiffness(assembly: Assembly) -> Array:
-    """Return the stiffness matrix of all elastic links' coefficients, (k, k)."""
-    each = [body.stiffness for body, _ in assembly.elastic.values()]
-    whole, first = np.zeros((sum(map(len, each)),) * 2), 0
-    for own in each:
-        last = first + len(own)
-        whole[first:last, first:last] = own
-        first = last
-    return whole

@@ -16,7 +16,7 @@ from analytic.kinematics import solve
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
 from analytic.multibody.multibody_motion import Baumgarte, MultibodyMotion
-from analytic.multibody.release_multibody import release_multibody, start_state
+from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
@@ -35,6 +35,7 @@ from tests.analytic.multibody.scenes import (
     G,
     by_bodies,
     scene,
+    start_state,
 )
 from tests.second_opinions.baumgarte_table import STABLE, baumgarte_table
 from tests.worlds.loading import loaded_mechanism, massless
