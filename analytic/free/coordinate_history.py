@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from analytic.dyads.plane import EPS
 from analytic.free.chart import Chart
 from analytic.free.window import gauss, sums
-from models.array import Array
+from models.array import Array, Mask
 
 MOST = 1.001
 """Range in which polynomials are used, over that in which they were solved for."""
@@ -78,6 +78,12 @@ class CoordinateHistory:
         """Return u, u' and u'' at shares of windows, by number, (T,)."""
         u, v, a = (sums(table[windows], share) for table in self._tables)
         return u, v, a
+
+    def charts_at(self, time_s: Array) -> Iterator[tuple[Chart, Mask]]:
+        """Yield the charts, each with the mask of the times [s] in it, (T,)."""
+        window = self.windows_at(time_s)
+        for chart, first, last in self.legs():
+            yield chart, (window >= first) & (window < last)
 
     def legs(self) -> Iterator[tuple[Chart, int, int]]:
         """Yield the charts, each with its first window and that after its last."""

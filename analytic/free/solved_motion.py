@@ -193,22 +193,17 @@ class MachineMotion:
 
     @property
     def peak_speed_rad_s(self) -> float:
-        """The largest angular velocity of the driver."""
         return float(np.abs(self._looks[1]).max())
 
     @property
     def range_rad(self) -> float:
-        """Range of the driver's angle, from its smallest to its largest."""
         return float(np.ptp(self._looks[0]))
 
     @cached_property
     def law(self) -> IntegratedLaw:
-        """The driver's motion as a law."""
         return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
 
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """Return the motion at times [s], (T,), from 0 to ``until_s``; bounds include the error of
-        the integration. Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
         return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
@@ -238,7 +233,6 @@ class MachineMotion:
         return places_beside(self.scene, self.history, logged)
 
     def energy(self, time_s: Array) -> EnergyBalance:
-        """Return the energies at times [s], (T,). Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
         return history_energy(self.scene, self.history, instants)
@@ -253,12 +247,10 @@ class MachineMotion:
         return np.interp(time_s, *self._growth)
 
     def error_rad(self, time_s: Array) -> Array:
-        """Return the error of the driver's angle [rad], (T,)."""
         instants = samples(time_s, "time_s")
         u, off = self.history.state(instants)[0], self.doubt.at(instants)[0]
-        error, window = np.zeros_like(u), self.history.windows_at(instants)
-        for chart, first, last in self.history.legs():
-            at = (window >= first) & (window < last)
+        error = np.zeros_like(u)
+        for chart, at in self.history.charts_at(instants):
             _, slope, bend = chart.driver(u[at])
             error[at] = (np.abs(slope) + 0.5 * np.abs(bend) * off[at]) * off[at]
         return error
@@ -267,9 +259,7 @@ class MachineMotion:
         """Return angle, rate and acceleration of the driver."""
         u, v, a = self.history.state(time_s)
         theta, omega, alpha = np.empty_like(u), np.empty_like(u), np.empty_like(u)
-        window = self.history.windows_at(time_s)
-        for chart, first, last in self.history.legs():
-            at = (window >= first) & (window < last)
+        for chart, at in self.history.charts_at(time_s):
             phi, slope, bend = chart.driver(u[at])
             theta[at], omega[at] = phi, slope * v[at]
             alpha[at] = bend * v[at] ** 2 + slope * a[at]
@@ -293,13 +283,11 @@ def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> E
     u, v, _ = history.state(time_s)
     window = history.windows_at(time_s)
     series, before = _work(scene, history)
-    share = (time_s - history.starts_s[window]) / np.array([w.long_s for w in history.windows])[
-        window
-    ]
+    long_s = np.array([one.long_s for one in history.windows])[window]
+    share = (time_s - history.starts_s[window]) / long_s
     work = before[window] + sums(series[window], np.clip(share, 0.0, MOST))
     kinetic, potential = np.empty_like(u), np.empty_like(u)
-    for chart, first, last in history.legs():
-        at = (window >= first) & (window < last)
+    for chart, at in history.charts_at(time_s):
         if at.any():
             machine = Machine(scene, chart)
             wound = history.wound_at(window[at])
