@@ -169,11 +169,8 @@ class DrivenElasticMotion:
         now, seconds = self.instant(instants)
         motion = as_motion(assembly, instants, now.now, now.all_seconds(seconds))
         multipliers, torque = form.reactions(instants, now, seconds)
-        forces = joint_forces(
-            self.scene, assembly.joints.pin_pairs(), instants, -multipliers, torque
-        )
         self._check_slopes(motion)
-        return replace(motion, forces=forces)
+        return replace(motion, forces=joint_forces(assembly, instants, -multipliers, torque))
 
     def _check_slopes(self, motion: Motion) -> None:
         """Refuse deflections that are too large for the theory. Raises CrankcheckError."""

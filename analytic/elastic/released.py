@@ -117,9 +117,7 @@ class ReleasedElasticMotion:
             motion = as_motion(assembly, some, instant.now, instant.all_seconds)
             multipliers = self.form.multipliers(window.tangent, instant)
             driving = self.dynamics.forces.driving(some, instant.now)
-            forces = joint_forces(
-                self.scene, assembly.joints.pin_pairs(), some, -multipliers, driving
-            )
+            forces = joint_forces(assembly, some, -multipliers, driving)
             parts.append(replace(motion, forces=forces))
         return Motion.joined(parts)
 

@@ -9,7 +9,6 @@ and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1, 19
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +22,6 @@ from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Forces, SliderForces
-from models.scene import Scene
 
 WEAK = 1e-2
 """Singular value over the largest below which, in a change point, it counts as 0."""
@@ -205,25 +203,19 @@ def singular_error() -> CrankcheckError:
     )
 
 
-def joint_forces(
-    scene: Scene,
-    pin_pairs: Iterable[tuple[str, str, str]],
-    time_s: Array,
-    multipliers: Array,
-    torque: Array,
-) -> Forces:
+def joint_forces(assembly: Assembly, time_s: Array, multipliers: Array, torque: Array) -> Forces:
     """Return the multipliers of the equations of joints, in their order (T, m), as forces, with the
     driving torque (T,)."""
     pins: dict[str, dict[str, Array]] = {}
     row = 0
-    for point, first, other in pin_pairs:
+    for point, first, other in assembly.joints.pin_pairs():
         push = multipliers[:, row : row + 2]
         held = pins.setdefault(point, {})
         held[first] = held.get(first, 0.0) + push
         held[other] = held.get(other, 0.0) - push
         row += 2
     sliders: dict[str, SliderForces] = {}
-    for name in scene.sliders:
+    for name in assembly.scene.sliders:
         sliders[name] = SliderForces(multipliers[:, row], multipliers[:, row + 1])
         row += 2
     return Forces(time_s, pins, sliders, torque)

@@ -93,16 +93,12 @@ class MultibodyMotion:
     def at(self, time_s: Array) -> Motion:
         """Return the motion at times [s], (T,), with its reactions. Raises CrankcheckError for
         times beyond it."""
-        instants = samples(time_s, "time_s")
-        parts = []
+        instants, assembly, parts = samples(time_s, "time_s"), self.dynamics.assembly, []
         for some, now, _ in self._configurations(instants):
             seconds, multipliers = self._solved(some, now)
-            motion = as_motion(self.dynamics.assembly, some, now, seconds)
-            forces = joint_forces(
-                self.scene, self.dynamics.assembly.joints.pin_pairs(), some, -multipliers,
-                self.dynamics.forces.driving(some, now),
-            )  # fmt: skip
-            parts.append(replace(motion, forces=forces))
+            driving = self.dynamics.forces.driving(some, now)
+            forces = joint_forces(assembly, some, -multipliers, driving)
+            parts.append(replace(as_motion(assembly, some, now, seconds), forces=forces))
         return Motion.joined(parts)
 
     def outside(self, time_s: Array) -> Motion:

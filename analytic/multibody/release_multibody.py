@@ -30,10 +30,8 @@ def release_multibody(
     method: Method = PROJECTED,
     *,
     near: State | None = None,
-    flexible: Mapping[str, Flexible] = RIGID,
-    acting: Acting = GeneralisedForces,
 ) -> MultibodyMotion:
-    """Prepare the free motion of a scene from its start.
+    """Prepare the free motion of a scene of rigid links from its start.
 
     Parameters
     ----------
@@ -47,10 +45,6 @@ def release_multibody(
     near : State or None
         First guess of the start's position; None for a scene that names the angles of its links in
         ``[start]``.
-    flexible : Mapping
-        Makers of the bodies of its elastic links (`analytic.elastic.discretisation`), by name.
-    acting : Acting
-        Maker of the forces on an assembly at its start (n,).
 
     Raises
     ------
@@ -59,7 +53,7 @@ def release_multibody(
         freedom without mass; friction; an invalid time; an integration that fails.
     """
     check_duration(scene.name, until_s)
-    dynamics, q, rates = ready(scene, near, flexible, acting)
+    dynamics, q, rates = ready(scene, near)
     return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
 
 
@@ -71,7 +65,8 @@ def ready(
 ) -> tuple[Dynamics, Array, Array]:
     """Return the equations of a scene, and its coordinates and rates (n,) at the start.
 
-    Parameters and errors as in `release_multibody`.
+    ``flexible`` makes the bodies of its elastic links (`analytic.elastic.discretisation`), by name,
+    ``acting`` the forces on an assembly at its start (n,); the rest as in `release_multibody`.
     """
     if scene.friction:
         raise CrankcheckError(

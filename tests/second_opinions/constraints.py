@@ -6,7 +6,6 @@ Dynamics of Mechanical Systems, chapters 3 and 4.
 """
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -28,23 +27,19 @@ class Constraints:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self._assembly = Assembly(scene)
-        self.bodies, self.at = self._assembly.bodies, self._assembly.at
+        self.assembly = Assembly(scene)
+        self.bodies, self.at = self.assembly.bodies, self.assembly.at
         self.size = 3 * len(self.bodies)
-        equations = self._assembly.joints.count + 1
+        equations = self.assembly.joints.count + 1
         if equations != self.size:
             raise CrankcheckError(
                 f"{scene.name}: {equations} constraint equations for {self.size} coordinates; "
                 "a mechanism of mobility 1 has as many of each"
             )
 
-    def pin_pairs(self) -> Iterator[tuple[str, str, str]]:
-        """The point and the two bodies of every two equations of pins, in the order of ``phi``."""
-        return self._assembly.joints.pin_pairs()
-
     def motion(self, time_s: Array, q: Array, rates: Array, seconds: Array) -> Motion:
         """All links, points and sliders at coordinates with their rates and seconds, (T, 3 n)."""
-        return as_motion(self._assembly, time_s, self._assembly.at_rates(q, rates), seconds)
+        return as_motion(self.assembly, time_s, self.assembly.at_rates(q, rates), seconds)
 
     def _driver(self, q: Array, rates: Array) -> Course:
         """The driver's coordinate at coordinates and rates (T, 3 n) without second rates."""
@@ -54,19 +49,19 @@ class Constraints:
     def phi(self, q: Array, theta: float) -> Array:
         """The violation of each equation [m or rad] at the driver's coordinate ``theta`` [rad or
         m]; the angle of two moving links counts but for whole turns."""
-        rows = self._assembly.joints.gaps(self._assembly.at_rest(q[None]))[0]
+        rows = self.assembly.joints.gaps(self.assembly.at_rest(q[None]))[0]
         driver, off = self.scene.driver, float(self._driver(q[None], 0.0 * q[None])[0][0]) - theta
         turns = driver.slider is None and driver.base != GROUND
         return np.append(rows, math.remainder(off, math.tau) if turns else off)
 
     def jacobian(self, q: Array) -> Array:
         """Phi_q (3 n, 3 n); the driver's row has its rates by those of one coordinate each."""
-        rows = self._assembly.joints.jacobian(self._assembly.at_rest(q[None]))[0]
+        rows = self.assembly.joints.jacobian(self.assembly.at_rest(q[None]))[0]
         each = np.eye(self.size)
         return np.vstack([rows, self._driver(q + 0.0 * each, each)[1]])
 
     def gamma(self, q: Array, rates: Array, alpha: float) -> Array:
         """The right side of the acceleration equations: what q'' has to balance (3 n,)."""
-        now = self._assembly.at_rates(q[None], rates[None])
+        now = self.assembly.at_rates(q[None], rates[None])
         pull = float(self._driver(q[None], rates[None])[2][0])
-        return np.append(self._assembly.joints.gamma(now)[0], alpha - pull)
+        return np.append(self.assembly.joints.gamma(now)[0], alpha - pull)

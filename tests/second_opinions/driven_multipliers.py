@@ -146,8 +146,5 @@ class DrivenMultipliers:
         ]
         seconds, multipliers = (np.array(own) for own in zip(*solved, strict=True))
         motion = as_motion(assembly, instants, now, seconds)
-        forces = joint_forces(
-            assembly.scene, assembly.joints.pin_pairs(), instants, -multipliers[:, :-1],
-            -multipliers[:, -1],
-        )  # fmt: skip
+        forces = joint_forces(assembly, instants, -multipliers[:, :-1], -multipliers[:, -1])
         return replace(motion, forces=forces)

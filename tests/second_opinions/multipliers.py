@@ -78,7 +78,7 @@ def _settled(scene: Scene, system: Equations, motion: Motion) -> Forces:
                 pushed[:, at : at + 2] += force
                 pushed[:, at + 2] += torque + turning(bodies[name], own.place, force)
         multipliers = replace(system, applied=pushed).multipliers()
-        found = reactions(scene, system.constraints, motion.time_s, -multipliers)
+        found = reactions(system.constraints, motion.time_s, -multipliers)
         before = friction
         friction = {joint: own.friction(scene, joint, found) for joint, own in joints.items()}
         change = [np.abs(friction[joint] - before[joint]) for joint in joints]
@@ -164,7 +164,7 @@ def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> No
     right[:, at : at + 2] += mass * body.omega[:, None] ** 2 * arm
 
 
-def reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
+def reactions(system: Constraints, time_s: Array, pushes: Array) -> Forces:
     """What the multipliers mean: pushes along the gradients of the equations, in their order, the
     driver's last."""
-    return joint_forces(scene, system.pin_pairs(), time_s, pushes[:, :-1], pushes[:, -1])
+    return joint_forces(system.assembly, time_s, pushes[:, :-1], pushes[:, -1])

@@ -90,10 +90,7 @@ def _courses(report: Report, line: Line) -> list[dict[str, object]]:
 
 
 COURSES: Mapping[Clock, Callable[[Trace], tuple[str, Array]]] = {
-    TURNS: lambda trace: (
-        "angle of the driver [deg]",
-        np.degrees(first_turn(trace["driver_rad"])),
-    ),
+    TURNS: lambda trace: ("angle of the driver [deg]", np.degrees(first_turn(trace["driver_rad"]))),
     SECONDS: lambda trace: ("time [s]", trace["time_s"]),
 }
 """The abscissa of courses: its name, and its numbers (T,)."""
