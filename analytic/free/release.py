@@ -81,12 +81,13 @@ def _released(same: Same, until_s: float) -> FreeMotion:
 def _of_all_bodies(scene: Scene, until_s: float, reason: StructureError) -> BodiesMotion:
     """Return the motion by the equations of all bodies, as ``reason`` excludes any other."""
     try:
-        return BodiesMotion(release_multibody(scene, until_s))
+        free = release_multibody(scene, until_s)
     except CrankcheckError as error:
         raise StructureError(
             f"{reason} As a mechanism of other freedoms, by the equations of motion of all bodies, "
             f"it is not let go either: {error}"
         ) from None
+    return BodiesMotion(free.dynamics, free.method, free.until_s, free.start)
 
 
 def _of_one_freedom(scene: Scene, law: Released, until_s: float) -> MachineMotion:

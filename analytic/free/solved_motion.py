@@ -36,22 +36,12 @@ BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
 
 
 @dataclass(frozen=True, eq=False)
-class BodiesMotion:
-    """Motion of all bodies of a scene (`FreeMotion`), integrated at once as ``bodies``.
+class BodiesMotion(MultibodyMotion):
+    """Motion of all bodies of a scene (`FreeMotion`), integrated at once.
 
     No coordinate is special: `sensitivity` is that of all coordinates, `error_rad` that of the
     worst link. Bounds are estimates from a second integration.
     """
-
-    bodies: MultibodyMotion
-
-    @property
-    def scene(self) -> Scene:
-        return self.bodies.scene
-
-    @property
-    def until_s(self) -> float:
-        return self.bodies.until_s
 
     @property
     def passages(self) -> tuple[LimitPassage, ...]:
@@ -59,13 +49,8 @@ class BodiesMotion:
         return ()
 
     @property
-    def edges_s(self) -> tuple[float, ...]:
-        """Kinks of loads over time."""
-        return self.bodies.edges_s
-
-    @property
     def freedoms(self) -> int:
-        return self.bodies.dynamics.assembly.size - self.bodies.dynamics.rank
+        return self.dynamics.assembly.size - self.dynamics.rank
 
     @property
     def by_dyads(self) -> bool:
@@ -88,48 +73,42 @@ class BodiesMotion:
         return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
 
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
-        motion = replace(self.bodies.at(time_s), forces=None)
+        motion = replace(super().at(time_s), forces=None)
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
-        motion = self.bodies.outside(time_s)
+        motion = super().outside(time_s)
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
         """Return the motion with reactions without bounds of their own."""
         del bound
-        return replace(motion, forces=self.bodies.at(motion.time_s).forces)
+        return replace(motion, forces=super().at(motion.time_s).forces)
 
     def beside(self, logged: Motion) -> Motion:
-        assembly = self.bodies.dynamics.assembly
+        assembly = self.dynamics.assembly
         q = logged_places(assembly, logged, self.freedoms)
         return as_motion(assembly, logged.time_s, assembly.at_rest(q), np.zeros_like(q))
-
-    def energy(self, time_s: Array) -> EnergyBalance:
-        return self.bodies.energy(time_s)
-
-    def sensitivity(self, time_s: Array) -> Array:
-        return self.bodies.sensitivity(time_s)
 
     def error_rad(self, time_s: Array) -> Array:
         links = self._bound(samples(time_s, "time_s")).links.values()
         return np.asarray(np.max([one.theta for one in links], axis=0))
 
     def _driver(self, time_s: Array) -> tuple[Array, Array, Array]:
-        one = self.bodies.at(time_s).links[self.scene.driver.link]
+        one = super().at(time_s).links[self.scene.driver.link]
         return one.theta, one.omega, one.alpha
 
     @cached_property
     def _looks(self) -> tuple[Array, Motion]:
         """Instants, and the motion then."""
         time_s = np.linspace(0.0, self.until_s, LOOKS)
-        return time_s, self.bodies.at(time_s)
+        return time_s, super().at(time_s)
 
     @cached_property
     def _doubt(self) -> Bound:
         """Errors of all bodies until each of these instants."""
         time_s, motion = self._looks
-        other = replace(self.bodies, method=COARSER).at(time_s)
+        other = replace(self, method=COARSER).at(time_s, bound=False)
         return Bound(
             _apart(motion.links, other.links),
             _apart(motion.points, other.points),

@@ -60,7 +60,7 @@ class Baumgarte:
 Method = Projection | Baumgarte
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MultibodyMotion:
     """Free motion of a scene from its release at time 0 to ``until_s``, by one method."""
 

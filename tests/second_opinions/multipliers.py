@@ -40,20 +40,11 @@ SETTLED = 1e-14
 
 
 def forces(scene: Scene, motion: Motion) -> Forces:
-    """Driving torque and reactions, without bounds.
+    """Driving torque and reactions of a mechanism of mobility 1 without redundant links, without
+    bounds; of the accelerations of its motion the driver's alone is looked at.
 
-    Parameters
-    ----------
-    scene : Scene
-        A mechanism of mobility 1 without redundant links; its groups need no closed form.
-    motion : Motion
-        Its positions and velocities; of its accelerations the driver's alone is looked at.
-
-    Raises
-    ------
-    CrankcheckError
-        As many constraints as coordinates there are not, or they are singular at a sample; friction
-        that does not settle.
+    Raises CrankcheckError for constraints that are singular at a sample, or are not as many as the
+    coordinates; for friction that does not settle.
     """
     system = equations(scene, motion)
     try:

@@ -36,27 +36,11 @@ class Guess:
 
 
 def solve(scene: Scene, time_s: Array, guess: Guess) -> Motion:
-    """The motion of a scene from its full constraint equations.
+    """The motion of a scene of mobility 1 from its full constraint equations, without bounds, at
+    increasing times [s], (T,); the ``guess`` at the first time decides the branch.
 
-    Parameters
-    ----------
-    scene : Scene
-        A mechanism of mobility 1; its groups need no closed form.
-    time_s : Array
-        Increasing times [s], shape (T,).
-    guess : Guess
-        A rough position at the first time; it decides the branch.
-
-    Returns
-    -------
-    Motion
-        All links, points and sliders, without bounds.
-
-    Raises
-    ------
-    CrankcheckError
-        Newton's method does not converge from the guess, or the Jacobian is singular on the way;
-        times that are no numbers.
+    Raises CrankcheckError where Newton's method does not converge from the guess, or the Jacobian
+    is singular on the way; for times that are no numbers.
     """
     system = Constraints(scene)
     law = scene.driver.law

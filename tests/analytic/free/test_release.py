@@ -342,7 +342,7 @@ def test_what_leads_to_their_start_goes_on_through_it(pendulum: FreeMotion) -> N
 
 def test_their_error_covers_a_coarser_motion(pendulum: FreeMotion) -> None:
     assert isinstance(pendulum, BodiesMotion)
-    rough = BodiesMotion(replace(pendulum.bodies, method=Projection(1e-10)))
+    rough = replace(pendulum, method=Projection(1e-10))
     time_s = np.linspace(0.0, pendulum.until_s, 31)
     own, other = rough.at(time_s), pendulum.at(time_s)
     for name, link in own.links.items():
