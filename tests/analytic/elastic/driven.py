@@ -51,7 +51,6 @@ def turning(ratio: float = 10.5, rocker: float = 1.0, damping_s: float = 0.0) ->
 
 
 def form_of(scene: Scene, by: Discretisation = FEW) -> ReducedForm:
-    """Its equations of motion."""
     return DrivenElasticMotion(scene, 1.0, by, "periodic", stiffened=True).form
 
 

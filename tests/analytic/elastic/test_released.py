@@ -222,7 +222,6 @@ TURN_S = LAW.period_s
 
 
 def with_gains(scene: Scene, kp: float, kd: float) -> Scene:
-    """The scene with another controller."""
     return following(scene, Controlled(LAW.start_rad, LAW.speed_rad_s, kp, kd))
 
 
@@ -276,7 +275,6 @@ def test_under_control_a_crank_with_a_stiff_link_keeps_to_its_law() -> None:
 
 
 def test_without_gains_the_torque_that_it_needs_is_not_enough() -> None:
-    """The torque of the rigid mechanism alone lets the crank drift off."""
     alone = control_elastic(with_gains(SCENE, 0.0, 0.0), 0.35 * TURN_S, Modes(1))
     end = np.array([0.35 * TURN_S])
     assert largest(alone.at(end).links["crank"].theta - LAW.at(end)[0]) > 1e-3
