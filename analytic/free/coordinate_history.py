@@ -52,6 +52,10 @@ class CoordinateHistory:
     def starts_s(self) -> Array:
         return np.array([window.start_s for window in self.windows])
 
+    @cached_property
+    def long_s(self) -> Array:
+        return np.array([window.long_s for window in self.windows])
+
     @property
     def end_s(self) -> float:
         return self.windows[-1].end_s
@@ -70,7 +74,7 @@ class CoordinateHistory:
     def state(self, time_s: Array) -> tuple[Array, Array, Array]:
         """Return u, u' and u'' at times [s], (T,), each in the chart of its window."""
         k = self.windows_at(time_s)
-        start, long_ = self.starts_s[k], self._long_s[k]
+        start, long_ = self.starts_s[k], self.long_s[k]
         share = np.clip((time_s - start) / long_, 0.0, MOST)
         return self.at(k, share)
 
@@ -92,10 +96,6 @@ class CoordinateHistory:
             if k == len(self.windows) or self.windows[k].chart is not self.windows[first].chart:
                 yield self.windows[first].chart, first, k
                 first = k
-
-    @cached_property
-    def _long_s(self) -> Array:
-        return np.array([window.long_s for window in self.windows])
 
     @cached_property
     def _tables(self) -> tuple[Array, Array, Array]:

@@ -262,8 +262,7 @@ def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> E
     u, v, _ = history.state(time_s)
     window = history.windows_at(time_s)
     series, before = _work(scene, history)
-    long_s = np.array([one.long_s for one in history.windows])[window]
-    share = (time_s - history.starts_s[window]) / long_s
+    share = (time_s - history.starts_s[window]) / history.long_s[window]
     work = before[window] + sums(series[window], np.clip(share, 0.0, MOST))
     kinetic, potential = np.empty_like(u), np.empty_like(u)
     for chart, at in history.charts_at(time_s):
@@ -279,7 +278,7 @@ def _work(scene: Scene, history: CoordinateHistory) -> tuple[Array, Array]:
     """Return the series of the work in each window, and the work before it [J]."""
     n = history.windows[0].swing.shape[1]
     rule = gauss(n)
-    long_s = np.array([window.long_s for window in history.windows])
+    long_s = history.long_s
     power = np.empty((len(long_s), n))
     for chart, first, last in history.legs():
         times = history.starts_s[first:last, None] + long_s[first:last, None] * rule.places

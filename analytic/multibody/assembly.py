@@ -52,15 +52,17 @@ class Assembly:
             body: self._ask(body, None if body in flexible else (0.0, 0.0))
             for body in (GROUND, *self.bodies)
         }
-        self.tips, self.guides = {}, {}
+        self.tips, self.guides, carried = {}, {}, dict(scene.pins)
         for name, slider in scene.sliders.items():
             body = sliding_body(slider)
             self.tips[name] = self._ask(body, local_point(scene, body, slider.point))
             line = slider.direction_rad
             self.guides[name] = self._ask(slider.on, slider.through_m, line)
+            if slider.point not in scene.pins:
+                carried[slider.point] = (body,)
         self.carriers = {
             point: (names[0], self._ask(names[0], local_point(scene, names[0], point)))
-            for point, names in self._named_points()
+            for point, names in carried.items()
         }
         self._number_markers(flexible)
         self._make_parts({name: one for name, one in own.items() if name not in flexible}, flexible)
@@ -98,13 +100,6 @@ class Assembly:
             fixed = (place or (0.0, 0.0), angle_rad)
             return -1 - self._fixed.setdefault(fixed, len(self._fixed))
         return self._moving.setdefault((body, place, angle_rad), len(self._moving))
-
-    def _named_points(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield every named point with the bodies that carry it; points of blocks alone last."""
-        yield from self.scene.pins.items()
-        for slider in self.scene.sliders.values():
-            if slider.point not in self.scene.pins:
-                yield slider.point, (sliding_body(slider),)
 
     def _number_markers(self, flexible: Mapping[str, Flexible]) -> None:
         """Number the markers: those of rigid bodies, then of each elastic one, last the fixed ones

@@ -64,7 +64,11 @@ class Dynamics:
             )
         seconds, multipliers = np.empty_like(now.q), np.empty_like(bottom)
         for i in range(len(now.q)):
-            saddle = self._saddle(mass[i], jacobian[i], float(time_s[i]))
+            try:
+                saddle = Saddle(mass[i], jacobian[i], redundant=self.redundant)
+            except CrankcheckError as error:
+                name = assembly.scene.name
+                raise CrankcheckError(f"{name}: at {time_s[i]:g} s {error}") from None
             seconds[i], multipliers[i] = saddle.solve(top[i], bottom[i])
         return seconds, multipliers
 
@@ -75,12 +79,6 @@ class Dynamics:
         rows = np.swapaxes(self.assembly.joints.jacobian(now), 1, 2)
         each = zip(rows, right, strict=True)
         return np.array([np.linalg.lstsq(a, b, rcond=WEAK)[0] for a, b in each])
-
-    def _saddle(self, mass: Array, jacobian: Array, time_s: float) -> Saddle:
-        try:
-            return Saddle(mass, jacobian, redundant=self.redundant)
-        except CrankcheckError as error:
-            raise CrankcheckError(f"{self.assembly.scene.name}: at {time_s:g} s {error}") from None
 
     def rates(self, time_s: float, state: Array, strokes: Strokes) -> Array:
         """Return the derivative of a state by time: of q, q' and the work of loads and dampers;
@@ -138,6 +136,10 @@ SOFT = 1e-7
 """Regularisation s of a redundant system, over the largest entry of its inverse mass."""
 ROUNDS = 3
 """Number of corrections of a redundant system by its residual."""
+SINGULAR = (
+    "the equations of motion are singular: a freedom has no mass, or the mechanism is at a change "
+    "point, where accelerations are not determined"
+)
 SPARSE = 150
 """Number of unknowns from which on a sparse factorisation is quicker."""
 
@@ -171,12 +173,12 @@ class Saddle:
         if len(whole) < SPARSE:
             *self._factors, singular = lapack.dgetrf(whole.T)  # symmetric: its rows are columns
             if singular > 0:
-                raise singular_error()
+                raise CrankcheckError(SINGULAR)
         else:
             try:
                 self._sparse = splu(csc_array(whole))
             except RuntimeError:
-                raise singular_error() from None
+                raise CrankcheckError(SINGULAR) from None
 
     def solve(self, top: Array | float, bottom: Array | float) -> tuple[Array, Array]:
         """Return x (n,) and lambda (m,)."""
@@ -193,14 +195,6 @@ class Saddle:
         if len(self._whole) < SPARSE:
             return np.asarray(lapack.dgetrs(*self._factors, right)[0])
         return np.asarray(self._sparse.solve(right))
-
-
-def singular_error() -> CrankcheckError:
-    """Return the error of a system without a unique solution."""
-    return CrankcheckError(
-        "the equations of motion are singular: a freedom has no mass, or the mechanism is at a "
-        "change point, where accelerations are not determined"
-    )
 
 
 def joint_forces(assembly: Assembly, time_s: Array, multipliers: Array, torque: Array) -> Forces:

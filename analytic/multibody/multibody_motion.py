@@ -122,11 +122,6 @@ class MultibodyMotion:
         """Instants at which loads over time are not smooth [s]."""
         return tuple(edges(self.scene, self.until_s)[1:-1])
 
-    @property
-    def change_points_s(self) -> tuple[float, ...]:
-        """Instants of its change points [s]."""
-        return tuple(passage.at_s for passage in self._history.passages)
-
     def _passing(self, time_s: Array) -> Iterator[tuple[SingularPassage, Mask]]:
         """Yield the passages through change points, and the mask of the times [s] in each."""
         for passage in self._history.passages:

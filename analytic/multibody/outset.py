@@ -315,12 +315,9 @@ class StartPoses:
                 place = turned((x + far * c, y + far * s), angle)
                 self._known.setdefault(slider.point, (base[0] + place[0], base[1] + place[1]))
             if slider.point in self._known and body in self.angles and body not in self.origins:
-                self._settle_at(body, slider.point, name)
-
-    def _settle_at(self, body: str, point: str, name: str) -> None:
-        place = self._known[point]
-        if self._scene.sliders[name].link is None:
-            self.origins[body] = place
-        else:
-            arm = turned(local_point(self._scene, body, point), self.angles[body])
-            self._settle(body, (place[0] - arm[0], place[1] - arm[1]))
+                place = self._known[slider.point]
+                if slider.link is None:
+                    self.origins[body] = place
+                else:
+                    arm = turned(local_point(scene, body, slider.point), self.angles[body])
+                    self._settle(body, (place[0] - arm[0], place[1] - arm[1]))

@@ -29,7 +29,7 @@ from models.scene import Scene
 from models.scene.driver import driver_course
 from tests.second_opinions.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from tests.second_opinions.constraints import Constraints
-from tests.second_opinions.friction import rubbing_samples, turning
+from tests.second_opinions.friction import rubbing_samples
 from tests.second_opinions.spring_samples import springs_on_bodies
 
 REFINEMENTS = 2
@@ -67,7 +67,7 @@ def _settled(scene: Scene, system: Equations, motion: Motion) -> Forces:
             for name, force, torque in own.pushes(friction[joint]):
                 at = system.constraints.at[name]
                 pushed[:, at : at + 2] += force
-                pushed[:, at + 2] += torque + turning(bodies[name], own.place, force)
+                pushed[:, at + 2] += torque + cross(own.place - bodies[name].origin, force)
         multipliers = replace(system, applied=pushed).multipliers()
         found = reactions(system.constraints, motion.time_s, -multipliers)
         before = friction
@@ -121,8 +121,8 @@ def equations(scene: Scene, motion: Motion) -> Equations:
     system = Constraints(scene)
     bodies = body_samples(scene, motion)
     own = [bodies[name] for name in system.bodies]
-    q = np.concatenate([_columns(b.origin, b.theta) for b in own], axis=1)
-    rates = np.concatenate([_columns(b.velocity, b.omega) for b in own], axis=1)
+    q = np.column_stack([each for b in own for each in (b.origin, b.theta)])
+    rates = np.column_stack([each for b in own for each in (b.velocity, b.omega)])
     alpha = driver_course(scene, motion)[2]
     mass, applied = np.zeros((*q.shape, system.size)), np.zeros_like(q)
     for name, body in bodies.items():
@@ -139,10 +139,6 @@ def equations(scene: Scene, motion: Motion) -> Equations:
         mass,
         applied,
     )
-
-
-def _columns(places: Array, angles: Array) -> Array:
-    return np.concatenate([places, angles[:, None]], axis=1)
 
 
 def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> None:

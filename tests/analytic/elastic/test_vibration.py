@@ -206,14 +206,6 @@ def test_by_radaus_nodes_polynomials_up_to_their_order_are_exact(count: int) -> 
         np.testing.assert_allclose(twice, whole * rule.places / (power + 2), atol=1e-13)
 
 
-def test_two_and_three_of_radaus_nodes_are_those_of_the_book() -> None:
-    """Hairer and Wanner, table 5.5 and 5.6."""
-    np.testing.assert_allclose(radau(2).places, [1.0 / 3.0, 1.0], rtol=1e-14)
-    np.testing.assert_allclose(radau(2).once, [[5.0 / 12.0, -1.0 / 12.0], [0.75, 0.25]], rtol=1e-13)
-    inner = (4.0 + np.sqrt(6.0) * np.array([-1.0, 1.0])) / 10.0
-    np.testing.assert_allclose(radau(3).places, [*inner, 1.0], rtol=1e-13)
-
-
 def test_by_radaus_nodes_what_is_stiff_is_gone_after_a_step() -> None:
     """u' = -z u: the end of a step of 1 goes to 0 with 1/z, where Gauss' nodes keep it."""
     rule = radau(10)
