@@ -22,7 +22,7 @@ from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration, EnergyBalance
 from analytic.multibody.dynamics import Dynamics, joint_forces
-from analytic.multibody.generalised_forces import GeneralisedForces, edges
+from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.release_multibody import Acting, ready
 from models.array import Array, samples
 from models.errors import StructureError
@@ -84,16 +84,6 @@ class ReleasedElasticMotion:
     def form(self) -> TangentForm:
         """Equations in coordinates that are independent of each other."""
         return TangentForm(self.dynamics)
-
-    @property
-    def freedoms(self) -> int:
-        """Number of freedoms of the joints and of the shapes together."""
-        return self.assembly.size - self.dynamics.rank
-
-    @property
-    def edges_s(self) -> tuple[float, ...]:
-        """The instants at which loads over time are not smooth [s]."""
-        return tuple(edges(self.scene, self.until_s)[1:-1])
 
     @cached_property
     def windows(self) -> tuple[FreeWindow, ...]:

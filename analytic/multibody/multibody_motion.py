@@ -160,15 +160,6 @@ class MultibodyMotion:
         ]
         return EnergyBalance.joined(parts)
 
-    def gap(self, time_s: Array) -> Array:
-        """Return the largest violation of a constraint at times [s], [m or rad], (T,)."""
-        instants = samples(time_s, "time_s")
-        gaps = [
-            np.abs(self.dynamics.assembly.joints.gaps(now)).max(axis=1, initial=0.0)
-            for _, now, _ in self._configurations(instants)
-        ]
-        return np.concatenate(gaps)
-
     def _configurations(self, time_s: Array) -> Iterator[tuple[Array, Configuration, Array]]:
         """Yield times, all markers then, and the work until then, in blocks."""
         check_within(self.scene, time_s, self.until_s)
