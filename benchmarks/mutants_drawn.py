@@ -32,6 +32,16 @@ CHANGED = {
         "load.direction_rad - lean",
         "(load.direction_rad + lean)",
     ),
+    13: (
+        "return driver_course(self.scene, motion)",
+        "return driver_course(self.scene, motion)",
+        "pass",
+    ),
+    21: (
+        "yield self._in_window(int(k), instants[number == k])",
+        "number == k",
+        "(number != k)",
+    ),
     24: ("if error is not None:", "error is not None", "(not (error is not None))"),
     38: (
         "(-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned",

@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import Discretisation
 from analytic.elastic.elastic_motion import DrivenElasticMotion, ElasticHistory
-from analytic.elastic.released import Method, ReleasedElasticMotion, follow, release_elastic
+from analytic.elastic.released import ReleasedElasticMotion, release_elastic
 from analytic.forces.kinetostatics import forces
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
@@ -21,7 +21,7 @@ from models.errors import CrankcheckError
 from models.scene import Same, Scene
 from models.scene.characteristics import FourierSum
 from models.scene.cut_links import with_rigid_links
-from models.scene.driver import Controlled, Released, check_duration, let_go
+from models.scene.driver import Controlled, Released, let_go
 from models.scene.elastic import Shape
 
 
@@ -39,15 +39,12 @@ def elastic_history(
     ``tolerance`` is that of `release_elastic`, for free and controlled drivers. Raises
     CrankcheckError as `release_elastic`, and as `DrivenElasticMotion` where it is evaluated.
     """
-    match scene.driver.law:
-        case Controlled():
-            follow = control_elastic
-        case Released():
-            follow = release_elastic
-        case _:
-            return DrivenElasticMotion(scene, until_s, by, start, stiffened)
+    law = scene.driver.law
+    if not isinstance(law, Controlled | Released):
+        return DrivenElasticMotion(scene, until_s, by, start, stiffened)
     begun = replace(scene, start=replace(scene.start, shape=start))
-    return follow(begun, until_s, by, stiffened=stiffened, tolerance=tolerance)
+    release = control_elastic if isinstance(law, Controlled) else release_elastic
+    return release(begun, until_s, by, stiffened=stiffened, tolerance=tolerance)
 
 
 TURN_SAMPLES = (64, 128, 256, 512, 1024)
@@ -92,21 +89,16 @@ def control_elastic(
     by: Discretisation | None = None,
     *,
     stiffened: bool = True,
-    method: Method = "collocation",
     tolerance: float | None = None,
 ) -> ReleasedElasticMotion:
     """Prepare the motion of a scene with elastic links whose driver is controlled.
 
-    Parameters and errors otherwise as in `analytic.elastic.released.release_elastic`.
-
-    Raises
-    ------
-    CrankcheckError
-        A driver that follows another law, or none.
+    Parameters and errors as in `release_elastic`; raises CrankcheckError for another driver.
     """
     _controlled(scene)
-    check_duration(scene.name, until_s)
-    return follow(scene, until_s, by, stiffened, method, tolerance, ControlledForces)
+    return release_elastic(
+        scene, until_s, by, stiffened=stiffened, tolerance=tolerance, acting=ControlledForces
+    )
 
 
 def released_under_control(scene: Scene) -> Scene:

@@ -209,11 +209,6 @@ class SegmentedBody:
     count: int
     corrected: bool = False
 
-    @property
-    def spring_n_m_rad(self) -> float:
-        """The rate of one of the springs."""
-        return segment_spring(self.link, self.line.length_m, self.count, corrected=self.corrected)
-
     def body(self, markers: Sequence[Marker], gravity: Point) -> SegmentChain:
         return SegmentChain(self, markers, gravity)
 
@@ -243,7 +238,9 @@ class SegmentChain:
         self._second = self._mass * centres.T.conj() @ centres
         self._inertia = self._mass * self._piece**2 / 12.0
         self._mark(markers)
-        self.stiffness = np.eye(n - 1) * own.spring_n_m_rad
+        self.stiffness = np.eye(n - 1) * segment_spring(
+            own.link, own.line.length_m, n, corrected=own.corrected
+        )
         self.damping = own.link.damping_s * self.stiffness
 
     def _mark(self, markers: Sequence[Marker]) -> None:

@@ -30,7 +30,6 @@ from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array, samples
 from models.errors import CrankcheckError
-from models.motion import ElasticMotion as LinkShape
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.elastic import Shape
@@ -129,7 +128,6 @@ class DrivenElasticMotion:
         return kinks
 
     def _windows(self) -> int:
-        """Return the number of windows of the integration."""
         first = (e.frequency_rad_s for e in link_modes(self.scene, 1) if e.kind == "across")
         turns = self.until_s / self.scene.driver.law.period_s
         cycles = self.until_s * max(first, default=0.0) / math.tau
@@ -171,31 +169,20 @@ class DrivenElasticMotion:
         now, seconds = self.instant(instants)
         motion = as_motion(assembly, instants, now.now, now.all_seconds(seconds))
         multipliers, torque = form.reactions(instants, now, seconds)
-        forces = joint_forces(
-            self.scene, assembly.joints.pin_pairs(), instants, -multipliers, torque
-        )
-        return replace(motion, forces=forces, elastic=self._shapes(now.now.q))
+        self._check_slopes(motion)
+        return replace(motion, forces=joint_forces(assembly, instants, -multipliers, torque))
 
-    def _shapes(self, q: Array) -> dict[str, LinkShape]:
-        """Return the deflection and extension of the links at coordinates (T, n). Raises
-        CrankcheckError where they are too large for the theory."""
-        found = {
-            name: LinkShape(
-                body.deflections(q[:, own], np.array([0.5 * body.length_m]))[:, 0],
-                body.extension(q[:, own]),
-            )
-            for name, (body, own) in self.form.assembly.elastic.items()
-        }
-        for name, shape in found.items():
+    def _check_slopes(self, motion: Motion) -> None:
+        """Refuse deflections that are too large for the theory. Raises CrankcheckError."""
+        for name, shape in motion.elastic.items():
             share = float(np.abs(shape.middle).max(initial=0.0))
-            share /= self.form.assembly.elastic[name][0].length_m
+            share /= self.assembly.elastic[name][0].length_m
             if share > MOST_BENT and not isinstance(self.by, Segments):
                 raise CrankcheckError(
                     f"{self.scene.name}: {name} bends by {share:.2g} of its length, which is too "
                     f"far for a beam of small slopes: up to {MOST_BENT:g} it is one; make it "
                     "stiffer, or drive slower"
                 )
-        return found
 
 
 JUMP = 1e-6

@@ -6,7 +6,6 @@ the means over a turn.
 """
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +14,6 @@ from analytic.elastic.reduced import ReducedForm
 from models.array import Array
 from models.scene import Scene
 from models.scene.cut_links import line_of
-from models.scene.elastic import ElasticLink
 from models.scene.laws import ConstantSpeed
 
 SHOWN = 3
@@ -112,62 +110,36 @@ def sensitivity(form: ReducedForm, z: Array, change: Array) -> FrequencySensitiv
     size = whole / largest if largest else 0.0
     orders = np.abs(np.fft.rfft(change, axis=0))
     order, coefficient = np.unravel_index(int(orders.argmax()), orders.shape)
-    return FrequencySensitivity(size, int(order), links_of(form)[int(coefficient)])
-
-
-def links_of(form: ReducedForm) -> list[str]:
-    """Return the link of every coefficient, (m,)."""
     every = form.assembly.elastic.items()
-    return [name for name, (_, own) in every for _ in range(own.start + 3, own.stop)]
+    links = [name for name, (_, own) in every for _ in range(own.start + 3, own.stop)]
+    return FrequencySensitivity(size, int(order), links[int(coefficient)])
 
 
 def resonance_text(form: ReducedForm, found: FrequencySensitivity) -> str:
     """Return the text of a resonance: its mode and its cures."""
     scene = form.assembly.scene
-    turning = math.tau / form.period_s
-    mode = nearest_mode(form, found.link, found.order * turning)
+    turning, speed = math.tau / form.period_s, ""
     text = f"{scene.name}: a resonance: elastic.{found.link} vibrates at order {found.order} of the"
     text += f" driver, {turning:.6g} rad/s"
-    if mode is not None:
-        kind, number, frequency = mode
+    if mode := _nearest_mode(scene, found.link, found.order * turning):
+        frequency = mode.frequency_rad_s
         text += (
-            f"; its mode {number} {kind} has {frequency:.6g} rad/s, {frequency / turning:.4g} "
-            "times that"
+            f"; its mode {mode.number} {mode.kind} has {frequency:.6g} rad/s, "
+            f"{frequency / turning:.4g} times that"
         )
-    text += f". One percent of stiffness changes its deflection by {_percent(found.size)}: "
+        if isinstance(form.law, ConstantSpeed):
+            speed = f" ({frequency / (found.order + 0.5):.4g} rad/s is half-way to the next)"
+    change = f"{found.size:.0f} %" if found.size < 1e4 else "any amount"
+    more = "more " * any(own.damping_s for own in scene.elastic.values())
     return (
-        text + "take another speed" + _speed(form, found, mode) + _damping(scene.elastic.values())
+        f"{text}. One percent of stiffness changes its deflection by {change}: take another speed"
+        f"{speed}, or give elastic links {more}damping_s"
     )
 
 
-def nearest_mode(form: ReducedForm, link: str, rad_s: float) -> tuple[str, int, float] | None:
-    """Return the mode of a link, between its pins alone, with the nearest frequency: across or
-    along, its number and its frequency [rad/s]. None for an order of 0."""
+def _nearest_mode(scene: Scene, link: str, rad_s: float) -> LinkMode | None:
+    """Return the mode of a link with the nearest frequency; None for a frequency of 0."""
     if not rad_s:
         return None
-    own, line = form.assembly.scene.elastic[link], line_of(form.assembly.scene, link)
-    modes: list[tuple[str, int, float]] = []
-    for k in range(1, MODES + 1):
-        if own.bends:
-            modes.append(("across", k, own.bending_rad_s(line.length_m, line.density_kg_m, k)))
-        if own.stretches:
-            modes.append(("along", k, own.axial_rad_s(line.length_m, line.density_kg_m, k)))
-    return min(modes, key=lambda mode: abs(math.log(mode[2] / rad_s)))
-
-
-def _percent(size: float) -> str:
-    return f"{size:.0f} %" if size < 1e4 else "any amount"
-
-
-def _speed(
-    form: ReducedForm, found: FrequencySensitivity, mode: tuple[str, int, float] | None
-) -> str:
-    """Return a speed half-way to the next resonance of the same mode."""
-    if mode is None or not isinstance(form.law, ConstantSpeed):
-        return ""
-    return f" ({mode[2] / (found.order + 0.5):.4g} rad/s is half-way to the next)"
-
-
-def _damping(links: Iterable[ElasticLink]) -> str:
-    damped = any(own.damping_s for own in links)
-    return f", or give elastic links {'more ' * damped}damping_s"
+    modes = (mode for mode in link_modes(scene, MODES) if mode.link == link)
+    return min(modes, key=lambda mode: abs(math.log(mode.frequency_rad_s / rad_s)))

@@ -122,7 +122,8 @@ class PeriodicMotion:
     @property
     def decay(self) -> float:
         """Last coefficient of the Fourier series, over the largest."""
-        return decay(self.z)
+        series = np.abs(np.fft.rfft(self.z, axis=0))
+        return float(series[-1].max() / (series.max() or 1.0))
 
 
 def periodic_motion(form: ReducedForm, fewest: int = FEWEST) -> PeriodicMotion:
@@ -135,7 +136,9 @@ def periodic_motion(form: ReducedForm, fewest: int = FEWEST) -> PeriodicMotion:
         A resonance; links that bend too far; a drive or loads that do not repeat after a turn.
     """
     check_periodic(form)
-    linear = found = _first(form, fewest)
+    small = FIRST * form.assembly.scene.longest_m
+    about_rigid = linearise(form, instants(fewest, form.period_s), small)
+    linear = found = linear_motion(form, about_rigid)
     while True:
         z, change = _met(form, found.z)
         found = _looked_at(form, z, change)
@@ -178,26 +181,15 @@ def linear_motion(form: ReducedForm, linear: LinearForm) -> PeriodicMotion:
     """Solve linearised equations for their periodic motion at an odd number of instants of a
     period: by harmonic balance, which is collocation at these instants.
 
-    Raises
-    ------
-    CrankcheckError
-        A resonance.
+    Raises CrankcheckError at a resonance.
     """
-    return _looked_at(form, *balanced(linear, form.period_s, form.stiffness))
+    factors = lu_factor(balance(linear, form.period_s))
+    z = _solved(factors, linear.force)
+    return _looked_at(form, z, _solved(factors, z @ form.stiffness))
 
 
-def balanced(linear: LinearForm, period_s: float, stiffness: Array) -> tuple[Array, Array]:
-    """Return the coefficients (N, m) that solve linearised equations, and their change for links of
-    twice the ``stiffness`` (m, m)."""
-    factors = lu_factor(balance(linear, period_s))
-    z = lu_solve(factors, linear.force.ravel()).reshape(linear.force.shape)
-    return z, lu_solve(factors, (z @ stiffness).ravel()).reshape(z.shape)
-
-
-def _first(form: ReducedForm, count: int) -> PeriodicMotion:
-    """Return the motion linearised about the rigid mechanism, at so many instants."""
-    time_s = instants(count, form.period_s)
-    return linear_motion(form, linearise(form, time_s, FIRST * form.assembly.scene.longest_m))
+def _solved(factors: tuple[Array, Array], right: Array) -> Array:
+    return np.asarray(lu_solve(factors, right.ravel()).reshape(right.shape))
 
 
 def _looked_at(form: ReducedForm, z: Array, change: Array) -> PeriodicMotion:
@@ -240,11 +232,11 @@ def _met(form: ReducedForm, start: Array) -> tuple[Array, Array]:
         except CrankcheckError:  # the joints can not be closed
             break
         left = now.force - (now.mass @ seconds[:, :, None])[:, :, 0]
-        step = lu_solve(factors, left.ravel()).reshape(z.shape)
+        step = _solved(factors, left)
         z = z + step
         last, size = size, float(np.abs(step).max())
         if size <= CLOSE * largest or (size < 1e-9 * largest and size >= 0.5 * last):
-            return z, lu_solve(factors, (z @ form.stiffness).ravel()).reshape(z.shape)
+            return z, _solved(factors, z @ form.stiffness)
         if not size < unit:
             break
         if size > SLOW * last:
@@ -268,10 +260,3 @@ def derivative(count: int, period_s: float) -> Array:
     matrix = np.where((k[:, None] - k) % 2, -0.5, 0.5) / np.sin(apart)
     np.fill_diagonal(matrix, 0.0)
     return np.asarray(matrix * 2.0 * np.pi / period_s)
-
-
-def decay(z: Array) -> float:
-    """Return the last coefficient of the Fourier series of periodic values (N, m), over the
-    largest."""
-    series = np.abs(np.fft.rfft(z, axis=0))
-    return float(series[-1].max() / (series.max() or 1.0))

@@ -12,7 +12,7 @@ the multibody form with multipliers but for the equations of the joints themselv
 R. von Schwerin, MultiBody System SIMulation, chapter 2 (coordinate partitioning).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -171,23 +171,18 @@ class ReducedForm:
     @cached_property
     def stiffness(self) -> Array:
         """Stiffness matrix of the elastic links, (m, m)."""
-        return self._of_links({name: body.stiffness for name, (body, _) in self._elastic.items()})
+        return self._of_links(lambda body: body.stiffness)
 
     @cached_property
     def damping(self) -> Array:
         """Damping matrix of the elastic links, (m, m)."""
-        return self._of_links({name: body.damping for name, (body, _) in self._elastic.items()})
+        return self._of_links(lambda body: body.damping)
 
-    @property
-    def _elastic(self) -> dict[str, tuple[FlexibleBody, slice]]:
-        return self.assembly.elastic
-
-    def _of_links(self, each: Mapping[str, Array]) -> Array:
-        """Assemble the matrices of each elastic link's coefficients to one of all."""
+    def _of_links(self, matrix: Callable[[FlexibleBody], Array]) -> Array:
         whole = np.zeros((self.assembly.size, self.assembly.size))
-        for name, (_, own) in self._elastic.items():
+        for body, own in self.assembly.elastic.values():
             at = slice(own.start + 3, own.stop)
-            whole[at, at] = each[name]
+            whole[at, at] = matrix(body)
         sizes = np.outer(self._sizes, self._sizes)
         return np.asarray(whole[np.ix_(self._free, self._free)] * sizes)
 

@@ -1,8 +1,8 @@
 """Free motion of a mechanism with elastic links, with all their vibration.
 
-It has as many coordinates as freedoms, integrated by collocation (`by_collocation`), or by a stiff
-method of a library (`by_library`). The equations with a multiplier for every joint and an explicit
-method (`analytic.multibody.release_multibody`) are a third way to the same motion.
+It has as many coordinates as freedoms, integrated by collocation. The equations with a multiplier
+for every joint and an explicit method (`analytic.multibody.release_multibody`) are another way to
+the same motion.
 """
 
 from __future__ import annotations
@@ -10,25 +10,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 
-from analytic.elastic.discretisation import (
-    Discretisation,
-    ElasticDoubt,
-    Modes,
-    Segments,
-    flexible_links,
-)
-from analytic.elastic.free_windows import FreePiece, by_collocation, by_library, check_smooth
+from analytic.elastic import discretisation
+from analytic.elastic.discretisation import Discretisation, ElasticDoubt, Modes, Segments
+from analytic.elastic.free_windows import FreeWindow, by_collocation, check_smooth
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration, EnergyBalance
 from analytic.multibody.dynamics import Dynamics, joint_forces
-from analytic.multibody.generalised_forces import GeneralisedForces, edges
+from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.release_multibody import Acting, ready
 from models.array import Array, samples
 from models.errors import StructureError
@@ -36,9 +30,8 @@ from models.motion import Motion, State
 from models.scene import Scene
 from models.scene.driver import check_duration, check_within
 
-Method = Literal["collocation", "library"]
-PieceInstants = tuple[Array, FreePiece, FreeInstant, Array]
-"""Times (T,), their piece, the equations and the work until then."""
+WindowInstants = tuple[Array, FreeWindow, FreeInstant, Array]
+"""Times (T,), their window, the equations and the work until then."""
 TOLERANCE = 1e-11
 WITH_AXIAL = 1e-10
 """The tolerance where links stretch: they ring along themselves a thousand times faster than
@@ -60,13 +53,12 @@ class ReleasedElasticMotion:
     until_s: float
     by: Discretisation
     stiffened: bool
-    method: Method
     tolerance: float
     acting: Acting = GeneralisedForces
 
     @cached_property
     def _ready(self) -> tuple[Dynamics, Array, Array]:
-        flexible = flexible_links(self.scene, self.by, stiffened=self.stiffened)
+        flexible = discretisation.flexible_links(self.scene, self.by, stiffened=self.stiffened)
         return ready(self.scene, assembled(self.scene), flexible, self.acting)
 
     @property
@@ -93,21 +85,10 @@ class ReleasedElasticMotion:
         """Equations in coordinates that are independent of each other."""
         return TangentForm(self.dynamics)
 
-    @property
-    def freedoms(self) -> int:
-        """Number of freedoms of the joints and of the shapes together."""
-        return self.dynamics.assembly.size - self.dynamics.rank
-
-    @property
-    def edges_s(self) -> tuple[float, ...]:
-        """The instants at which loads over time are not smooth [s]."""
-        return tuple(edges(self.scene, self.until_s)[1:-1])
-
     @cached_property
-    def pieces(self) -> tuple[FreePiece, ...]:
-        """The motion, one piece after the other."""
-        integrate = by_collocation if self.method == "collocation" else by_library
-        return integrate(self.form, *self.start, self.until_s, self.tolerance)
+    def windows(self) -> tuple[FreeWindow, ...]:
+        """The motion, one window after the other."""
+        return by_collocation(self.form, *self.start, self.until_s, self.tolerance)
 
     def at(self, time_s: Array) -> Motion:
         """Return the motion at times [s], (T,) in ascending order, with its reactions and shapes.
@@ -118,17 +99,15 @@ class ReleasedElasticMotion:
         """Return the motion that leads to the start, at times below 0 [s], (T,), or that goes on
         from the end, at times above ``until_s``: within a step of it, where some engines have the
         velocities of their first or last sample."""
-        return self._motion([self._in_piece(0 if time_s[-1] < 0.0 else -1, time_s)])
+        return self._motion([self._in_window(0 if time_s[-1] < 0.0 else -1, time_s)])
 
-    def _motion(self, instants: Iterable[PieceInstants]) -> Motion:
-        assembly, parts = self.dynamics.assembly, []
-        for some, piece, instant, _ in instants:
+    def _motion(self, instants: Iterable[WindowInstants]) -> Motion:
+        assembly, parts = self.assembly, []
+        for some, window, instant, _ in instants:
             motion = as_motion(assembly, some, instant.now, instant.all_seconds)
-            multipliers = self.form.multipliers(piece.tangent, instant)
+            multipliers = self.form.multipliers(window.tangent, instant)
             driving = self.dynamics.forces.driving(some, instant.now)
-            forces = joint_forces(
-                self.scene, assembly.joints.pin_pairs(), some, -multipliers, driving
-            )
+            forces = joint_forces(assembly, some, -multipliers, driving)
             parts.append(replace(motion, forces=forces))
         return Motion.joined(parts)
 
@@ -165,19 +144,18 @@ class ReleasedElasticMotion:
         own = self.at(time_s)
         return ElasticDoubt.between(own, self.finer.at(time_s), self.coarser.at(time_s)).so_far
 
-    def _instants(self, time_s: Array) -> Iterator[PieceInstants]:
-        """Yield the instants of all pieces, one after the other."""
+    def _instants(self, time_s: Array) -> Iterator[WindowInstants]:
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
-        ends = np.array([piece.end_s for piece in self.pieces[:-1]])
+        ends = np.array([window.end_s for window in self.windows[:-1]])
         number = np.searchsorted(ends, instants, side="right")
         for k in np.unique(number):
-            yield self._in_piece(int(k), instants[number == k])
+            yield self._in_window(int(k), instants[number == k])
 
-    def _in_piece(self, number: int, time_s: Array) -> PieceInstants:
-        piece = self.pieces[number]
-        y, rates, work = piece.course(time_s)
-        return time_s, piece, self.form.at(time_s, piece.tangent, y, rates), work
+    def _in_window(self, number: int, time_s: Array) -> WindowInstants:
+        window = self.windows[number]
+        y, rates, work = window.course(time_s)
+        return time_s, window, self.form.at(time_s, window.tangent, y, rates), work
 
 
 def release_elastic(
@@ -186,8 +164,8 @@ def release_elastic(
     by: Discretisation | None = None,
     *,
     stiffened: bool = True,
-    method: Method = "collocation",
     tolerance: float | None = None,
+    acting: Acting = GeneralisedForces,
 ) -> ReleasedElasticMotion:
     """Prepare the free motion of a scene with elastic links from its start.
 
@@ -202,11 +180,11 @@ def release_elastic(
         Description of its elastic links; None for `Modes`.
     stiffened : bool
         Keep the shortening of bent links; the thesis leaves it out.
-    method : "collocation" or "library"
-        By windows of our own, or by the library's method for stiff equations.
     tolerance : float or None
-        Tolerance of a window, or a step, over the longest link or in radians; None for 1e-11, or
-        1e-10 with links that stretch.
+        Tolerance of a window, over the longest link or in radians; None for 1e-11, or 1e-10 with
+        links that stretch.
+    acting : Acting
+        Maker of the forces on an assembly at its start (n,).
 
     Raises
     ------
@@ -214,28 +192,12 @@ def release_elastic(
         As `release_multibody`; loads with kinks over the state, which collocation does not take.
     """
     check_duration(scene.name, until_s)
-    return follow(scene, until_s, by, stiffened, method, tolerance, GeneralisedForces)
-
-
-def follow(
-    scene: Scene,
-    until_s: float,
-    by: Discretisation | None,
-    stiffened: bool,
-    method: Method,
-    tolerance: float | None,
-    acting: Acting,
-) -> ReleasedElasticMotion:
-    """Prepare the motion under ``acting`` forces. Parameters and errors as `release_elastic`."""
     if tolerance is None:
         axial = any(link.stretches for link in scene.elastic.values())
         tolerance = WITH_AXIAL if axial else TOLERANCE
-    motion = ReleasedElasticMotion(
-        scene, float(until_s), by or Modes(), stiffened, method, tolerance, acting
-    )
-    assert motion.form  # raises what there is to raise now
-    if method == "collocation":
-        check_smooth(motion.form)
+    by = by or Modes()
+    motion = ReleasedElasticMotion(scene, float(until_s), by, stiffened, tolerance, acting)
+    check_smooth(motion.form)
     return motion
 
 

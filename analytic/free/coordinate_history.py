@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from analytic.dyads.plane import EPS
 from analytic.free.chart import Chart
 from analytic.free.window import gauss, sums
-from models.array import Array
+from models.array import Array, Mask
 
 MOST = 1.001
 """Range in which polynomials are used, over that in which they were solved for."""
@@ -52,6 +52,10 @@ class CoordinateHistory:
     def starts_s(self) -> Array:
         return np.array([window.start_s for window in self.windows])
 
+    @cached_property
+    def long_s(self) -> Array:
+        return np.array([window.long_s for window in self.windows])
+
     @property
     def end_s(self) -> float:
         return self.windows[-1].end_s
@@ -70,7 +74,7 @@ class CoordinateHistory:
     def state(self, time_s: Array) -> tuple[Array, Array, Array]:
         """Return u, u' and u'' at times [s], (T,), each in the chart of its window."""
         k = self.windows_at(time_s)
-        start, long_ = self.starts_s[k], self._long_s[k]
+        start, long_ = self.starts_s[k], self.long_s[k]
         share = np.clip((time_s - start) / long_, 0.0, MOST)
         return self.at(k, share)
 
@@ -79,6 +83,12 @@ class CoordinateHistory:
         u, v, a = (sums(table[windows], share) for table in self._tables)
         return u, v, a
 
+    def charts_at(self, time_s: Array) -> Iterator[tuple[Chart, Mask]]:
+        """Yield the charts, each with the mask of the times [s] in it, (T,)."""
+        window = self.windows_at(time_s)
+        for chart, first, last in self.legs():
+            yield chart, (window >= first) & (window < last)
+
     def legs(self) -> Iterator[tuple[Chart, int, int]]:
         """Yield the charts, each with its first window and that after its last."""
         first = 0
@@ -86,10 +96,6 @@ class CoordinateHistory:
             if k == len(self.windows) or self.windows[k].chart is not self.windows[first].chart:
                 yield self.windows[first].chart, first, k
                 first = k
-
-    @cached_property
-    def _long_s(self) -> Array:
-        return np.array([window.long_s for window in self.windows])
 
     @cached_property
     def _tables(self) -> tuple[Array, Array, Array]:

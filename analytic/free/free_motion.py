@@ -96,15 +96,12 @@ class FreeMotion(Protocol):
         """Error of the driver's angle [rad], (T,); with several freedoms, of any link."""
 
 
-AngleHistory = Callable[[Array], tuple[Array, Array, Array]]
-"""Angle [rad], rate [rad/s] and acceleration [rad/s^2] at times [s]."""
-
-
 @dataclass(frozen=True, eq=False)
 class IntegratedLaw(Law):
-    """Motion of a free driver from ``start_s`` to ``end_s``, from an integration."""
+    """Motion of a free driver from ``start_s`` to ``end_s``: ``history`` has its angle [rad], rate
+    [rad/s] and acceleration [rad/s^2] at times [s]."""
 
-    history: AngleHistory
+    history: Callable[[Array], tuple[Array, Array, Array]]
     start_s: float
     end_s: float
     peak_rad_s: float

@@ -77,7 +77,6 @@ class Integration:
             check_count(self.scene, self.until_s, self.pace)
 
     def _step(self, border_s: float, way: float) -> None:
-        """Integrate one window."""
         left = border_s - self.now_s
         long_s = min(self.long_s, left)
         if 0.5 * left < long_s < left:
@@ -145,17 +144,18 @@ class Integration:
             long_s *= max(LEAST, min(share, 0.8)) if solved.converged else 0.5
             aimed, rough = 0, None
         self.pace.check_runaway(self.scene, self.now_s)
+        phi, _, _ = self.machine.chart.driver(np.array([self.u]))
         raise failed or CrankcheckError(
             f"{self.scene.name}: its free motion is lost at {self.now_s:.6g} s, with "
-            f"{self.scene.driver.link} at {self._driver_deg():.6g} deg: what acts, or what moves, "
-            "is not smooth there, or has no mass"
+            f"{self.scene.driver.link} at {math.degrees(float(phi[0])):.6g} deg: what acts, or "
+            "what moves, is not smooth there, or has no mass"
         )
 
     def _start(self, long_s: float, way: float) -> tuple[float, float]:
         """Return the acceleration at, or just after, a window's start, and its slope [1/s]."""
-        if self.windows and self.windows[-1].bends and self._goes_on:
+        before = self.windows[-1] if self.windows and not self._heeds_way else None
+        if before is not None and before.bends and before.chart is self.machine.chart:
             # Tables bend there and do not jump: start as the window before ended.
-            before = self.windows[-1]
             orders = np.arange(len(before.a))
             return float(before.a.sum()), float(orders * (orders + 1) @ before.a) / before.long_s
         after_s = 1e-3 * long_s
@@ -188,11 +188,6 @@ class Integration:
             max(1.0, abs(self.u)) if self.machine.chart.limit is None else 1.0, self.fastest
         )
 
-    @property
-    def _goes_on(self) -> bool:
-        """True if the chart is that of the window before, and no force has a direction."""
-        return self.windows[-1].chart is self.machine.chart and not self._heeds_way
-
     @cached_property
     def _heeds_way(self) -> bool:
         return heeds_direction(self.scene)
@@ -207,9 +202,6 @@ class Integration:
             return None
         smooth = bool(self.windows) and not self.windows[-1].bends
         return WindowKinks(self.machine, self.rule, smooth)
-
-    def _driver_deg(self) -> float:
-        return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
 
     def _way(self, time_s: Array) -> Array:
         """Return the direction out of rest, 0 where the machine is held, at times [s], (T,)."""

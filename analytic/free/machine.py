@@ -12,7 +12,7 @@ Mechanisms, on reduced masses.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -35,15 +35,11 @@ UNWOUND: Wound = {}
 TAU = 2.0 * np.pi
 
 
-@dataclass(frozen=True, eq=False)
 class Machine:
     """Scene with one freedom, reduced to a coordinate: by default the driver's angle.
 
     Raises CrankcheckError for friction that follows from the reactions.
     """
-
-    scene: Scene
-    chart: Chart
 
     def __init__(self, scene: Scene, chart: Chart | None = None) -> None:
         if scene.coulomb_joints:
@@ -52,8 +48,8 @@ class Machine:
                 "bears, which free motion does not know before it is solved; give it a size "
                 "that is constant"
             )
-        object.__setattr__(self, "scene", scene)
-        object.__setattr__(self, "chart", chart or Chart(LimitedScene(scene, None), None))
+        self.scene = scene
+        self.chart = chart or Chart(LimitedScene(scene, None), None)
 
     def inertia(self, u: Array) -> tuple[Array, Array]:
         """Return J and J' at coordinates (T,)."""

@@ -62,7 +62,6 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
 
 @lru_cache(maxsize=KEPT)
 def _released(same: Same, until_s: float) -> FreeMotion:
-    """Return the motion of a scene, kept in a cache."""
     scene = same.scene
     law = scene.driver.law
     if scene.elastic:
@@ -82,16 +81,16 @@ def _released(same: Same, until_s: float) -> FreeMotion:
 def _of_all_bodies(scene: Scene, until_s: float, reason: StructureError) -> BodiesMotion:
     """Return the motion by the equations of all bodies, as ``reason`` excludes any other."""
     try:
-        return BodiesMotion(release_multibody(scene, until_s))
+        free = release_multibody(scene, until_s)
     except CrankcheckError as error:
         raise StructureError(
             f"{reason} As a mechanism of other freedoms, by the equations of motion of all bodies, "
             f"it is not let go either: {error}"
         ) from None
+    return BodiesMotion(free.dynamics, free.method, free.until_s, free.start)
 
 
 def _of_one_freedom(scene: Scene, law: Released, until_s: float) -> MachineMotion:
-    """Return the motion by the equation of the machine."""
     chart = Chart.at(LimitedScene.of(scene, law.start_rad), law.start_rad, {})
     machine = Machine(scene, chart)
     u, v = chart.state(law.start_rad, law.speed_rad_s)
@@ -117,7 +116,6 @@ def _integrated(
 
 
 def _passages(history: CoordinateHistory) -> Iterator[LimitPassage]:
-    """Yield the limits that the motion passes, one after the other."""
     for window in history.windows:
         limit = window.chart.limit
         if limit is None:

@@ -36,22 +36,12 @@ BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
 
 
 @dataclass(frozen=True, eq=False)
-class BodiesMotion:
-    """Motion of all bodies of a scene (`FreeMotion`), integrated at once as ``bodies``.
+class BodiesMotion(MultibodyMotion):
+    """Motion of all bodies of a scene (`FreeMotion`), integrated at once.
 
     No coordinate is special: `sensitivity` is that of all coordinates, `error_rad` that of the
     worst link. Bounds are estimates from a second integration.
     """
-
-    bodies: MultibodyMotion
-
-    @property
-    def scene(self) -> Scene:
-        return self.bodies.scene
-
-    @property
-    def until_s(self) -> float:
-        return self.bodies.until_s
 
     @property
     def passages(self) -> tuple[LimitPassage, ...]:
@@ -59,13 +49,8 @@ class BodiesMotion:
         return ()
 
     @property
-    def edges_s(self) -> tuple[float, ...]:
-        """Kinks of loads over time."""
-        return self.bodies.edges_s
-
-    @property
     def freedoms(self) -> int:
-        return self.bodies.dynamics.assembly.size - self.bodies.dynamics.rank
+        return self.dynamics.assembly.size - self.dynamics.rank
 
     @property
     def by_dyads(self) -> bool:
@@ -88,48 +73,42 @@ class BodiesMotion:
         return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
 
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
-        motion = replace(self.bodies.at(time_s), forces=None)
+        motion = replace(super().at(time_s), forces=None)
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
-        motion = self.bodies.outside(time_s)
+        motion = super().outside(time_s)
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
         """Return the motion with reactions without bounds of their own."""
         del bound
-        return replace(motion, forces=self.bodies.at(motion.time_s).forces)
+        return replace(motion, forces=super().at(motion.time_s).forces)
 
     def beside(self, logged: Motion) -> Motion:
-        assembly = self.bodies.dynamics.assembly
+        assembly = self.dynamics.assembly
         q = logged_places(assembly, logged, self.freedoms)
         return as_motion(assembly, logged.time_s, assembly.at_rest(q), np.zeros_like(q))
-
-    def energy(self, time_s: Array) -> EnergyBalance:
-        return self.bodies.energy(time_s)
-
-    def sensitivity(self, time_s: Array) -> Array:
-        return self.bodies.sensitivity(time_s)
 
     def error_rad(self, time_s: Array) -> Array:
         links = self._bound(samples(time_s, "time_s")).links.values()
         return np.asarray(np.max([one.theta for one in links], axis=0))
 
     def _driver(self, time_s: Array) -> tuple[Array, Array, Array]:
-        one = self.bodies.at(time_s).links[self.scene.driver.link]
+        one = super().at(time_s).links[self.scene.driver.link]
         return one.theta, one.omega, one.alpha
 
     @cached_property
     def _looks(self) -> tuple[Array, Motion]:
         """Instants, and the motion then."""
         time_s = np.linspace(0.0, self.until_s, LOOKS)
-        return time_s, self.bodies.at(time_s)
+        return time_s, super().at(time_s)
 
     @cached_property
     def _doubt(self) -> Bound:
         """Errors of all bodies until each of these instants."""
         time_s, motion = self._looks
-        other = replace(self.bodies, method=COARSER).at(time_s)
+        other = replace(self, method=COARSER).at(time_s, bound=False)
         return Bound(
             _apart(motion.links, other.links),
             _apart(motion.points, other.points),
@@ -193,22 +172,17 @@ class MachineMotion:
 
     @property
     def peak_speed_rad_s(self) -> float:
-        """The largest angular velocity of the driver."""
         return float(np.abs(self._looks[1]).max())
 
     @property
     def range_rad(self) -> float:
-        """Range of the driver's angle, from its smallest to its largest."""
         return float(np.ptp(self._looks[0]))
 
     @cached_property
     def law(self) -> IntegratedLaw:
-        """The driver's motion as a law."""
         return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
 
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """Return the motion at times [s], (T,), from 0 to ``until_s``; bounds include the error of
-        the integration. Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
         return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
@@ -238,7 +212,6 @@ class MachineMotion:
         return places_beside(self.scene, self.history, logged)
 
     def energy(self, time_s: Array) -> EnergyBalance:
-        """Return the energies at times [s], (T,). Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
         return history_energy(self.scene, self.history, instants)
@@ -253,12 +226,10 @@ class MachineMotion:
         return np.interp(time_s, *self._growth)
 
     def error_rad(self, time_s: Array) -> Array:
-        """Return the error of the driver's angle [rad], (T,)."""
         instants = samples(time_s, "time_s")
         u, off = self.history.state(instants)[0], self.doubt.at(instants)[0]
-        error, window = np.zeros_like(u), self.history.windows_at(instants)
-        for chart, first, last in self.history.legs():
-            at = (window >= first) & (window < last)
+        error = np.zeros_like(u)
+        for chart, at in self.history.charts_at(instants):
             _, slope, bend = chart.driver(u[at])
             error[at] = (np.abs(slope) + 0.5 * np.abs(bend) * off[at]) * off[at]
         return error
@@ -267,9 +238,7 @@ class MachineMotion:
         """Return angle, rate and acceleration of the driver."""
         u, v, a = self.history.state(time_s)
         theta, omega, alpha = np.empty_like(u), np.empty_like(u), np.empty_like(u)
-        window = self.history.windows_at(time_s)
-        for chart, first, last in self.history.legs():
-            at = (window >= first) & (window < last)
+        for chart, at in self.history.charts_at(time_s):
             phi, slope, bend = chart.driver(u[at])
             theta[at], omega[at] = phi, slope * v[at]
             alpha[at] = bend * v[at] ** 2 + slope * a[at]
@@ -293,13 +262,10 @@ def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> E
     u, v, _ = history.state(time_s)
     window = history.windows_at(time_s)
     series, before = _work(scene, history)
-    share = (time_s - history.starts_s[window]) / np.array([w.long_s for w in history.windows])[
-        window
-    ]
+    share = (time_s - history.starts_s[window]) / history.long_s[window]
     work = before[window] + sums(series[window], np.clip(share, 0.0, MOST))
     kinetic, potential = np.empty_like(u), np.empty_like(u)
-    for chart, first, last in history.legs():
-        at = (window >= first) & (window < last)
+    for chart, at in history.charts_at(time_s):
         if at.any():
             machine = Machine(scene, chart)
             wound = history.wound_at(window[at])
@@ -312,7 +278,7 @@ def _work(scene: Scene, history: CoordinateHistory) -> tuple[Array, Array]:
     """Return the series of the work in each window, and the work before it [J]."""
     n = history.windows[0].swing.shape[1]
     rule = gauss(n)
-    long_s = np.array([window.long_s for window in history.windows])
+    long_s = history.long_s
     power = np.empty((len(long_s), n))
     for chart, first, last in history.legs():
         times = history.starts_s[first:last, None] + long_s[first:last, None] * rule.places

@@ -14,20 +14,10 @@ import numpy as np
 from scipy.integrate import DOP853  # type: ignore[import-untyped]  # ships no stubs
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
+from analytic.multibody import generalised_forces
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.generalised_forces import (
-    Strokes,
-    Switch,
-    edges,
-    state_cells,
-    strokes,
-    switches,
-)
+from analytic.multibody.generalised_forces import Strokes, Switch, state_cells, strokes
 from analytic.multibody.steps import (
-    CLOSE,
-    LEAST,
-    NEAR,
-    SHORT,
     Pace,
     StateHistory,
     Steps,
@@ -38,6 +28,15 @@ from analytic.multibody.steps import (
 from models.array import Array
 from models.errors import CrankcheckError
 
+NEAR = 1e-2
+"""Smallest singular value, of rows of the largest entry 1, from which on rounding matters: steps
+become short, unless their tolerance grows with its inverse square as the loss does."""
+LEAST = 2e-3
+"""Value at which a passage begins at the latest; from `NEAR` on it does where steps are short."""
+CLOSE = 1.1
+"""Ratio to that value, up to which a singular value counts as it."""
+SHORT = 0.1
+"""Length of a short step, over the time up to the change point."""
 CAREFUL = 0.1
 """Smallest singular value of the constraints, of rows of the largest entry 1, below which the
 stages of a step are projected onto the constraints as well: their errors, larger than the step's,
@@ -69,10 +68,10 @@ class Adaptive:
     def history(self, q: Array, rates: Array, until_s: float) -> StateHistory:
         """Integrate from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
         forces = self.dynamics.forces
-        own, state = switches(forces), np.concatenate([q, rates, [0.0]])
+        own, state = generalised_forces.switches(forces), np.concatenate([q, rates, [0.0]])
         steps = Steps(Pace(), until_s)
         steps.pace.note(0.0, self._speed(state))
-        times = edges(forces.scene, until_s)
+        times = generalised_forces.edges(forces.scene, until_s)
         cells = self._first_cells(own, state)
         for begin, end in itertools.pairwise(times):
             state, cells = self._between_edges(steps, own, cells, begin, end, state)

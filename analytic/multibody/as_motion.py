@@ -28,18 +28,14 @@ def as_motion(assembly: Assembly, time_s: Array, now: Configuration, seconds: Ar
         for point, (_, marker) in assembly.carriers.items()
     }
     sliders = {name: _slider(assembly, name, now, gained) for name in scene.sliders}
-    return Motion(time_s, links, points, sliders, elastic=_shapes(assembly, now.q))
-
-
-def _shapes(assembly: Assembly, q: Array) -> dict[str, ElasticMotion]:
-    """Return the deflections and extensions of elastic links at coordinates (T, n)."""
-    return {
+    elastic = {
         name: ElasticMotion(
-            body.deflections(q[:, own], np.array([0.5 * body.length_m]))[:, 0],
-            body.extension(q[:, own]),
+            body.deflections(now.q[:, own], np.array([0.5 * body.length_m]))[:, 0],
+            body.extension(now.q[:, own]),
         )
         for name, (body, own) in assembly.elastic.items()
     }
+    return Motion(time_s, links, points, sliders, elastic=elastic)
 
 
 def _slider(assembly: Assembly, name: str, now: Configuration, gained: Array) -> SliderMotion:

@@ -12,36 +12,20 @@ Kinematics and Dynamics of Mechanical Systems, chapters 3, 4 and 6.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.multibody.bodies import (
-    BodySet,
-    Configuration,
-    Flexible,
-    FlexibleBody,
-    Inertia,
-    RigidBodies,
-    inertias,
-)
+from analytic.multibody import bodies
+from analytic.multibody.bodies import Configuration, Flexible
 from models.array import Array
-from models.scene import GROUND, Point, Scene, Slider
+from models.scene import GROUND, Point, Scene
 from models.scene.joints import joined_at, local_point, sliding_angle, sliding_body
 
 RIGID: Mapping[str, Flexible] = MappingProxyType({})
 """No link is flexible."""
-
-
-@dataclass
-class _MarkerList:
-    """Requested markers: a place of a body, or None for its frame, and an angle against it."""
-
-    ground: dict[tuple[Point, float], int] = field(default_factory=dict)
-    moving: dict[tuple[str, Point | None, float], int] = field(default_factory=dict)
 
 
 class Assembly:
@@ -55,9 +39,11 @@ class Assembly:
 
     def __init__(self, scene: Scene, flexible: Mapping[str, Flexible] = RIGID) -> None:
         self.scene = scene
-        own = inertias(scene)
+        own = bodies.inertias(scene)
         self.bodies = tuple(own)
-        self._list = _MarkerList()
+        # Requested markers, numbered: a place (None for the frame of a body), and an angle.
+        self._fixed: dict[tuple[Point, float], int] = {}
+        self._moving: dict[tuple[str, Point | None, float], int] = {}
         self.held = {
             point: {body: self._ask(body, local_point(scene, body, point)) for body in names}
             for point, names in joined_at(scene).items()
@@ -66,37 +52,39 @@ class Assembly:
             body: self._ask(body, None if body in flexible else (0.0, 0.0))
             for body in (GROUND, *self.bodies)
         }
-        self.tips, self.guides = {}, {}
+        self.tips, self.guides, carried = {}, {}, dict(scene.pins)
         for name, slider in scene.sliders.items():
             body = sliding_body(slider)
             self.tips[name] = self._ask(body, local_point(scene, body, slider.point))
             line = slider.direction_rad
             self.guides[name] = self._ask(slider.on, slider.through_m, line)
+            if slider.point not in scene.pins:
+                carried[slider.point] = (body,)
         self.carriers = {
             point: (names[0], self._ask(names[0], local_point(scene, names[0], point)))
-            for point, names in self._named_points()
+            for point, names in carried.items()
         }
         self._number_markers(flexible)
         self._make_parts({name: one for name, one in own.items() if name not in flexible}, flexible)
         self.size = sum(part.size for part, _, _ in self.parts)
-        self.joints = JointEquations(
-            scene, self.size, JointMarkers(self.held, self.frames, self.tips, self.guides)
-        )
+        self.joints = JointEquations(self)
 
-    def _make_parts(self, rigid: Mapping[str, Inertia], flexible: Mapping[str, Flexible]) -> None:
+    def _make_parts(
+        self, rigid: Mapping[str, bodies.Inertia], flexible: Mapping[str, Flexible]
+    ) -> None:
         """Make the computing parts: all rigid bodies at once, then each elastic one."""
-        gravity, moving = self.scene.gravity_m_s2, self._list.moving
+        gravity, moving = self.scene.gravity_m_s2, self._moving
         numbers = {name: i for i, name in enumerate(rigid)}
         asked = [
             (numbers[body], place or (0.0, 0.0), angle)
             for body, place, angle in moving
             if body in numbers
         ]
-        bodies = RigidBodies(rigid, asked, gravity)
-        own, marked = slice(0, bodies.size), slice(0, len(asked))
-        parts: list[tuple[BodySet, slice, slice]] = [(bodies, own, marked)]
+        first = bodies.RigidBodies(rigid, asked, gravity)
+        own, marked = slice(0, first.size), slice(0, len(asked))
+        parts: list[tuple[bodies.BodySet, slice, slice]] = [(first, own, marked)]
         self.at = {body: 3 * i for body, i in numbers.items()}
-        self.elastic: dict[str, tuple[FlexibleBody, slice]] = {}
+        self.elastic: dict[str, tuple[bodies.FlexibleBody, slice]] = {}
         for name, one in flexible.items():
             markers = [(place, angle) for body, place, angle in moving if body == name]
             link = one.body(markers, gravity)
@@ -109,23 +97,15 @@ class Assembly:
     def _ask(self, body: str, place: Point | None, angle_rad: float = 0.0) -> int:
         """Return the number of a marker; markers of the ground are below 0, until all are known."""
         if body == GROUND:
-            ground = self._list.ground
-            return -1 - ground.setdefault((place or (0.0, 0.0), angle_rad), len(ground))
-        moving = self._list.moving
-        return moving.setdefault((body, place, angle_rad), len(moving))
-
-    def _named_points(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield every named point with the bodies that carry it; points of blocks alone last."""
-        yield from self.scene.pins.items()
-        for slider in self.scene.sliders.values():
-            if slider.point not in self.scene.pins:
-                yield slider.point, (sliding_body(slider),)
+            fixed = (place or (0.0, 0.0), angle_rad)
+            return -1 - self._fixed.setdefault(fixed, len(self._fixed))
+        return self._moving.setdefault((body, place, angle_rad), len(self._moving))
 
     def _number_markers(self, flexible: Mapping[str, Flexible]) -> None:
         """Number the markers: those of rigid bodies, then of each elastic one, last the fixed ones
         of the ground."""
-        still, order = len(self._list.moving), {name: i for i, name in enumerate(flexible, 1)}
-        moving = enumerate(self._list.moving)
+        still, order = len(self._moving), {name: i for i, name in enumerate(flexible, 1)}
+        moving = enumerate(self._moving)
         final = sorted(moving, key=lambda asked: order.get(asked[1][0], 0))  # keeps their order
         new = {marker: number for number, (marker, _) in enumerate(final)}
 
@@ -141,7 +121,7 @@ class Assembly:
         self.carriers = {
             point: (body, number(marker)) for point, (body, marker) in self.carriers.items()
         }
-        places = [(*place, angle) for place, angle in self._list.ground]
+        places = [(*place, angle) for place, angle in self._fixed]
         self._still = np.zeros((still + len(places), 3))
         self._still[still:] = np.array(places).reshape(-1, 3)
 
@@ -214,32 +194,21 @@ class Assembly:
         return np.asarray(sum(part.lost(rates[:, own]) for part, own, _ in self.parts))
 
 
-@dataclass(frozen=True)
-class JointMarkers:
-    """Numbers of markers at joints: by pin and body, of each body itself, of the sliding points and
-    of their lines, by slider."""
-
-    held: Mapping[str, Mapping[str, int]]
-    frames: Mapping[str, int]
-    tips: Mapping[str, int]
-    guides: Mapping[str, int]
-
-
 class JointEquations:
     """Equations of all joints, ``count`` in number (m): those of pins first, two each.
 
     ``size`` is n, the number of coordinates.
     """
 
-    def __init__(self, scene: Scene, size: int, markers: JointMarkers) -> None:
-        self.size, self._held = size, markers.held
+    def __init__(self, assembly: Assembly) -> None:
+        self.size, self._held = assembly.size, assembly.held
         pairs = list(self.pin_pairs())
         self._first = np.array([self._held[p][a] for p, a, _ in pairs], dtype=int)
         self._other = np.array([self._held[p][b] for p, _, b in pairs], dtype=int)
-        sliders: list[Slider] = list(scene.sliders.values())
-        self._tip = np.array([markers.tips[s.name] for s in sliders], dtype=int)
-        self._turning = np.array([markers.frames[sliding_body(s)] for s in sliders], dtype=int)
-        self._guide = np.array([markers.guides[s.name] for s in sliders], dtype=int)
+        sliders = list(assembly.scene.sliders.values())
+        self._tip = np.array([assembly.tips[s.name] for s in sliders], dtype=int)
+        self._turning = np.array([assembly.frames[sliding_body(s)] for s in sliders], dtype=int)
+        self._guide = np.array([assembly.guides[s.name] for s in sliders], dtype=int)
         self._lean = np.array([sliding_angle(s) - s.direction_rad for s in sliders])
         self.count = 2 * len(pairs) + 2 * len(sliders)
 

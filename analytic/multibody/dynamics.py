@@ -9,7 +9,6 @@ and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1, 19
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +22,6 @@ from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Forces, SliderForces
-from models.scene import Scene
 
 WEAK = 1e-2
 """Singular value over the largest below which, in a change point, it counts as 0."""
@@ -66,7 +64,11 @@ class Dynamics:
             )
         seconds, multipliers = np.empty_like(now.q), np.empty_like(bottom)
         for i in range(len(now.q)):
-            saddle = self._saddle(mass[i], jacobian[i], float(time_s[i]))
+            try:
+                saddle = Saddle(mass[i], jacobian[i], redundant=self.redundant)
+            except CrankcheckError as error:
+                name = assembly.scene.name
+                raise CrankcheckError(f"{name}: at {time_s[i]:g} s {error}") from None
             seconds[i], multipliers[i] = saddle.solve(top[i], bottom[i])
         return seconds, multipliers
 
@@ -77,12 +79,6 @@ class Dynamics:
         rows = np.swapaxes(self.assembly.joints.jacobian(now), 1, 2)
         each = zip(rows, right, strict=True)
         return np.array([np.linalg.lstsq(a, b, rcond=WEAK)[0] for a, b in each])
-
-    def _saddle(self, mass: Array, jacobian: Array, time_s: float) -> Saddle:
-        try:
-            return Saddle(mass, jacobian, redundant=self.redundant)
-        except CrankcheckError as error:
-            raise CrankcheckError(f"{self.assembly.scene.name}: at {time_s:g} s {error}") from None
 
     def rates(self, time_s: float, state: Array, strokes: Strokes) -> Array:
         """Return the derivative of a state by time: of q, q' and the work of loads and dampers;
@@ -140,6 +136,10 @@ SOFT = 1e-7
 """Regularisation s of a redundant system, over the largest entry of its inverse mass."""
 ROUNDS = 3
 """Number of corrections of a redundant system by its residual."""
+SINGULAR = (
+    "the equations of motion are singular: a freedom has no mass, or the mechanism is at a change "
+    "point, where accelerations are not determined"
+)
 SPARSE = 150
 """Number of unknowns from which on a sparse factorisation is quicker."""
 
@@ -173,12 +173,12 @@ class Saddle:
         if len(whole) < SPARSE:
             *self._factors, singular = lapack.dgetrf(whole.T)  # symmetric: its rows are columns
             if singular > 0:
-                raise singular_error()
+                raise CrankcheckError(SINGULAR)
         else:
             try:
                 self._sparse = splu(csc_array(whole))
             except RuntimeError:
-                raise singular_error() from None
+                raise CrankcheckError(SINGULAR) from None
 
     def solve(self, top: Array | float, bottom: Array | float) -> tuple[Array, Array]:
         """Return x (n,) and lambda (m,)."""
@@ -197,33 +197,19 @@ class Saddle:
         return np.asarray(self._sparse.solve(right))
 
 
-def singular_error() -> CrankcheckError:
-    """Return the error of a system without a unique solution."""
-    return CrankcheckError(
-        "the equations of motion are singular: a freedom has no mass, or the mechanism is at a "
-        "change point, where accelerations are not determined"
-    )
-
-
-def joint_forces(
-    scene: Scene,
-    pin_pairs: Iterable[tuple[str, str, str]],
-    time_s: Array,
-    multipliers: Array,
-    torque: Array,
-) -> Forces:
+def joint_forces(assembly: Assembly, time_s: Array, multipliers: Array, torque: Array) -> Forces:
     """Return the multipliers of the equations of joints, in their order (T, m), as forces, with the
     driving torque (T,)."""
     pins: dict[str, dict[str, Array]] = {}
     row = 0
-    for point, first, other in pin_pairs:
+    for point, first, other in assembly.joints.pin_pairs():
         push = multipliers[:, row : row + 2]
         held = pins.setdefault(point, {})
         held[first] = held.get(first, 0.0) + push
         held[other] = held.get(other, 0.0) - push
         row += 2
     sliders: dict[str, SliderForces] = {}
-    for name in scene.sliders:
+    for name in assembly.scene.sliders:
         sliders[name] = SliderForces(multipliers[:, row], multipliers[:, row + 1])
         row += 2
     return Forces(time_s, pins, sliders, torque)

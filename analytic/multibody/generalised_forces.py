@@ -62,11 +62,11 @@ class GeneralisedForces:
         """
         right = np.zeros_like(now.q)
         for load in self.scene.loads.values():
-            marker = self._marker(load)
             size = self.magnitude(load, time_s, now, strokes)
             if load.point is None:
-                right += size[:, None] * now.gradient[:, marker, 2]
+                right += size[:, None] * now.gradient[:, self.assembly.frames[load.body], 2]
                 continue
+            marker = self.assembly.marker(load.body, load.point)
             angle = np.full_like(size, load.direction_rad)
             if load.frame == "body":
                 angle = angle + now.place[:, marker, 2]
@@ -81,11 +81,6 @@ class GeneralisedForces:
     def driving(self, time_s: Array, now: Configuration) -> Array:
         """Return the torque on the driver that is no load [N m], (T,): none in free motion."""
         return np.zeros(len(time_s))
-
-    def _marker(self, load: Load) -> int:
-        if load.point is None:
-            return self.assembly.frames[load.body]
-        return self.assembly.marker(load.body, load.point)
 
     def magnitude(
         self, load: Load, time_s: Array, now: Configuration, strokes: Strokes | None
@@ -176,18 +171,15 @@ class Switch:
     period: float | None
     turning: bool
 
-    def coordinate(self, forces: GeneralisedForces, now: Configuration) -> float:
-        """Return the coordinate of the state, in the unit of the kinks."""
+    def of_state(self, forces: GeneralisedForces, state: Array) -> float:
+        """Return the coordinate of a state of q, q' and the work, (2 n + 1,), in the unit of the
+        kinks."""
+        n = forces.assembly.size
+        now = forces.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
         if self.turning:
             assert self.load.slider is not None
             return float(forces.slide(self.load.slider, now).speed[0])
         return float(forces.over(self.load, np.zeros(1), now)[0])
-
-    def of_state(self, forces: GeneralisedForces, state: Array) -> float:
-        """Return the coordinate of a state of q, q' and the work, (2 n + 1,)."""
-        n = forces.assembly.size
-        now = forces.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
-        return self.coordinate(forces, now)
 
     def cell(self, x: float) -> int:
         """Return the number of the cell of a coordinate."""
@@ -205,19 +197,17 @@ class Switch:
 
 def switches(forces: GeneralisedForces) -> tuple[Switch, ...]:
     """Return the switches of all loads of a scene that depend on the state."""
-    return tuple(_switches(forces))
-
-
-def _switches(forces: GeneralisedForces) -> Iterator[Switch]:
+    found = []
     for load in forces.scene.loads.values():
         kinks = load.characteristic.kinks
         if load.over != "time" and kinks:
             period = load.characteristic.repeats_after
             if period is not None and kinks[-1] - kinks[0] > period * (1.0 - 1e-9):
                 kinks = kinks[:-1]  # the first of the next period
-            yield Switch(load, kinks, period, turning=False)
+            found.append(Switch(load, kinks, period, turning=False))
         if load.stroke != "both":
-            yield Switch(load, (0.0,), None, turning=True)
+            found.append(Switch(load, (0.0,), None, turning=True))
+    return tuple(found)
 
 
 def state_cells(own: tuple[Switch, ...], forces: GeneralisedForces, state: Array) -> Array:

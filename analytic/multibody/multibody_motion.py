@@ -60,7 +60,7 @@ class Baumgarte:
 Method = Projection | Baumgarte
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MultibodyMotion:
     """Free motion of a scene from its release at time 0 to ``until_s``, by one method."""
 
@@ -78,31 +78,27 @@ class MultibodyMotion:
         return self._integrated(*self.start, self.method)
 
     def _integrated(self, q: Array, rates: Array, method: Method) -> StateHistory:
-        """Return the state over time."""
-        if isinstance(method, Baumgarte):
-            dynamics = replace(self.dynamics, alpha=method.alpha, beta=method.beta)
-            if method.step_s is not None:
-                return FixedSteps(dynamics, method.step_s).history(q, rates, self.until_s)
-            return Adaptive(dynamics, method.tolerance, projected=False).history(
-                q, rates, self.until_s
-            )
-        return Adaptive(self.dynamics, method.tolerance, projected=True).history(
-            q, rates, self.until_s
-        )
+        dynamics, by_projection = self._equations(method), isinstance(method, Projection)
+        steps: Adaptive | FixedSteps = Adaptive(dynamics, method.tolerance, projected=by_projection)
+        if isinstance(method, Baumgarte) and method.step_s is not None:
+            steps = FixedSteps(dynamics, method.step_s)
+        return steps.history(q, rates, self.until_s)
+
+    def _equations(self, method: Method) -> Dynamics:
+        """Return the equations that a method integrates."""
+        if isinstance(method, Projection):
+            return self.dynamics
+        return replace(self.dynamics, alpha=method.alpha, beta=method.beta)
 
     def at(self, time_s: Array) -> Motion:
         """Return the motion at times [s], (T,), with its reactions. Raises CrankcheckError for
         times beyond it."""
-        instants = samples(time_s, "time_s")
-        parts = []
+        instants, assembly, parts = samples(time_s, "time_s"), self.dynamics.assembly, []
         for some, now, _ in self._configurations(instants):
             seconds, multipliers = self._solved(some, now)
-            motion = as_motion(self.dynamics.assembly, some, now, seconds)
-            forces = joint_forces(
-                self.scene, self.dynamics.assembly.joints.pin_pairs(), some, -multipliers,
-                self.dynamics.forces.driving(some, now),
-            )  # fmt: skip
-            parts.append(replace(motion, forces=forces))
+            driving = self.dynamics.forces.driving(some, now)
+            forces = joint_forces(assembly, some, -multipliers, driving)
+            parts.append(replace(as_motion(assembly, some, now, seconds), forces=forces))
         return Motion.joined(parts)
 
     def outside(self, time_s: Array) -> Motion:
@@ -126,43 +122,35 @@ class MultibodyMotion:
         """Instants at which loads over time are not smooth [s]."""
         return tuple(edges(self.scene, self.until_s)[1:-1])
 
-    @property
-    def change_points_s(self) -> tuple[float, ...]:
-        """Instants of its change points [s]."""
-        return tuple(passage.at_s for passage in self._history.passages)
-
     def _passing(self, time_s: Array) -> Iterator[tuple[SingularPassage, Mask]]:
         """Yield the passages through change points, and the mask of the times [s] in each."""
         for passage in self._history.passages:
             yield passage, (passage.begin_s < time_s) & (time_s < passage.end_s)
 
+    def _passed(self, time_s: Array) -> Mask:
+        """Return the mask of the times [s] in any passage."""
+        passed = np.zeros(len(time_s), dtype=bool)
+        for _, within in self._passing(time_s):
+            passed |= within
+        return passed
+
     def _solved(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
         """Return q'' (T, n) and the multipliers (T, m); in a change point, which leaves them open,
         those of the motion before and after it, and the smallest multipliers."""
-        n, passed = now.q.shape[1], np.zeros(len(time_s), dtype=bool)
-        for _, within in self._passing(time_s):
-            passed |= within
+        n, passed, dynamics = now.q.shape[1], self._passed(time_s), self._equations(self.method)
         if not passed.any():
-            return self._dynamics.solve(time_s, now)
+            return dynamics.solve(time_s, now)
         seconds = np.empty_like(now.q)
         multipliers = np.empty((len(time_s), self.dynamics.assembly.joints.count))
         if not passed.all():
-            found = self._dynamics.solve(time_s[~passed], now.some(~passed))
+            found = dynamics.solve(time_s[~passed], now.some(~passed))
             seconds[~passed], multipliers[~passed] = found
         for passage, within in self._passing(time_s):
             seconds[within] = passage.slope(time_s[within])[n : 2 * n].T
-        multipliers[passed] = self._dynamics.multipliers(
+        multipliers[passed] = dynamics.multipliers(
             time_s[passed], now.some(passed), seconds[passed]
         )
         return seconds, multipliers
-
-    @property
-    def _dynamics(self) -> Dynamics:
-        """Equations that the method integrates."""
-        method = self.method
-        if isinstance(method, Baumgarte):
-            return replace(self.dynamics, alpha=method.alpha, beta=method.beta)
-        return self.dynamics
 
     def energy(self, time_s: Array) -> EnergyBalance:
         """Return the energies at times [s], (T,)."""
@@ -171,15 +159,6 @@ class MultibodyMotion:
             self.dynamics.energies(now, work) for _, now, work in self._configurations(instants)
         ]
         return EnergyBalance.joined(parts)
-
-    def gap(self, time_s: Array) -> Array:
-        """Return the largest violation of a constraint at times [s], [m or rad], (T,)."""
-        instants = samples(time_s, "time_s")
-        gaps = [
-            np.abs(self.dynamics.assembly.joints.gaps(now)).max(axis=1, initial=0.0)
-            for _, now, _ in self._configurations(instants)
-        ]
-        return np.concatenate(gaps)
 
     def _configurations(self, time_s: Array) -> Iterator[tuple[Array, Configuration, Array]]:
         """Yield times, all markers then, and the work until then, in blocks."""
@@ -192,10 +171,7 @@ class MultibodyMotion:
             state = self._history.state(np.minimum(some, self.until_s)).T
             q, rates = state[:, :n], state[:, n : 2 * n]
             if isinstance(self.method, Projection):  # between steps too
-                passed = np.zeros(len(some), dtype=bool)
-                for _, within in self._passing(some):
-                    passed |= within
-                for i in np.flatnonzero(~passed):
+                for i in np.flatnonzero(~self._passed(some)):
                     q[i], rates[i] = self.dynamics.closed(q[i], rates[i])
             yield some, assembly.at_rates(q, rates), state[:, -1]
 

@@ -281,7 +281,6 @@ class StartPoses:
                     self._place(name, {p: at for p, at in link.points.items() if p in self._known})
 
     def _place(self, name: str, known: dict[str, Point]) -> None:
-        """Place a link with points in known places."""
         if name not in self.angles and len(known) >= 2:
             (p, a), (q, b) = list(known.items())[:2]
             (px, py), (qx, qy) = self._known[p], self._known[q]
@@ -316,13 +315,9 @@ class StartPoses:
                 place = turned((x + far * c, y + far * s), angle)
                 self._known.setdefault(slider.point, (base[0] + place[0], base[1] + place[1]))
             if slider.point in self._known and body in self.angles and body not in self.origins:
-                self._settle_at(body, slider.point, name)
-
-    def _settle_at(self, body: str, point: str, name: str) -> None:
-        """Place a sliding body whose point has a known place."""
-        place = self._known[point]
-        if self._scene.sliders[name].link is None:
-            self.origins[body] = place
-        else:
-            arm = turned(local_point(self._scene, body, point), self.angles[body])
-            self._settle(body, (place[0] - arm[0], place[1] - arm[1]))
+                place = self._known[slider.point]
+                if slider.link is None:
+                    self.origins[body] = place
+                else:
+                    arm = turned(local_point(scene, body, slider.point), self.angles[body])
+                    self._settle(body, (place[0] - arm[0], place[1] - arm[1]))

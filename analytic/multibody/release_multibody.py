@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import RIGID, Assembly
 from analytic.multibody.bodies import Flexible
 from analytic.multibody.dynamics import Dynamics, Saddle
@@ -30,10 +30,8 @@ def release_multibody(
     method: Method = PROJECTED,
     *,
     near: State | None = None,
-    flexible: Mapping[str, Flexible] = RIGID,
-    acting: Acting = GeneralisedForces,
 ) -> MultibodyMotion:
-    """Prepare the free motion of a scene from its start.
+    """Prepare the free motion of a scene of rigid links from its start.
 
     Parameters
     ----------
@@ -47,10 +45,6 @@ def release_multibody(
     near : State or None
         First guess of the start's position; None for a scene that names the angles of its links in
         ``[start]``.
-    flexible : Mapping
-        Makers of the bodies of its elastic links (`analytic.elastic.discretisation`), by name.
-    acting : Acting
-        Maker of the forces on an assembly at its start (n,).
 
     Raises
     ------
@@ -59,20 +53,8 @@ def release_multibody(
         freedom without mass; friction; an invalid time; an integration that fails.
     """
     check_duration(scene.name, until_s)
-    dynamics, q, rates = ready(scene, near, flexible, acting)
-    return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
-
-
-def start_state(scene: Scene, near: State | None = None) -> State:
-    """Return the state of a scene at its release, with accelerations; of any mobility.
-
-    Parameters and errors as in `release_multibody`.
-    """
     dynamics, q, rates = ready(scene, near)
-    now = dynamics.assembly.at_rates(q[None], rates[None])
-    at = np.zeros(1)
-    seconds, _ = dynamics.solve(at, now)
-    return as_motion(dynamics.assembly, at, now, seconds).state()
+    return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
 
 
 def ready(
@@ -83,7 +65,8 @@ def ready(
 ) -> tuple[Dynamics, Array, Array]:
     """Return the equations of a scene, and its coordinates and rates (n,) at the start.
 
-    Parameters and errors as in `release_multibody`.
+    ``flexible`` makes the bodies of its elastic links (`analytic.elastic.discretisation`), by name,
+    ``acting`` the forces on an assembly at its start (n,); the rest as in `release_multibody`.
     """
     if scene.friction:
         raise CrankcheckError(
@@ -166,7 +149,8 @@ def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
     start, as their rates are.
     """
     assembly, outset = dynamics.assembly, Outset(dynamics.assembly)
-    free, inverse = assembly.coefficients, np.linalg.inv(elastic_stiffness(assembly))
+    stiffness = block_diag(*(body.stiffness for body, _ in assembly.elastic.values()))
+    free, inverse = assembly.coefficients, np.linalg.inv(stiffness)
     q, rates = outset.find(near)
     _check_free(dynamics, q)
     last = np.inf
@@ -214,14 +198,3 @@ def _held(dynamics: Dynamics, free: NDArray[np.intp], q: Array, rates: Array) ->
     saddle = Saddle(mass[0], rows, redundant=dynamics.redundant)
     bottom = np.concatenate([assembly.joints.gamma(now)[0], np.zeros(len(free))])
     return saddle.solve(right[0], bottom)[1][assembly.joints.count :]
-
-
-def elastic_stiffness(assembly: Assembly) -> Array:
-    """Return the stiffness matrix of all elastic links' coefficients, (k, k)."""
-    each = [body.stiffness for body, _ in assembly.elastic.values()]
-    whole, first = np.zeros((sum(map(len, each)),) * 2), 0
-    for own in each:
-        last = first + len(own)
-        whole[first:last, first:last] = own
-        first = last
-    return whole

@@ -17,15 +17,6 @@ from models.array import Array
 from models.errors import CrankcheckError, few
 from models.scene import Scene
 
-NEAR = 1e-2
-"""Smallest singular value, of rows of the largest entry 1, from which on rounding matters: steps
-become short, unless their tolerance grows with its inverse square as the loss does."""
-LEAST = 2e-3
-"""Value at which a passage begins at the latest; from `NEAR` on it does where steps are short."""
-CLOSE = 1.1
-"""Ratio to that value, up to which a singular value counts as it."""
-SHORT = 0.1
-"""Length of a short step, over the time up to the change point."""
 WINDOWS = {25.0: 12, 12.0: 12, 6.0: 12, 3.0: 8, 1.5: 6}
 """Duration of the motion before that counts, over that of the passage, and the degree of the
 polynomials: a long time spreads errors of accelerations, a short one follows fast changes, and is

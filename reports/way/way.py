@@ -128,23 +128,18 @@ class Way(Protocol):
 
     def stored(self, row: Mapping[Any, Any]) -> bool:
         """True if a row of a store is a cell of the kind, or of a kind that builds on it."""
-        ...
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         """True if a run of the scene with that drive is of this kind."""
-        ...
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
         """Step [s] and number of steps of a run. Raises CrankcheckError where it has none."""
-        ...
 
     def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         """The runs of a scene in a study, a length for each step. Raises CrankcheckError."""
-        ...
 
     def refuse(self, run: Planned) -> None:
         """Refuse a run that has no reference. Raises CrankcheckError."""
-        ...
 
     @property
     def clock(self) -> Clock:
@@ -165,11 +160,9 @@ class Way(Protocol):
 
     def note(self, scene: Scene, duration_s: float) -> str:
         """A note on a run of that duration [s], beside its numbers; "" for none."""
-        ...
 
     def truth(self, run: Planned) -> Truth:
         """The reference of a run. Raises CrankcheckError for a scene without one."""
-        ...
 
     drives: tuple[Drive, ...]
     """Possible drives of its runs."""
@@ -184,15 +177,12 @@ class Way(Protocol):
 
     def refuse_length(self, option: str) -> NoReturn:
         """Refuse an option of a length that does not apply. Raises CrankcheckError."""
-        ...
 
     def released(self, scene: Scene) -> Scene:
         """The scene of the run: in free motion, where the drive is free."""
-        ...
 
     def opened(self, scene: Scene) -> tuple[Scene, State]:
         """The scene that an engine is given, and its start. Raises CrankcheckError."""
-        ...
 
     def held_steps(self, scene: Scene) -> tuple[float, ...]:
         """Steps in a turn for which the scene of an engine is exact; empty for any."""
@@ -200,11 +190,9 @@ class Way(Protocol):
 
     def launch(self, run: Planned) -> Truth | None:
         """The start of a run; None for the start of the scene itself. Raises CrankcheckError."""
-        ...
 
     def refuse_made(self, run: Planned) -> None:
         """Refuse an existing run that has no reference. Raises CrankcheckError."""
-        ...
 
     def judged_by(self, given: GivenAs) -> list[str] | None:
         """The options of `judge` for a log of it; None where logs of it are not judged."""
@@ -224,19 +212,15 @@ class Way(Protocol):
 
     def motion(self, scene: Scene, time_s: Array) -> Motion:
         """The reference motion to draw, with rigid links. Raises CrankcheckError."""
-        ...
 
     def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
         """The forces to draw. Raises CrankcheckError where there are none."""
-        ...
 
     def drawn_s(self, most_s: float) -> float:
         """Longest drawn time of a motion that is not periodic [s]."""
-        ...
 
     def latest_s(self, scene: Scene) -> float:
         """The latest time that can be drawn or shown [s]."""
-        ...
 
 
 @cache

@@ -56,26 +56,25 @@ def baumgarte_table(
     """
     time_s = np.linspace(0.0, until_s, SAMPLES)
     true = _angles(release_multibody(scene, until_s, near=near), time_s)
-    rows = []
-    for alpha in alphas:
-        for step_s in steps_s:
-            method = Baumgarte(alpha, alpha, step_s)
-            free = release_multibody(scene, until_s, method, near=near)
-            rows.append(_row(free, alpha, step_s, time_s, true))
-    return tuple(rows)
+
+    def row(alpha: float, step_s: float) -> BaumgarteRow:
+        free = release_multibody(scene, until_s, Baumgarte(alpha, alpha, step_s), near=near)
+        try:
+            error = float(np.abs(_angles(free, time_s) - true).max())
+            energy = free.energy(time_s)
+            drift = float(np.ptp(energy.balance) / energy.kinetic.max())
+            return BaumgarteRow(alpha, step_s, error, float(gap(free, time_s).max()), drift)
+        except CrankcheckError:
+            return BaumgarteRow(alpha, step_s, math.inf, math.inf, math.inf)
+
+    return tuple(row(alpha, step_s) for alpha in alphas for step_s in steps_s)
+
+
+def gap(free: MultibodyMotion, time_s: Array) -> Array:
+    """The largest violation of a constraint at times [s], [m or rad], (T,)."""
+    gaps, each = free.dynamics.assembly.joints.gaps, free._configurations(time_s)
+    return np.concatenate([np.abs(gaps(now)).max(axis=1) for _, now, _ in each])
 
 
 def _angles(free: MultibodyMotion, time_s: Array) -> Array:
     return np.array([link.theta for link in free.at(time_s).links.values()])
-
-
-def _row(
-    free: MultibodyMotion, alpha: float, step_s: float, time_s: Array, true: Array
-) -> BaumgarteRow:
-    try:
-        error = float(np.abs(_angles(free, time_s) - true).max())
-        energy = free.energy(time_s)
-        drift = float(np.ptp(energy.balance) / energy.kinetic.max())
-        return BaumgarteRow(alpha, step_s, error, float(free.gap(time_s).max()), drift)
-    except CrankcheckError:
-        return BaumgarteRow(alpha, step_s, math.inf, math.inf, math.inf)

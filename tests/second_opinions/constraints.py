@@ -5,16 +5,17 @@ prismatic pair and the driver gives its equations. Source: E. J. Haug, Computer 
 Dynamics of Mechanical Systems, chapters 3 and 4.
 """
 
-from collections.abc import Iterator
+import math
 
 import numpy as np
 
+from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
 from models.array import Array
 from models.errors import CrankcheckError
-from models.scene import Point, Scene, Slider
-from models.scene.joints import local_point, sliding_body
-from tests.second_opinions.driver_row import DriverRow
+from models.motion import Motion
+from models.scene import GROUND, Scene
+from models.scene.driver import Course, driver_course
 
 
 class Constraints:
@@ -26,41 +27,41 @@ class Constraints:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self._assembly = Assembly(scene)
-        self.bodies, self.at = self._assembly.bodies, self._assembly.at
+        self.assembly = Assembly(scene)
+        self.bodies, self.at = self.assembly.bodies, self.assembly.at
         self.size = 3 * len(self.bodies)
-        self._driver = DriverRow(scene, dict(self.at))
-        equations = self._assembly.joints.count + 1
+        equations = self.assembly.joints.count + 1
         if equations != self.size:
             raise CrankcheckError(
                 f"{scene.name}: {equations} constraint equations for {self.size} coordinates; "
                 "a mechanism of mobility 1 has as many of each"
             )
 
-    def pin_pairs(self) -> Iterator[tuple[str, str, str]]:
-        """The point and the two bodies of every two equations of pins, in the order of ``phi``."""
-        return self._assembly.joints.pin_pairs()
+    def motion(self, time_s: Array, q: Array, rates: Array, seconds: Array) -> Motion:
+        """All links, points and sliders at coordinates with their rates and seconds, (T, 3 n)."""
+        return as_motion(self.assembly, time_s, self.assembly.at_rates(q, rates), seconds)
 
-    def tip(self, slider: Slider) -> tuple[str, Point]:
-        """The body that slides and the place of its point on the line."""
-        body = sliding_body(slider)
-        return body, local_point(self.scene, body, slider.point)
+    def _driver(self, q: Array, rates: Array) -> Course:
+        """The driver's coordinate at coordinates and rates (T, 3 n) without second rates."""
+        motion = self.motion(np.zeros(len(q)), q, rates, np.zeros_like(q))
+        return driver_course(self.scene, motion)
 
     def phi(self, q: Array, theta: float) -> Array:
         """The violation of each equation [m or rad] at the driver's coordinate ``theta`` [rad or
-        m]."""
-        rows = self._assembly.joints.gaps(self._assembly.at_rest(q[None]))[0]
-        return np.append(rows, self._driver.off(q, theta))
+        m]; the angle of two moving links counts but for whole turns."""
+        rows = self.assembly.joints.gaps(self.assembly.at_rest(q[None]))[0]
+        driver, off = self.scene.driver, float(self._driver(q[None], 0.0 * q[None])[0][0]) - theta
+        turns = driver.slider is None and driver.base != GROUND
+        return np.append(rows, math.remainder(off, math.tau) if turns else off)
 
     def jacobian(self, q: Array) -> Array:
-        """Phi_q (3 n, 3 n)."""
-        rows = np.zeros((self.size, self.size))
-        rows[:-1] = self._assembly.joints.jacobian(self._assembly.at_rest(q[None]))[0]
-        rows[-1] = self._driver.gradient(q)
-        return rows
+        """Phi_q (3 n, 3 n); the driver's row has its rates by those of one coordinate each."""
+        rows = self.assembly.joints.jacobian(self.assembly.at_rest(q[None]))[0]
+        each = np.eye(self.size)
+        return np.vstack([rows, self._driver(q + 0.0 * each, each)[1]])
 
     def gamma(self, q: Array, rates: Array, alpha: float) -> Array:
         """The right side of the acceleration equations: what q'' has to balance (3 n,)."""
-        now = self._assembly.at_rates(q[None], rates[None])
-        pull = self._driver.quadratic(q, rates)
-        return np.append(self._assembly.joints.gamma(now)[0], alpha - pull)
+        now = self.assembly.at_rates(q[None], rates[None])
+        pull = float(self._driver(q[None], rates[None])[2][0])
+        return np.append(self.assembly.joints.gamma(now)[0], alpha - pull)

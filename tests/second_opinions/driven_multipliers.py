@@ -4,12 +4,12 @@ The driver's equation is one more constraint, which depends on time, as in the t
 
     phi - phi(t) = 0        its multiplier: the driving torque, but for its sign
 
-    | M      Phi_q^T |  | q''    |     | Q                                        |
-    | Phi_q  0       |  | lambda |  =  | gamma - 2 alpha (Phi_q q' + Phi_t) - beta^2 Phi |
+    | M      Phi_q^T |  | q''    |     | Q     |
+    | Phi_q  0       |  | lambda |  =  | gamma |
 
 All coordinates are integrated, by an explicit method of order 8; after each step the state is put
-back onto the constraints, or Baumgarte's terms let what is open decay. No coordinate is eliminated.
-Source: Thesis on vibration of planar mechanisms with elastic links (2018), chapter 2.
+back onto the constraints. No coordinate is eliminated. Source: Thesis on vibration of planar
+mechanisms with elastic links (2018), chapter 2.
 """
 
 import itertools
@@ -25,12 +25,11 @@ from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
 from analytic.multibody.dynamics import Saddle, joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces, edges
-from analytic.multibody.multibody_motion import Baumgarte, Method, Projection
+from analytic.multibody.multibody_motion import TOLERANCE
 from models.array import Array, samples
 from models.errors import CrankcheckError
 from models.motion import Motion
 
-PROJECTED = Projection()
 MOST_PROJECTIONS = 10
 CLOSED = 1e-14
 """A step of a projection, over the longest link or in radians, after which none is made."""
@@ -44,11 +43,6 @@ class DrivenMultipliers:
     assembly: Assembly
     start: tuple[Array, Array]
     until_s: float
-    method: Method = PROJECTED
-
-    def __post_init__(self) -> None:
-        if isinstance(self.method, Baumgarte) and self.method.step_s is not None:
-            raise CrankcheckError("steps of one size are not made here; leave step_s out")
 
     @cached_property
     def _forces(self) -> GeneralisedForces:
@@ -82,9 +76,6 @@ class DrivenMultipliers:
         mass, right = self.assembly.weigh(now.q, now.rates)
         right += self._forces.on(np.array([time_s]), now)
         bottom = np.append(self.assembly.joints.gamma(now)[0], self._told(time_s)[2])
-        if isinstance(self.method, Baumgarte):
-            gap, opening = self._open(time_s, now)
-            bottom -= 2.0 * self.method.alpha * opening + self.method.beta**2 * gap
         return Saddle(mass[0], self._rows(now), redundant=False).solve(right[0], bottom)
 
     def _slope(self, time_s: float, state: Array) -> Array:
@@ -117,8 +108,7 @@ class DrivenMultipliers:
             last = math.nextafter(end, begin)
             solver = DOP853(
                 lambda t, state, last=last: self._slope(min(t, last), state), begin, state, end,
-                rtol=max(self.method.tolerance, 3e-14),
-                atol=self.method.tolerance * np.tile(self.assembly.units, 2),
+                rtol=TOLERANCE, atol=TOLERANCE * np.tile(self.assembly.units, 2),
             )  # fmt: skip
             while solver.status == "running":
                 trouble = solver.step()
@@ -127,18 +117,15 @@ class DrivenMultipliers:
                     raise CrankcheckError(f"{name}: it fails at {solver.t:g} s: {trouble}")
                 times.append(float(solver.t))
                 within.append(solver.dense_output())
-                if isinstance(self.method, Projection):
-                    solver.y = self._closed(float(solver.t), solver.y)
+                solver.y = self._closed(float(solver.t), solver.y)
             state = solver.y
         return OdeSolution(times, within)
 
     def at(self, time_s: Array) -> Motion:
         """The motion at times [s], (T,), with its reactions and the driving torque."""
         instants, assembly = samples(time_s, "time_s"), self.assembly
-        states = self._history(instants).T
-        if isinstance(self.method, Projection):  # between steps too
-            each = zip(instants, states, strict=True)
-            states = np.array([self._closed(float(t), state) for t, state in each])
+        each = zip(instants, self._history(instants).T, strict=True)
+        states = np.array([self._closed(float(t), state) for t, state in each])
         now = assembly.at_rates(states[:, : assembly.size], states[:, assembly.size :])
         solved = [
             self.solve(float(t), now.some(np.arange(len(instants)) == i))
@@ -146,8 +133,5 @@ class DrivenMultipliers:
         ]
         seconds, multipliers = (np.array(own) for own in zip(*solved, strict=True))
         motion = as_motion(assembly, instants, now, seconds)
-        forces = joint_forces(
-            assembly.scene, assembly.joints.pin_pairs(), instants, -multipliers[:, :-1],
-            -multipliers[:, -1],
-        )  # fmt: skip
+        forces = joint_forces(assembly, instants, -multipliers[:, :-1], -multipliers[:, -1])
         return replace(motion, forces=forces)

@@ -14,7 +14,7 @@ from models.scene import GROUND, Scene
 from models.scene.driver import driver_course
 from models.scene.joints import local_point, sliding_body
 from models.scene.loads import CoulombFriction
-from tests.second_opinions.body_samples import BodySamples, cross
+from tests.second_opinions.body_samples import BodySamples
 
 STILL = 1e-12
 """The share of the driver's rate below which a joint rests."""
@@ -65,16 +65,13 @@ def rubbing_samples(
             found[joint] = _slider(scene, joint, motion, bodies, peak)
             continue
         held = list(scene.pins.get(joint, ()))
-        held += [n for n in bodies if n not in scene.links and _carries(scene, n, joint)]
+        riding = (sliding_body(each) for each in scene.sliders.values() if each.point == joint)
+        held += [body for body in riding if body not in scene.links]
         first, second = held
         rate = bodies[second].omega - (0.0 if first == GROUND else bodies[first].omega)
         place = motion.points[joint].position
         found[joint] = RubbingSamples(first, second, place, None, rate, peak)
     return found
-
-
-def _carries(scene: Scene, block: str, joint: str) -> bool:
-    return scene.sliders[block.removeprefix("block ")].point == joint
 
 
 def _slider(
@@ -95,8 +92,3 @@ def _slider(
     line = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     rate = np.asarray(np.sum(speed * line, axis=1))
     return RubbingSamples(slider.on, body, place, line, rate, peak * scene.longest_m)
-
-
-def turning(body: BodySamples, place: Array, force: Array) -> Array:
-    """The moment of a force at a place of the plane about the origin of a body's frame."""
-    return cross(place - body.origin, force)

@@ -29,7 +29,7 @@ from models.scene import Scene
 from models.scene.driver import driver_course
 from tests.second_opinions.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from tests.second_opinions.constraints import Constraints
-from tests.second_opinions.friction import rubbing_samples, turning
+from tests.second_opinions.friction import rubbing_samples
 from tests.second_opinions.spring_samples import springs_on_bodies
 
 REFINEMENTS = 2
@@ -40,20 +40,11 @@ SETTLED = 1e-14
 
 
 def forces(scene: Scene, motion: Motion) -> Forces:
-    """Driving torque and reactions, without bounds.
+    """Driving torque and reactions of a mechanism of mobility 1 without redundant links, without
+    bounds; of the accelerations of its motion the driver's alone is looked at.
 
-    Parameters
-    ----------
-    scene : Scene
-        A mechanism of mobility 1 without redundant links; its groups need no closed form.
-    motion : Motion
-        Its positions and velocities; of its accelerations the driver's alone is looked at.
-
-    Raises
-    ------
-    CrankcheckError
-        As many constraints as coordinates there are not, or they are singular at a sample; friction
-        that does not settle.
+    Raises CrankcheckError for constraints that are singular at a sample, or are not as many as the
+    coordinates; for friction that does not settle.
     """
     system = equations(scene, motion)
     try:
@@ -76,9 +67,9 @@ def _settled(scene: Scene, system: Equations, motion: Motion) -> Forces:
             for name, force, torque in own.pushes(friction[joint]):
                 at = system.constraints.at[name]
                 pushed[:, at : at + 2] += force
-                pushed[:, at + 2] += torque + turning(bodies[name], own.place, force)
+                pushed[:, at + 2] += torque + cross(own.place - bodies[name].origin, force)
         multipliers = replace(system, applied=pushed).multipliers()
-        found = reactions(scene, system.constraints, motion.time_s, -multipliers)
+        found = reactions(system.constraints, motion.time_s, -multipliers)
         before = friction
         friction = {joint: own.friction(scene, joint, found) for joint, own in joints.items()}
         change = [np.abs(friction[joint] - before[joint]) for joint in joints]
@@ -130,8 +121,8 @@ def equations(scene: Scene, motion: Motion) -> Equations:
     system = Constraints(scene)
     bodies = body_samples(scene, motion)
     own = [bodies[name] for name in system.bodies]
-    q = np.concatenate([_columns(b.origin, b.theta) for b in own], axis=1)
-    rates = np.concatenate([_columns(b.velocity, b.omega) for b in own], axis=1)
+    q = np.column_stack([each for b in own for each in (b.origin, b.theta)])
+    rates = np.column_stack([each for b in own for each in (b.velocity, b.omega)])
     alpha = driver_course(scene, motion)[2]
     mass, applied = np.zeros((*q.shape, system.size)), np.zeros_like(q)
     for name, body in bodies.items():
@@ -150,10 +141,6 @@ def equations(scene: Scene, motion: Motion) -> Equations:
     )
 
 
-def _columns(places: Array, angles: Array) -> Array:
-    return np.concatenate([places, angles[:, None]], axis=1)
-
-
 def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> None:
     """The mass matrix of a body about its frame's origin, and its centrifugal force."""
     mass, arm = body.mass, body.arm(body.centre)
@@ -164,7 +151,7 @@ def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> No
     right[:, at : at + 2] += mass * body.omega[:, None] ** 2 * arm
 
 
-def reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
+def reactions(system: Constraints, time_s: Array, pushes: Array) -> Forces:
     """What the multipliers mean: pushes along the gradients of the equations, in their order, the
     driver's last."""
-    return joint_forces(scene, system.pin_pairs(), time_s, pushes[:, :-1], pushes[:, -1])
+    return joint_forces(system.assembly, time_s, pushes[:, :-1], pushes[:, -1])

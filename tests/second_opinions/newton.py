@@ -18,9 +18,8 @@ import numpy as np
 
 from models.array import Array, samples
 from models.errors import CrankcheckError
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
-from models.scene import GROUND, Point, Scene, Slider
-from models.scene.joints import local_point
+from models.motion import Motion
+from models.scene import Scene
 from tests.second_opinions.constraints import Constraints
 
 LONGEST_STEP_RAD = 0.05
@@ -37,27 +36,11 @@ class Guess:
 
 
 def solve(scene: Scene, time_s: Array, guess: Guess) -> Motion:
-    """The motion of a scene from its full constraint equations.
+    """The motion of a scene of mobility 1 from its full constraint equations, without bounds, at
+    increasing times [s], (T,); the ``guess`` at the first time decides the branch.
 
-    Parameters
-    ----------
-    scene : Scene
-        A mechanism of mobility 1; its groups need no closed form.
-    time_s : Array
-        Increasing times [s], shape (T,).
-    guess : Guess
-        A rough position at the first time; it decides the branch.
-
-    Returns
-    -------
-    Motion
-        All links, points and sliders, without bounds.
-
-    Raises
-    ------
-    CrankcheckError
-        Newton's method does not converge from the guess, or the Jacobian is singular on the way;
-        times that are no numbers.
+    Raises CrankcheckError where Newton's method does not converge from the guess, or the Jacobian
+    is singular on the way; for times that are no numbers.
     """
     system = Constraints(scene)
     law = scene.driver.law
@@ -81,8 +64,7 @@ def solve(scene: Scene, time_s: Array, guess: Guess) -> Motion:
         positions.append(q)
         rates.append(qd)
         seconds.append(_solved(system, q, system.gamma(q, qd, alpha), theta))
-    solved = _Samples(system, np.array(positions), np.array(rates), np.array(seconds))
-    return solved.motion(time_s)
+    return system.motion(time_s, *(np.array(each) for each in (positions, rates, seconds)))
 
 
 def _stations(start: float, end: float) -> Array:
@@ -118,76 +100,3 @@ def _closed(system: Constraints, q: Array, theta: float) -> Array:
         f"{system.scene.name}: Newton's method does not converge at {math.degrees(theta):.6g} deg "
         f"(last step {last:.3g}); give a better guess"
     )
-
-
-@dataclass(frozen=True)
-class _Samples:
-    """The coordinates of all samples with their rates and seconds, (T, 3 n), as a motion."""
-
-    system: Constraints
-    q: Array
-    rates: Array
-    seconds: Array
-
-    def motion(self, time_s: Array) -> Motion:
-        """All links, points and sliders."""
-        scene = self.system.scene
-        carriers = {
-            p: (bodies[0], local_point(scene, bodies[0], p)) for p, bodies in scene.pins.items()
-        }
-        for slider in scene.sliders.values():
-            carriers.setdefault(slider.point, self.system.tip(slider))
-        return Motion(
-            time_s,
-            {name: self.link(name) for name in scene.links},
-            {name: self.point(*carrier) for name, carrier in carriers.items()},
-            {name: self.slider(slider) for name, slider in scene.sliders.items()},
-        )
-
-    def link(self, body: str) -> LinkMotion:
-        """The rotation of a body; the ground has none."""
-        if body == GROUND:
-            rest = np.zeros(len(self.q))
-            return LinkMotion(rest, rest, rest)
-        i = self.system.at[body] + 2
-        return LinkMotion(self.q[:, i], self.rates[:, i], self.seconds[:, i])
-
-    def point(self, body: str, local: Point) -> PointMotion:
-        """The place ``local`` of a body: v = v0 + omega x r, a = a0 + alpha x r - omega^2 r."""
-        if body == GROUND:
-            rest = np.zeros((len(self.q), 2))
-            return PointMotion(rest + np.array(local), rest, rest)
-        turning = self.link(body)
-        c, s = np.cos(turning.theta), np.sin(turning.theta)
-        arm = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=1)
-        turned = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-        omega, alpha = turning.omega[:, None], turning.alpha[:, None]
-        origin = slice(self.system.at[body], self.system.at[body] + 2)
-        return PointMotion(
-            self.q[:, origin] + arm,
-            self.rates[:, origin] + omega * turned,
-            self.seconds[:, origin] + alpha * turned - omega * omega * arm,
-        )
-
-    def slider(self, slider: Slider) -> SliderMotion:
-        """The point of a slider along its line, as seen from the guide."""
-        tip, guide = self.point(*self.system.tip(slider)), self.point(slider.on, slider.through_m)
-        on = self.link(slider.on)
-        angle = on.theta + slider.direction_rad
-        along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-        away = tip.position - guide.position
-        drift = tip.velocity - guide.velocity
-        push = tip.acceleration - guide.acceleration
-        displacement = np.sum(along * away, axis=1)
-        aside = np.sum(across * away, axis=1)  # 0 but for the rounding of the solution
-        speed = np.sum(along * drift, axis=1) + on.omega * aside
-        # d^2/dt^2 of along . away, where along turns with the guide: along'' = alpha across -
-        # omega^2 along.
-        acceleration = (
-            np.sum(along * push, axis=1)
-            + 2.0 * on.omega * np.sum(across * drift, axis=1)
-            + on.alpha * aside
-            - on.omega**2 * displacement
-        )
-        return SliderMotion(displacement, speed, acceleration)

@@ -42,17 +42,8 @@ class TwoMasses:
 def oscillation_length(mass: float, inertia: float, centre_m: float) -> float:
     """The distance l_AK [m] of the centre of oscillation from A, about which the link turns.
 
-    Parameters
-    ----------
-    mass, inertia : float
-        m [kg], and J about the centre of mass [kg m^2].
-    centre_m : float
-        l_AS, the distance of the centre of mass from A [m].
-
-    Raises
-    ------
-    CrankcheckError
-        No mass, or a centre of mass in A: the inertia is a couple then, and no force.
+    Of m [kg], J about the centre of mass [kg m^2], and its distance l_AS from A [m]. Raises
+    CrankcheckError for no mass, or a centre in A: the inertia is a couple then, and no force.
     """
     _check_mass(mass)
     if not centre_m > 0.0:
@@ -78,23 +69,10 @@ def plane_motion(
 ) -> Resultant:
     """The inertia of a link in plane motion: -m a_S through the inertia centre T.
 
-    Parameters
-    ----------
-    mass, inertia : float
-        m [kg], and J about the centre of mass [kg m^2].
-    centre : Array
-        From A to S [m], (T, 2).
-    of_a : Array
-        Acceleration of A [m/s^2], (T, 2).
-    omega, alpha : Array
-        Of the link [rad/s, rad/s^2], (T,).
-
-    Returns
-    -------
-    Resultant
-        T is where the parallel to a_A through S meets that to a_SA through K. Where the two are
-        parallel it is the place on the line SK through which both together go; nowhere (NaN) where
-        they are a couple.
+    ``centre`` is the way from A to S [m], ``of_a`` the acceleration of A [m/s^2], (T, 2). T is
+    where the parallel to a_A through S meets that to a_SA through K. Where the two are parallel it
+    is the place on the line SK through which both together go; nowhere (NaN) where they are a
+    couple.
     """
     length = math.hypot(*centre[0])
     k = oscillation_length(mass, inertia, length) / length * centre

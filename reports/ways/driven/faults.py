@@ -1,6 +1,7 @@
 """Faults of driven runs: of their motion, and of the forces in them."""
 
 from collections.abc import Collection, Sequence
+from functools import partial
 
 from models.scene import Scene
 from reports.judge.cell import Cell
@@ -20,11 +21,6 @@ def turn(scene: Scene, engine: str, steps: int, converge: bool, *, forces: bool 
 def words(scenes: Collection[str]) -> Sequence[str]:
     """The length of the runs, in words."""
     return [f"{STEPS} steps a turn, 1 turn"]
-
-
-def loaded(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
-    """As `turn`, with forces."""
-    return turn(scene, engine, steps, converge, forces=True)
 
 
 SETTINGS = {"steps_per_turn": STEPS, "turns": 1}
@@ -52,6 +48,11 @@ FAULTS = FaultSet(
     ),
     {
         "motion": FaultRuns(GROUPS, turn, words, SETTINGS, unseen=UNSEEN),
-        "forces": FaultRuns({"force": "a right motion with wrong forces"}, loaded, words, SETTINGS),
+        "forces": FaultRuns(
+            {"force": "a right motion with wrong forces"},
+            partial(turn, forces=True),
+            words,
+            SETTINGS,
+        ),
     },
 )

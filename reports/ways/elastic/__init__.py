@@ -9,14 +9,7 @@ from typing import TYPE_CHECKING, Any
 from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.plan.requirements import (
-    SPRINGS,
-    cut_scene,
-    given_as,
-    held_steps,
-    logged_every,
-    refuse_unelastic,
-)
+from reports.plan import requirements
 from reports.quantities.limits import ELASTIC
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned
 from reports.way.way import ResultKind, StudyLengths, StudyLinks
@@ -27,9 +20,10 @@ if TYPE_CHECKING:
     from reports.compare.elastic_truth import ElasticTruth
 
 
-class Bending:
+class Bending(DrivenWay):
     """Particulars of links that bend, with any drive; precedes the way of rigid links."""
 
+    closed_form = False
     kinds: Sequence[str] = ("elastic",)
     placed: Sequence[str] = ("deflection",)
     no_case = "no elastic link in it"
@@ -57,27 +51,38 @@ class Bending:
         return segments is not None and bool(segments == segments)
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
-        return cut_scene(scene, given)
+        return requirements.cut_scene(scene, given)
 
     def held_steps(self, scene: Scene) -> tuple[float, ...]:
-        return (held_steps(scene, SEGMENTS, SPRINGS[0]),)
+        return (requirements.held_steps(scene, SEGMENTS, requirements.SPRINGS[0]),)
 
     def judged_by(self, given: GivenAs) -> list[str] | None:
         springs = ["--springs", given.springs] * (given.springs != "plain")
         return ["--segments", str(given.segments), *springs]
 
     def given_by(self, study: StudyLinks) -> list[GivenAs]:
-        return given_as(study)
+        return requirements.given_as(study)
 
     def key(self, given: GivenAs) -> list[object]:
         return ["elastic", given.segments, given.springs]
 
+    def refuse(self, run: Planned) -> None:
+        super().refuse(run)
+        requirements.refuse_unelastic(self.start_truth, run.scene, run.given_as)
 
-class ElasticWay(Bending, DrivenWay):
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        truth = self.start_truth(scene, GivenAs())
+        return truth.given, truth.start
+
+    def start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
+        """The reference of a short run. Raises CrankcheckError for a scene without one."""
+        raise NotImplementedError
+
+
+class ElasticWay(Bending):
     """The way of driven scenes with elastic links."""
 
     name = "elastic"
-    closed_form = False
     limits = ELASTIC
     roles = DrivenWay.roles | {"elastic"}
 
@@ -89,31 +94,23 @@ class ElasticWay(Bending, DrivenWay):
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
         if length.dt_s is None and length.steps_per_turn is None:
-            held = held_steps(scene, given.segments, given.springs)
+            held = requirements.held_steps(scene, given.segments, given.springs)
             length = replace(length, steps_per_turn=held)
         return super().counted(scene, length, given)
 
     def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         if not study.times_held:
             return super().lengths(scene, study, given)
-        held = held_steps(scene, given.segments, given.springs)
+        held = requirements.held_steps(scene, given.segments, given.springs)
         return [Length(None, times * held, study.turns) for times in study.times_held]
 
-    def refuse(self, run: Planned) -> None:
-        super().refuse(run)
-        refuse_unelastic(self._start_truth, run.scene, run.given_as)
-
-    def opened(self, scene: Scene) -> tuple[Scene, State]:
-        truth = self._start_truth(scene, GivenAs())
-        return truth.given, truth.start
-
-    def _start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
+    def start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
         from reports.compare.elastic_truth import elastic_truth  # slow to import
 
         return elastic_truth(scene, given.segments, given.springs, self.turn_s(scene))
 
     def every(self, steps: int, steps_per_turn: float) -> int:
-        return logged_every(steps_per_turn)
+        return requirements.logged_every(steps_per_turn)
 
     def truth(self, run: Planned) -> Truth:
         from reports.compare.elastic_truth import elastic_truth  # slow to import

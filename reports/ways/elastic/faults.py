@@ -23,8 +23,6 @@ def _runs(
     unseen: Sequence[Unseen],
     *also: RunKind,
 ) -> FaultRuns:
-    """The runs of a kind, by scene."""
-
     def cell(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
         return elastic_cell(scene.name, engine, steps / STEPS, own)
 

@@ -12,7 +12,7 @@ from reports.page.sections.section import Section, WaySection
 from reports.results.lines import Line
 from reports.results.overview import Report
 from reports.way.length import SECONDS, TURNS, Clock, clock_of
-from reports.ways.free.section import cost_row, fits_of
+from reports.ways.free.section import cost_row, error_curves
 
 KIND = "elastic"
 SHOWN = (
@@ -41,29 +41,24 @@ def build(report: Report) -> Section | None:
         return None
     names = list(dict.fromkeys(line.scene for line in own))
     bent = [one for one in report.recommendations if one.best.way and KIND in one.best.way.kinds]
-    fits = fits_of(report, KIND, ERRORS)
+    names_of_errors, curves = error_curves(report, KIND, ERRORS)
     return Section(
         anchor="elastic",
         title="Elastic links",
         template="elastic_links.html",
         words={
             "scenes": names,
-            "errors": {name: ERRORS[name][0] for name in fits},
+            "errors": names_of_errors,
             "rows": [row for line in own for row in _rows(report, line)],
             "costs": [cost_row(one, own[0].period_s) for one in bent],
         },
-        embedded={
-            "courses": [each for line in own for each in _courses(report, line)],
-            "fits": fits,
-            "units": {name: ERRORS[name][1] for name in fits},
-        },
+        embedded={"courses": [each for line in own for each in _courses(report, line)], **curves},
         scripts=SCRIPTS,
         plotly=True,
     )
 
 
 def _rows(report: Report, line: Line) -> list[dict[str, object]]:
-    """The cells of a line as rows of the table."""
     return [
         {"scene": line.scene, "look": report.look(line), "turn": clock_of(line.drive).name}
         | {name: cell.get(name) for name in SHOWN}
@@ -95,10 +90,7 @@ def _courses(report: Report, line: Line) -> list[dict[str, object]]:
 
 
 COURSES: Mapping[Clock, Callable[[Trace], tuple[str, Array]]] = {
-    TURNS: lambda trace: (
-        "angle of the driver [deg]",
-        np.degrees(first_turn(trace["driver_rad"])),
-    ),
+    TURNS: lambda trace: ("angle of the driver [deg]", np.degrees(first_turn(trace["driver_rad"]))),
     SECONDS: lambda trace: ("time [s]", trace["time_s"]),
 }
 """The abscissa of courses: its name, and its numbers (T,)."""

@@ -189,11 +189,7 @@ class FreeLog:
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         assert isinstance(held.truth, FreeTruth)
         apart = told_apart(held.errors) if held.out else ()
-        return (), (
-            *told_of_start(held.log, held.truth),
-            *apart,
-            *told_of_no_limit(held.errors),
-        )
+        return (), (*told_of_start(held.log, held.truth), *apart, *told_of_no_limit(held.errors))
 
 
 LOG = FreeLog()

@@ -1,6 +1,6 @@
 """Free motion: the time for which each engine stays near the reference."""
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 
 from reports.output.numbers import duration
 from reports.page.sections.errors import drawn
@@ -45,7 +45,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
     costs = [
         one for one in report.recommendations if one.best.way and one.best.way.kinds == (KIND,)
     ]
-    fits = fits_of(report, KIND, ERRORS)
+    names_of_errors, curves = error_curves(report, KIND, ERRORS)
     return Section(
         anchor="free",
         title="Let go",
@@ -58,7 +58,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
                 else {"name": name, "source": "", "note": ""}
                 for name in names
             ],
-            "errors": {name: ERRORS[name][0] for name in fits},
+            "errors": names_of_errors,
             "costs": [cost_row(one) for one in costs],
             "thinned": held < max(len(line.cells) for line in lines),
             "held": held,
@@ -68,8 +68,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
                 FreeCourses(report, name, report.scenes[name], sizes, held).embedded()
                 for name in names
             ],
-            "fits": fits,
-            "units": {name: ERRORS[name][1] for name in fits},
+            **curves,
             "judged": sorted({report.look(x).number for x in lines if x.cells["gated"].all()}),
         },
         scripts=SCRIPTS,
@@ -78,7 +77,6 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
 
 
 def _rows(report: Report, line: Line) -> list[dict[str, object]]:
-    """The cells of a line as rows of the table."""
     look = report.look(line)
     return [
         {"scene": line.scene, "look": look, "variant": line.variant}
@@ -113,19 +111,22 @@ def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
     }
 
 
-def fits_of(
-    report: Report, kind: str, quantities: Iterable[str]
-) -> dict[str, list[dict[str, object]]]:
-    """The errors of all lines of a kind against the step, with their fits, by quantity."""
-    return {
-        quantity: [
+def error_curves(
+    report: Report, kind: str, errors: Mapping[str, tuple[str, str]]
+) -> tuple[dict[str, str], dict[str, object]]:
+    """The errors of a kind against the step, by column of the store, of their names and units: the
+    names; and the curves of all lines with their fits, and the units, to be drawn."""
+    own = {column: named for column, named in errors.items() if column in report.cells}
+    fits = {
+        column: [
             drawn(report, line) | {"lasts_s": line.period_s}
-            for line in lines(report.stored, quantity)
+            for line in lines(report.stored, column)
             if kind in line.way.kinds
         ]
-        for quantity in quantities
-        if quantity in report.cells
+        for column in own
     }
+    units = {column: unit for column, (_, unit) in own.items()}
+    return {column: name for column, (name, _) in own.items()}, {"fits": fits, "units": units}
 
 
 SECTION = WaySection(build, build)

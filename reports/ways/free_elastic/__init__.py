@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan import requirements
@@ -35,10 +34,8 @@ class FreeElasticWay(Bending, FreeWay):
         return super().takes(scene, drive) and bool(scene.elastic)
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
-        step, bent = (length.dt_s, length.duration_s), (given.segments, given.springs)
-        return requirements.counted_released(
-            scene, *step, *bent, every=length.every, least=length.least
-        )
+        asked = length.dt_s, length.duration_s, given.segments, given.springs
+        return requirements.counted_released(scene, *asked, every=length.every, least=length.least)
 
     def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         if not study.times_held:
@@ -47,28 +44,20 @@ class FreeElasticWay(Bending, FreeWay):
         lasts_s = held_s * count
         return [Length(held_s / times, duration_s=lasts_s) for times in study.times_held]
 
-    def refuse(self, run: Planned) -> None:
-        super().refuse(run)
-        requirements.refuse_unelastic(self._start_truth, run.scene, run.given_as)
-
-    def opened(self, scene: Scene) -> tuple[Scene, State]:
-        truth = self._start_truth(scene, GivenAs())
-        return truth.given, truth.start
-
     def launch(self, run: Planned) -> Truth | None:
         return self.truth(run)
 
     def judged_by(self, given: GivenAs) -> list[str] | None:
         return None
 
-    def _start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
+    def start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
         from reports.compare.released_truth import released_elastic_truth  # slow to import
 
         look_s = requirements.LOOK * scene.driver.law.period_s
         return released_elastic_truth(scene, given.segments, given.springs, 1, look_s)
 
     def note(self, scene: Scene, duration_s: float) -> str:
-        return requirements.shortened_note(scene, duration_s)
+        return self.shortened(scene, duration_s)
 
     def shortened(self, scene: Scene, lasts_s: float) -> str:
         return requirements.shortened_note(scene, lasts_s)

@@ -12,8 +12,8 @@ from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.released import assembled
 from analytic.multibody.generalised_forces import GeneralisedForces
-from analytic.multibody.multibody_motion import MultibodyMotion
-from analytic.multibody.release_multibody import Acting, release_multibody
+from analytic.multibody.multibody_motion import MultibodyMotion, Projection
+from analytic.multibody.release_multibody import Acting, ready
 from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion
@@ -51,7 +51,6 @@ def turning(ratio: float = 10.5, rocker: float = 1.0, damping_s: float = 0.0) ->
 
 
 def form_of(scene: Scene, by: Discretisation = FEW) -> ReducedForm:
-    """Its equations of motion."""
     return DrivenElasticMotion(scene, 1.0, by, "periodic", stiffened=True).form
 
 
@@ -59,9 +58,8 @@ def by_multipliers(
     scene: Scene, until_s: float, by: Discretisation, acting: Acting = GeneralisedForces
 ) -> MultibodyMotion:
     """Let go, by the equations with multipliers and an explicit method."""
-    return release_multibody(
-        scene, until_s, near=assembled(scene), flexible=flexible_links(scene, by), acting=acting
-    )
+    dynamics, *start = ready(scene, assembled(scene), flexible_links(scene, by), acting)
+    return MultibodyMotion(dynamics, Projection(), until_s, tuple(start))
 
 
 def largest(series: Array) -> float:

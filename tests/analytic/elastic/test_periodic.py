@@ -174,11 +174,9 @@ def test_what_kinks_leave_out_is_in_the_doubt(most: int, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize(
-    "by",
-    few([Elements(3), Elements(4), Segments(8, corrected=True)], {Elements(3)}, SLOPES),
+    "by", few([Elements(3), Elements(4), Segments(8, corrected=True)], {Elements(3)}, SLOPES)
 )
 def test_links_swing_alike_by_coefficients_of_any_kind(by: Discretisation) -> None:
-    """By slopes and angles as well as by lengths."""
     scene = turning(10.5)
     known, other = (
         swings(form, periodic_motion(form).z)["coupler"]

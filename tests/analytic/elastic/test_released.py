@@ -54,15 +54,12 @@ METHODS = "half a second and more: other mechanisms and shapes in the same equat
         slowly(DAMPED, Modes(1), 0.1, reason="errors that grow with time"),
     ],
 )
-def test_three_methods_agree(mechanism: Scene, by: Discretisation, until_s: float) -> None:
-    """Collocation and Radau's method without multipliers, an explicit method with them."""
+def test_both_methods_agree(mechanism: Scene, by: Discretisation, until_s: float) -> None:
+    """Collocation without multipliers, an explicit method with them."""
     time_s = np.linspace(0.0, until_s, 41)
     (link,) = mechanism.elastic
     multibody, free = (f(mechanism, until_s, by) for f in (by_multipliers, release_elastic))
     assert apart(free.at(time_s), multibody.at(time_s), link) < 1e-8
-    early = time_s[:6]
-    radau = release_elastic(mechanism, early[-1], by, method="library", tolerance=1e-9)
-    assert apart(radau.at(early), multibody.at(early), link) < 1e-5
 
 
 @pytest.mark.parametrize(
@@ -225,7 +222,6 @@ TURN_S = LAW.period_s
 
 
 def with_gains(scene: Scene, kp: float, kd: float) -> Scene:
-    """The scene with another controller."""
     return following(scene, Controlled(LAW.start_rad, LAW.speed_rad_s, kp, kd))
 
 
@@ -279,7 +275,6 @@ def test_under_control_a_crank_with_a_stiff_link_keeps_to_its_law() -> None:
 
 
 def test_without_gains_the_torque_that_it_needs_is_not_enough() -> None:
-    """The torque of the rigid mechanism alone lets the crank drift off."""
     alone = control_elastic(with_gains(SCENE, 0.0, 0.0), 0.35 * TURN_S, Modes(1))
     end = np.array([0.35 * TURN_S])
     assert largest(alone.at(end).links["crank"].theta - LAW.at(end)[0]) > 1e-3

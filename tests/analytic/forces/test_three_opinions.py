@@ -171,8 +171,8 @@ def _multipliers(scene: Scene, motion: Motion) -> tuple[Forces, Forces]:
     right = np.abs(system.applied)[:, :, None] + inertia @ (np.abs(q) + by_q / EPS)
     off = EPS * (_skeel(turned, x, right) + np.abs(x).max(axis=1, keepdims=True))
     held, time_s = system.constraints, motion.time_s
-    found = multipliers.reactions(scene, held, time_s, -x[:, :, 0])
-    return found, multipliers.reactions(scene, held, time_s, off[:, :, 0])
+    found = multipliers.reactions(held, time_s, -x[:, :, 0])
+    return found, multipliers.reactions(held, time_s, off[:, :, 0])
 
 
 def _skeel(matrix: Array, x: Array, right: Array) -> Array:

@@ -6,49 +6,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from analytic.free.coordinate_history import _moved
 from analytic.free.exact_motions import ToggleBarrier
 from analytic.free.limit_position import REACH
 from analytic.free.release import release
 from analytic.free.solved_motion import MachineMotion
-from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.driver import let_go
 from models.scene.hard import fourbar as triple_rocker
-from tests.analytic.free.mechanisms import (
-    fourbar,
-    newton_euler,
-    past_limits,
-    released,
-    slider_crank,
-)
+from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
 from tests.analytic.multibody.scenes import by_bodies
 from tests.analytic.multibody.scenes import scene as parsed
-from tests.second_opinions.constraints import Constraints
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.tiers import slowly
-
-
-def bodies_after(scene: Scene, until_s: float) -> Array:
-    """The angles of all bodies, from Newton's equations with a multiplier per constraint."""
-    system, state = Constraints(scene), released(scene, 0.9).at(np.zeros(1)).state()
-    size, start = system.size, np.zeros(2 * system.size)
-    for name, link in scene.links.items():
-        i, (point, local) = system.at[name], next(iter(link.points.items()))
-        assert local == (0.0, 0.0)
-        start[i : i + 3] = *state.position[point], state.theta[name]
-        start[size + i : size + i + 3] = *state.velocity[point], state.omega[name]
-
-    def rates(_: float, y: Array) -> Array:
-        q, v = y[:size], y[size:]
-        return np.concatenate([v, newton_euler(scene, system, q, v)])
-
-    done = solve_ivp(rates, (0.0, until_s), start, "DOP853", rtol=1e-12, atol=1e-12)
-    return np.array([done.y[system.at[name] + 2, -1] for name in scene.links])
 
 
 @pytest.mark.parametrize(
@@ -63,9 +36,9 @@ def test_past_limits_the_motion_is_that_of_all_bodies(until_s: float) -> None:
     cosine = (0.45**2 - 0.2**2 - 0.4**2) / (-2.0 * 0.2 * 0.4)
     assert second.driver_rad == pytest.approx(math.acos(cosine), abs=1e-15)
     assert first.driver_rad == pytest.approx(-math.acos(cosine), abs=1e-15)
-    links = free.at(np.array([until_s])).links.values()
-    found = np.array([link.theta[0] for link in links])
-    assert np.abs(found - bodies_after(scene, until_s)).max() < 1e-10
+    ends = (each.at(np.array([until_s])).links for each in (free, by_bodies(scene, until_s)))
+    found, wanted = (np.array([link.theta[0] for link in end.values()]) for end in ends)
+    assert np.abs(found - wanted).max() < 1e-10
 
 
 FAST = {"start_deg": 20.0, "speed_rad_s": 15.0}

@@ -4,7 +4,6 @@ form against 50 digits, its equation against all bodies."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -24,19 +23,16 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene import Scene
-from models.scene.characteristics import Constant
 from models.scene.hard import UPRIGHT, WindowChain
 from models.scene.joints import centre_of, mass_of
-from models.scene.loads import Load
 from tests.analytic.free.mechanisms import (
     driver_by_steps,
     fourbar,
     newton_euler,
-    past_limits,
     released,
     slider_crank,
 )
-from tests.analytic.multibody.scenes import by_bodies, scene
+from tests.analytic.multibody.scenes import by_bodies
 from tests.second_opinions.constraints import Constraints
 from tests.second_opinions.period import period
 from tests.worlds.tiers import few, slowly
@@ -161,15 +157,6 @@ def test_a_kink_asks_for_the_mechanism_about_twice(monkeypatch: pytest.MonkeyPat
     assert np.isfinite(motion.at(np.array([0.03])).links["crank"].theta).all()
 
 
-def on_top_of_its_swing() -> Scene:
-    """A rod that starts 0.001 deg below the top."""
-    return scene("""
-        ground = { points = { A = [0.0, 0.0] } }
-        links = { crank = { bar = ["A", "B"], length_m = 1.0 } }
-        driver = { link = "crank", law = "free", start_deg = 89.999 }
-    """)
-
-
 def times_of(free: FreeMotion, level: float, until_s: float) -> list[float]:
     """When the driver passes an angle upwards."""
     time_s = np.linspace(0.0, until_s, 4001)
@@ -213,22 +200,6 @@ def test_turns_take_the_period_that_quadrature_has(count: int) -> None:
     times = one.time_s * np.arange(count)
     theta = release(turning, times[-1]).law.at(times)[0]
     assert np.abs(theta - theta[0] - math.tau * np.arange(count)).max() < 1e-11
-
-
-MOTOR = Load("motor", "crank", None, Constant(1.0))
-
-
-@pytest.mark.parametrize(
-    ("mechanism", "said"),
-    [
-        (replace(fourbar(), loads={"motor": MOTOR}), "loads, dampers or friction"),
-        (past_limits(), "comes to its limit"),
-        (on_top_of_its_swing(), "narrower than 0.5 deg"),
-    ],
-)
-def test_a_period_is_refused_where_there_is_none(mechanism: Scene, said: str) -> None:
-    with pytest.raises(CrankcheckError, match=said):
-        period(mechanism)
 
 
 CHAINS = [

@@ -3,9 +3,11 @@
 import numpy as np
 
 from analytic.kinematics import solve
+from analytic.multibody.as_motion import as_motion
 from analytic.multibody.multibody_motion import MultibodyMotion
-from analytic.multibody.release_multibody import release_multibody
+from analytic.multibody.release_multibody import ready, release_multibody
 from models.files.reading import parse_scene
+from models.motion import State
 from models.scene import Scene
 
 G = 9.81
@@ -21,6 +23,13 @@ def by_bodies(mechanism: Scene, until_s: float) -> MultibodyMotion:
     """Its motion by the multibody form, from the assembly that the closed form has."""
     near = solve(mechanism, np.zeros(1), bound=False).state()
     return release_multibody(mechanism, until_s, near=near)
+
+
+def start_state(mechanism: Scene, near: State | None = None) -> State:
+    """Its state when it is let go, with accelerations."""
+    dynamics, q, rates = ready(mechanism, near)
+    now, at = dynamics.assembly.at_rates(q[None], rates[None]), np.zeros(1)
+    return as_motion(dynamics.assembly, at, now, dynamics.solve(at, now)[0]).state()
 
 
 ROTOR = """

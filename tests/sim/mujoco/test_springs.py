@@ -12,7 +12,6 @@ import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.free.release import release
-from analytic.multibody.release_multibody import start_state
 from models.array import Array
 from models.errors import EngineError
 from models.files.reading import load_scene, parse_scene
@@ -25,6 +24,7 @@ from models.scene.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from sim.mujoco.engine import MujocoSession
 from sim.run import run
 from sim.run.check import refuse_other_model
+from tests.analytic.multibody.scenes import start_state
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
 from tests.worlds.let_go import released

@@ -184,11 +184,3 @@ def test_what_starts_straight_is_off_by_its_fast_waves_too(checked: Checked) -> 
     assert limit(1e-3, straight=True, of="gap") == limit(1e-3, straight=False, of="gap")
     # The power 4/3 of the step, up to the waves that so many segments have.
     assert limit(1e-3, straight=True) / limit(5e-4, straight=True) == pytest.approx(2.5, abs=0.5)
-
-
-def test_a_link_that_stretches_is_no_chain_when_it_is_let_go() -> None:
-    own = scene(PULSE)
-    coupler = replace(own.elastic["coupler"], axial_n=2.4e6)
-    found = check(cell(scene=replace(own, elastic={"coupler": coupler})))
-    assert found.verdict == "unsupported"
-    assert "elastic.coupler stretches" in found.reason
