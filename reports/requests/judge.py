@@ -174,8 +174,7 @@ def judged(
             )
         named = limits if every is None else {name: limits.get(name, every) for name in way.targets}
         return verdict_of_run(scene, log, named)
-    if asked.free:
-        scene = loosened(scene)
+    scene = _moving(scene, asked.free)
     _refuse_other_targets(scene, limits)
     given = given_of([scene], asked.segments, asked.springs)
     request = LogRequest(
@@ -190,6 +189,10 @@ def judged(
     found = judge_log(any_log.log_of(scene, log, asked.map, forces=asked.forces), request)
     notes = tuple(arguments.in_python(note) for note in found.notes)
     return LogVerdict(**arguments.parts_in_python(found) | {"notes": notes}, facts=provenance({}))
+
+
+def _moving(scene: Scene, free: bool) -> Scene:
+    return loosened(scene) if free else scene
 
 
 def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
@@ -243,9 +246,7 @@ class JudgeRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
         can not be read and for a faulty request, before anything is written."""
-        scene = load_scene(self.scene)
-        if self.free:
-            scene = loosened(scene)
+        scene = _moving(load_scene(self.scene), self.free)
         outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
         asked = _checked(self, scene, outputs)
         tolerance.check_names(scene)
