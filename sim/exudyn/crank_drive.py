@@ -31,6 +31,7 @@ from models.scene.loads import ConstantFriction, Load, SlideSpring
 from sim.engine import Drive, Poses, Settings
 from sim.engine import drive as drives
 from sim.engine.measure import directions, motion
+from sim.engine.refusals import refuse_driver_angle
 from sim.exudyn.passive import against, still_rad_s
 from sim.exudyn.solver import Multipliers
 from sim.exudyn.system import Index, PlaneSystem, items
@@ -100,11 +101,7 @@ def refuse_undriven(scene: Scene, drive: Drive) -> None:
     driver = scene.driver
     if driver.is_crank or drive == "free":
         return
-    if any(load.over == "angle" for load in scene.loads.values()):
-        raise EngineError(
-            f"{scene.name}: a load goes with the driver's angle, and exudyn is given that of a "
-            f"crank alone; this driver is {driver.joint}"
-        )
+    refuse_driver_angle(scene, "exudyn")
     if drive == "servo":
         raise EngineError(
             f"{scene.name}: exudyn is given a servo for a crank alone, and this driver is "

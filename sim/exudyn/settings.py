@@ -1,7 +1,7 @@
 """exudyn's settings: the two profiles, and their form in its own structures."""
 
 from sim.engine import Drive, Placing, Profile, Setting, Settings
-from sim.engine.settings import check_choices, check_ranges
+from sim.engine.settings import checker
 
 INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
 """Implicit integrators; explicit ones take no joints."""
@@ -108,10 +108,7 @@ TUNED = Profile(
 )
 
 
-def checked(settings: Settings) -> None:
-    """Refuse values that exudyn does not take. Raises SettingError."""
-    check_choices(settings, CHOICES)
-    check_ranges(settings, RANGES)
+checked = checker(CHOICES, RANGES)
 
 
 def of_drive(settings: Settings, drive: Drive) -> Settings:

@@ -38,6 +38,7 @@ from models.scene.joints import (
     sliding_angle,
     turned,
 )
+from sim.engine.refusals import refuse_massless
 
 SAID = re.compile(r"Python WARNING|Python ERROR")
 """Beginning of each of exudyn's messages about a run."""
@@ -279,7 +280,7 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
             continue
         mass, inertia = mass_of(scene, name)
         if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
-            _refuse_massless(name, mass, inertia, turns=name not in held)
+            refuse_massless("exudyn", name, mass, inertia, turns=name not in held)
         frame, centre = where[name], centre_of(scene, name)
         place = frame.at(centre)
         made.centre[name] = centre
@@ -297,15 +298,6 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
         add_elements(scene, made, beam)
     _join(scene, made)
     return made
-
-
-def _refuse_massless(name: str, mass: float, inertia: float, *, turns: bool) -> None:
-    """Refuse a body that a force would move at no cost. Raises EngineError."""
-    if mass <= 0.0 or (inertia <= 0.0 and turns):
-        raise EngineError(
-            f"{name}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; exudyn moves no body without "
-            "both, give them"
-        )
 
 
 def _join(scene: Scene, made: PlaneSystem) -> None:

@@ -131,8 +131,7 @@ class ReadModel:
             text = variants.diff(self.path, raw, new)
         except EngineError as error:
             return f"{error}: {told.words()}\n"
-        line = variants.profiles((), advised)[variants.RECOMMENDED]
-        settings = {name: setting.value for name, setting in line.settings.items()}
+        settings = variants.profiles((), advised)[variants.RECOMMENDED].values
         wanted = copy.copy(planar.model)
         variants.applied(wanted, planar.loops, settings, dt_s)
         if variants.held(found, planar.loops, settings) != variants.held(

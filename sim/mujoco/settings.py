@@ -9,7 +9,7 @@ from models.scene import Scene
 from models.scene.joints import inertia_scale
 from models.scene.loads import SegmentSpring
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
-from sim.engine.settings import check_choices, check_ranges
+from sim.engine.settings import as_held, checker
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 """Integrators in MuJoCo's own order."""
@@ -130,10 +130,7 @@ TUNED = Profile(
 )
 
 
-def checked(settings: Settings) -> None:
-    """Refuse values that MuJoCo does not take. Raises SettingError."""
-    check_choices(settings, CHOICES)
-    check_ranges(settings, RANGES)
+checked = checker(CHOICES, RANGES)
 
 
 def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> options.Writing:
@@ -201,24 +198,19 @@ def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
 def held_share(
     scene: Scene, settings: Settings, drive: Drive, found: float
 ) -> dict[str, SettingValue]:
-    """Return the share ``found`` in a model, as settings: the requested share, with the share of
-    segments if it differs."""
+    """Return the share ``found`` in a model, as settings."""
     asked = float(settings["free_inverse_weight_share"])
     given = weight_share(scene, settings, drive)
-    if given != asked and found == given:
-        return {"free_inverse_weight_share": asked, "free_inverse_weight_share_of_segments": found}
-    return {"free_inverse_weight_share": found}
+    cause = "segments" if given != asked else ""
+    return as_held("free_inverse_weight_share", asked, given, found, cause)
 
 
 def held_iterations(
     scene: Scene, settings: Settings, drive: Drive, found: int
 ) -> dict[str, SettingValue]:
-    """Return the iterations ``found`` in a model, as settings: the requested ones, with the
-    iterations for friction, springs or lower weights if they differ."""
-    cause = _iterating(scene, settings, drive)
-    if cause and found == _iterations(scene, settings, drive):
-        return {"iterations": int(settings["iterations"]), f"iterations_of_{cause}": found}
-    return {"iterations": found}
+    """Return the iterations ``found`` in a model, as settings."""
+    asked, given = int(settings["iterations"]), _iterations(scene, settings, drive)
+    return as_held("iterations", asked, given, found, _iterating(scene, settings, drive))
 
 
 def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:

@@ -1,37 +1,33 @@
 """MuJoCo settings as MJCF."""
 
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
-from sim.mujoco.settings import AS_SHIPPED, closing_steps
-from sim.registry.offers import SnippetWriter, Stepping
+from sim.mujoco.settings import AS_SHIPPED, closing_steps, integrator
+from sim.registry.offers import ALONE, WIDTH, SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
 INSET = "  "
 """Indent of an element within a comment: it keeps its own line."""
 LOOP_CLASS = "crankcheck-loop"
 """Default class of the connects that close the mechanism, and of nothing else."""
-WIDTH = 96
 
 
 def mujoco_snippet(
-    settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
-) -> str:
+    asked: Settings, defaults: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
+) -> list[str]:
     """Write sections to paste into ``<mujoco>``, which merges sections that it has twice.
 
     A class for the loop's own connects, and the step and integrator, which can only be the whole
     model's. Other differences from MuJoCo's defaults would change the rest of a user's model and
     are in a comment; see `sim.registry.offers.snippet`.
     """
-    defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
-    complete = defaults | dict(settings)
-    complete["solref_timeconst_steps"] = closing_steps(complete, drive)
+    complete = {**asked, "solref_timeconst_steps": closing_steps(asked, drive)}
     dt_s = stepping.dt_s
     connect = _connect(complete, defaults, dt_s)
-    integrator = complete["servo_integrator" if drive == "servo" else "integrator"]
-    whole = {"timestep": repr(dt_s), "integrator": str(integrator)}
-    lines = [
+    whole = {"timestep": repr(dt_s), "integrator": integrator(complete, drive)}
+    return [
         *_comment([*head, _where(complete, paired=bool(connect))]),
         *connect,
         *_comment(
@@ -43,9 +39,8 @@ def mujoco_snippet(
             ]
         ),
         f"<option{_attributes(whole)}/>",
-        *_comment(_measured(complete, defaults, drive)),
+        *_comment(_alone(complete, defaults, drive) + DRIVES[drive](complete)),
     ]
-    return "\n".join(lines) + "\n"
 
 
 def _where(complete: Settings, *, paired: bool) -> str:
@@ -87,22 +82,17 @@ def _timeconst(complete: Settings, dt_s: float) -> float:
 
 def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
     """Say how to scale the step for another crank speed, or for free motion."""
-    per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     steps = float(complete["solref_timeconst_steps"])
     stiff = f", and solref = {steps:g} timestep." if steps else "."
     counted = stepping.counted_in(drive)
     if counted == "nothing":
         return f"Let go: timestep = {stepping.dt_s:g} s{stiff}"
     if counted == "turns":
-        return (
-            f"{per_turn} steps a turn of a crank at {speed}. At another speed: timestep = 2 pi / "
-            f"({per_turn} speed)" + stiff
-        )
-    frame, number = f"{stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
+        return stepping.scaled_by_speed("timestep") + stiff
+    number, more = stepping.substeps, stepping.scaled_in_frames("them")
     return (
-        f"A frame of {frame} is {number} of these steps: mj_step(model, data, nstep={number}). A "
-        f"crank at {speed} has {per_turn} of them in a turn; a faster one needs more of them in a "
-        "frame, in proportion: timestep = frame / their number" + stiff
+        f"A frame of {stepping.frame} is {number} of these steps: mj_step(model, data, "
+        f"nstep={number}). {more}: timestep = frame / their number{stiff}"
     )
 
 
@@ -127,12 +117,6 @@ def _coarse(defaults: Settings, dt_s: float) -> list[str]:
     ]
 
 
-def _measured(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
-    """List the other settings of the measured runs: for a model of nothing else, and the drive."""
-    driven = {"prescribed": _flywheel, "servo": _servo, "free": _free}[drive](complete)
-    return [*_alone(complete, defaults, drive), *driven]
-
-
 def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
     """Write the option element for a model of the mechanism alone."""
     row = {
@@ -154,9 +138,12 @@ def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
     lines = [f"<option{_attributes(row)}/>"]
     if flags:
         lines = [f"<option{_attributes(row)}>", f"  <flag{_attributes(flags)}/>", "</option>"]
-    title = "ONLY TO MEASURE AS WE DID, in a model with nothing else in it:"
     harm = "Without contacts bodies fall through each other; with them the numbers are the same."
-    return [title, *(INSET + line for line in lines), *([harm] if "contact" in flags else [])]
+    return [
+        ALONE.format("model"),
+        *(INSET + line for line in lines),
+        *([harm] if "contact" in flags else []),
+    ]
 
 
 def _flywheel(complete: Settings) -> list[str]:
@@ -192,6 +179,14 @@ def _free(complete: Settings) -> list[str]:
     return [start, *([scaled] if share != "1" else [])]
 
 
+DRIVES: Mapping[Drive, Callable[[Settings], list[str]]] = {
+    "prescribed": _flywheel,
+    "servo": _servo,
+    "free": _free,
+}
+"""Description of the drive in the measured runs."""
+
+
 def _short(value: SettingValue) -> str:
     """Format a number without a sign and zeros in its exponent."""
     return f"{float(value):g}".replace("e+", "e").replace("e-0", "e-")
@@ -214,4 +209,4 @@ def _comment(paragraphs: Sequence[str]) -> list[str]:
     return [*lines[:-1], f"{lines[-1]} -->"]
 
 
-SNIPPET = SnippetWriter("xml", mujoco_snippet)
+SNIPPET = SnippetWriter("xml", AS_SHIPPED, mujoco_snippet)

@@ -8,21 +8,20 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene.characteristics import Staircase
 from models.scene.joints import Slot, block_name, joints, riding_body, sliding_angle, turned
 from models.scene.loads import ConstantFriction, Load
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
-from sim.pymunk.bodies import Course, Frames, SliderCourse, anchor_of, frames_at_end
+from sim.pymunk.bodies import Course, Frames, SliderCourse, frames_at_end
 from sim.pymunk.native import NONE, Pushes
 from sim.pymunk.space import SpaceModel
 from sim.pymunk.spring_steps import ChainSprings, SpringSteps, chain_springs
 
 
 class LoadSteps:
-    """Loads of a scene in a space; ``slots`` are its blocks without mass, by body name.
+    """Loads in a space; ``slots`` are the blocks without mass, by body name.
 
     With the magnitudes of the end of a step the loads act where the joints do, and the step keeps
     its order. With those of its start they would be a step late, and of first order: with a force
@@ -37,14 +36,14 @@ class LoadSteps:
 
     def __init__(
         self,
-        scene: Scene,
         model: SpaceModel,
         slots: Mapping[str, Slot],
         tracks: Mapping[str, SliderCourse],
         dt_s: float,
         drive: Drive,
     ) -> None:
-        self._scene, self._model, self._dt, self._drive = scene, model, dt_s, drive
+        self._model, self._dt, self._drive = model, dt_s, drive
+        self._scene = scene = model.scene
         self._slots, self._tracks = slots, tracks
         self._turning = {
             load.body: Course(model.bodies[load.body].angle, dt_s)
@@ -120,7 +119,7 @@ class LoadSteps:
             pushes.torque(load.body, size)
             return
         frame = frames[load.body]
-        place = frame.at(anchor_of(self._scene, self._model, load.body, load.point))
+        place = frame.at(self._model.anchor(load.body, load.point))
         pushes.force(load.body, frame, place, _along(load, size, frame.theta))
 
     def _on_block(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
@@ -134,7 +133,7 @@ class LoadSteps:
         force = _along(load, size, frames[slider.on].theta + sliding_angle(slider))
         pushes.note(slider.name, (*force, 0.0))
         rider = riding_body(slot)
-        place = frames[rider].at(anchor_of(self._scene, self._model, rider, slider.point))
+        place = frames[rider].at(self._model.anchor(rider, slider.point))
         pushes.force(rider, frames[rider], place, force)
 
 
@@ -181,28 +180,25 @@ def slider_friction(scene: Scene, drive: Drive) -> dict[str, float]:
 
 
 class Acting:
-    """Loads, springs and friction of sliders of a scene, in a space."""
+    """Loads, springs and friction of sliders in a space."""
 
-    def __init__(
-        self, scene: Scene, model: SpaceModel, state: State, dt_s: float, drive: Drive
-    ) -> None:
+    def __init__(self, model: SpaceModel, dt_s: float, drive: Drive) -> None:
+        scene = model.scene
         slides = joints(scene).slides
         followed = {load.slider for load in scene.loads.values()}
         followed |= {getattr(one, "slider", None) for one in scene.springs.values()}
         followed |= {*scene.friction}
         tracks = {
-            slide.slider.name: SliderCourse(
-                scene, model, slide, state.displacement[slide.slider.name], dt_s
-            )
+            slide.slider.name: SliderCourse(model, slide, dt_s)
             for slide in slides
             if slide.slider.name in followed
         }
         slots = {block_name(slide.slider): slide for slide in slides if isinstance(slide, Slot)}
         self._model, self._dt, self._tracks = model, dt_s, tracks
-        self._loads = LoadSteps(scene, model, slots, tracks, dt_s, drive)
+        self._loads = LoadSteps(model, slots, tracks, dt_s, drive)
         chained = () if model.springs else chain_springs(scene)
         self._chain = ChainSprings(model, chained, dt_s) if chained else None
-        self._springs = SpringSteps(scene, model, tracks, dt_s, but=chained)
+        self._springs = SpringSteps(model, tracks, dt_s, but=chained)
         self._friction = slider_friction(scene, drive)
         self._others = bool(scene.loads or self._springs or self._friction)
         self._bodies = (GROUND, *model.bodies)

@@ -14,11 +14,12 @@ from models.scene import Point, Scene
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
+from sim.engine.settings import as_held
 from sim.pymunk.acting import Acting
 from sim.pymunk.arcs import Arcs
 from sim.pymunk.bodies import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.convergence import iterations
-from sim.pymunk.driven_joint import DrivenJoint, driven_joint
+from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import (
@@ -26,12 +27,10 @@ from sim.pymunk.settings import (
     TUNED,
     checked,
     exact_lines,
-    held_iterations,
     in_seconds,
     paths_are_arcs,
-    springs_as_forces,
 )
-from sim.pymunk.space import SpaceModel, build
+from sim.pymunk.space import build
 from sim.pymunk.spring_steps import chain_springs
 
 ROOM = 64
@@ -50,16 +49,16 @@ class PymunkSession:
         checked(settings)
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
-        self._model: SpaceModel = build(
+        self._model = build(
             scene,
             state,
             drive=drive,
             exact_lines=exact_lines(settings),
-            with_springs=not springs_as_forces(settings),
+            with_springs=settings["springs"] == "native",
             delay_s=VELOCITY_SHIFT * dt_s,
         )
         self._space = self._model.space
-        self._iterations = iterations(scene, settings, self._model)
+        self._iterations = iterations(settings, self._model)
         self._space.iterations = self._iterations
         self._space.damping = float(settings["damping"])
         for constraint in self._space.constraints:
@@ -67,13 +66,13 @@ class PymunkSession:
         law = scene.driver.law
         inner = scene.driver.is_inner and drive == "prescribed"
         self._coasts = drive == "free" or (isinstance(law, ConstantSpeed) and not inner)
-        self._driven: DrivenJoint = driven_joint(scene, self._model, state.time_s, dt_s, drive)
+        self._driven = driven_joint(self._model, dt_s, drive)
         if drive != "free":
-            self._driven.start(drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
+            self._driven.turn(None, drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
-        self._acting = Acting(scene, self._model, state, dt_s, drive)
+        self._acting = Acting(self._model, dt_s, drive)
         rigid = not chain_springs(scene)
         bent = rigid and paths_are_arcs(settings, drive)
         self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
@@ -81,7 +80,8 @@ class PymunkSession:
     def facts(self) -> Facts:
         """Read the space as pymunk holds it now; only freely moving bodies have a mass."""
         free = {name: body for name, body in self._model.bodies.items() if moves_freely(body)}
-        space = self._space
+        space, asked = self._space, int(self._settings["iterations"])
+        cause = "segments" if self._iterations > asked else ""
         biases = {float(constraint.error_bias) for constraint in space.constraints}
         return Facts(
             version=VERSION,
@@ -93,7 +93,7 @@ class PymunkSession:
             settings=dict(self._settings)
             | {
                 "timestep_s": self._dt,
-                **held_iterations(self._settings, self._iterations, int(space.iterations)),
+                **as_held("iterations", asked, self._iterations, int(space.iterations), cause),
                 "damping": float(space.damping),
                 **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
             },
@@ -114,7 +114,7 @@ class PymunkSession:
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log with the forces of each logged step; the first sample has none."""
         bent = self._arcs is not None
-        reactions = Reactions(self._scene, self._model, self._rows, self._dt, bent=bent)
+        reactions = Reactions(self._model, self._rows, self._dt, bent=bent)
         log, rows = self._recorded(steps, every, reactions)
         count = len(log.poses.time_s)
         before, after = rows[1::2][: max(count - 1, 0)], rows[0::2][:count]
