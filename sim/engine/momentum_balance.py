@@ -31,6 +31,7 @@ from models.scene.joints import (
     riding_body,
 )
 from sim.engine.measure import across, arms, directions
+from sim.engine.ties import Hinge
 
 OnBlocks = Mapping[str, Array]
 """Actions on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N] and
@@ -39,15 +40,6 @@ UNDETERMINED = (
     "redundant links share the load by their stiffness and fit: the momentum of rigid bodies "
     "leaves the reactions open, and determines the driving torque alone"
 )
-
-
-@dataclass(frozen=True)
-class Hinge:
-    """Two bodies that share a point, as an engine joins them."""
-
-    point: str
-    first: str
-    other: str
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from models.scene.joints import (
 )
 from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
+from sim.engine.ties import hinges
 from sim.exudyn.settings import BY_NEED
 from sim.registry.offers import ForceRecipe
 
@@ -176,14 +177,14 @@ def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
 
 
 def _pins(scene: Scene) -> list[tuple[object, ...]]:
-    """List a hinge of the first body of a pin with each of the others."""
+    """List the hinges, with the places on both bodies."""
     rows: list[tuple[object, ...]] = []
-    for pin in joints(scene).pins:
-        first, *others = sorted(pin.bodies, key=lambda name: name != GROUND)
-        start = _from_centre(scene, first, local_point(scene, first, pin.point))
-        for other in others:
-            end = _from_centre(scene, other, local_point(scene, other, pin.point))
-            rows.append((pin.point, first, start, other, end))
+    for hinge in hinges(scene, GROUND):
+        start, end = (
+            _from_centre(scene, body, local_point(scene, body, hinge.point))
+            for body in (hinge.first, hinge.other)
+        )
+        rows.append((hinge.point, hinge.first, start, hinge.other, end))
     return rows
 
 

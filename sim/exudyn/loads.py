@@ -2,27 +2,19 @@
 
 import math
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from models.errors import CrankcheckError, EngineError, few
-from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene.characteristics import Constant, Staircase
-from models.scene.joints import (
-    Prism,
-    Slot,
-    block_name,
-    bodies,
-    frames,
-    joints,
-    riding_body,
-    sliding_angle,
-)
+from models.scene.joints import block_name, bodies, joints, riding_body, sliding_angle
 from models.scene.loads import Load
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
+from sim.engine.ties import slide_of
 from sim.exudyn.system import ANGLE, Index, PlaneSystem, exu, items
 
 KIND = exu.OutputVariableType
@@ -31,18 +23,16 @@ KIND = exu.OutputVariableType
 class Present:
     """Present state of a system, for actions that depend on it."""
 
-    def __init__(self, scene: Scene, state: State, made: PlaneSystem) -> None:
-        self._scene, self._made = scene, made
-        self._start_rad = {name: frame.theta for name, frame in frames(scene, state).items()}
-        self._ends = {slide.slider.name: self._ends_of(slide) for slide in joints(scene).slides}
-
-    def _ends_of(self, slide: Prism | Slot) -> tuple[Index, Index]:
-        """Return markers of the sliding point and of the point that the line passes through."""
-        slider = slide.slider
-        return (
-            self._made.marker(self._scene, riding_body(slide), slider.point),
-            self._made.marker_at(slider.on, slider.through_m),
-        )
+    def __init__(self, made: PlaneSystem) -> None:
+        self._scene, self._made = made.scene, made
+        # Markers of the sliding point and of the point that the line passes through.
+        self._ends = {
+            slide.slider.name: (
+                made.marker(riding_body(slide), slide.slider.point),
+                made.marker_at(slide.slider.on, slide.slider.through_m),
+            )
+            for slide in joints(made.scene).slides
+        }
 
     def angle(self, system: Any, body: str) -> tuple[float, float]:
         """Return angle [rad] and rate [rad/s] of a body or the ground."""
@@ -51,7 +41,7 @@ class Present:
         node = self._made.node[body]
         turned = float(system.GetNodeOutput(node, KIND.Coordinates)[ANGLE])
         rate = float(system.GetNodeOutput(node, KIND.Coordinates_t)[ANGLE])
-        return self._start_rad[body] + turned, rate
+        return self._made.start_rad[body] + turned, rate
 
     def line(self, system: Any, name: str, turned_rad: float = 0.0) -> Point:
         """Return the direction of the line of a slider in the plane, or one turned against it."""
@@ -79,14 +69,9 @@ Vector = Callable[[Any, float], Point]
 """A force [N], of the same."""
 
 
-def massless_blocks(scene: Scene) -> dict[str, str]:
-    """Return the sliders whose block is no body in exudyn, by the name of the block."""
-    return {block_name(slot.slider): slot.slider.name for slot in joints(scene).slots}
-
-
 class Applied:
-    """Adds forces and torques to a system: numbers, or callbacks of exudyn. ``fault`` is the reason
-    why one of them has lost its size.
+    """Adds forces and torques to the system ``made``: numbers, or callbacks of exudyn. ``fault`` is
+    the reason why one of them has lost its size.
 
     exudyn calls with the time and in the present state of its Newton's method, so that a load
     belongs to the end of the step, as all forces of an implicit step. A block without mass is no
@@ -94,26 +79,33 @@ class Applied:
     with which it turns.
     """
 
-    def __init__(self, scene: Scene, made: PlaneSystem) -> None:
-        self._scene, self._made = scene, made
-        self._massless = massless_blocks(scene)
+    def __init__(self, made: PlaneSystem) -> None:
+        self.scene, self.made = made.scene, made
+        self.massless = {
+            block_name(slot.slider): slot.slider.name for slot in joints(made.scene).slots
+        }
+        """Sliders whose block is no body in exudyn, by the name of the block."""
         self.fault = ""
-        self._rider = {slide.slider.name: riding_body(slide) for slide in joints(scene).slides}
+
+    @cached_property
+    def present(self) -> Present:
+        """The present state of the system."""
+        return Present(self.made)
 
     def turning(self, body: str) -> str:
         """Return the body that a body turns with: for a block without mass, its guide."""
-        slider = self._massless.get(body)
-        return body if slider is None else self._scene.sliders[slider].on
+        slider = self.massless.get(body)
+        return body if slider is None else self.scene.sliders[slider].on
 
     def on(self, body: str, point: str) -> Index:
         """Return a marker at a point of a body, or of the riding body of a block without mass."""
-        slider = self._massless.get(body)
-        return self._made.marker(self._scene, body, point) if slider is None else self.tip(slider)
+        slider = self.massless.get(body)
+        return self.made.marker(body, point) if slider is None else self.tip(slider)
 
     def tip(self, slider: str) -> Index:
         """Return a marker at the sliding point."""
-        point = self._scene.sliders[slider].point
-        return self._made.marker(self._scene, self._rider[slider], point)
+        rider = riding_body(slide_of(self.scene, slider))
+        return self.made.marker(rider, self.scene.sliders[slider].point)
 
     def force(self, marker: Index, force: Vector | Point, *, in_body: bool = False) -> None:
         """Add a force, in the frame of the ground or of the body."""
@@ -122,7 +114,7 @@ class Applied:
             if callable(force)
             else _fixed(*force, 0.0)
         )
-        self._made.system.AddLoad(
+        self.made.system.AddLoad(
             items.LoadForceVector(markerNumber=marker, bodyFixed=in_body, **told)
         )
 
@@ -136,8 +128,8 @@ class Applied:
             if callable(torque)
             else _fixed(0.0, 0.0, torque)
         )
-        marker = self._made.marker_at(turning, (0.0, 0.0))
-        self._made.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, **told))
+        marker = self.made.marker_at(turning, (0.0, 0.0))
+        self.made.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, **told))
 
     def _called(self, vector: Callable[[Any, float], tuple[float, float, float]]) -> dict[str, Any]:
         """Return a load as a callback of exudyn."""
@@ -185,18 +177,16 @@ class StepMeans:
         return 1.0 - 0.5 * (1.0 - since) ** 2 if since > 0.0 else 0.5 * (1.0 + since) ** 2
 
 
-def apply_loads(
-    scene: Scene, state: State, drive: Drive, dt_s: float, applied: Applied, present: Present
-) -> None:
+def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> None:
     """Add all loads. Raises EngineError for a load on an unknown body."""
-    massless = massless_blocks(scene)
+    scene, massless = applied.scene, applied.massless
     known = [*bodies(scene), *massless]
     for load in scene.loads.values():
         if load.body not in known:
             raise EngineError(
                 f"loads.{load.name}: found body {load.body}; use one of {few(known, 12)}"
             )
-        size = _size(scene, load, state.time_s, drive, dt_s, present)
+        size = _size(applied, load, start_s, drive, dt_s)
         if load.point is None:
             applied.torque(load.body, size)
             continue
@@ -205,7 +195,7 @@ def apply_loads(
         if in_body and load.body in massless:
             slider = scene.sliders[massless[load.body]]
             turned = load.direction_rad + sliding_angle(slider) - slider.direction_rad
-            applied.force(marker, _turning(size, present, slider.name, turned))
+            applied.force(marker, _turning(size, applied.present, slider.name, turned))
         else:
             applied.force(marker, _along(size, load.direction_rad), in_body=in_body)
 
@@ -217,14 +207,13 @@ def follows_rates(scene: Scene, drive: Drive) -> bool:
     )
 
 
-def _size(
-    scene: Scene, load: Load, start_s: float, drive: Drive, dt_s: float, present: Present
-) -> Size | float:
+def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: float) -> Size | float:
     """Return the size of a load: a number for a constant one.
 
     If the load moves the mechanism, a jump in time keeps its impulse (`StepMeans`); with a
     prescribed crank all forces belong to the instant.
     """
+    scene = applied.scene
     if isinstance(load.characteristic, Constant) and load.stroke == "both":
         return load.characteristic.value
     if known_ahead(load, drive):
@@ -232,6 +221,7 @@ def _size(
             means = StepMeans(load.characteristic, start_s, dt_s)
             return lambda _, time_s: means.at(start_s + time_s)
         return _told(scene, load, start_s)
+    present = applied.present
 
     def of_present(system: Any, time_s: float) -> float:
         theta, _ = present.angle(system, scene.driver.link)

@@ -25,7 +25,7 @@ from models.scene.joints import (
     whole_turns,
 )
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
-from sim.engine.springs import slide_of, spring_ends
+from sim.engine.ties import slide_of, spring_ends
 
 Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""

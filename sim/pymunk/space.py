@@ -27,8 +27,8 @@ from models.scene import GROUND, Point, Scene, span
 from models.scene import joints as pairs
 from models.scene.joints import Prism, Slot, less, turned
 from sim.engine import Drive
-from sim.engine.momentum_balance import Hinge
 from sim.engine.refusals import refuse_driver_angle, refuse_massless
+from sim.engine.ties import Hinge, hinges
 from sim.pymunk.native import (
     NativeSpring,
     PinFriction,
@@ -130,9 +130,9 @@ def build(
         ends = placed.body(driver.link), placed.body(driver.base)
         motor = pymunk.SimpleMotor(*ends, ends[0].angular_velocity - ends[1].angular_velocity)
         _add(placed, motor)
-    hinges = _pins(placed, pinned=pinned)
-    for hinge in hinges.values():
-        _add(placed, hinge)
+    pivots = _pins(placed, pinned=pinned)
+    for pivot in pivots.values():
+        _add(placed, pivot)
     lines: dict[str, pymunk.Constraint] = {}
     gears: dict[str, pymunk.Constraint] = {}
     for slide in pairs.joints(scene).slides:
@@ -153,7 +153,7 @@ def build(
     return SpaceModel(
         **vars(placed),
         motor=motor,
-        hinges=hinges,
+        hinges=pivots,
         lines=lines,
         gears=gears,
         rubs=rubs,
@@ -220,21 +220,18 @@ def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk
 
 def _pins(placed: PlacedBodies, *, pinned: bool) -> dict[Hinge, pymunk.Constraint | None]:
     """Make all pins; a kinematic crank needs none to the ground and is not ``pinned``."""
-    scene = placed.scene
-    firmness = {GROUND: 0} if scene.driver.is_inner else {GROUND: 0, scene.driver.link: 1}
-    hinges: dict[Hinge, pymunk.Constraint | None] = {}
-    for pin in pairs.joints(scene).pins:
-        # Immovable bodies first, so that all others hang on the firmest.
-        first, *others = sorted(pin.bodies, key=lambda name: firmness.get(name, 2))
-        for other in others:
-            hinge = Hinge(pin.point, first, other)
-            driven = {first, other} == {GROUND, scene.driver.link} and not pinned
-            if driven and pin.point == scene.driver_pivot:
-                hinges[hinge] = None
-                continue
-            anchors = (placed.anchor(name, pin.point) for name in (first, other))
-            hinges[hinge] = pymunk.PivotJoint(placed.body(first), placed.body(other), *anchors)
-    return hinges
+    scene, driver = placed.scene, placed.scene.driver
+    made: dict[Hinge, pymunk.Constraint | None] = {}
+    # Immovable bodies first, so that all others hang on the firmest.
+    for hinge in hinges(scene, *([GROUND] if driver.is_inner else [GROUND, driver.link])):
+        names = hinge.first, hinge.other
+        driven = set(names) == {GROUND, driver.link} and not pinned
+        if driven and hinge.point == scene.driver_pivot:
+            made[hinge] = None
+            continue
+        anchors = (placed.anchor(name, hinge.point) for name in names)
+        made[hinge] = pymunk.PivotJoint(*map(placed.body, names), *anchors)
+    return made
 
 
 def _line(placed: PlacedBodies, slide: Prism | Slot, exact_lines: bool) -> pymunk.Constraint:

@@ -11,7 +11,7 @@ from models.array import Array
 from models.scene import Scene
 from models.scene.joints import less, whole_turns
 from models.scene.loads import LineSpring, PinSpring, SegmentSpring, SlideSpring, Spring
-from sim.engine.springs import spring_ends
+from sim.engine.ties import spring_ends
 from sim.pymunk.bodies import Course, Frames, SliderCourse, frames_at_end, rows_of
 from sim.pymunk.native import Pushes
 from sim.pymunk.space import SpaceModel

@@ -18,7 +18,8 @@ from models.scene.hard import double_parallelogram
 from models.scene.loads import Load
 from reports.contract.clauses.reactions import named
 from sim.engine import Drive, Run
-from sim.engine.momentum_balance import Hinge, MomentumGain, joint_pushes
+from sim.engine.momentum_balance import MomentumGain, joint_pushes
+from sim.engine.ties import Hinge
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.spoiler import SPOILER
 from sim.run import run

@@ -1,8 +1,30 @@
-"""Ends of a scene's springs on its bodies, as every engine holds them."""
+"""Pairs of bodies as engines join them: the hinges of pins, the lines of sliders, the ends of
+springs."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from models.scene import Scene
 from models.scene.joints import End, Prism, Slot, joints, line_ends, local_point, riding_body
 from models.scene.loads import LineSpring, PinSpring, Spring
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """Two bodies that share a point, as an engine joins them."""
+
+    point: str
+    first: str
+    other: str
+
+
+def hinges(scene: Scene, *firm: str) -> Iterator[Hinge]:
+    """Yield the hinges of each pin: of its firmest body, in the order of ``firm``, with the others,
+    one less than it has bodies."""
+    for pin in joints(scene).pins:
+        first, *others = sorted(pin.bodies, key=lambda name: (*firm, name).index(name))
+        for other in others:
+            yield Hinge(pin.point, first, other)
 
 
 def slide_of(scene: Scene, slider: str) -> Prism | Slot:
