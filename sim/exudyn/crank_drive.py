@@ -16,14 +16,7 @@ from models.array import Array
 from models.errors import EngineError
 from models.motion import Forces
 from models.scene import Scene, Slider
-from models.scene.joints import (
-    block_name,
-    inertia_scale,
-    joined_at,
-    joints,
-    sliding_angle,
-    turned,
-)
+from models.scene import joints as pairs
 from models.scene.laws import ConstantSpeed, Law
 from models.scene.loads import ConstantFriction, Load, SlideSpring
 from sim.engine import Drive, Poses, Settings
@@ -124,7 +117,7 @@ def slider_axis(scene: Scene) -> tuple[int, float]:
     oblique line, which no coordinate follows."""
     driver = scene.driver
     assert driver.slider is not None
-    u = turned((1.0, 0.0), scene.sliders[driver.slider].direction_rad)
+    u = pairs.turned((1.0, 0.0), scene.sliders[driver.slider].direction_rad)
     along = 0 if abs(u[0]) > abs(u[1]) else 1
     if abs(u[1 - along]) > STRAIGHT:
         raise EngineError(
@@ -159,7 +152,7 @@ class CrankDrive:
             made.coordinate_marker(driver.link, coordinate),
         ]
         if drive == "servo":
-            gain = float(settings["servo_gain"]) * inertia_scale(scene)
+            gain = float(settings["servo_gain"]) * pairs.inertia_scale(scene)
             self._gain = gain * self._law.peak_speed_rad_s
             self._add_motor(ends)
         else:
@@ -232,7 +225,7 @@ class BlockLoads:
         total = np.zeros((len(line), 2))
         for load in self._of(slider):
             if load.point is not None:
-                turned = line - slider.direction_rad + sliding_angle(slider)
+                turned = line - slider.direction_rad + pairs.sliding_angle(slider)
                 angle = load.direction_rad + (turned if load.frame == "body" else 0.0 * line)
                 total += self._magnitude(load)[:, None] * directions(angle)
         for friction in self._rubbing(slider.name):
@@ -252,20 +245,20 @@ class BlockLoads:
                 total += self._magnitude(load)
         if slider.point not in self._scene.sliders:  # else its friction is a line's
             for friction in self._rubbing(slider.point):
-                block = block_name(slider)
-                (other,) = (b for b in joined_at(self._scene)[slider.point] if b != block)
+                block = pairs.block_name(slider)
+                (other,) = (b for b in pairs.joined_at(self._scene)[slider.point] if b != block)
                 rate = self._omega(slider.on) - self._omega(other)
                 total += against(friction.size, rate, self._still)
         return total
 
     def _omega(self, body: str) -> Array:
         """Return the rate of a body, or of the guide of a block without mass."""
-        guides = {block_name(slider): slider.on for slider in self._scene.sliders.values()}
+        guides = {pairs.block_name(slider): slider.on for slider in self._scene.sliders.values()}
         turning = body if body in self._paths else guides[body]
         return self._paths[turning].pose.omega
 
     def _of(self, slider: Slider) -> list[Load]:
-        name = block_name(slider)
+        name = pairs.block_name(slider)
         return [load for load in self._scene.loads.values() if load.body == name]
 
     def _rubbing(self, joint: str) -> list[ConstantFriction]:
@@ -291,7 +284,7 @@ def reactions(
 ) -> Forces:
     """Return the forces at the states of ``poses``, from the multipliers there, a row each."""
     blocks = BlockLoads(made.scene, poses)
-    slides, ties = made.scene.sliders.values(), joints(made.scene)
+    slides, ties = made.scene.sliders.values(), pairs.joints(made.scene)
     on_lines = {
         slider.name: lambdas[:, multipliers.rows(made.prismatic[slider.name])].T
         for slider in slides

@@ -6,19 +6,7 @@ from typing import Any
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene
-from models.scene.joints import (
-    Prism,
-    bodies,
-    centre_of,
-    frames,
-    joints,
-    less,
-    local_point,
-    mass_of,
-    riding_body,
-    sliding_angle,
-    turned,
-)
+from models.scene import joints as pairs
 from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.engine.ties import hinges
@@ -168,11 +156,11 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
 
 def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
     rows: dict[str, tuple[object, ...]] = {}
-    for name, frame in frames(scene, state).items():
-        if name in bodies(scene):
-            place = frame.at(centre_of(scene, name))
+    for name, frame in pairs.frames(scene, state).items():
+        if name in pairs.bodies(scene):
+            place = frame.at(pairs.centre_of(scene, name))
             rates = [*frame.velocity_at(place), frame.omega]
-            rows[name] = (*mass_of(scene, name), [*place, frame.theta], rates)
+            rows[name] = (*pairs.mass_of(scene, name), [*place, frame.theta], rates)
     return rows
 
 
@@ -181,7 +169,7 @@ def _pins(scene: Scene) -> list[tuple[object, ...]]:
     rows: list[tuple[object, ...]] = []
     for hinge in hinges(scene, GROUND):
         start, end = (
-            _from_centre(scene, body, local_point(scene, body, hinge.point))
+            _from_centre(scene, body, pairs.local_point(scene, body, hinge.point))
             for body in (hinge.first, hinge.other)
         )
         rows.append((hinge.point, hinge.first, start, hinge.other, end))
@@ -191,19 +179,23 @@ def _pins(scene: Scene) -> list[tuple[object, ...]]:
 def _lines(scene: Scene) -> list[tuple[object, ...]]:
     """List the pairs on lines; a block without mass is a point on a line, which may turn."""
     rows: list[tuple[object, ...]] = []
-    for slide in joints(scene).slides:
-        slider, rider, keeps = slide.slider, riding_body(slide), isinstance(slide, Prism)
-        tip = _from_centre(scene, rider, local_point(scene, rider, slider.point))
+    for slide in pairs.joints(scene).slides:
+        slider, rider, keeps = (
+            slide.slider,
+            pairs.riding_body(slide),
+            isinstance(slide, pairs.Prism),
+        )
+        tip = _from_centre(scene, rider, pairs.local_point(scene, rider, slider.point))
         through = _from_centre(scene, slider.on, slider.through_m)
-        own = slider.direction_rad - (sliding_angle(slider) if keeps else 0.0)
-        axis = [*turned((1.0, 0.0), own), 0.0]
-        normal = [*turned((0.0, 1.0), slider.direction_rad), 0.0]
+        own = slider.direction_rad - (pairs.sliding_angle(slider) if keeps else 0.0)
+        axis = [*pairs.turned((1.0, 0.0), own), 0.0]
+        normal = [*pairs.turned((0.0, 1.0), slider.direction_rad), 0.0]
         rows.append((rider, tip, slider.on, through, axis, normal, keeps))
     return rows
 
 
 def _from_centre(scene: Scene, body: str, place: Point) -> Point:
-    return place if body == GROUND else less(place, centre_of(scene, body))
+    return place if body == GROUND else pairs.less(place, pairs.centre_of(scene, body))
 
 
 def _settings(settings: Settings) -> list[str]:

@@ -22,21 +22,9 @@ from typing import Any
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene
+from models.scene import joints as pairs
 from models.scene.elastic import Beam
-from models.scene.joints import (
-    Frame,
-    Prism,
-    bodies,
-    centre_of,
-    frames,
-    joints,
-    less,
-    local_point,
-    mass_of,
-    riding_body,
-    sliding_angle,
-    turned,
-)
+from models.scene.joints import Frame
 from sim.engine.refusals import refuse_massless
 from sim.engine.ties import Hinge, hinges
 
@@ -101,11 +89,11 @@ class PlaneSystem:
 
     def marker(self, name: str, point: str) -> Index:
         """Add a marker at a point of a body or of the ground."""
-        return self.marker_at(name, local_point(self.scene, name, point))
+        return self.marker_at(name, pairs.local_point(self.scene, name, point))
 
     def marker_at(self, name: str, place: Point) -> Index:
         """Add a marker at a place in the frame of a body or of the ground [m]."""
-        x, y = less(place, self.centre.get(name, (0.0, 0.0)))
+        x, y = pairs.less(place, self.centre.get(name, (0.0, 0.0)))
         if name in self.looked:
             if (x, y) != (0.0, 0.0):
                 raise EngineError(
@@ -262,20 +250,20 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     """
     container = exu.SystemContainer()
     system = container.AddSystem()
-    where = frames(scene, state)
+    where = pairs.frames(scene, state)
     start_rad = {name: frame.theta for name, frame in where.items()}
     ground = system.AddObject(items.ObjectGround())
     made = PlaneSystem(scene, start_rad, container, system, ground)
-    held = {prism.body for prism in joints(scene).prisms}
+    held = {prism.body for prism in pairs.joints(scene).prisms}
     nodes = {node for beam in scene.beams.values() for node in beam.nodes}
-    for name in bodies(scene):
+    for name in pairs.bodies(scene):
         if name in nodes:
             add_node(made, name, where[name], state)
             continue
-        mass, inertia = mass_of(scene, name)
+        mass, inertia = pairs.mass_of(scene, name)
         if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
             refuse_massless("exudyn", name, mass, inertia, turns=name not in held)
-        frame, centre = where[name], centre_of(scene, name)
+        frame, centre = where[name], pairs.centre_of(scene, name)
         place = frame.at(centre)
         made.centre[name] = centre
         made.node[name] = system.AddNode(
@@ -300,12 +288,12 @@ def _join(made: PlaneSystem) -> None:
         ends = [made.marker(body, hinge.point) for body in (hinge.first, hinge.other)]
         joint = items.ObjectJointRevolute2D(markerNumbers=ends)
         made.hinge[hinge] = made.system.AddObject(joint)
-    for slide in joints(made.scene).slides:
-        slider, keeps = slide.slider, isinstance(slide, Prism)
-        rider, guide = riding_body(slide), slider.on
-        kept_angle = sliding_angle(slider) if keeps else 0.0
-        axis = turned((1.0, 0.0), slider.direction_rad - kept_angle)
-        normal = turned((0.0, 1.0), slider.direction_rad)
+    for slide in pairs.joints(made.scene).slides:
+        slider, keeps = slide.slider, isinstance(slide, pairs.Prism)
+        rider, guide = pairs.riding_body(slide), slider.on
+        kept_angle = pairs.sliding_angle(slider) if keeps else 0.0
+        axis = pairs.turned((1.0, 0.0), slider.direction_rad - kept_angle)
+        normal = pairs.turned((0.0, 1.0), slider.direction_rad)
         joint = items.ObjectJointPrismatic2D(
             markerNumbers=[
                 made.marker(rider, slider.point),

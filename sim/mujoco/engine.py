@@ -22,23 +22,9 @@ from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue
 from sim.engine import drive as drives
 from sim.engine.settings import SettingError
 from sim.engine.tree_poses import body_poses
+from sim.mujoco import settings as own
 from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import JointForces, reactions
-from sim.mujoco.settings import (
-    AS_SHIPPED,
-    INTEGRATORS,
-    TUNED,
-    checked,
-    held_iterations,
-    held_share,
-    holds,
-    in_seconds,
-    integrator,
-    used,
-    velocity_shift,
-    weight_share,
-    writing,
-)
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 
 
@@ -48,21 +34,21 @@ class MujocoSession(SteppedModel):
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
-        super().__init__(state.time_s, dt_s, velocity_shift(settings, drive))
+        super().__init__(state.time_s, dt_s, own.velocity_shift(settings, drive))
         self._scene, self._settings, self._drive = scene, settings, drive
-        chosen = writing(scene, settings, dt_s, drive)
+        chosen = own.writing(scene, settings, dt_s, drive)
         self._tree = tree = _tree(scene, state, chosen)
         self._limbs = tree.limbs
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         with heard(self._warnings.append):
             model = compiled(build(scene, state, chosen, tree))
         self._weights = model.body_invweight0.copy()
-        model.body_invweight0[:] *= weight_share(scene, settings, drive)
+        model.body_invweight0[:] *= own.weight_share(scene, settings, drive)
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
         self._free = chosen.free
-        staged = self._free and integrator(settings, drive) == "RK4"
+        staged = self._free and own.integrator(settings, drive) == "RK4"
         self._loading = Loading(
             scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else None
         )
@@ -81,17 +67,17 @@ class MujocoSession(SteppedModel):
         names = [limb.body for limb in self._limbs]
         opt = model.opt
         settings: dict[str, SettingValue] = {
-            **used(self._settings, self._drive),
-            **holds(self._settings, self._dt, self._drive),
+            **own.used(self._settings, self._drive),
+            **own.holds(self._settings, self._dt, self._drive),
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
-            **held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
-            "integrator": INTEGRATORS[int(opt.integrator)],
+            **own.held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
+            "integrator": own.INTEGRATORS[int(opt.integrator)],
         }
         if self._free:
             share = self._share_of_weights()
-            settings |= held_share(self._scene, self._settings, self._drive, share)
+            settings |= own.held_share(self._scene, self._settings, self._drive, share)
         if model.neq:
             settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
             settings["solref_dampratio"] = float(model.eq_solref[0, 1])
@@ -214,12 +200,12 @@ def _tree(scene: Scene, state: State, chosen: Writing) -> Tree:
 
 ENGINE = Engine(
     "mujoco",
-    {"as-shipped": AS_SHIPPED, "tuned": TUNED},
+    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
     version=lambda: VERSION,
-    check=checked,
+    check=own.checked,
     open=MujocoSession,
-    holds=holds,
-    in_seconds=in_seconds,
+    holds=own.holds,
+    in_seconds=own.in_seconds,
     forces_of="states",
     applies_loads=True,
     applies_constant_friction=True,

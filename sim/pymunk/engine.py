@@ -15,6 +15,7 @@ from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
 from sim.engine.settings import as_held
+from sim.pymunk import settings as own
 from sim.pymunk.acting import Acting
 from sim.pymunk.arcs import Arcs
 from sim.pymunk.bodies import FIELDS, WIDTH, finite, pose, rows_of
@@ -22,14 +23,6 @@ from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
 from sim.pymunk.reactions import BEFORE, Reactions
-from sim.pymunk.settings import (
-    AS_SHIPPED,
-    TUNED,
-    checked,
-    exact_lines,
-    in_seconds,
-    paths_are_arcs,
-)
 from sim.pymunk.space import build
 from sim.pymunk.spring_steps import chain_springs
 
@@ -46,14 +39,14 @@ class PymunkSession:
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
-        checked(settings)
+        own.checked(settings)
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
         self._model = build(
             scene,
             state,
             drive=drive,
-            exact_lines=exact_lines(settings),
+            exact_lines=own.exact_lines(settings),
             with_springs=settings["springs"] == "native",
             delay_s=VELOCITY_SHIFT * dt_s,
         )
@@ -74,7 +67,7 @@ class PymunkSession:
         self._rows = rows_of(self._model)
         self._acting = Acting(self._model, dt_s, drive)
         rigid = not chain_springs(scene)
-        bent = rigid and paths_are_arcs(settings, drive)
+        bent = rigid and own.paths_are_arcs(settings, drive)
         self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
 
     def facts(self) -> Facts:
@@ -245,12 +238,12 @@ def _sum(a: Point, b: Point) -> Point:
 
 ENGINE = Engine(
     "pymunk",
-    {"as-shipped": AS_SHIPPED, "tuned": TUNED},
+    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
     version=lambda: VERSION,
-    check=checked,
+    check=own.checked,
     open=PymunkSession,
     reports_accelerations=False,
-    in_seconds=in_seconds,
+    in_seconds=own.in_seconds,
     forces_of="steps",
     applies_loads=True,
     applies_constant_friction=True,

@@ -12,18 +12,8 @@ from models.array import Array
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene
-from models.scene.joints import (
-    End,
-    Frame,
-    Slot,
-    block_name,
-    joined_at,
-    joints,
-    less,
-    local_point,
-    turned,
-    whole_turns,
-)
+from models.scene import joints as pairs
+from models.scene.joints import End, Frame, less
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 from sim.engine.ties import slide_of, spring_ends
 
@@ -56,7 +46,7 @@ class PlacedBodies:
 
     def anchor(self, body: str, point: str) -> Point:
         """Return a named point in the coordinates of its pymunk body [m]."""
-        return less(local_point(self.scene, body, point), self.centre[body])
+        return less(pairs.local_point(self.scene, body, point), self.centre[body])
 
 
 class Pushes:
@@ -143,11 +133,11 @@ def pin_friction(placed: PlacedBodies) -> tuple[PinFriction, ...]:
     """Make the constant friction of the pins of a scene. Raises EngineError for a pin without
     exactly two bodies."""
     scene, rubs = placed.scene, []
-    guides = {block_name(slot.slider): slot.slider.on for slot in joints(scene).slots}
+    guides = {pairs.block_name(slot.slider): slot.slider.on for slot in pairs.joints(scene).slots}
     for joint, law in scene.friction.items():
         if not isinstance(law, ConstantFriction) or joint in scene.sliders:
             continue
-        names = joined_at(scene).get(joint, ())
+        names = pairs.joined_at(scene).get(joint, ())
         if len(names) != 2:
             raise EngineError(
                 f"{scene.name}: friction.{joint}: {len(names)} bodies meet there, and two rub on "
@@ -220,7 +210,7 @@ def native_springs(placed: PlacedBodies, far_m: float) -> dict[str, NativeSpring
 
 def _in_pin(placed: PlacedBodies, spring: PinSpring) -> NativeSpring:
     first, second = (placed.body(name) for name in spring.bodies)
-    turns = whole_turns(spring, second.angle - first.angle)
+    turns = pairs.whole_turns(spring, second.angle - first.angle)
     # Chipmunk counts the angle of its first body against its second.
     own = pymunk.DampedRotarySpring(second, first, spring.free - turns, spring.rate, spring.damping)
     return NativeSpring(own, *spring.bodies, turns)
@@ -234,9 +224,9 @@ def _between(
     if isinstance(spring, SlideSpring):
         slide = slide_of(placed.scene, spring.slider)
         q_at_zero = placed.state.displacement[spring.slider] - far_m
-        x, y = turned((q_at_zero, 0.0), slide.slider.direction_rad)
+        x, y = pairs.turned((q_at_zero, 0.0), slide.slider.direction_rad)
         here = here[0] + x, here[1] + y
-        block = spring.slider if isinstance(slide, Slot) else None
+        block = spring.slider if isinstance(slide, pairs.Slot) else None
     own = pymunk.DampedSpring(
         placed.body(first),
         placed.body(second),

@@ -29,14 +29,8 @@ from models.scene.joints import Prism, Slot, less, turned
 from sim.engine import Drive
 from sim.engine.refusals import refuse_driver_angle, refuse_massless
 from sim.engine.ties import Hinge, hinges
-from sim.pymunk.native import (
-    NativeSpring,
-    PinFriction,
-    PlacedBodies,
-    moves_freely,
-    native_springs,
-    pin_friction,
-)
+from sim.pymunk import native
+from sim.pymunk.native import PlacedBodies, moves_freely
 
 
 @dataclass(frozen=True)
@@ -91,8 +85,8 @@ class SpaceModel(PlacedBodies):
     hinges: Mapping[Hinge, pymunk.Constraint | None] = field(default_factory=dict)
     lines: Mapping[str, pymunk.Constraint] = field(default_factory=dict)
     gears: Mapping[str, pymunk.Constraint] = field(default_factory=dict)
-    rubs: tuple[PinFriction, ...] = ()
-    springs: Mapping[str, NativeSpring] = field(default_factory=dict)
+    rubs: tuple[native.PinFriction, ...] = ()
+    springs: Mapping[str, native.NativeSpring] = field(default_factory=dict)
 
     @property
     def crank(self) -> pymunk.Body:
@@ -144,10 +138,10 @@ def build(
         if isinstance(slide, Prism) and slide.slider.on != GROUND:
             gears[name] = _gear(placed, slide)
             _add(placed, gears[name])
-    rubs = pin_friction(placed)
+    rubs = native.pin_friction(placed)
     for rub in rubs:
         _add(placed, rub.motor)
-    springs = native_springs(placed, _reach(scene)) if with_springs else {}
+    springs = native.native_springs(placed, _reach(scene)) if with_springs else {}
     for spring in springs.values():
         _add(placed, spring.constraint)
     return SpaceModel(
