@@ -192,6 +192,21 @@ class _System:
         column[:, row + 2] += arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
 
 
+class PinForces(dict[str, dict[str, Array]]):
+    """Forces in the pins of a scene, by pin and body, (T, 2) [N]; 0 at first."""
+
+    def __init__(self, scene: Scene, samples: int) -> None:
+        super().__init__(
+            (point, {body: np.zeros((samples, 2)) for body in names})
+            for point, names in pairs.joined_at(scene).items()
+        )
+
+    def add(self, point: str, giver: str, taker: str, force: Array) -> None:
+        """Add the force of one body on another at their pin."""
+        self[point][taker] += force
+        self[point][giver] -= force
+
+
 def forces_by_body(
     scene: Scene,
     pushes: JointPushes,
@@ -207,21 +222,15 @@ def forces_by_body(
     if pushes.spare:
         return Forces(time_s, {}, {}, pushes.torque, undetermined=UNDETERMINED, friction=friction)
     samples = len(time_s)
-    pins = {
-        point: {body: np.zeros((samples, 2)) for body in names}
-        for point, names in pairs.joined_at(scene).items()
-    }
+    pins = PinForces(scene, samples)
     for hinge, force in pushes.hinges.items():
-        pins[hinge.point][hinge.other] += force
-        pins[hinge.point][hinge.first] -= force
+        pins.add(hinge.point, hinge.first, hinge.other, force)
     moments = dict(pushes.moments)
     for slot in pairs.joints(scene).slots:
         name, point = slot.slider.name, slot.slider.point
-        block = pins[point]
         own = on_blocks.get(name, np.zeros((samples, 3)))
         passed = pushes.normals[name][:, None] * pushes.across[name] + own[:, 0:2]
-        block[pairs.riding_body(slot)] += passed
-        block[pairs.block_name(slot.slider)] -= passed
+        pins.add(point, pairs.block_name(slot.slider), pairs.riding_body(slot), passed)
         moments[name] = -own[:, 2]
         if point in friction and point not in scene.sliders:  # whose second body is the block
             moments[name] = moments[name] - friction[point]
