@@ -151,12 +151,11 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if reactions or self._acting or self._arcs is not None:
-            self._each(steps, every, reactions)
-        elif self._coasts:
+        bare = not (reactions or self._acting or self._arcs)
+        if bare and self._coasts:
             self._coast(steps, every)
         else:
-            self._follow(steps, every)
+            self._each(steps, every, reactions)
         self._done += steps
 
     def _coast(self, steps: int, every: int) -> None:
@@ -175,20 +174,6 @@ class PymunkSession:
         for _ in range(steps % every if every else steps):
             step(dt)
 
-    def _follow(self, steps: int, every: int) -> None:
-        """Step with the crank on its law.
-
-        A step turns the crank by speed * dt before the other bodies' velocities are solved for, so
-        the crank is set back by the next step's turn and ends at the law's angle, with the speed of
-        the next step.
-        """
-        step, dt, turn = self._space.step, self._dt, self._driven.turn
-        for k, (angle, speed) in enumerate(self._turns(steps), 1):
-            turn(angle, speed)
-            step(dt)
-            if every and k % every == 0:
-                self._log()
-
     def _turns(self, steps: int) -> list[tuple[float, float]]:
         """Return the angle and the speed of the crank before each of the next steps."""
         law, first = self._scene.driver.law, self._done + 1
@@ -196,17 +181,22 @@ class PymunkSession:
         chord = drives.chords(law, self._start_s, self._dt, first, first + steps - 1)
         return list(zip((theta - chord * self._dt).tolist(), chord.tolist(), strict=True))
 
-    def _each(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
-        """Step with all actions, and log every ``every``-th step; with ``reactions`` also before
-        it, with the impulses of its joints."""
+    def _each(self, steps: int, every: int, reactions: Reactions | None) -> None:
+        """Step with the crank on its law and all actions, and log every ``every``-th step; with
+        ``reactions`` also before it, with the impulses of its joints.
+
+        A step turns the crank by speed * dt before the other bodies' velocities are solved for, so
+        the crank is set back by the next step's turn and ends at the law's angle, with the speed of
+        the next step.
+        """
         space, dt, turn = self._space, self._dt, self._driven.turn
-        turns = None if self._coasts else self._turns(steps)
+        turns = [] if self._coasts else self._turns(steps)
         acting = self._acting if self._acting else None
         if acting is not None:
             ends = self._done + 1 + np.arange(steps, dtype=np.float64)
             acting.look_ahead(self._start_s + dt * ends)
         for k in range(steps):
-            if turns is not None:
+            if turns:
                 turn(*turns[k])
             if acting is not None:
                 acting.apply(k)
