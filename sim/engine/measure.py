@@ -247,12 +247,10 @@ def _rider(scene: Scene, slider: Slider) -> str:
 
 
 def _guide(slider: Slider, poses: Poses) -> BodyPose:
-    """Return the body of the line."""
     return _still(len(poses.time_s)) if slider.on == GROUND else poses.bodies[slider.on]
 
 
 def _still(samples: int) -> BodyPose:
-    """Return the pose of the ground."""
     zero, pair = np.zeros(samples), np.zeros((samples, 2))
     return BodyPose(pair, zero, pair, zero, pair, zero)
 

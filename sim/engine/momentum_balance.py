@@ -186,7 +186,6 @@ class _System:
         return self._columns[-1]
 
     def _push(self, column: Array, body: str, arm: Array, direction: Array) -> None:
-        """Let an unknown act on a body as a force."""
         row = self._row[body]
         column[:, row : row + 2] += direction
         column[:, row + 2] += arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]

@@ -144,7 +144,6 @@ class ExudynSession:
             raise
 
     def _sense(self) -> list[Any]:
-        """Add a sensor for each level of each body's coordinates."""
         return [
             self._system.AddSensor(
                 system.items.SensorNode(

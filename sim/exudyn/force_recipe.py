@@ -199,7 +199,6 @@ def _from_centre(scene: Scene, body: str, place: Point) -> Point:
 
 
 def _settings(settings: Settings) -> list[str]:
-    """Write the profile in exudyn's own names."""
     lines = [f"stepping.adaptiveStep = {settings['adaptive_step'] == 'enable'}"]
     if settings["integrator"] == "GeneralizedAlpha":
         radius = float(settings["spectral_radius"])
@@ -220,13 +219,11 @@ def _settings(settings: Settings) -> list[str]:
 
 
 def _table(rows: dict[str, Any]) -> str:
-    """Write a dict with a line for each row."""
     lines = "\n".join(f"{name!r}: {row!r}," for name, row in rows.items())
     return "{\n" + textwrap.indent(lines, "    ") + "\n}"
 
 
 def _rows(rows: list[tuple[object, ...]]) -> str:
-    """Write a list with a line for each row."""
     return "[\n" + "".join(f"    {row!r},\n" for row in rows) + "]" if rows else "[]"
 
 

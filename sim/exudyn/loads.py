@@ -132,7 +132,6 @@ class Applied:
         self.made.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, **told))
 
     def _called(self, vector: Callable[[Any, float], tuple[float, float, float]]) -> dict[str, Any]:
-        """Return a load as a callback of exudyn."""
 
         def called(system: Any, time_s: float, _: object) -> list[float]:
             try:
@@ -145,7 +144,6 @@ class Applied:
 
 
 def _fixed(*vector: float) -> dict[str, Any]:
-    """Return a load as numbers."""
     return {"loadVector": list(vector)}
 
 
@@ -168,7 +166,6 @@ class StepMeans:
         return math.fsum(height * self._share(time_s, place) for place, height in self._jumps)
 
     def _share(self, time_s: float, place: float) -> float:
-        """Return the share of a jump."""
         if place <= self._start_s:
             return 1.0
         since = min(max((time_s - place) / self._dt, -1.0), 1.0)
@@ -246,7 +243,6 @@ def _told(scene: Scene, load: Load, start_s: float) -> Size:
 
 
 def _along(size: Size | float, angle_rad: float) -> Any:
-    """Return a force in a fixed direction."""
     c, s = math.cos(angle_rad), math.sin(angle_rad)
     if not callable(size):
         return size * c, size * s

@@ -88,7 +88,6 @@ def apply_friction(applied: Applied, drive: Drive) -> None:
 
 
 def _rub_pin(applied: Applied, friction: ConstantFriction, still: float) -> None:
-    """Add a couple between the two bodies of a pin."""
     ends, present = joined_at(applied.scene)[friction.joint], applied.present
     turning = [applied.turning(body) for body in ends]
 

@@ -43,7 +43,6 @@ def exudyn_snippet(
 
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
-    """Write the length of a step, and its scaling with the speed and with frames."""
     words = {
         "turns": [stepping.scaled_by_speed("dt") + "."],
         "frames": [

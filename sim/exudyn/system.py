@@ -283,7 +283,6 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
 
 
 def _join(made: PlaneSystem) -> None:
-    """Add all joints."""
     for hinge in hinges(made.scene, GROUND):
         ends = [made.marker(body, hinge.point) for body in (hinge.first, hinge.other)]
         joint = items.ObjectJointRevolute2D(markerNumbers=ends)

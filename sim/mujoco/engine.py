@@ -97,7 +97,6 @@ class MujocoSession(SteppedModel):
         )
 
     def _share_of_weights(self) -> float:
-        """Return the ratio of the bodies' inverse weights to the compiled ones."""
         share = float(self._model.body_invweight0.sum() / self._weights.sum())
         return float(f"{share:.12g}")
 
@@ -184,7 +183,6 @@ class MujocoSession(SteppedModel):
 
 
 def _pair(vector: Array) -> Point:
-    """Return the first two components of a vector, in the plane."""
     return float(vector[0]), float(vector[1])
 
 

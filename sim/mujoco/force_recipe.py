@@ -144,7 +144,6 @@ def _hinges(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
 
 
 def _listed(table: dict[str, tuple[str, int]]) -> str:
-    """Write a dictionary, an entry a line."""
     rows = "".join(f"    {key!r}: {value!r},\n" for key, value in table.items())
     return f"{{\n{rows}}}" if rows else "{}"
 

@@ -147,7 +147,6 @@ def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
 
 
 def _flywheel(complete: Settings) -> list[str]:
-    """Describe the drive of the crank, and its demands on the solver."""
     ratio, tolerance = _short(complete["flywheel_ratio"]), _short(complete["tolerance"])
     return [
         f"Drive: the crank's hinge has armature = {ratio} (sum over all bodies of mass L^2 + "
@@ -159,7 +158,6 @@ def _flywheel(complete: Settings) -> list[str]:
 
 
 def _servo(complete: Settings) -> list[str]:
-    """Describe the drive by a servo."""
     return [
         "Drive: <velocity joint=... kv=.../> on the crank's hinge, kv = "
         f"{complete['servo_gain']:g} speed (sum over all bodies of mass L^2 + inertia), L the "

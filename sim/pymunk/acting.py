@@ -114,7 +114,6 @@ class LoadSteps:
         return forward if load.stroke == "forward" else 1.0 - forward
 
     def _on_body(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Apply a load on a body of the space."""
         if load.point is None:
             pushes.torque(load.body, size)
             return
@@ -155,7 +154,6 @@ def late_share(steps: Staircase, times: Array, dt_s: float, *, first: bool) -> A
 
 
 def _along(load: Load, size: float, theta: float) -> Point:
-    """Return the force of a load on a body at that angle."""
     return turned((size, 0.0), load.direction_rad + (theta if load.frame == "body" else 0.0))
 
 

@@ -88,7 +88,6 @@ def left_over(model: SpaceModel) -> float:
 
 
 def _inverse_masses(body: pymunk.Body) -> Array:
-    """Return the inverse masses of a body along x, along y, and in turning; 0 for a driven body."""
     if not moves_freely(body):
         return np.zeros(3)
     return 1.0 / np.array([body.mass, body.mass, body.moment])

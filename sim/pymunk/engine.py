@@ -222,7 +222,6 @@ class PymunkSession:
 
 
 def _sum(a: Point, b: Point) -> Point:
-    """Return the sum of two vectors."""
     return a[0] + b[0], a[1] + b[1]
 
 

@@ -131,7 +131,6 @@ def _pair(vector: pymunk.Vec2d) -> Point:
 
 
 def _rows(items: Iterable[str]) -> str:
-    """Write the items of a tuple, one a line."""
     return "".join(f"\n    {item}," for item in items)
 
 

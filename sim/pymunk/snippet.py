@@ -58,7 +58,6 @@ def pymunk_snippet(
 
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
-    """Write the next step, or the steps of a frame."""
     counted = stepping.counted_in(drive)
     if counted == "nothing":
         return [f"dt = {stepping.dt_s!r}", "space.step(dt)  # steps all that the space holds"]

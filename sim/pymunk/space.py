@@ -204,7 +204,6 @@ def _check_drive(scene: Scene, drive: Drive) -> None:
 
 
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
-    """Make a body with the mass of the scene."""
     if kinematic:
         return pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     mass, inertia = pairs.mass_of(scene, name)
@@ -229,7 +228,6 @@ def _pins(placed: PlacedBodies, *, pinned: bool) -> dict[Hinge, pymunk.Constrain
 
 
 def _line(placed: PlacedBodies, slide: Prism | Slot, exact_lines: bool) -> pymunk.Constraint:
-    """Make the constraint of a point on a line."""
     scene, slider, rider = placed.scene, slide.slider, pairs.riding_body(slide)
     guide, body = placed.body(slider.on), placed.body(rider)
     anchor = placed.anchor(rider, slider.point)

@@ -55,8 +55,6 @@ class SpringSteps:
 
 
 class _OnLine:
-    """A spring between two points."""
-
     def __init__(self, model: SpaceModel, spring: LineSpring, start: Frames, dt_s: float) -> None:
         self.spring = spring
         first, second = (
@@ -77,8 +75,6 @@ class _OnLine:
 
 
 class _InPin:
-    """A spring between two bodies that meet in a pin."""
-
     def __init__(self, spring: PinSpring, start: Frames, dt_s: float) -> None:
         self.spring = spring
         opened = self._opened(start)
@@ -99,8 +95,6 @@ class _InPin:
 
 
 class _OnSlide:
-    """A spring along the line of a slider."""
-
     def __init__(self, spring: SlideSpring, track: SliderCourse) -> None:
         self.spring, self._track = spring, track
 

@@ -153,7 +153,6 @@ def _readings(model: Any, ids: set[int]) -> Iterator[Disturbance]:
 
 
 def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
-    """Yield keyframes with open loops."""
     component, extent = linkage.component, size(linkage)
     model, data = component.model, mujoco.MjData(component.model)
     own = {each.index for each in component.closures}
@@ -172,7 +171,6 @@ def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
 
 
 def _reading(coordinate: float, hinge: bool) -> str:
-    """Format a joint coordinate in degrees or metres."""
     return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
 
 

@@ -110,7 +110,6 @@ def load(path: Path) -> Any:
 
 
 def _called(model: Any, kind: str, index: int) -> str:
-    """Return the name of an element in the file, or its number."""
     return name_of(model, KINDS[kind], index) or f"{kind} {index}"
 
 

@@ -104,7 +104,6 @@ def coordinates(
 
 
 def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
-    """Return the frames of links and blocks at a state."""
     frames: dict[str, _Moving] = {GROUND: STILL}
     for link in scene.links.values():
         theta, omega, alpha = (each[link.name] for each in (state.theta, state.omega, state.alpha))
@@ -134,7 +133,6 @@ def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
 
 
 def _seen_from(base: _Moving, body: _Moving) -> _Moving:
-    """Return a frame relative to another one."""
     back = cmath.exp(-1j * base.theta)
     place = body.place - base.place
     turning = 1j * base.omega

@@ -208,7 +208,6 @@ def _touching(own: PlanarModel, data: Any) -> set[tuple[str, str]]:
 
 
 def _geom(model: Any, geom: int) -> str:
-    """Return the name of a geom, or of its body."""
     if geom < 0:
         return "a flex"
     name = name_of(model, mujoco.mjtObj.mjOBJ_GEOM, geom)

@@ -259,7 +259,6 @@ def _tag(name: bytes, attributes: Mapping[str, str]) -> bytes:
 
 
 def _with(raw: bytes, tag: Tag, attributes: Mapping[str, str]) -> bytes:
-    """Return a start tag of the text with some attributes set."""
     return _set(raw[tag.start : tag.end], attributes)
 
 
