@@ -10,7 +10,7 @@ from models.scene import joints as pairs
 from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.engine.ties import hinges
-from sim.exudyn.settings import BY_NEED
+from sim.exudyn.settings import BY_NEED, NEWTON
 from sim.registry.offers import ForceRecipe
 
 PROGRAM = '''"""{title}"""
@@ -208,9 +208,7 @@ def _settings(settings: Settings) -> list[str]:
     solver = "EigenDense" if linear == BY_NEED else linear
     return [
         *lines,
-        f"stepping.newton.relativeTolerance = {float(settings['relative_tolerance'])!r}",
-        f"stepping.newton.absoluteTolerance = {float(settings['absolute_tolerance'])!r}",
-        f"stepping.newton.maxIterations = {int(settings['iterations'])}",
+        *(f"stepping.newton.{own} = {settings[name]!r}" for name, own in NEWTON.items()),
         f"stepping.newton.useModifiedNewton = {jacobian != 'each-iteration'}",
         f"stepping.newton.modifiedNewtonJacUpdatePerStep = {jacobian == 'each-step'}",
         f"simulationSettings.linearSolver.solverType = exu.LinearSolverType.{solver}",

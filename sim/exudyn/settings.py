@@ -12,6 +12,13 @@ BY_NEED = "by-need"
 """A choice of crankcheck: EXUdense, or EigenDense where joints are redundant at the start, or
 EigenSparse for more than `MOST_DENSE` coordinates and constraints."""
 MOST_DENSE = 60
+NEWTON = {
+    "relative_tolerance": "relativeTolerance",
+    "absolute_tolerance": "absoluteTolerance",
+    "iterations": "maxIterations",
+}
+"""exudyn's own names of the settings of Newton's method."""
+TOLERANCES = ("relative_tolerance", "absolute_tolerance")
 SWITCH = ("enable", "disable")
 CHOICES = {
     "integrator": INTEGRATORS,

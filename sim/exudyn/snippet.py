@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
-from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, of_drive
+from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, NEWTON, TOLERANCES, of_drive
 from sim.registry.offers import ALONE, SnippetWriter, Stepping, comment
 
 DRIVES: Mapping[Drive, str] = {
@@ -61,13 +61,10 @@ def _steps(stepping: Stepping, drive: Drive) -> list[str]:
 def _newton(complete: Settings, defaults: Settings) -> list[str]:
     """Write the tolerances of Newton's method, if lower than by default, and its matrix."""
     lines = []
-    for name, own in (
-        ("relative_tolerance", "relativeTolerance"),
-        ("absolute_tolerance", "absoluteTolerance"),
-    ):
+    for name in TOLERANCES:
         if float(complete[name]) < float(defaults[name]):
-            least = f"min(stepping.newton.{own}, {float(complete[name])!r})"
-            lines.append(f"stepping.newton.{own} = {least}")
+            own = f"stepping.newton.{NEWTON[name]}"
+            lines.append(f"{own} = min({own}, {float(complete[name])!r})")
     if complete["jacobian"] == "each-step":
         lines.append("stepping.newton.modifiedNewtonJacUpdatePerStep = True  # faster here")
     if complete["jacobian"] == "each-iteration":
@@ -77,13 +74,11 @@ def _newton(complete: Settings, defaults: Settings) -> list[str]:
 
 def _alone(complete: Settings, defaults: Settings) -> list[str]:
     """Write the settings of the measured runs for a system of the mechanism alone."""
-    lines = []
-    for name, own in (
-        ("relative_tolerance", "relativeTolerance"),
-        ("absolute_tolerance", "absoluteTolerance"),
-    ):
-        if float(complete[name]) > float(defaults[name]):
-            lines.append(f"#   stepping.newton.{own} = {float(complete[name])!r}")
+    lines = [
+        f"#   stepping.newton.{NEWTON[name]} = {float(complete[name])!r}"
+        for name in TOLERANCES
+        if float(complete[name]) > float(defaults[name])
+    ]
     if complete["iterations"] != defaults["iterations"]:
         lines.append(f"#   stepping.newton.maxIterations = {int(complete['iterations'])}")
     if complete["adaptive_step"] == "disable":

@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Callable, Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
-from sim.mujoco.settings import AS_SHIPPED, closing_steps, integrator
+from sim.mujoco.settings import AS_SHIPPED, holds
 from sim.registry.offers import ALONE, WIDTH, SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
@@ -23,10 +23,10 @@ def mujoco_snippet(
     model's. Other differences from MuJoCo's defaults would change the rest of a user's model and
     are in a comment; see `sim.registry.offers.snippet`.
     """
-    complete = {**asked, "solref_timeconst_steps": closing_steps(asked, drive)}
     dt_s = stepping.dt_s
-    connect = _connect(complete, defaults, dt_s)
-    whole = {"timestep": repr(dt_s), "integrator": integrator(complete, drive)}
+    complete = {**asked, **holds(asked, dt_s, drive)}
+    connect = _connect(complete, defaults)
+    whole = {"timestep": repr(dt_s), "integrator": str(complete["integrator"])}
     return [
         *_comment([*head, _where(complete, paired=bool(connect))]),
         *connect,
@@ -39,7 +39,7 @@ def mujoco_snippet(
             ]
         ),
         f"<option{_attributes(whole)}/>",
-        *_comment(_alone(complete, defaults, drive) + DRIVES[drive](complete)),
+        *_comment(_alone(complete, defaults) + DRIVES[drive](asked)),
     ]
 
 
@@ -53,10 +53,11 @@ def _where(complete: Settings, *, paired: bool) -> str:
     return text
 
 
-def _connect(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
+def _connect(complete: Settings, defaults: Settings) -> list[str]:
     """Write the class of the connects, unless it is MuJoCo's own; complete, as the model's own
     defaults would fill the rest."""
-    timeconst, damping = _timeconst(complete, dt_s), float(complete["solref_dampratio"])
+    timeconst = float(complete["solref_timeconst_s"])
+    damping = float(complete["solref_dampratio"])
     impedance = tuple(complete[name] for name in IMPEDANCE)
     own = (defaults["solref_timeconst_s"], defaults["solref_dampratio"])
     if (timeconst, damping) == own and impedance == tuple(defaults[name] for name in IMPEDANCE):
@@ -72,12 +73,6 @@ def _connect(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
         "  </default>",
         "</default>",
     ]
-
-
-def _timeconst(complete: Settings, dt_s: float) -> float:
-    """Return the time constant of the loop closures [s]."""
-    steps = float(complete["solref_timeconst_steps"])
-    return steps * dt_s if steps else float(complete["solref_timeconst_s"])
 
 
 def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
@@ -117,17 +112,15 @@ def _coarse(defaults: Settings, dt_s: float) -> list[str]:
     ]
 
 
-def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
+def _alone(complete: Settings, defaults: Settings) -> list[str]:
     """Write the option element for a model of the mechanism alone."""
     row = {
         name: str(complete[name])
         for name in ("solver", "iterations")
         if complete[name] != defaults[name]
     }
-    ratio = float(complete["flywheel_ratio"]) if drive == "prescribed" else 1.0
-    tolerance = float(complete["tolerance"]) / ratio
-    if tolerance != defaults["tolerance"]:
-        row["tolerance"] = _short(tolerance)
+    if complete["tolerance"] != defaults["tolerance"]:
+        row["tolerance"] = _short(complete["tolerance"])
     flags = {
         flag: str(complete[name])
         for name, flag in (("islands", "island"), ("contact", "contact"))
