@@ -39,6 +39,11 @@ CHANGED = {
     ),
     40: ("off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)", "rng", "path"),
     45: ("*(comment(redundant) if by_need else []),", "by_need", "(not (by_need))"),
+    47: (
+        "elif max(first, second) <= 0.0 and (-first < STIFFNESS or -second < DAMPING):",
+        "max(first, second)",
+        "(max(second, first))",
+    ),
     50: (
         "complete = defaults | dict(settings)",
         "defaults | dict(settings)",

@@ -217,8 +217,10 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     """Return the settings as MuJoCo has them, with the values that depend on step and drive;
     without the pins that close the loops, which depend on the scene."""
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
-    steps = closing_steps(settings, drive)
-    return {name: value for name, value in used(settings, drive).items() if name != "close"} | {
+    in_force = used(settings, drive)
+    own_steps = float(in_force.get("free_timeconst_steps", 0.0))
+    steps = own_steps or float(settings["solref_timeconst_steps"])
+    return {name: value for name, value in in_force.items() if name != "close"} | {
         "integrator": integrator(settings, drive),
         "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
         "solref_timeconst_steps": steps,
@@ -229,12 +231,6 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
 def used(settings: Settings, drive: Drive) -> Settings:
     """Return the settings that have an effect with a drive."""
     return {name: value for name, value in settings.items() if name not in NOT_USED[drive]}
-
-
-def closing_steps(settings: Settings, drive: Drive) -> float:
-    """Return the time constant of the loops in steps; 0 if given in seconds."""
-    own = float(used(settings, drive).get("free_timeconst_steps", 0.0))
-    return own or float(settings["solref_timeconst_steps"])
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:
