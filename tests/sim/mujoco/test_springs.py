@@ -28,7 +28,7 @@ from sim.run.check import refuse_other_model
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
 from tests.worlds.let_go import released
-from tests.worlds.runs import acted_on
+from tests.worlds.runs import acted_on, massless
 
 DT_S = 1e-4
 START_RAD, SPEED_RAD_S = 0.7, 3.0
@@ -39,11 +39,6 @@ def let_go(name: str, *springs: Spring, speed_rad_s: float = SPEED_RAD_S) -> Sce
     scene = load_scene(name)
     driver = Driver(scene.driver.link, Released(START_RAD, speed_rad_s, 1.0))
     return acted_on(replace(scene, driver=driver), *springs)
-
-
-def massless(scene: Scene) -> Scene:
-    blocks = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
-    return replace(scene, sliders=blocks)
 
 
 FOURBAR, CRANK = "fourbar-lecture-1", "slider-crank-excel-210"

@@ -25,15 +25,10 @@ from sim.pymunk.space import build
 from sim.registry import ENGINES, available, declaration, engine
 from sim.run import time_run
 from tests.worlds import runs
-from tests.worlds.runs import acted_on, start_of
+from tests.worlds.runs import acted_on, massless, start_of
 from tests.worlds.tiers import slowly
 
 FOURBAR = load_scene("fourbar-lecture-1")
-
-
-def massless_blocks(scene: Scene) -> Scene:
-    blocks = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
-    return replace(scene, sliders=blocks)
 
 
 def ran(
@@ -182,7 +177,7 @@ def test_a_free_link_without_mass_is_unsupported_and_named(name: str) -> None:
 
 
 def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
-    scene = massless_blocks(load_scene("scotch-yoke"))
+    scene = massless(load_scene("scotch-yoke"))
     refused = ran(scene, "mujoco")
     assert refused.status == "unsupported"
     assert "sliders.B a mass_kg" in refused.reason
@@ -191,7 +186,7 @@ def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_point_that_only_massless_blocks_share_is_named(name: str) -> None:
-    result = ran(massless_blocks(load_scene("tangent")), name)
+    result = ran(massless(load_scene("tangent")), name)
     assert result.status == "unsupported"
     assert "mass_kg" in result.reason
 
