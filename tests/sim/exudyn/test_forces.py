@@ -187,9 +187,3 @@ def test_the_recipe_prints_what_is_reported(name: str) -> None:
         point, body, axis = column.replace("block_", "block ").rsplit(".", 2)
         force = forces.pins[point][body][:, int(axis == "y_n")]
         np.testing.assert_allclose(log[column], force, atol=1e-6 * np.abs(force).max())
-
-
-def test_a_recipe_that_would_leave_something_out_is_refused() -> None:
-    loaded, state = acted_on(MASSLESS, *LOADED), start_of(MASSLESS)
-    with pytest.raises(EngineError, match="does not cover loads; take that out"):
-        force_recipe("exudyn", loaded, state, tuned("exudyn"), 90)

@@ -1,6 +1,5 @@
 """Sessions of exudyn: its clock, its silence, its redundant joints, its drives."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -176,10 +175,3 @@ def test_a_servo_lags_by_what_its_gain_leaves(law: str | None) -> None:
     )
     assert 1e-7 < stiff < 1e-3
     assert soft == pytest.approx(10.0 * stiff, rel=0.2)
-
-
-def test_a_crank_without_mass_is_driven_all_the_same() -> None:
-    crank = replace(FOURBAR.links["crank"], mass_kg=0.0, inertia_kg_m2=0.0)
-    scene = replace(FOURBAR, links={**FOURBAR.links, "crank": crank})
-    assert off(scene, ran(scene), "rocker", "theta").max() < 1e-11
-    assert ran(scene, drive="servo").reason.startswith("crank: mass_kg 0")

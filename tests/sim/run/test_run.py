@@ -168,12 +168,21 @@ def test_an_engine_that_raises_or_refuses_is_a_row_with_a_reason(fake_engine: Mo
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_a_free_link_without_mass_is_unsupported_and_named(name: str) -> None:
-    bare = replace(FOURBAR.links["rocker"], mass_kg=0.0, inertia_kg_m2=0.0)
-    scene = replace(FOURBAR, links={**FOURBAR.links, "rocker": bare})
-    result = ran(scene, name)
+@pytest.mark.parametrize(
+    ("link", "drive"), [("rocker", "prescribed"), ("crank", "servo"), ("crank", "free")]
+)
+def test_a_link_without_mass_is_unsupported_and_named_unless_it_is_driven(
+    link: str, drive: str, name: str
+) -> None:
+    bare = replace(FOURBAR.links[link], mass_kg=0.0, inertia_kg_m2=0.0)
+    scene = replace(FOURBAR, links={**FOURBAR.links, link: bare})
+    result = ran(scene, name, drive=drive)
     assert result.status == "unsupported"
-    assert result.reason.startswith("rocker: mass_kg 0")
+    assert result.reason.startswith(f"{link}: mass_kg 0")
+    if drive == "servo" and name != "mujoco":  # which moves no body without
+        done = ran(scene, name, steps=100)
+        exact = solve(scene, done.motion.time_s).links["rocker"].theta
+        np.testing.assert_allclose(done.motion.links["rocker"].theta, exact, atol=1e-4)
 
 
 def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
