@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -109,29 +109,20 @@ class Applied:
 
     def force(self, marker: Index, force: Vector | Point, *, in_body: bool = False) -> None:
         """Add a force, in the frame of the ground or of the body."""
-        told = (
-            self._called(lambda *now: (*force(*now), 0.0))
-            if callable(force)
-            else _fixed(*force, 0.0)
-        )
-        self.made.system.AddLoad(
-            items.LoadForceVector(markerNumber=marker, bodyFixed=in_body, **told)
-        )
+        vector = (lambda *now: (*force(*now), 0.0)) if callable(force) else (*force, 0.0)
+        self._add(items.LoadForceVector, marker, vector, bodyFixed=in_body)
 
     def torque(self, body: str, torque: Size | float) -> None:
         """Add a torque on a body or a block; the ground feels none."""
         turning = self.turning(body)
         if turning == GROUND:
             return
-        told = (
-            self._called(lambda *now: (0.0, 0.0, torque(*now)))
-            if callable(torque)
-            else _fixed(0.0, 0.0, torque)
-        )
         marker = self.made.marker_at(turning, (0.0, 0.0))
-        self.made.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, **told))
+        vector = (lambda *now: (0.0, 0.0, torque(*now))) if callable(torque) else (0.0, 0.0, torque)
+        self._add(items.LoadTorqueVector, marker, vector)
 
-    def _called(self, vector: Callable[[Any, float], tuple[float, float, float]]) -> dict[str, Any]:
+    def _add(self, load: Any, marker: Index, vector: Any, **more: object) -> None:
+        """Add a load of three numbers, or of a function of the system and of time."""
 
         def called(system: Any, time_s: float, _: object) -> list[float]:
             try:
@@ -140,11 +131,11 @@ class Applied:
                 self.fault = str(error)  # exudyn would show it with a traceback
                 raise
 
-        return {"loadVectorUserFunction": called}
-
-
-def _fixed(*vector: float) -> dict[str, Any]:
-    return {"loadVector": list(vector)}
+        if callable(vector):
+            more["loadVectorUserFunction"] = called
+        else:
+            more["loadVector"] = list(vector)
+        self.made.system.AddLoad(load(markerNumber=marker, **more))
 
 
 class StepMeans:
@@ -187,14 +178,15 @@ def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> 
         if load.point is None:
             applied.torque(load.body, size)
             continue
-        marker = applied.on(load.body, load.point)
-        in_body = load.frame == "body"
+        marker, in_body = applied.on(load.body, load.point), load.frame == "body"
         if in_body and load.body in massless:
             slider = scene.sliders[massless[load.body]]
             turned = load.direction_rad + sliding_angle(slider) - slider.direction_rad
-            applied.force(marker, _turning(size, applied.present, slider.name, turned))
+            along = partial(applied.present.line, name=slider.name, turned_rad=turned)
+            applied.force(marker, _pointing(size, along))
         else:
-            applied.force(marker, _along(size, load.direction_rad), in_body=in_body)
+            direction = math.cos(load.direction_rad), math.sin(load.direction_rad)
+            applied.force(marker, _pointing(size, direction), in_body=in_body)
 
 
 def follows_rates(scene: Scene, drive: Drive) -> bool:
@@ -217,7 +209,9 @@ def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: floa
         if isinstance(load.characteristic, Staircase) and drive != "prescribed":
             means = StepMeans(load.characteristic, start_s, dt_s)
             return lambda _, time_s: means.at(start_s + time_s)
-        return _told(scene, load, start_s)
+        # Computed once in a step.
+        at = lru_cache(1)(lambda time_s: float(ahead(scene, load, np.array([time_s]))[0]))
+        return lambda _, time_s: at(start_s + time_s)
     present = applied.present
 
     def of_present(system: Any, time_s: float) -> float:
@@ -229,37 +223,14 @@ def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: floa
     return of_present
 
 
-def _told(scene: Scene, load: Load, start_s: float) -> Size:
-    """Return the size over time, computed once in a step."""
-    last = math.nan, 0.0
-
-    def at(_: Any, time_s: float) -> float:
-        nonlocal last
-        if last[0] != time_s:
-            last = time_s, float(ahead(scene, load, np.array([start_s + time_s]))[0])
-        return last[1]
-
-    return at
-
-
-def _along(size: Size | float, angle_rad: float) -> Any:
-    c, s = math.cos(angle_rad), math.sin(angle_rad)
-    if not callable(size):
-        return size * c, size * s
-
-    def vector(system: Any, time_s: float) -> Point:
-        force = size(system, time_s)
-        return force * c, force * s
-
-    return vector
-
-
-def _turning(size: Size | float, present: Present, slider: str, turned_rad: float) -> Any:
-    """Return a force in a direction that turns with the line of a slider."""
+def _pointing(size: Size | float, direction: Callable[[Any], Point] | Point) -> Any:
+    """Return a force of a size in a direction, each a number or a function of the present state."""
+    if not callable(size) and not callable(direction):
+        return size * direction[0], size * direction[1]
 
     def vector(system: Any, time_s: float) -> Point:
         force = size(system, time_s) if callable(size) else size
-        c, s = present.line(system, slider, turned_rad)
+        c, s = direction(system) if callable(direction) else direction
         return force * c, force * s
 
     return vector
