@@ -8,7 +8,7 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Scene
 from models.scene.characteristics import Staircase
 from models.scene.joints import Slot, block_name, joints, riding_body, sliding_angle, turned
 from models.scene.loads import ConstantFriction, Load
@@ -85,10 +85,7 @@ class LoadSteps:
             course.go_on(frames[body].theta)
         for name, load in self._scene.loads.items():
             size = self._known[name][step] if name in self._known else self._size(load, step)
-            if load.body in self._slots:
-                self._on_block(load, size, frames, pushes)
-            else:
-                self._on_body(load, size, frames, pushes)
+            self._apply(load, size, frames, pushes)
 
     def _size(self, load: Load, step: int) -> float:
         """Return the magnitude of a load that follows the motion, at the end of a step."""
@@ -113,27 +110,24 @@ class LoadSteps:
         forward = high / (high - low) if turns else float(here > 0.0)
         return forward if load.stroke == "forward" else 1.0 - forward
 
-    def _on_body(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
+    def _apply(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
+        """Apply a load: on a massless block, a force to its pin's body, a torque to its guide."""
+        slot = self._slots.get(load.body)
+        body, turning, theta = load.body, load.body, 0.0
+        if slot is not None:
+            body, turning, theta = riding_body(slot), slot.slider.on, sliding_angle(slot.slider)
         if load.point is None:
-            pushes.torque(load.body, size)
-            return
-        frame = frames[load.body]
-        place = frame.at(self._model.anchor(load.body, load.point))
-        pushes.force(load.body, frame, place, _along(load, size, frame.theta))
-
-    def _on_block(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Apply a load on a massless block: a force to its pin's body, a torque to its guide."""
-        slot = self._slots[load.body]
-        slider = slot.slider
-        if load.point is None:
-            pushes.note(slider.name, (0.0, 0.0, size))
-            pushes.torque(slider.on, size)
-            return
-        force = _along(load, size, frames[slider.on].theta + sliding_angle(slider))
-        pushes.note(slider.name, (*force, 0.0))
-        rider = riding_body(slot)
-        place = frames[rider].at(self._model.anchor(rider, slider.point))
-        pushes.force(rider, frames[rider], place, force)
+            push = 0.0, 0.0, size
+            pushes.torque(turning, size)
+        else:
+            own = frames[turning].theta + theta if load.frame == "body" else 0.0
+            fx, fy = turned((size, 0.0), load.direction_rad + own)
+            push = fx, fy, 0.0
+            point = load.point if slot is None else slot.slider.point
+            place = frames[body].at(self._model.anchor(body, point))
+            pushes.force(body, frames[body], place, (fx, fy))
+        if slot is not None:
+            pushes.note(slot.slider.name, push)
 
 
 def late_share(steps: Staircase, times: Array, dt_s: float, *, first: bool) -> Array:
@@ -151,10 +145,6 @@ def late_share(steps: Staircase, times: Array, dt_s: float, *, first: bool) -> A
             after[0] = (times[0] - place) / dt_s + 0.5
         added += rise * (after - (times >= place))
     return added
-
-
-def _along(load: Load, size: float, theta: float) -> Point:
-    return turned((size, 0.0), load.direction_rad + (theta if load.frame == "body" else 0.0))
 
 
 def slider_friction(scene: Scene, drive: Drive) -> dict[str, float]:
