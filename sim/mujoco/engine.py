@@ -66,18 +66,17 @@ class MujocoSession(SteppedModel):
         model = self._model
         names = [limb.body for limb in self._limbs]
         opt = model.opt
+        share = float(model.body_invweight0.sum() / self._weights.sum())
+        counted = int(opt.iterations), float(f"{share:.12g}")
         settings: dict[str, SettingValue] = {
             **own.used(self._settings, self._drive),
             **own.holds(self._settings, self._dt, self._drive),
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
-            **own.held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
+            **own.held(self._scene, self._settings, self._drive, *counted),
             "integrator": own.INTEGRATORS[int(opt.integrator)],
         }
-        if self._free:
-            share = self._share_of_weights()
-            settings |= own.held_share(self._scene, self._settings, self._drive, share)
         if model.neq:
             settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
             settings["solref_dampratio"] = float(model.eq_solref[0, 1])
@@ -95,10 +94,6 @@ class MujocoSession(SteppedModel):
             acceleration_shift=0.0,
             springs={tendon.spring.name: self._spring(tendon) for tendon in self._tendons},
         )
-
-    def _share_of_weights(self) -> float:
-        share = float(self._model.body_invweight0.sum() / self._weights.sum())
-        return float(f"{share:.12g}")
 
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log, as `record`, with the forces of `mj_forward` at each kept state."""

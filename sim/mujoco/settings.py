@@ -195,22 +195,18 @@ def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
     return max(asked, SEGMENTS_SHARE) if ringing and asked < 1.0 else asked
 
 
-def held_share(
-    scene: Scene, settings: Settings, drive: Drive, found: float
+def held(
+    scene: Scene, settings: Settings, drive: Drive, iterations: int, share: float
 ) -> dict[str, SettingValue]:
-    """Return the share ``found`` in a model, as settings."""
-    asked = float(settings["free_inverse_weight_share"])
-    given = weight_share(scene, settings, drive)
-    cause = "segments" if given != asked else ""
-    return as_held("free_inverse_weight_share", asked, given, found, cause)
-
-
-def held_iterations(
-    scene: Scene, settings: Settings, drive: Drive, found: int
-) -> dict[str, SettingValue]:
-    """Return the iterations ``found`` in a model, as settings."""
-    asked, given = int(settings["iterations"]), _iterations(scene, settings, drive)
-    return as_held("iterations", asked, given, found, _iterating(scene, settings, drive))
+    """Return what is found in a model, as settings: its iterations and, in free motion, the ratio
+    of the bodies' inverse weights to the compiled ones."""
+    cause, given = _iterating(scene, settings, drive), _iterations(scene, settings, drive)
+    told = as_held("iterations", int(settings["iterations"]), given, iterations, cause)
+    if drive != "free":
+        return told
+    asked, scaled = settings["free_inverse_weight_share"], weight_share(scene, settings, drive)
+    cause = "segments" if scaled != asked else ""
+    return told | as_held("free_inverse_weight_share", asked, scaled, share, cause)
 
 
 def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:

@@ -176,7 +176,7 @@ def _not_drivable(model: Any, index: int) -> str:
 
 def is_hinge(model: Any, joint: int) -> bool:
     """True if a joint turns, and does not slide."""
-    return JOINTS[int(model.jnt_type[joint])] == "hinge"
+    return bool(JOINTS[int(model.jnt_type[joint])] == "hinge")
 
 
 def joint_name(model: Any, joint: int) -> str:
