@@ -222,8 +222,9 @@ def _pins(placed: PlacedBodies, *, pinned: bool) -> dict[Hinge, pymunk.Constrain
         if driven and hinge.point == scene.driver_pivot:
             made[hinge] = None
             continue
-        anchors = (placed.anchor(name, hinge.point) for name in names)
-        made[hinge] = pymunk.PivotJoint(*map(placed.body, names), *anchors)
+        first, other = map(placed.body, names)
+        a, b = (placed.anchor(name, hinge.point) for name in names)
+        made[hinge] = pymunk.PivotJoint(first, other, a, b)
     return made
 
 
@@ -237,7 +238,8 @@ def _line(placed: PlacedBodies, slide: Prism | Slot, exact_lines: bool) -> pymun
     small = 1e-12 * scene.longest_m
     sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
     if sound or not exact_lines:
-        return pymunk.GrooveJoint(guide, body, *_groove(placed, slide), anchor)
+        a, b = _groove(placed, slide)
+        return pymunk.GrooveJoint(guide, body, a, b, anchor)
     return Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m).joint()
 
 

@@ -25,7 +25,6 @@ from models.scene.loads import LineSpring, Load, Over, PinSpring, SlideSpring, S
 from sim.engine import Run, Settings
 from sim.exudyn import system
 from sim.exudyn.engine import ENGINE
-from sim.exudyn.loads import StepMeans
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.let_go import released
@@ -142,21 +141,6 @@ def test_the_spring_of_a_block_without_mass_goes_to_its_pin() -> None:
     )
     left = forces.pins["C"]["block C"] + forces.sliders["C"].normal[:, None] * across
     np.testing.assert_allclose(left, pull[:, None] * along, atol=1e-9 * np.abs(pull).max())
-
-
-def test_jumps_have_their_impulse_and_its_instant_wherever_they_are_in_a_step() -> None:
-    dt_s = 1e-2
-    ends = dt_s * np.arange(9)
-    for place in (0.003, 0.03, 0.0412, 0.0499999):
-        stairs = Staircase((place,), (2.0,))
-        felt = np.array([StepMeans(stairs, 0.0, dt_s).at(end) for end in ends])
-        impulse = dt_s * (felt.sum() - 0.5 * (felt[0] + felt[-1]))
-        assert impulse == pytest.approx(2.0 * (ends[-1] - place))
-        if place > dt_s:
-            moment = dt_s * ((felt * ends).sum() - 0.5 * felt[-1] * ends[-1])
-            assert moment == pytest.approx(ends[-1] ** 2 - place**2, abs=2e-5)
-    early = StepMeans(Staircase((-0.2, 0.0), (1.0, 3.0)), 0.0, dt_s)
-    assert (early.at(0.0), early.at(dt_s)) == (3.0, 3.0)
 
 
 def still(*, start_rad: float = 0.0, **changes: float) -> Scene:

@@ -13,7 +13,7 @@ from models.scene import Scene
 from models.scene.hard import double_parallelogram
 from models.scene.laws import FromRest, Oscillating, SpeedChange
 from sim.engine import Run, Settings
-from sim.exudyn.crank_drive import CrankCourse, speeds
+from sim.exudyn.crank_drive import CrankCourse
 from sim.exudyn.engine import ENGINE, ExudynSession
 from tests.worlds import runs
 from tests.worlds.runs import driven_by
@@ -145,14 +145,6 @@ def test_a_law_that_starts_accelerating_leaves_nothing_that_rings(
         off(scene, ran(scene, settings=settings, per_turn=n), "rocker", "alpha") for n in (200, 800)
     )
     assert fine[40:].max() < coarse[10:].max() / 4**1.6
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_speeds_lead_by_the_trapezoidal_rule_to_the_angles_of_the_law(law: str) -> None:
-    dt_s, steps = 1e-3, 300
-    told = speeds(LAWS[law], 0.0, dt_s, steps)
-    angles = LAWS[law].at(dt_s * np.arange(steps + 1))[0]
-    np.testing.assert_allclose(np.diff(angles), (told[1:] + told[:-1]) / 2 * dt_s, atol=1e-15)
 
 
 def test_between_the_steps_the_crank_is_told_the_law_itself() -> None:

@@ -113,14 +113,6 @@ def test_the_share_is_that_of_the_joints_in_the_order_of_the_space() -> None:
     assert math.log(measured) / count == pytest.approx(math.log(told), rel=1e-4)
 
 
-def test_the_iterations_grow_with_the_square_of_the_segments() -> None:
-    few, many = (
-        chain_iterations(build(scene, state))
-        for scene, state in (chain_of("fourbar-elastic", count) for count in (8, 16))
-    )
-    assert many == pytest.approx(4.0 * few, rel=0.02)
-
-
 @pytest.mark.parametrize(("halvings", "holds"), [(0.85, False), (1.15, True)])
 def test_a_chain_holds_from_one_halving_on(
     halvings: float, holds: bool, monkeypatch: pytest.MonkeyPatch
