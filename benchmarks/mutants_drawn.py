@@ -39,6 +39,7 @@ CHANGED = {
     ),
     40: ("off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)", "rng", "path"),
     45: ("*(comment(redundant) if by_need else []),", "by_need", "(not (by_need))"),
+    46: ("if len(pins[point]) == 2", "len(pins[point])", "(len(pins[point]) + 1)"),
     47: (
         "elif max(first, second) <= 0.0 and (-first < STIFFNESS or -second < DAMPING):",
         "max(first, second)",

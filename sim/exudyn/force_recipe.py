@@ -1,7 +1,6 @@
 """Program that reads forces out of exudyn: it holds a scene, as a user would write it."""
 
-import textwrap
-from typing import Any
+from collections.abc import Iterator
 
 from models.errors import EngineError
 from models.motion import State
@@ -11,7 +10,7 @@ from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.engine.ties import hinges
 from sim.exudyn.settings import BY_NEED, NEWTON
-from sim.registry.offers import ForceRecipe
+from sim.registry.offers import ForceRecipe, written
 
 PROGRAM = '''"""{title}"""
 
@@ -144,9 +143,9 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
         dt=dt_s,
         steps=round(law.period_s / dt_s),
         gravity=[*scene.gravity_m_s2, 0.0],
-        bodies=_table(_bodies(scene, state)),
-        pins=_rows(_pins(scene)),
-        lines=_rows(_lines(scene)),
+        bodies=written(_bodies(scene, state)),
+        pins=written(_pins(scene)),
+        lines=written(_lines(scene)),
         ground=GROUND,
         driver=scene.driver.link,
         settings="\n".join(_settings(settings)),
@@ -164,34 +163,27 @@ def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
     return rows
 
 
-def _pins(scene: Scene) -> list[tuple[object, ...]]:
-    """List the hinges, with the places on both bodies."""
-    rows: list[tuple[object, ...]] = []
+def _pins(scene: Scene) -> Iterator[tuple[object, ...]]:
+    """Yield the hinges, with the places on both bodies."""
     for hinge in hinges(scene, GROUND):
         start, end = (
             _from_centre(scene, body, pairs.local_point(scene, body, hinge.point))
             for body in (hinge.first, hinge.other)
         )
-        rows.append((hinge.point, hinge.first, start, hinge.other, end))
-    return rows
+        yield hinge.point, hinge.first, start, hinge.other, end
 
 
-def _lines(scene: Scene) -> list[tuple[object, ...]]:
-    """List the pairs on lines; a block without mass is a point on a line, which may turn."""
-    rows: list[tuple[object, ...]] = []
+def _lines(scene: Scene) -> Iterator[tuple[object, ...]]:
+    """Yield the pairs on lines; a block without mass is a point on a line, which may turn."""
     for slide in pairs.joints(scene).slides:
-        slider, rider, keeps = (
-            slide.slider,
-            pairs.riding_body(slide),
-            isinstance(slide, pairs.Prism),
-        )
+        slider, rider = slide.slider, pairs.riding_body(slide)
+        keeps = isinstance(slide, pairs.Prism)
         tip = _from_centre(scene, rider, pairs.local_point(scene, rider, slider.point))
         through = _from_centre(scene, slider.on, slider.through_m)
         own = slider.direction_rad - (pairs.sliding_angle(slider) if keeps else 0.0)
         axis = [*pairs.turned((1.0, 0.0), own), 0.0]
         normal = [*pairs.turned((0.0, 1.0), slider.direction_rad), 0.0]
-        rows.append((rider, tip, slider.on, through, axis, normal, keeps))
-    return rows
+        yield rider, tip, slider.on, through, axis, normal, keeps
 
 
 def _from_centre(scene: Scene, body: str, place: Point) -> Point:
@@ -214,15 +206,6 @@ def _settings(settings: Settings) -> list[str]:
         f"simulationSettings.linearSolver.solverType = exu.LinearSolverType.{solver}",
         f"simulationSettings.linearSolver.ignoreSingularJacobian = {redundant}",
     ]
-
-
-def _table(rows: dict[str, Any]) -> str:
-    lines = "\n".join(f"{name!r}: {row!r}," for name, row in rows.items())
-    return "{\n" + textwrap.indent(lines, "    ") + "\n}"
-
-
-def _rows(rows: list[tuple[object, ...]]) -> str:
-    return "[\n" + "".join(f"    {row!r},\n" for row in rows) + "]" if rows else "[]"
 
 
 FORCE_RECIPE: ForceRecipe = exudyn_force_recipe

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol, cast
 
@@ -230,6 +230,17 @@ class ForceRecipe(Protocol):
         hold, or that the recipe does not cover.
         """
         ...
+
+
+def written(rows: Mapping[str, object] | Iterable[object]) -> str:
+    """Write a dict or a list of a recipe, an entry a line."""
+    if isinstance(rows, Mapping):
+        (first, last), entries = "{}", [f"{key!r}: {row!r}" for key, row in rows.items()]
+    else:
+        (first, last), entries = "[]", [repr(row) for row in rows]
+    return (
+        "\n".join([first, *(f"    {each}," for each in entries), last]) if entries else first + last
+    )
 
 
 def force_recipe(
