@@ -46,7 +46,7 @@ class PymunkSession:
             scene,
             state,
             drive=drive,
-            exact_lines=own.exact_lines(settings),
+            exact_lines=settings["lines"] == "exact",
             with_springs=settings["springs"] == "native",
             delay_s=VELOCITY_SHIFT * dt_s,
         )
@@ -66,8 +66,9 @@ class PymunkSession:
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
         self._acting = Acting(self._model, dt_s, drive)
-        rigid = not chain_springs(scene)
-        bent = rigid and own.paths_are_arcs(settings, drive)
+        # Where a step corrects less than the whole error, arcs gain nothing.
+        wanted = settings["free_paths"] == "arcs" and float(settings["error_bias"]) == 0.0
+        bent = wanted and drive == "free" and not chain_springs(scene)
         self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
 
     def facts(self) -> Facts:

@@ -13,7 +13,7 @@ from models.scene.joints import Slot, bodies, centre_of, joints, less, mass_of, 
 from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.pymunk.engine import VELOCITY_SHIFT
-from sim.pymunk.settings import checked, exact_lines
+from sim.pymunk.settings import checked
 from sim.pymunk.space import SpaceModel, build
 from sim.registry.offers import ForceRecipe
 
@@ -25,7 +25,7 @@ def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
     checked(settings)
     _check_covered(scene)
     delay = VELOCITY_SHIFT * dt_s
-    model = build(scene, state, exact_lines=exact_lines(settings), delay_s=delay)
+    model = build(scene, state, exact_lines=settings["lines"] == "exact", delay_s=delay)
     turn = scene.driver.law.period_s
     texts = {
         "NAME": repr(scene.name),

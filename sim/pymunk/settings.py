@@ -1,6 +1,6 @@
 """pymunk's settings: the two profiles."""
 
-from sim.engine import Drive, Profile, Setting, Settings
+from sim.engine import Profile, Setting, Settings
 from sim.engine.settings import checker
 
 AS_SHIPPED = Profile(
@@ -78,15 +78,3 @@ def in_seconds(settings: Settings) -> tuple[str, ...]:
     takes all at once, or nothing."""
     biased, damped = settings["error_bias"] not in (0.0, 1.0), settings["damping"] != 1.0
     return ("error_bias",) * biased + ("damping",) * damped
-
-
-def exact_lines(settings: Settings) -> bool:
-    """True if points on lines are held exactly."""
-    return settings["lines"] == "exact"
-
-
-def paths_are_arcs(settings: Settings, drive: Drive) -> bool:
-    """True if pins are closed for the arcs of a step: in free motion, if a step corrects the whole
-    error."""
-    wanted = settings["free_paths"] == "arcs" and float(settings["error_bias"]) == 0.0
-    return wanted and drive == "free"
