@@ -66,7 +66,7 @@ class PymunkSession:
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
         self._acting = Acting(self._model, dt_s, drive)
-        # Where a step corrects less than the whole error, arcs gain nothing.
+        # Pins are closed for the arcs of a step in free motion, if a step corrects the whole error.
         wanted = settings["free_paths"] == "arcs" and float(settings["error_bias"]) == 0.0
         bent = wanted and drive == "free" and not chain_springs(scene)
         self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
