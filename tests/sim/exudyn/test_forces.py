@@ -23,8 +23,8 @@ from sim.exudyn.engine import ENGINE
 from sim.registry.offers import force_recipe
 from tests.sim.registry.test_force_recipes import printed
 from tests.worlds import runs
-from tests.worlds.force_misses import misses
 from tests.worlds.loading import loaded_mechanism
+from tests.worlds.reported_forces import misses
 from tests.worlds.runs import acted_on, ran, rubbing, start_of, tuned
 from tests.worlds.tiers import few, slowly
 

@@ -26,9 +26,8 @@ from models.scene.tabulated import Tabulated
 from sim.mujoco import engine
 from sim.run import run
 from tests.worlds import runs
-from tests.worlds.equilibrium import left_over
-from tests.worlds.force_misses import worst_of
 from tests.worlds.loading import loaded_mechanism
+from tests.worlds.reported_forces import left_over, worst_of
 from tests.worlds.runs import acted_on, massless, ran, rubbing, start_of
 from tests.worlds.tiers import few
 

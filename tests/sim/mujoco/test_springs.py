@@ -21,8 +21,8 @@ from sim.mujoco.engine import MujocoSession
 from sim.run import run
 from sim.run.check import refuse_other_model
 from tests.worlds import runs
-from tests.worlds.equilibrium import left_over
 from tests.worlds.let_go import released
+from tests.worlds.reported_forces import left_over
 from tests.worlds.runs import acted_on, massless
 
 DT_S = 1e-4

@@ -20,7 +20,7 @@ from sim.engine.ties import Hinge
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.spoiler import SPOILER
 from sim.run import run
-from tests.worlds.force_misses import misses
+from tests.worlds.reported_forces import misses
 from tests.worlds.runs import acted_on, opened, ran, rubbing, start_of
 
 START = 4
