@@ -97,7 +97,7 @@ class JointForces:
         model: Any,
         limbs: tuple[Limb, ...],
         first_load: int,
-        tendons: tuple[SpringTendon, ...] = (),
+        tendons: tuple[SpringTendon, ...],
     ) -> None:
         self._bodies = np.array([model.body(limb.body).id for limb in limbs])
         self._roots = model.body_rootid[self._bodies]

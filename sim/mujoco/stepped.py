@@ -44,7 +44,7 @@ class SteppedModel(ABC):
         self._model: Any
         self._data: Any
 
-    def _hold(self, model: Any, keyframe: int | None = None) -> None:
+    def _hold(self, model: Any, keyframe: int | None) -> None:
         """Take a compiled model, at one of its keyframes."""
         self._model, self._data = model, mujoco.MjData(model)
         if keyframe is not None:

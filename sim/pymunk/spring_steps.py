@@ -25,7 +25,7 @@ class SpringSteps:
         model: SpaceModel,
         tracks: Mapping[str, SliderCourse],
         dt_s: float,
-        but: Collection[Spring] = (),
+        but: Collection[Spring],
     ) -> None:
         start = frames_at_end(model, 0.0)
         self._steps: list[_OnLine | _InPin | _OnSlide] = []

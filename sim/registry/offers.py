@@ -76,11 +76,11 @@ class SearchSpace:
         return complete
 
 
-def rungs(low: float, high: float, ratio: float, digits: int = 2) -> tuple[float, ...]:
+def rungs(low: float, high: float, ratio: float) -> tuple[float, ...]:
     """Return round numbers from ``low`` to ``high``, each about ``ratio`` times the one before."""
     count = round(math.log(high / low) / math.log(ratio))
     exact = (low * (high / low) ** (k / count) for k in range(count + 1))
-    return tuple(dict.fromkeys(float(f"{value:.{digits}g}") for value in exact))
+    return tuple(dict.fromkeys(float(f"{value:.2g}") for value in exact))
 
 
 def search_space(engine: str) -> SearchSpace:
