@@ -108,25 +108,23 @@ def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
         if point is None:
             continue
         arm = complex(*link.points[point]) * cmath.exp(1j * theta)
-        frames[link.name] = _Moving(
-            complex(*state.position[point]) - arm,
-            theta,
-            complex(*state.velocity[point]) - 1j * omega * arm,
-            omega,
-            complex(*state.acceleration[point]) - (1j * alpha - omega**2) * arm,
-            alpha,
-        )
+        frames[link.name] = _placed(state, point, arm, theta, omega, alpha)
     for name, slider in blocks(scene).items():
         guide = frames[slider.on]
-        frames[name] = _Moving(
-            complex(*state.position[slider.point]),
-            guide.theta + sliding_angle(slider),
-            complex(*state.velocity[slider.point]),
-            guide.omega,
-            complex(*state.acceleration[slider.point]),
-            guide.alpha,
-        )
+        theta = guide.theta + sliding_angle(slider)
+        frames[name] = _placed(state, slider.point, 0j, theta, guide.omega, guide.alpha)
     return frames
+
+
+def _placed(
+    state: State, point: str, arm: complex, theta: float, omega: float, alpha: float
+) -> _Moving:
+    """Return the frame from which a point of its body is at ``arm``."""
+    place, speed, push = (
+        complex(*each[point]) for each in (state.position, state.velocity, state.acceleration)
+    )
+    speed, push = speed - 1j * omega * arm, push - (1j * alpha - omega**2) * arm
+    return _Moving(place - arm, theta, speed, omega, push, alpha)
 
 
 def _seen_from(base: _Moving, body: _Moving) -> _Moving:
