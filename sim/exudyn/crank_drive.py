@@ -60,29 +60,24 @@ class CrankCourse:
         """Prepare so many steps from the start."""
         if len(self._angles) <= steps:
             longer = max(steps, 2 * len(self._angles))
-            turned = drives.angles(self._law, self._start_s, self._dt, 0, longer) - self._first
+            turned = drives.angles(self._law, self._start_s, self._dt, 0, longer)
             self._angles = turned.tolist()
             self._speeds = speeds(self._law, self._start_s, self._dt, longer).tolist()
 
     def angle(self, _system: object, time_s: float, _item: object, _offset: float) -> float:
         """Return the angle at a time [rad]."""
-        step = self._step(time_s)
-        if step is not None:
-            return self._angles[step]
-        return float(self._law.at(np.array(self._start_s + time_s))[0]) - self._first
+        return self._at(time_s, self._angles, 0) - self._first
 
     def speed(self, _system: object, time_s: float, _item: object, _offset: float) -> float:
         """Return the angular velocity at a time [rad/s]."""
-        step = self._step(time_s)
-        if step is not None:
-            return self._speeds[step]
-        return float(self._law.at(np.array(self._start_s + time_s))[1])
+        return self._at(time_s, self._speeds, 1)
 
-    def _step(self, time_s: float) -> int | None:
-        """Return the step of a time; None between steps."""
+    def _at(self, time_s: float, of_steps: list[float], level: int) -> float:
         exact = time_s / self._dt
         near = round(exact)
-        return near if abs(exact - near) < self.NEAR and near < len(self._angles) else None
+        if abs(exact - near) < self.NEAR and near < len(of_steps):
+            return of_steps[near]
+        return float(self._law.at(np.array(self._start_s + time_s))[level])
 
 
 STRAIGHT = 1e-12
