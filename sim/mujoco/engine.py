@@ -24,7 +24,7 @@ from sim.engine.settings import SettingError
 from sim.engine.tree_poses import body_poses
 from sim.mujoco import settings as own
 from sim.mujoco.loading import Loading
-from sim.mujoco.reactions import JointForces, Reactions
+from sim.mujoco.reactions import JointForces, TreeReactions
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 
 
@@ -99,7 +99,7 @@ class MujocoSession(SteppedModel):
         """Advance and log, as `record`, with the forces of `mj_forward` at each kept state."""
         joint_forces = JointForces(self._model, self._limbs, self._loading.first, self._tendons)
         log = self._recorded(steps, every, joint_forces.look)
-        forces = Reactions(self._scene, self._tree, log.poses, joint_forces).forces()
+        forces = TreeReactions(self._scene, self._tree, log.poses, joint_forces).forces()
         return replace(log, forces=forces)
 
     def _spring(self, tendon: SpringTendon) -> tuple[float, float, float]:

@@ -1,4 +1,4 @@
-"""Reactions in all pins and sliders and the driving torque, from MuJoCo's own forces."""
+"""TreeReactions in all pins and sliders and the driving torque, from MuJoCo's own forces."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ class JointForces:
         return JointWrench(given[:, 1:], given[:, 0], self._centres.column(k))
 
 
-class Reactions:
+class TreeReactions:
     """Builder of the reactions, joint by joint."""
 
     def __init__(self, scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> None:

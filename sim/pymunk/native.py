@@ -28,7 +28,7 @@ def moves_freely(body: pymunk.Body) -> bool:
 
 
 @dataclass(frozen=True)
-class PlacedBodies:
+class SpaceBodies:
     """Moving bodies of a scene in a space, placed at a state, by name in the order they were added.
 
     ``centre`` is the origin of each pymunk body, and of the ground, in the frame of its link [m].
@@ -129,7 +129,7 @@ class PinFriction:
         )
 
 
-def pin_friction(placed: PlacedBodies) -> tuple[PinFriction, ...]:
+def pin_friction(placed: SpaceBodies) -> tuple[PinFriction, ...]:
     """Make the constant friction of the pins of a scene. Raises EngineError for a pin without
     exactly two bodies."""
     scene, rubs = placed.scene, []
@@ -191,7 +191,7 @@ class NativeSpring:
             pushes.note(self.block, (-fx, -fy, 0.0))
 
 
-def native_springs(placed: PlacedBodies, far_m: float) -> dict[str, NativeSpring]:
+def native_springs(placed: SpaceBodies, far_m: float) -> dict[str, NativeSpring]:
     """Make the springs of a scene, by name.
 
     A spring between two bodies that do not move freely is left out: pymunk takes none there. A
@@ -208,7 +208,7 @@ def native_springs(placed: PlacedBodies, far_m: float) -> dict[str, NativeSpring
     return springs
 
 
-def _in_pin(placed: PlacedBodies, spring: PinSpring) -> NativeSpring:
+def _in_pin(placed: SpaceBodies, spring: PinSpring) -> NativeSpring:
     first, second = (placed.body(name) for name in spring.bodies)
     turns = pairs.whole_turns(spring, second.angle - first.angle)
     # Chipmunk counts the angle of its first body against its second.
@@ -217,7 +217,7 @@ def _in_pin(placed: PlacedBodies, spring: PinSpring) -> NativeSpring:
 
 
 def _between(
-    placed: PlacedBodies, spring: LineSpring | SlideSpring, ends: tuple[End, End], far_m: float
+    placed: SpaceBodies, spring: LineSpring | SlideSpring, ends: tuple[End, End], far_m: float
 ) -> NativeSpring:
     (first, here), (second, there) = ends
     q_at_zero, block = 0.0, None
