@@ -1,4 +1,4 @@
-"""TreeReactions in all pins and sliders and the driving torque, from MuJoCo's own forces."""
+"""Reactions in all pins and sliders and the driving torque, from MuJoCo's own forces."""
 
 from __future__ import annotations
 
