@@ -49,6 +49,18 @@ CHANGED = {
         "k2",
     ),
     40: ("off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)", "rng", "path"),
+    45: ("*(comment(redundant) if by_need else []),", "by_need", "(not (by_need))"),
+    46: ("if len(pins[point]) == 2", "len(pins[point])", "(len(pins[point]) + 1)"),
+    47: (
+        "elif max(first, second) <= 0.0 and (-first < STIFFNESS or -second < DAMPING):",
+        "max(first, second)",
+        "(max(second, first))",
+    ),
+    50: (
+        "complete = defaults | dict(settings)",
+        "defaults | dict(settings)",
+        "(defaults & dict(settings))",
+    ),
     61: ("graph_words.tell(console, told)", "(console, told)", "(told, console)"),
     62: (
         "say(console, f\"{document['scene']}: the branch that it is on alone\")",

@@ -49,6 +49,11 @@ class Profile:
     summary: str
     settings: Mapping[str, Setting]
 
+    @property
+    def values(self) -> dict[str, SettingValue]:
+        """Return the values of the settings."""
+        return {name: setting.value for name, setting in self.settings.items()}
+
 
 @dataclass(frozen=True)
 class BodyPose:

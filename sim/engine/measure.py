@@ -9,18 +9,8 @@ import numpy as np
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
-from models.scene.joints import (
-    block_name,
-    blocks,
-    bodies,
-    carriers,
-    centre_of,
-    line_ends,
-    local_point,
-    mass_of,
-    sliding_angle,
-    whole_turns,
-)
+from models.scene import joints as pairs
+from models.scene.joints import carriers
 from models.scene.loads import LineSpring, PinSpring
 from sim.engine import BodyPose, Energy, Poses
 
@@ -213,9 +203,9 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
         guide = _guide(slider, poses)
         seen = _Seen(slider, guide, tracks[slider.point][_rider(scene, slider)])
         off = np.abs(seen.position[:, 1])
-        body = poses.bodies.get(slider.link or block_name(slider))
+        body = poses.bodies.get(slider.link or pairs.block_name(slider))
         if body is not None:  # else it is a point, which keeps no angle to the line
-            turn = body.theta - guide.theta - sliding_angle(slider)
+            turn = body.theta - guide.theta - pairs.sliding_angle(slider)
             off = off + np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi) * scene.longest_m
         openings[name] = np.maximum(off, openings[name]) if name in openings else off
     return openings
@@ -242,7 +232,7 @@ def _copies(same: Same) -> Mapping[str, Mapping[str, Point]]:
     """Return every point in the frames of the bodies that list it."""
     scene = same.scene
     return {
-        point: {body: local_point(scene, body, point) for body in names}
+        point: {body: pairs.local_point(scene, body, point) for body in names}
         for point, names in carriers(scene).items()
     }
 
@@ -251,18 +241,16 @@ def _rider(scene: Scene, slider: Slider) -> str:
     """Return the body whose copy of the slider's point counts."""
     if slider.link is not None:
         return slider.link
-    if block_name(slider) in blocks(scene):
-        return block_name(slider)
+    if pairs.block_name(slider) in pairs.blocks(scene):
+        return pairs.block_name(slider)
     return next(body for body in carriers(scene)[slider.point] if body != slider.on)
 
 
 def _guide(slider: Slider, poses: Poses) -> BodyPose:
-    """Return the body of the line."""
     return _still(len(poses.time_s)) if slider.on == GROUND else poses.bodies[slider.on]
 
 
 def _still(samples: int) -> BodyPose:
-    """Return the pose of the ground."""
     zero, pair = np.zeros(samples), np.zeros((samples, 2))
     return BodyPose(pair, zero, pair, zero, pair, zero)
 
@@ -275,12 +263,14 @@ def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     paths, lengths = body_paths(poses), dict[str, Array]()
     for name, spring in scene.springs.items():
         if isinstance(spring, LineSpring):
-            a, b = (PointPath(paths[body], at).position for body, at in line_ends(scene, spring))
+            a, b = (
+                PointPath(paths[body], at).position for body, at in pairs.line_ends(scene, spring)
+            )
             lengths[name] = np.hypot(*(b - a).T)
         elif isinstance(spring, PinSpring):
             first, second = (paths[body].pose.theta for body in spring.bodies)
             opened = second - first
-            lengths[name] = opened + whole_turns(spring, float(opened[0]))
+            lengths[name] = opened + pairs.whole_turns(spring, float(opened[0]))
         else:
             seen = motion(scene, replace(poses, lag_s=0.0)).sliders[spring.slider]
             lengths[name] = seen.displacement
@@ -299,9 +289,9 @@ def energy(scene: Scene, poses: Poses) -> Energy:
     kinetic, potential = np.zeros(len(poses.time_s)), np.zeros(len(poses.time_s))
     gravity = np.array(scene.gravity_m_s2)
     with np.errstate(all="ignore"):  # open joints may overflow
-        for body in bodies(scene):
-            pose, (mass, inertia) = then.bodies[body], mass_of(scene, body)
-            centre = PointPath(BodyPath(pose), centre_of(scene, body))
+        for body in pairs.bodies(scene):
+            pose, (mass, inertia) = then.bodies[body], pairs.mass_of(scene, body)
+            centre = PointPath(BodyPath(pose), pairs.centre_of(scene, body))
             square = (centre.velocity**2).sum(axis=1)
             kinetic += 0.5 * mass * square + 0.5 * inertia * pose.omega**2
             potential -= mass * centre.position @ gravity

@@ -20,17 +20,10 @@ import numpy as np
 from models.array import Array
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
-from models.scene.joints import (
-    Prism,
-    Slot,
-    block_name,
-    joined_at,
-    joints,
-    less,
-    local_point,
-    riding_body,
-)
+from models.scene import joints as pairs
+from models.scene.joints import Prism, Slot
 from sim.engine.measure import across, arms, directions
+from sim.engine.ties import Hinge
 
 OnBlocks = Mapping[str, Array]
 """Actions on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N] and
@@ -39,15 +32,6 @@ UNDETERMINED = (
     "redundant links share the load by their stiffness and fit: the momentum of rigid bodies "
     "leaves the reactions open, and determines the driving torque alone"
 )
-
-
-@dataclass(frozen=True)
-class Hinge:
-    """Two bodies that share a point, as an engine joins them."""
-
-    point: str
-    first: str
-    other: str
 
 
 @dataclass(frozen=True)
@@ -63,7 +47,7 @@ class MomentumGain:
 
     def arm(self, local: Point) -> Array:
         """Return the arm from ``place`` to a point of the body's frame [m], (T, 2)."""
-        return arms(self.theta, less(local, self.centre))
+        return arms(self.theta, pairs.less(local, self.centre))
 
 
 @dataclass(frozen=True)
@@ -101,7 +85,7 @@ def joint_pushes(
     JointPushes
         NaN at samples at which the joints are singular.
     """
-    slides = joints(scene).slides
+    slides = pairs.joints(scene).slides
     prisms = [slide.slider.name for slide in slides if isinstance(slide, Prism)]
     system = _System(gains)
     for hinge in hinges:
@@ -114,9 +98,9 @@ def joint_pushes(
         system.drive(scene)
     found = system.solution()
     ends = np.cumsum([2 * len(hinges), len(slides), len(prisms)])
-    pairs, normals, moments, torque = np.split(found, ends, axis=1)
+    on_hinges, normals, moments, torque = np.split(found, ends, axis=1)
     return JointPushes(
-        {hinge: pairs[:, 2 * k : 2 * k + 2] for k, hinge in enumerate(hinges)},
+        {hinge: on_hinges[:, 2 * k : 2 * k + 2] for k, hinge in enumerate(hinges)},
         lines,
         {slide.slider.name: normals[:, k] for k, slide in enumerate(slides)},
         {name: moments[:, k] for k, name in enumerate(prisms)},
@@ -140,13 +124,13 @@ class _System:
             column = self._column()
             for body, sense in ((hinge.other, 1.0), (hinge.first, -1.0)):
                 if body != GROUND:
-                    arm = self._gains[body].arm(local_point(scene, body, hinge.point))
+                    arm = self._gains[body].arm(pairs.local_point(scene, body, hinge.point))
                     self._push(column, body, arm, np.tile(sense * axis, (self._samples, 1)))
 
     def carry(self, scene: Scene, slide: Prism | Slot) -> Array:
         """Add a line: a force across it, the same on both bodies. Return its direction."""
         direction = across(self._along(slide.slider))
-        self._push_on(scene, slide.slider, riding_body(slide), direction)
+        self._push_on(scene, slide.slider, pairs.riding_body(slide), direction)
         return direction
 
     def couple(self, body: str, against: str) -> None:
@@ -191,7 +175,7 @@ class _System:
     def _push_on(self, scene: Scene, slider: Slider, rider: str, direction: Array) -> None:
         """Add an unknown that pushes the sliding body at its point, and the guide back."""
         own, guide, column = self._gains[rider], self._gains.get(slider.on), self._column()
-        arm = own.arm(local_point(scene, rider, slider.point))
+        arm = own.arm(pairs.local_point(scene, rider, slider.point))
         self._push(column, rider, arm, direction)
         if guide is not None:
             self._push(column, slider.on, own.place + arm - guide.place, -direction)
@@ -202,10 +186,24 @@ class _System:
         return self._columns[-1]
 
     def _push(self, column: Array, body: str, arm: Array, direction: Array) -> None:
-        """Let an unknown act on a body as a force."""
         row = self._row[body]
         column[:, row : row + 2] += direction
         column[:, row + 2] += arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
+
+
+class PinForces(dict[str, dict[str, Array]]):
+    """Forces in the pins of a scene, by pin and body, (T, 2) [N]; 0 at first."""
+
+    def __init__(self, scene: Scene, samples: int) -> None:
+        super().__init__(
+            (point, {body: np.zeros((samples, 2)) for body in names})
+            for point, names in pairs.joined_at(scene).items()
+        )
+
+    def add(self, point: str, giver: str, taker: str, force: Array) -> None:
+        """Add the force of one body on another at their pin."""
+        self[point][taker] += force
+        self[point][giver] -= force
 
 
 def forces_by_body(
@@ -223,21 +221,15 @@ def forces_by_body(
     if pushes.spare:
         return Forces(time_s, {}, {}, pushes.torque, undetermined=UNDETERMINED, friction=friction)
     samples = len(time_s)
-    pins = {
-        point: {body: np.zeros((samples, 2)) for body in names}
-        for point, names in joined_at(scene).items()
-    }
+    pins = PinForces(scene, samples)
     for hinge, force in pushes.hinges.items():
-        pins[hinge.point][hinge.other] += force
-        pins[hinge.point][hinge.first] -= force
+        pins.add(hinge.point, hinge.first, hinge.other, force)
     moments = dict(pushes.moments)
-    for slot in joints(scene).slots:
+    for slot in pairs.joints(scene).slots:
         name, point = slot.slider.name, slot.slider.point
-        block = pins[point]
         own = on_blocks.get(name, np.zeros((samples, 3)))
         passed = pushes.normals[name][:, None] * pushes.across[name] + own[:, 0:2]
-        block[riding_body(slot)] += passed
-        block[block_name(slot.slider)] -= passed
+        pins.add(point, pairs.block_name(slot.slider), pairs.riding_body(slot), passed)
         moments[name] = -own[:, 2]
         if point in friction and point not in scene.sliders:  # whose second body is the block
             moments[name] = moments[name] - friction[point]

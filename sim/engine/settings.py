@@ -1,6 +1,6 @@
 """Settings of a run: a profile's, overridden one by one."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from models.errors import EngineError, nearest, shown
 from sim.engine import Engine, Profile, Settings, SettingValue
@@ -27,7 +27,7 @@ def resolved(profile: Profile, overrides: Settings | None) -> dict[str, SettingV
     SettingError
         A setting that the engine lacks, or a value of another kind than the profile's.
     """
-    settings = {name: setting.value for name, setting in profile.settings.items()}
+    settings = profile.values
     for name, value in (overrides or {}).items():
         if name not in settings:
             near = nearest(name, settings, 1, 0.6)
@@ -57,6 +57,28 @@ def check_ranges(settings: Settings, ranges: Mapping[str, tuple[float, float]]) 
             raise SettingError(
                 f"setting {name}: found {shown(value)}; it takes {least:g} to {most:g}"
             )
+
+
+def checker(
+    choices: Mapping[str, tuple[str, ...]], ranges: Mapping[str, tuple[float, float]]
+) -> Callable[[Settings], None]:
+    """Return the ``check`` of an engine with these choices and ranges (`sim.engine.Engine`)."""
+
+    def check(settings: Settings) -> None:
+        check_choices(settings, choices)
+        check_ranges(settings, ranges)
+
+    return check
+
+
+def as_held(
+    name: str, asked: SettingValue, given: SettingValue, found: SettingValue, cause: str
+) -> dict[str, SettingValue]:
+    """Return a setting as ``found`` in an engine: beside the one ``asked`` for where it is what was
+    ``given`` for a cause, if any."""
+    if cause and found == given:
+        return {name: asked, f"{name}_of_{cause}": found}
+    return {name: found}
 
 
 def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:

@@ -102,7 +102,6 @@ def _moved(
 
 
 def _arm(theta: Array, local: Point) -> Plane:
-    """Return a vector of a body's frame in the plane."""
     return np.asarray(np.exp(1j * theta) * complex(*local))
 
 

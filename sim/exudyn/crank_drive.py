@@ -14,26 +14,20 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.motion import Forces, SliderForces
-from models.scene import GROUND, Scene, Slider
-from models.scene.joints import (
-    Prism,
-    block_name,
-    inertia_scale,
-    joined_at,
-    joints,
-    riding_body,
-    sliding_angle,
-    turned,
-)
+from models.motion import Forces
+from models.scene import Scene, Slider
+from models.scene import joints as pairs
 from models.scene.laws import ConstantSpeed, Law
 from models.scene.loads import ConstantFriction, Load, SlideSpring
 from sim.engine import Drive, Poses, Settings
 from sim.engine import drive as drives
-from sim.engine.measure import directions, motion
+from sim.engine.measure import body_paths, directions, motion
+from sim.engine.momentum_balance import JointPushes, forces_by_body
+from sim.engine.refusals import refuse_driver_angle
+from sim.engine.ties import Hinge
 from sim.exudyn.passive import against, still_rad_s
 from sim.exudyn.solver import Multipliers
-from sim.exudyn.system import Index, PlaneSystem, items
+from sim.exudyn.system import ANGLE, Index, PlaneSystem, items
 
 
 def speeds(law: Law, start_s: float, dt_s: float, steps: int) -> Array:
@@ -66,29 +60,24 @@ class CrankCourse:
         """Prepare so many steps from the start."""
         if len(self._angles) <= steps:
             longer = max(steps, 2 * len(self._angles))
-            turned = drives.angles(self._law, self._start_s, self._dt, 0, longer) - self._first
+            turned = drives.angles(self._law, self._start_s, self._dt, 0, longer)
             self._angles = turned.tolist()
             self._speeds = speeds(self._law, self._start_s, self._dt, longer).tolist()
 
     def angle(self, _system: object, time_s: float, _item: object, _offset: float) -> float:
         """Return the angle at a time [rad]."""
-        step = self._step(time_s)
-        if step is not None:
-            return self._angles[step]
-        return float(self._law.at(np.array(self._start_s + time_s))[0]) - self._first
+        return self._at(time_s, self._angles, 0) - self._first
 
     def speed(self, _system: object, time_s: float, _item: object, _offset: float) -> float:
         """Return the angular velocity at a time [rad/s]."""
-        step = self._step(time_s)
-        if step is not None:
-            return self._speeds[step]
-        return float(self._law.at(np.array(self._start_s + time_s))[1])
+        return self._at(time_s, self._speeds, 1)
 
-    def _step(self, time_s: float) -> int | None:
-        """Return the step of a time; None between steps."""
+    def _at(self, time_s: float, of_steps: list[float], level: int) -> float:
         exact = time_s / self._dt
         near = round(exact)
-        return near if abs(exact - near) < self.NEAR and near < len(self._angles) else None
+        if abs(exact - near) < self.NEAR and near < len(of_steps):
+            return of_steps[near]
+        return float(self._law.at(np.array(self._start_s + time_s))[level])
 
 
 STRAIGHT = 1e-12
@@ -100,11 +89,7 @@ def refuse_undriven(scene: Scene, drive: Drive) -> None:
     driver = scene.driver
     if driver.is_crank or drive == "free":
         return
-    if any(load.over == "angle" for load in scene.loads.values()):
-        raise EngineError(
-            f"{scene.name}: a load goes with the driver's angle, and exudyn is given that of a "
-            f"crank alone; this driver is {driver.joint}"
-        )
+    refuse_driver_angle(scene, "exudyn")
     if drive == "servo":
         raise EngineError(
             f"{scene.name}: exudyn is given a servo for a crank alone, and this driver is "
@@ -127,7 +112,7 @@ def slider_axis(scene: Scene) -> tuple[int, float]:
     oblique line, which no coordinate follows."""
     driver = scene.driver
     assert driver.slider is not None
-    u = turned((1.0, 0.0), scene.sliders[driver.slider].direction_rad)
+    u = pairs.turned((1.0, 0.0), scene.sliders[driver.slider].direction_rad)
     along = 0 if abs(u[0]) > abs(u[1]) else 1
     if abs(u[1 - along]) > STRAIGHT:
         raise EngineError(
@@ -143,29 +128,30 @@ class CrankDrive:
     exudyn calls back the drive's ``course``."""
 
     def __init__(
-        self,
-        scene: Scene,
-        made: PlaneSystem,
-        settings: Settings,
-        drive: Drive,
-        start_s: float,
-        dt_s: float,
+        self, made: PlaneSystem, settings: Settings, drive: Drive, start_s: float, dt_s: float
     ) -> None:
-        self._law, self._link, self._start_s = scene.driver.law, scene.driver.link, start_s
+        scene, driver = made.scene, made.scene.driver
+        self._law, self._link, self._start_s = driver.law, driver.link, start_s
         self._system = made.system
         self._sense = 1.0
         self.course: CrankCourse | None = None
         self._gain = 0.0
         self._constraint: Index = None
-        if drive == "servo":
-            gain = float(settings["servo_gain"]) * inertia_scale(scene)
-            self._gain = gain * self._law.peak_speed_rad_s
-            self._add_motor(made.crank_markers(self._link))
-        elif drive == "prescribed" and scene.driver.slider is not None:
+        if drive == "free":
+            return
+        coordinate = ANGLE
+        if driver.slider is not None:
             coordinate, self._sense = slider_axis(scene)
-            self._constrain(made.place_markers(self._link, coordinate), dt_s)
-        elif drive == "prescribed":
-            self._constrain(made.crank_markers(self._link, scene.driver.base), dt_s)
+        ends = [
+            made.coordinate_marker(driver.base),
+            made.coordinate_marker(driver.link, coordinate),
+        ]
+        if drive == "servo":
+            gain = float(settings["servo_gain"]) * pairs.inertia_scale(scene)
+            self._gain = gain * self._law.peak_speed_rad_s
+            self._add_motor(ends)
+        else:
+            self._constrain(ends, dt_s)
 
     def _constrain(self, ends: list[Any], dt_s: float) -> None:
         """Add a constraint of the speed, or of the angle where the speed changes."""
@@ -211,71 +197,66 @@ class CrankDrive:
 
 
 class BlockLoads:
-    """Forces (T, 2) [N] and torques (T,) [N m] on blocks without mass, without their guides': read
-    off the motion, as exudyn has no body for them. All forces on such a block add up to nothing:
-    the forces of its guide, loads, springs and friction go to its pin."""
+    """Actions on blocks without mass, without their guides': read off the motion, as exudyn has no
+    body for them."""
 
     def __init__(self, scene: Scene, poses: Poses) -> None:
-        self._scene, self._poses = scene, poses
+        self._scene, self._time_s = scene, poses.time_s
+        self._paths = body_paths(poses)
         self._motion = motion(scene, poses)
+        self._still = still_rad_s(scene)
 
-    def theta(self, body: str) -> Array:
-        """Return the angle of a body or the ground."""
-        zero = np.zeros(len(self._poses.time_s))
-        return zero if body == GROUND else self._poses.bodies[body].theta
+    def line_rad(self, slider: Slider) -> Array:
+        """Return the direction of a line."""
+        return self._paths[slider.on].pose.theta + slider.direction_rad
 
-    def force(self, slider: Slider) -> Array:
-        """Return all forces on the block, with friction and springs of its line."""
-        line = self.theta(slider.on) + slider.direction_rad
+    def on(self, slider: Slider) -> Array:
+        """Return force [N] and torque [N m] on the block of a slider, (T, 3)."""
+        return np.column_stack([self._force(slider), self._torque(slider)])
+
+    def _force(self, slider: Slider) -> Array:
+        """Return all forces, with friction and springs of the line."""
+        line, slid = self.line_rad(slider), self._motion.sliders[slider.name]
         total = np.zeros((len(line), 2))
         for load in self._of(slider):
             if load.point is not None:
-                turned = line - slider.direction_rad + sliding_angle(slider)
+                turned = line - slider.direction_rad + pairs.sliding_angle(slider)
                 angle = load.direction_rad + (turned if load.frame == "body" else 0.0 * line)
                 total += self._magnitude(load)[:, None] * directions(angle)
         for friction in self._rubbing(slider.name):
-            still = still_rad_s(self._scene) * self._scene.longest_m
-            speed = self._motion.sliders[slider.name].speed
-            total += against(friction.size, speed, still)[:, None] * directions(line)
+            still = self._still * self._scene.longest_m
+            total += against(friction.size, slid.speed, still)[:, None] * directions(line)
         for spring in self._scene.springs.values():
             if isinstance(spring, SlideSpring) and spring.slider == slider.name:
-                slid = self._motion.sliders[slider.name]
                 pull = spring.rate * (slid.displacement - spring.free)
                 total -= (pull + spring.damping * slid.speed)[:, None] * directions(line)
         return total
 
-    def torque(self, slider: Slider) -> Array:
-        """Return all torques on the block, with friction of its pin."""
-        total = np.zeros(len(self._poses.time_s))
+    def _torque(self, slider: Slider) -> Array:
+        """Return all torques, with friction of the pin."""
+        total = np.zeros(len(self._time_s))
         for load in self._of(slider):
             if load.point is None:
                 total += self._magnitude(load)
         if slider.point not in self._scene.sliders:  # else its friction is a line's
             for friction in self._rubbing(slider.point):
-                total += self._in_pin(slider, friction)
+                block = pairs.block_name(slider)
+                (other,) = (b for b in pairs.joined_at(self._scene)[slider.point] if b != block)
+                rate = self._omega(slider.on) - self._omega(other)
+                total += against(friction.size, rate, self._still)
         return total
-
-    def _in_pin(self, slider: Slider, friction: ConstantFriction) -> Array:
-        block = block_name(slider)
-        (other,) = (b for b in joined_at(self._scene)[slider.point] if b != block)
-        rate = self._omega(slider.on) - self._omega(other)
-        return against(friction.size, rate, still_rad_s(self._scene))
 
     def _omega(self, body: str) -> Array:
         """Return the rate of a body, or of the guide of a block without mass."""
-        for slider in self._scene.sliders.values():
-            if body == block_name(slider) and body not in self._poses.bodies:
-                body = slider.on
-                break
-        zero = np.zeros(len(self._poses.time_s))
-        return zero if body == GROUND else self._poses.bodies[body].omega
+        guides = {pairs.block_name(slider): slider.on for slider in self._scene.sliders.values()}
+        turning = body if body in self._paths else guides[body]
+        return self._paths[turning].pose.omega
 
     def _of(self, slider: Slider) -> list[Load]:
-        name = block_name(slider)
+        name = pairs.block_name(slider)
         return [load for load in self._scene.loads.values() if load.body == name]
 
     def _rubbing(self, joint: str) -> list[ConstantFriction]:
-        """Return the friction in a joint."""
         return [
             friction
             for friction in self._scene.friction.values()
@@ -283,10 +264,10 @@ class BlockLoads:
         ]
 
     def _magnitude(self, load: Load) -> Array:
-        x = {"time": self._poses.time_s, "angle": self.theta(self._scene.driver.link)}
-        if load.over == "omega":
-            return load.magnitude(self._poses.bodies[load.body].omega)
         slid = self._motion.sliders.get(load.slider or "")
+        if load.over == "omega":
+            return load.magnitude(self._paths[load.body].pose.omega)
+        x = {"time": self._time_s, "angle": self._paths[self._scene.driver.link].pose.theta}
         if slid is None:
             return load.magnitude(x[load.over])
         x |= {"displacement": slid.displacement, "speed": slid.speed}
@@ -294,36 +275,25 @@ class BlockLoads:
 
 
 def reactions(
-    scene: Scene,
-    made: PlaneSystem,
-    multipliers: Multipliers,
-    lambdas: Array,
-    poses: Poses,
-    torque: Array,
+    made: PlaneSystem, multipliers: Multipliers, lambdas: Array, poses: Poses, torque: Array
 ) -> Forces:
     """Return the forces at the states of ``poses``, from the multipliers there, a row each."""
-    count = len(poses.time_s)
-    pins = {
-        point: {body: np.zeros((count, 2)) for body in names}
-        for point, names in joined_at(scene).items()
+    blocks = BlockLoads(made.scene, poses)
+    slides, ties = made.scene.sliders.values(), pairs.joints(made.scene)
+    on_lines = {
+        slider.name: lambdas[:, multipliers.rows(made.prismatic[slider.name])].T
+        for slider in slides
     }
-    for point, hinges in made.hinge.items():
-        for (first, second), joint in hinges.items():
-            force = lambdas[:, multipliers.rows(joint)]
-            pins[point][first] += force
-            pins[point][second] -= force
-    sliders = {}
-    for slide in joints(scene).slides:
-        slider = slide.slider
-        normal, moment = lambdas[:, multipliers.rows(made.prismatic[slider.name])].T
-        if isinstance(slide, Prism):
-            sliders[slider.name] = SliderForces(normal, -moment)
-            continue
-        blocks = BlockLoads(scene, poses)
-        across = directions(blocks.theta(slider.on) + slider.direction_rad + 0.5 * math.pi)
-        force = normal[:, None] * across + blocks.force(slider)
-        pins[slider.point][riding_body(slide)] += force
-        pins[slider.point][block_name(slider)] -= force
-        sliders[slider.name] = SliderForces(normal, -blocks.torque(slider))
-    in_order = {name: sliders[name] for name in scene.sliders}
-    return Forces(poses.time_s, pins, in_order, torque)
+    pushes = JointPushes(
+        hinges={
+            Hinge(hinge.point, hinge.other, hinge.first): lambdas[:, multipliers.rows(joint)]
+            for hinge, joint in made.hinge.items()
+        },
+        across={s.name: directions(blocks.line_rad(s) + 0.5 * math.pi) for s in slides},
+        normals={name: normal for name, (normal, _) in on_lines.items()},
+        moments={prism.slider.name: -on_lines[prism.slider.name][1] for prism in ties.prisms},
+        torque=torque,
+        spare=0,
+    )
+    on_blocks = {slot.slider.name: blocks.on(slot.slider) for slot in ties.slots}
+    return forces_by_body(made.scene, pushes, on_blocks, {}, poses.time_s)

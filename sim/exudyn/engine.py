@@ -15,7 +15,7 @@ from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine.measure import across, arms
 from sim.exudyn import system
 from sim.exudyn.crank_drive import CrankCourse, CrankDrive, reactions, refuse_undriven
-from sim.exudyn.loads import Applied, Present, apply_loads, follows_rates
+from sim.exudyn.loads import Applied, apply_loads, follows_rates
 from sim.exudyn.passive import Springs, apply_friction
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
@@ -116,9 +116,11 @@ class ExudynSession:
             self._model = system.build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
             self._looked = dict(self._model.looked)
-            self._applied = self._loaded(state, drive)
-            self._springs = Springs(scene, state, self._model, self._applied.turning)
-            self._crank = CrankDrive(scene, self._model, settings, drive, state.time_s, dt_s)
+            self._applied = Applied(self._model)
+            apply_loads(self._applied, state.time_s, drive, dt_s)
+            apply_friction(self._applied, drive)
+            self._springs = Springs(self._applied)
+            self._crank = CrankDrive(self._model, settings, drive, state.time_s, dt_s)
             self._sensors = self._sense()
             self._system.Assemble()
             self._asked = simulation(
@@ -132,15 +134,6 @@ class ExudynSession:
             first = None if course is None else self._set_off(course)
             self._multipliers = Multipliers(self._system, first)
 
-    def _loaded(self, state: State, drive: Drive) -> Applied:
-        """Add actions from outside and in the joints."""
-        scene, applied = self._scene, Applied(self._scene, self._model)
-        if scene.loads or scene.friction:
-            present = Present(scene, state, self._model)
-            apply_loads(scene, state, drive, self._dt, applied, present)
-            apply_friction(scene, drive, self._model, applied, present)
-        return applied
-
     def _initialized(self) -> Any:
         """Make the solver. Raises EngineError for a load that has no size at the start."""
         try:
@@ -151,7 +144,6 @@ class ExudynSession:
             raise
 
     def _sense(self) -> list[Any]:
-        """Add a sensor for each level of each body's coordinates."""
         return [
             self._system.AddSensor(
                 system.items.SensorNode(
@@ -191,7 +183,7 @@ class ExudynSession:
     def facts(self) -> Facts:
         """Read the system as exudyn holds it now; its bodies have their centres at their nodes."""
         held_masses = self._model.masses()
-        nodes = system.node_masses(self._scene, self._model)
+        nodes = system.node_masses(self._model)
         loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
         gravity = loads[0] if loads else (0.0, 0.0)
         settings = self._settings if self._scene.beams else of_rigid(self._settings)
@@ -206,7 +198,7 @@ class ExudynSession:
             velocity_shift=0.0,
             acceleration_shift=0.0,
             springs=self._springs.held(),
-            beams=system.held_beams(self._scene, self._model),
+            beams=system.held_beams(self._model),
         )
 
     def step(self, steps: int) -> None:
@@ -247,12 +239,8 @@ class ExudynSession:
         at = done + every * np.arange(len(log.poses.time_s), dtype=np.float64)
         lambdas = self._multipliers.at(self._dt * at)
         torque = self._crank.torque(log.poses, lambdas, self._multipliers)
-        return replace(
-            log,
-            forces=reactions(
-                self._scene, self._model, self._multipliers, lambdas, log.poses, torque
-            ),
-        )
+        forces = reactions(self._model, self._multipliers, lambdas, log.poses, torque)
+        return replace(log, forces=forces)
 
     def read(self) -> Poses:
         """Read the current state."""

@@ -1,28 +1,16 @@
 """Program that reads forces out of exudyn: it holds a scene, as a user would write it."""
 
-import textwrap
-from typing import Any
+from collections.abc import Iterator
 
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene
-from models.scene.joints import (
-    Prism,
-    bodies,
-    centre_of,
-    frames,
-    joints,
-    less,
-    local_point,
-    mass_of,
-    riding_body,
-    sliding_angle,
-    turned,
-)
+from models.scene import joints as pairs
 from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
-from sim.exudyn.settings import BY_NEED
-from sim.registry.offers import ForceRecipe
+from sim.engine.ties import hinges
+from sim.exudyn.settings import BY_NEED, NEWTON
+from sim.registry.offers import ForceRecipe, written
 
 PROGRAM = '''"""{title}"""
 
@@ -155,9 +143,9 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
         dt=dt_s,
         steps=round(law.period_s / dt_s),
         gravity=[*scene.gravity_m_s2, 0.0],
-        bodies=_table(_bodies(scene, state)),
-        pins=_rows(_pins(scene)),
-        lines=_rows(_lines(scene)),
+        bodies=written(_bodies(scene, state)),
+        pins=written(_pins(scene)),
+        lines=written(_lines(scene)),
         ground=GROUND,
         driver=scene.driver.link,
         settings="\n".join(_settings(settings)),
@@ -167,46 +155,42 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
 
 def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
     rows: dict[str, tuple[object, ...]] = {}
-    for name, frame in frames(scene, state).items():
-        if name in bodies(scene):
-            place = frame.at(centre_of(scene, name))
+    for name, frame in pairs.frames(scene, state).items():
+        if name in pairs.bodies(scene):
+            place = frame.at(pairs.centre_of(scene, name))
             rates = [*frame.velocity_at(place), frame.omega]
-            rows[name] = (*mass_of(scene, name), [*place, frame.theta], rates)
+            rows[name] = (*pairs.mass_of(scene, name), [*place, frame.theta], rates)
     return rows
 
 
-def _pins(scene: Scene) -> list[tuple[object, ...]]:
-    """List a hinge of the first body of a pin with each of the others."""
-    rows: list[tuple[object, ...]] = []
-    for pin in joints(scene).pins:
-        first, *others = sorted(pin.bodies, key=lambda name: name != GROUND)
-        start = _from_centre(scene, first, local_point(scene, first, pin.point))
-        for other in others:
-            end = _from_centre(scene, other, local_point(scene, other, pin.point))
-            rows.append((pin.point, first, start, other, end))
-    return rows
+def _pins(scene: Scene) -> Iterator[tuple[object, ...]]:
+    """Yield the hinges, with the places on both bodies."""
+    for hinge in hinges(scene, GROUND):
+        start, end = (
+            _from_centre(scene, body, pairs.local_point(scene, body, hinge.point))
+            for body in (hinge.first, hinge.other)
+        )
+        yield hinge.point, hinge.first, start, hinge.other, end
 
 
-def _lines(scene: Scene) -> list[tuple[object, ...]]:
-    """List the pairs on lines; a block without mass is a point on a line, which may turn."""
-    rows: list[tuple[object, ...]] = []
-    for slide in joints(scene).slides:
-        slider, rider, keeps = slide.slider, riding_body(slide), isinstance(slide, Prism)
-        tip = _from_centre(scene, rider, local_point(scene, rider, slider.point))
+def _lines(scene: Scene) -> Iterator[tuple[object, ...]]:
+    """Yield the pairs on lines; a block without mass is a point on a line, which may turn."""
+    for slide in pairs.joints(scene).slides:
+        slider, rider = slide.slider, pairs.riding_body(slide)
+        keeps = isinstance(slide, pairs.Prism)
+        tip = _from_centre(scene, rider, pairs.local_point(scene, rider, slider.point))
         through = _from_centre(scene, slider.on, slider.through_m)
-        own = slider.direction_rad - (sliding_angle(slider) if keeps else 0.0)
-        axis = [*turned((1.0, 0.0), own), 0.0]
-        normal = [*turned((0.0, 1.0), slider.direction_rad), 0.0]
-        rows.append((rider, tip, slider.on, through, axis, normal, keeps))
-    return rows
+        own = slider.direction_rad - (pairs.sliding_angle(slider) if keeps else 0.0)
+        axis = [*pairs.turned((1.0, 0.0), own), 0.0]
+        normal = [*pairs.turned((0.0, 1.0), slider.direction_rad), 0.0]
+        yield rider, tip, slider.on, through, axis, normal, keeps
 
 
 def _from_centre(scene: Scene, body: str, place: Point) -> Point:
-    return place if body == GROUND else less(place, centre_of(scene, body))
+    return place if body == GROUND else pairs.less(place, pairs.centre_of(scene, body))
 
 
 def _settings(settings: Settings) -> list[str]:
-    """Write the profile in exudyn's own names."""
     lines = [f"stepping.adaptiveStep = {settings['adaptive_step'] == 'enable'}"]
     if settings["integrator"] == "GeneralizedAlpha":
         radius = float(settings["spectral_radius"])
@@ -216,25 +200,12 @@ def _settings(settings: Settings) -> list[str]:
     solver = "EigenDense" if linear == BY_NEED else linear
     return [
         *lines,
-        f"stepping.newton.relativeTolerance = {float(settings['relative_tolerance'])!r}",
-        f"stepping.newton.absoluteTolerance = {float(settings['absolute_tolerance'])!r}",
-        f"stepping.newton.maxIterations = {int(settings['iterations'])}",
+        *(f"stepping.newton.{own} = {settings[name]!r}" for name, own in NEWTON.items()),
         f"stepping.newton.useModifiedNewton = {jacobian != 'each-iteration'}",
         f"stepping.newton.modifiedNewtonJacUpdatePerStep = {jacobian == 'each-step'}",
         f"simulationSettings.linearSolver.solverType = exu.LinearSolverType.{solver}",
         f"simulationSettings.linearSolver.ignoreSingularJacobian = {redundant}",
     ]
-
-
-def _table(rows: dict[str, Any]) -> str:
-    """Write a dict with a line for each row."""
-    lines = "\n".join(f"{name!r}: {row!r}," for name, row in rows.items())
-    return "{\n" + textwrap.indent(lines, "    ") + "\n}"
-
-
-def _rows(rows: list[tuple[object, ...]]) -> str:
-    """Write a list with a line for each row."""
-    return "[\n" + "".join(f"    {row!r},\n" for row in rows) + "]" if rows else "[]"
 
 
 FORCE_RECIPE: ForceRecipe = exudyn_force_recipe

@@ -2,27 +2,19 @@
 
 import math
 from collections.abc import Callable
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
 
 from models.errors import CrankcheckError, EngineError, few
-from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene.characteristics import Constant, Staircase
-from models.scene.joints import (
-    Prism,
-    Slot,
-    block_name,
-    bodies,
-    frames,
-    joints,
-    riding_body,
-    sliding_angle,
-)
+from models.scene.joints import block_name, bodies, joints, riding_body, sliding_angle
 from models.scene.loads import Load
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
+from sim.engine.ties import slide_of
 from sim.exudyn.system import ANGLE, Index, PlaneSystem, exu, items
 
 KIND = exu.OutputVariableType
@@ -31,18 +23,16 @@ KIND = exu.OutputVariableType
 class Present:
     """Present state of a system, for actions that depend on it."""
 
-    def __init__(self, scene: Scene, state: State, made: PlaneSystem) -> None:
-        self._scene, self._made = scene, made
-        self._start_rad = {name: frame.theta for name, frame in frames(scene, state).items()}
-        self._ends = {slide.slider.name: self._ends_of(slide) for slide in joints(scene).slides}
-
-    def _ends_of(self, slide: Prism | Slot) -> tuple[Index, Index]:
-        """Return markers of the sliding point and of the point that the line passes through."""
-        slider = slide.slider
-        return (
-            self._made.marker(self._scene, riding_body(slide), slider.point),
-            self._made.marker_at(slider.on, slider.through_m),
-        )
+    def __init__(self, made: PlaneSystem) -> None:
+        self._scene, self._made = made.scene, made
+        # Markers of the sliding point and of the point that the line passes through.
+        self._ends = {
+            slide.slider.name: (
+                made.marker(riding_body(slide), slide.slider.point),
+                made.marker_at(slide.slider.on, slide.slider.through_m),
+            )
+            for slide in joints(made.scene).slides
+        }
 
     def angle(self, system: Any, body: str) -> tuple[float, float]:
         """Return angle [rad] and rate [rad/s] of a body or the ground."""
@@ -51,7 +41,7 @@ class Present:
         node = self._made.node[body]
         turned = float(system.GetNodeOutput(node, KIND.Coordinates)[ANGLE])
         rate = float(system.GetNodeOutput(node, KIND.Coordinates_t)[ANGLE])
-        return self._start_rad[body] + turned, rate
+        return self._made.start_rad[body] + turned, rate
 
     def line(self, system: Any, name: str, turned_rad: float = 0.0) -> Point:
         """Return the direction of the line of a slider in the plane, or one turned against it."""
@@ -79,14 +69,9 @@ Vector = Callable[[Any, float], Point]
 """A force [N], of the same."""
 
 
-def massless_blocks(scene: Scene) -> dict[str, str]:
-    """Return the sliders whose block is no body in exudyn, by the name of the block."""
-    return {block_name(slot.slider): slot.slider.name for slot in joints(scene).slots}
-
-
 class Applied:
-    """Adds forces and torques to a system: numbers, or callbacks of exudyn. ``fault`` is the reason
-    why one of them has lost its size.
+    """Adds forces and torques to the system ``made``: numbers, or callbacks of exudyn. ``fault`` is
+    the reason why one of them has lost its size.
 
     exudyn calls with the time and in the present state of its Newton's method, so that a load
     belongs to the end of the step, as all forces of an implicit step. A block without mass is no
@@ -94,53 +79,50 @@ class Applied:
     with which it turns.
     """
 
-    def __init__(self, scene: Scene, made: PlaneSystem) -> None:
-        self._scene, self._made = scene, made
-        self._massless = massless_blocks(scene)
+    def __init__(self, made: PlaneSystem) -> None:
+        self.scene, self.made = made.scene, made
+        self.massless = {
+            block_name(slot.slider): slot.slider.name for slot in joints(made.scene).slots
+        }
+        """Sliders whose block is no body in exudyn, by the name of the block."""
         self.fault = ""
-        self._rider = {slide.slider.name: riding_body(slide) for slide in joints(scene).slides}
+
+    @cached_property
+    def present(self) -> Present:
+        """The present state of the system."""
+        return Present(self.made)
 
     def turning(self, body: str) -> str:
         """Return the body that a body turns with: for a block without mass, its guide."""
-        slider = self._massless.get(body)
-        return body if slider is None else self._scene.sliders[slider].on
+        slider = self.massless.get(body)
+        return body if slider is None else self.scene.sliders[slider].on
 
     def on(self, body: str, point: str) -> Index:
         """Return a marker at a point of a body, or of the riding body of a block without mass."""
-        slider = self._massless.get(body)
-        return self._made.marker(self._scene, body, point) if slider is None else self.tip(slider)
+        slider = self.massless.get(body)
+        return self.made.marker(body, point) if slider is None else self.tip(slider)
 
     def tip(self, slider: str) -> Index:
         """Return a marker at the sliding point."""
-        point = self._scene.sliders[slider].point
-        return self._made.marker(self._scene, self._rider[slider], point)
+        rider = riding_body(slide_of(self.scene, slider))
+        return self.made.marker(rider, self.scene.sliders[slider].point)
 
     def force(self, marker: Index, force: Vector | Point, *, in_body: bool = False) -> None:
         """Add a force, in the frame of the ground or of the body."""
-        told = (
-            self._called(lambda *now: (*force(*now), 0.0))
-            if callable(force)
-            else _fixed(*force, 0.0)
-        )
-        self._made.system.AddLoad(
-            items.LoadForceVector(markerNumber=marker, bodyFixed=in_body, **told)
-        )
+        vector = (lambda *now: (*force(*now), 0.0)) if callable(force) else (*force, 0.0)
+        self._add(items.LoadForceVector, marker, vector, bodyFixed=in_body)
 
     def torque(self, body: str, torque: Size | float) -> None:
         """Add a torque on a body or a block; the ground feels none."""
         turning = self.turning(body)
         if turning == GROUND:
             return
-        told = (
-            self._called(lambda *now: (0.0, 0.0, torque(*now)))
-            if callable(torque)
-            else _fixed(0.0, 0.0, torque)
-        )
-        marker = self._made.marker_at(turning, (0.0, 0.0))
-        self._made.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, **told))
+        marker = self.made.marker_at(turning, (0.0, 0.0))
+        vector = (lambda *now: (0.0, 0.0, torque(*now))) if callable(torque) else (0.0, 0.0, torque)
+        self._add(items.LoadTorqueVector, marker, vector)
 
-    def _called(self, vector: Callable[[Any, float], tuple[float, float, float]]) -> dict[str, Any]:
-        """Return a load as a callback of exudyn."""
+    def _add(self, load: Any, marker: Index, vector: Any, **more: object) -> None:
+        """Add a load of three numbers, or of a function of the system and of time."""
 
         def called(system: Any, time_s: float, _: object) -> list[float]:
             try:
@@ -149,12 +131,11 @@ class Applied:
                 self.fault = str(error)  # exudyn would show it with a traceback
                 raise
 
-        return {"loadVectorUserFunction": called}
-
-
-def _fixed(*vector: float) -> dict[str, Any]:
-    """Return a load as numbers."""
-    return {"loadVector": list(vector)}
+        if callable(vector):
+            more["loadVectorUserFunction"] = called
+        else:
+            more["loadVector"] = list(vector)
+        self.made.system.AddLoad(load(markerNumber=marker, **more))
 
 
 class StepMeans:
@@ -176,7 +157,6 @@ class StepMeans:
         return math.fsum(height * self._share(time_s, place) for place, height in self._jumps)
 
     def _share(self, time_s: float, place: float) -> float:
-        """Return the share of a jump."""
         if place <= self._start_s:
             return 1.0
         since = min(max((time_s - place) / self._dt, -1.0), 1.0)
@@ -185,29 +165,28 @@ class StepMeans:
         return 1.0 - 0.5 * (1.0 - since) ** 2 if since > 0.0 else 0.5 * (1.0 + since) ** 2
 
 
-def apply_loads(
-    scene: Scene, state: State, drive: Drive, dt_s: float, applied: Applied, present: Present
-) -> None:
+def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> None:
     """Add all loads. Raises EngineError for a load on an unknown body."""
-    massless = massless_blocks(scene)
+    scene, massless = applied.scene, applied.massless
     known = [*bodies(scene), *massless]
     for load in scene.loads.values():
         if load.body not in known:
             raise EngineError(
                 f"loads.{load.name}: found body {load.body}; use one of {few(known, 12)}"
             )
-        size = _size(scene, load, state.time_s, drive, dt_s, present)
+        size = _size(applied, load, start_s, drive, dt_s)
         if load.point is None:
             applied.torque(load.body, size)
             continue
-        marker = applied.on(load.body, load.point)
-        in_body = load.frame == "body"
+        marker, in_body = applied.on(load.body, load.point), load.frame == "body"
         if in_body and load.body in massless:
             slider = scene.sliders[massless[load.body]]
             turned = load.direction_rad + sliding_angle(slider) - slider.direction_rad
-            applied.force(marker, _turning(size, present, slider.name, turned))
+            along = partial(applied.present.line, name=slider.name, turned_rad=turned)
+            applied.force(marker, _pointing(size, along))
         else:
-            applied.force(marker, _along(size, load.direction_rad), in_body=in_body)
+            direction = math.cos(load.direction_rad), math.sin(load.direction_rad)
+            applied.force(marker, _pointing(size, direction), in_body=in_body)
 
 
 def follows_rates(scene: Scene, drive: Drive) -> bool:
@@ -217,21 +196,23 @@ def follows_rates(scene: Scene, drive: Drive) -> bool:
     )
 
 
-def _size(
-    scene: Scene, load: Load, start_s: float, drive: Drive, dt_s: float, present: Present
-) -> Size | float:
+def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: float) -> Size | float:
     """Return the size of a load: a number for a constant one.
 
     If the load moves the mechanism, a jump in time keeps its impulse (`StepMeans`); with a
     prescribed crank all forces belong to the instant.
     """
+    scene = applied.scene
     if isinstance(load.characteristic, Constant) and load.stroke == "both":
         return load.characteristic.value
     if known_ahead(load, drive):
         if isinstance(load.characteristic, Staircase) and drive != "prescribed":
             means = StepMeans(load.characteristic, start_s, dt_s)
             return lambda _, time_s: means.at(start_s + time_s)
-        return _told(scene, load, start_s)
+        # Computed once in a step.
+        at = lru_cache(1)(lambda time_s: float(ahead(scene, load, np.array([time_s]))[0]))
+        return lambda _, time_s: at(start_s + time_s)
+    present = applied.present
 
     def of_present(system: Any, time_s: float) -> float:
         theta, _ = present.angle(system, scene.driver.link)
@@ -242,38 +223,14 @@ def _size(
     return of_present
 
 
-def _told(scene: Scene, load: Load, start_s: float) -> Size:
-    """Return the size over time, computed once in a step."""
-    last = math.nan, 0.0
-
-    def at(_: Any, time_s: float) -> float:
-        nonlocal last
-        if last[0] != time_s:
-            last = time_s, float(ahead(scene, load, np.array([start_s + time_s]))[0])
-        return last[1]
-
-    return at
-
-
-def _along(size: Size | float, angle_rad: float) -> Any:
-    """Return a force in a fixed direction."""
-    c, s = math.cos(angle_rad), math.sin(angle_rad)
-    if not callable(size):
-        return size * c, size * s
-
-    def vector(system: Any, time_s: float) -> Point:
-        force = size(system, time_s)
-        return force * c, force * s
-
-    return vector
-
-
-def _turning(size: Size | float, present: Present, slider: str, turned_rad: float) -> Any:
-    """Return a force in a direction that turns with the line of a slider."""
+def _pointing(size: Size | float, direction: Callable[[Any], Point] | Point) -> Any:
+    """Return a force of a size in a direction, each a number or a function of the present state."""
+    if not callable(size) and not callable(direction):
+        return size * direction[0], size * direction[1]
 
     def vector(system: Any, time_s: float) -> Point:
         force = size(system, time_s) if callable(size) else size
-        c, s = present.line(system, slider, turned_rad)
+        c, s = direction(system) if callable(direction) else direction
         return force * c, force * s
 
     return vector

@@ -1,88 +1,58 @@
 """Springs of a scene in exudyn, and its friction, as forces against the motion."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.motion import State
 from models.scene import GROUND, Point, Scene
-from models.scene.joints import (
-    frames,
-    joined_at,
-    joints,
-    line_ends,
-    riding_body,
-    turned,
-    whole_turns,
-)
-from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
+from models.scene.joints import joined_at, turned, whole_turns
+from models.scene.loads import ConstantFriction, LineSpring, PinSpring, Spring
 from sim.engine import Drive
-from sim.exudyn.loads import Applied, Present, Size
-from sim.exudyn.system import Index, PlaneSystem, items
+from sim.engine.ties import spring_ends
+from sim.exudyn.loads import Applied, Size
+from sim.exudyn.system import Index, items
 
 Held = tuple[float, float, float]
 """Rate, damping, and slack length or angle."""
 
 
 class Springs:
-    """Adds the springs of a scene to a system, at the angles of a state, as exudyn's own
-    spring-dampers, whose derivatives it knows.
+    """Adds the springs of a scene to a system, as exudyn's own spring-dampers, whose derivatives it
+    knows.
 
     Between points along their line; in a pin between the angles of two nodes, which count turns;
     along the line of a slider between the guide, whose axis turns with it, and the riding body.
     """
 
-    def __init__(
-        self, scene: Scene, state: State, made: PlaneSystem, turning: Callable[[str], str]
-    ) -> None:
-        self._scene, self._made, self._turning = scene, made, turning
-        self._theta = {name: frame.theta for name, frame in frames(scene, state).items()}
+    def __init__(self, applied: Applied) -> None:
+        self._applied, self._made = applied, applied.made
         self._index: dict[str, Index] = {}
         self._ahead: dict[str, float] = {}
-        for name, spring in scene.springs.items():
-            if isinstance(spring, LineSpring):
-                item = self._between_points(spring)
-            elif isinstance(spring, PinSpring):
-                item = self._in_pin(spring)
-            else:
-                item = self._along_line(spring)
-            self._index[name] = made.system.AddObject(item)
+        for name, spring in applied.scene.springs.items():
+            self._index[name] = self._made.system.AddObject(self._item(spring))
 
-    def _between_points(self, spring: LineSpring) -> object:
-        return items.ObjectConnectorSpringDamper(
-            markerNumbers=[self._made.marker_at(*end) for end in line_ends(self._scene, spring)],
-            stiffness=spring.rate,
-            damping=spring.damping,
-            referenceLength=spring.free,
-        )
-
-    def _in_pin(self, spring: PinSpring) -> object:
-        """Make a spring between coordinates of nodes, which count from the start."""
-        first, second = (self._turning(body) for body in spring.bodies)
-        opened = self._theta[second] - self._theta[first]
-        ahead = self._ahead[spring.name] = opened + whole_turns(spring, opened)
-        return items.ObjectConnectorCoordinateSpringDamper(
-            markerNumbers=[self._made.angle_marker(body) for body in (first, second)],
-            stiffness=spring.rate,
-            damping=spring.damping,
-            offset=spring.free - ahead,
-        )
-
-    def _along_line(self, spring: SlideSpring) -> object:
-        slide = next(s for s in joints(self._scene).slides if s.slider.name == spring.slider)
-        slider = slide.slider
+    def _item(self, spring: Spring) -> object:
+        """Make a spring; angles of nodes count from the start."""
+        held = {"stiffness": spring.rate, "damping": spring.damping}
+        if isinstance(spring, PinSpring):
+            turning = [self._applied.turning(body) for body in spring.bodies]
+            opened = self._made.start_rad[turning[1]] - self._made.start_rad[turning[0]]
+            ahead = self._ahead[spring.name] = opened + whole_turns(spring, opened)
+            ends = [self._made.coordinate_marker(body) for body in turning]
+            return items.ObjectConnectorCoordinateSpringDamper(
+                markerNumbers=ends, offset=spring.free - ahead, **held
+            )
+        ends = [self._made.marker_at(*end) for end in spring_ends(self._applied.scene, spring)]
+        if isinstance(spring, LineSpring):
+            return items.ObjectConnectorSpringDamper(
+                markerNumbers=ends, referenceLength=spring.free, **held
+            )
+        axis = turned((1.0, 0.0), self._applied.scene.sliders[spring.slider].direction_rad)
         return items.ObjectConnectorLinearSpringDamper(
-            markerNumbers=[
-                self._made.marker_at(slider.on, slider.through_m),
-                self._made.marker(self._scene, riding_body(slide), slider.point),
-            ],
-            stiffness=spring.rate,
-            damping=spring.damping,
-            offset=spring.free,
-            axisMarker0=[*turned((1.0, 0.0), slider.direction_rad), 0.0],
+            markerNumbers=ends, offset=spring.free, axisMarker0=[*axis, 0.0], **held
         )
 
     def held(self) -> Mapping[str, Held]:
@@ -100,11 +70,10 @@ STILL = 1e-9
 """Least speed with friction, over the largest speed of the driver."""
 
 
-def apply_friction(
-    scene: Scene, drive: Drive, made: PlaneSystem, applied: Applied, present: Present
-) -> None:
+def apply_friction(applied: Applied, drive: Drive) -> None:
     """Add friction in sliders and pins. Raises EngineError for friction that is not constant, and
     for joints that may come to rest, where a force against the motion is undefined."""
+    scene = applied.scene
     if scene.friction and drive == "free":
         raise EngineError(
             f"friction ({', '.join(scene.friction)}): exudyn is given it as forces against the "
@@ -114,17 +83,13 @@ def apply_friction(
     for name, friction in scene.friction.items():
         if not isinstance(friction, ConstantFriction):
             raise EngineError(f"friction.{name}: exudyn is given none that follows the reactions")
-        if friction.joint in scene.sliders:
-            _rub_line(scene, friction, made, applied, present)
-        else:
-            _rub_pin(scene, friction, applied, present)
+        rub = _rub_line if friction.joint in scene.sliders else _rub_pin
+        rub(applied, friction, still_rad_s(scene))
 
 
-def _rub_pin(scene: Scene, friction: ConstantFriction, applied: Applied, present: Present) -> None:
-    """Add a couple between the two bodies of a pin."""
-    first, second = joined_at(scene)[friction.joint]
-    turning = applied.turning(first), applied.turning(second)
-    still = still_rad_s(scene)
+def _rub_pin(applied: Applied, friction: ConstantFriction, still: float) -> None:
+    ends, present = joined_at(applied.scene)[friction.joint], applied.present
+    turning = [applied.turning(body) for body in ends]
 
     def on(side: int) -> Size:
         def torque(system: Any, _: float) -> float:
@@ -133,21 +98,19 @@ def _rub_pin(scene: Scene, friction: ConstantFriction, applied: Applied, present
 
         return torque
 
-    applied.torque(first, on(0))
-    applied.torque(second, on(1))
+    for side in (0, 1):
+        applied.torque(ends[side], on(side))
 
 
-def _rub_line(
-    scene: Scene, friction: ConstantFriction, made: PlaneSystem, applied: Applied, present: Present
-) -> None:
+def _rub_line(applied: Applied, friction: ConstantFriction, still: float) -> None:
     """Add a force along the line on the sliding body, and the opposite on the guide."""
-    slider = scene.sliders[friction.joint]
-    still = still_rad_s(scene) * scene.longest_m
+    slider, present = applied.scene.sliders[friction.joint], applied.present
+    least = still * applied.scene.longest_m
 
     def along(sign: float) -> Any:
         def force(system: Any, _: float) -> Point:
             _, speed = present.slider(system, slider.name)
-            size = sign * float(against(friction.size, speed, still))
+            size = sign * float(against(friction.size, speed, least))
             c, s = present.line(system, slider.name)
             return size * c, size * s
 
@@ -155,7 +118,7 @@ def _rub_line(
 
     applied.force(applied.tip(slider.name), along(1.0))
     if slider.on != GROUND:
-        applied.force(made.marker_at(slider.on, slider.through_m), along(-1.0))
+        applied.force(applied.made.marker_at(slider.on, slider.through_m), along(-1.0))
 
 
 def still_rad_s(scene: Scene) -> float:

@@ -1,7 +1,7 @@
 """exudyn's settings: the two profiles, and their form in its own structures."""
 
 from sim.engine import Drive, Placing, Profile, Setting, Settings
-from sim.engine.settings import check_choices, check_ranges
+from sim.engine.settings import checker
 
 INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
 """Implicit integrators; explicit ones take no joints."""
@@ -12,6 +12,13 @@ BY_NEED = "by-need"
 """A choice of crankcheck: EXUdense, or EigenDense where joints are redundant at the start, or
 EigenSparse for more than `MOST_DENSE` coordinates and constraints."""
 MOST_DENSE = 60
+NEWTON = {
+    "relative_tolerance": "relativeTolerance",
+    "absolute_tolerance": "absoluteTolerance",
+    "iterations": "maxIterations",
+}
+"""exudyn's own names of the settings of Newton's method."""
+TOLERANCES = ("relative_tolerance", "absolute_tolerance")
 SWITCH = ("enable", "disable")
 CHOICES = {
     "integrator": INTEGRATORS,
@@ -108,10 +115,7 @@ TUNED = Profile(
 )
 
 
-def checked(settings: Settings) -> None:
-    """Refuse values that exudyn does not take. Raises SettingError."""
-    check_choices(settings, CHOICES)
-    check_ranges(settings, RANGES)
+checked = checker(CHOICES, RANGES)
 
 
 def of_drive(settings: Settings, drive: Drive) -> Settings:

@@ -3,10 +3,9 @@
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
-from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, of_drive
-from sim.registry.offers import SnippetWriter, Stepping, comment
+from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, NEWTON, TOLERANCES, of_drive
+from sim.registry.offers import ALONE, SnippetWriter, Stepping, comment
 
-WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
     "prescribed": "Drive: an ObjectConnectorCoordinate between a NodePointGround and the angle of "
     "the crank's node, velocityLevel = True, offset = speed; all start with the velocities that go "
@@ -20,18 +19,17 @@ DRIVES: Mapping[Drive, str] = {
 
 
 def exudyn_snippet(
-    settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
-) -> str:
+    asked: Settings, defaults: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
+) -> list[str]:
     """Write lines that act on variables ``exu`` (the package) and ``simulationSettings``.
 
     The integrator and its step, which can only be the whole system's, and the tolerances of
     Newton's method, never above its own. Other differences from exudyn's defaults might spoil the
     rest of a user's system and are in a comment; see `sim.registry.offers.snippet`.
     """
-    defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
-    complete = of_drive(defaults | dict(settings), drive)
+    complete = of_drive(asked, drive)
     lines = [
-        *comment(head, WIDTH),
+        *comment(*head),
         "stepping = simulationSettings.timeIntegration",
         *_steps(stepping, drive),
         f"stepping.solverType = exu.DynamicSolverType.{complete['integrator']}",
@@ -40,29 +38,21 @@ def exudyn_snippet(
     if damped and complete["spectral_radius"] != defaults["spectral_radius"]:
         radius = float(complete["spectral_radius"])
         lines.append(f"stepping.generalizedAlpha.spectralRadius = {radius!r}")
-    lines += _newton(complete, defaults)
-    lines += _alone(complete, defaults)
     driven = DRIVES[drive].format(gain=float(complete["servo_gain"]))
-    return "\n".join([*lines, *comment([driven], WIDTH)]) + "\n"
+    return [*lines, *_newton(complete, defaults), *_alone(complete, defaults), *comment(driven)]
 
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
-    """Write the length of a step, and its scaling with the speed and with frames."""
-    per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
-    counted, told = stepping.counted_in(drive), list[str]()
-    if counted == "turns":
-        told = [
-            f"{per_turn} steps a turn of a crank at {speed}. At another speed: dt = 2 pi / "
-            f"({per_turn} speed)."
-        ]
-    if counted == "frames":
-        frame, number = f"{stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
-        told = [
-            f"A frame of {frame} has numberOfSteps = {number}. A crank at {speed} has {per_turn} "
-            "of these steps in a turn; a faster one needs more of them in a frame, in proportion."
-        ]
+    words = {
+        "turns": [stepping.scaled_by_speed("dt") + "."],
+        "frames": [
+            f"A frame of {stepping.frame} has numberOfSteps = {stepping.substeps}. "
+            f"{stepping.scaled_in_frames('these steps')}."
+        ],
+        "nothing": [],
+    }
     return [
-        *comment(told, WIDTH),
+        *comment(*words[stepping.counted_in(drive)]),
         f"dt = {stepping.dt_s!r}",
         "stepping.numberOfSteps = round((stepping.endTime - stepping.startTime) / dt)",
     ]
@@ -71,13 +61,10 @@ def _steps(stepping: Stepping, drive: Drive) -> list[str]:
 def _newton(complete: Settings, defaults: Settings) -> list[str]:
     """Write the tolerances of Newton's method, if lower than by default, and its matrix."""
     lines = []
-    for name, own in (
-        ("relative_tolerance", "relativeTolerance"),
-        ("absolute_tolerance", "absoluteTolerance"),
-    ):
+    for name in TOLERANCES:
         if float(complete[name]) < float(defaults[name]):
-            least = f"min(stepping.newton.{own}, {float(complete[name])!r})"
-            lines.append(f"stepping.newton.{own} = {least}")
+            own = f"stepping.newton.{NEWTON[name]}"
+            lines.append(f"{own} = min({own}, {float(complete[name])!r})")
     if complete["jacobian"] == "each-step":
         lines.append("stepping.newton.modifiedNewtonJacUpdatePerStep = True  # faster here")
     if complete["jacobian"] == "each-iteration":
@@ -87,13 +74,11 @@ def _newton(complete: Settings, defaults: Settings) -> list[str]:
 
 def _alone(complete: Settings, defaults: Settings) -> list[str]:
     """Write the settings of the measured runs for a system of the mechanism alone."""
-    lines = []
-    for name, own in (
-        ("relative_tolerance", "relativeTolerance"),
-        ("absolute_tolerance", "absoluteTolerance"),
-    ):
-        if float(complete[name]) > float(defaults[name]):
-            lines.append(f"#   stepping.newton.{own} = {float(complete[name])!r}")
+    lines = [
+        f"#   stepping.newton.{NEWTON[name]} = {float(complete[name])!r}"
+        for name in TOLERANCES
+        if float(complete[name]) > float(defaults[name])
+    ]
     if complete["iterations"] != defaults["iterations"]:
         lines.append(f"#   stepping.newton.maxIterations = {int(complete['iterations'])}")
     if complete["adaptive_step"] == "disable":
@@ -108,17 +93,16 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
         lines.append(f"#   with beams: Newton's tolerance at least {times} roundings of their pull")
     if complete["ignore_singular"] == "enable" and not by_need:
         lines.append(f"#   {linear}.ignoreSingularJacobian = True")
-    title = "ONLY TO MEASURE AS WE DID, in a system with nothing else in it:"
     redundant = (
         f"Where joints are redundant: {linear}.solverType = exu.LinearSolverType.EigenDense and "
         "ignoreSingularJacobian = True; elsewhere a singular matrix is a fault to be told of. "
         f"Of more than {MOST_DENSE} coordinates and constraints EigenSparse is faster."
     )
     return [
-        *(comment([title], WIDTH) if lines else []),
+        *(comment(ALONE.format("system")) if lines else []),
         *lines,
-        *(comment([redundant], WIDTH) if by_need else []),
+        *(comment(redundant) if by_need else []),
     ]
 
 
-SNIPPET = SnippetWriter("python", exudyn_snippet)
+SNIPPET = SnippetWriter("python", AS_SHIPPED, exudyn_snippet)

@@ -8,7 +8,7 @@ import numpy as np
 
 from models.array import Array
 from sim.engine import Settings, SettingValue
-from sim.exudyn.settings import BY_NEED, MOST_DENSE
+from sim.exudyn.settings import BY_NEED, MOST_DENSE, NEWTON
 from sim.exudyn.system import Index, exu, quiet
 
 FREE = 1e-9
@@ -127,9 +127,7 @@ def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]
         "timestep_s": float(solver.it.maxStepSize),
         "integrator": "TrapezoidalIndex2" if trapezoidal else "GeneralizedAlpha",
         "spectral_radius": float(asked.timeIntegration.generalizedAlpha.spectralRadius),
-        "relative_tolerance": float(newton.relativeTolerance),
-        "absolute_tolerance": float(newton.absoluteTolerance),
-        "iterations": int(newton.maxIterations),
+        **{name: getattr(newton, own) for name, own in NEWTON.items()},
         "jacobian": per_step if newton.useModifiedNewton else "each-iteration",
         "adaptive_step": "enable" if solver.it.adaptiveStep else "disable",
         "linear_solver_used": str(linear.solverType.name),

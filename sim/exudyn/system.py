@@ -22,22 +22,11 @@ from typing import Any
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene
+from models.scene import joints as pairs
 from models.scene.elastic import Beam
-from models.scene.joints import (
-    Frame,
-    Prism,
-    Slot,
-    bodies,
-    centre_of,
-    frames,
-    joints,
-    less,
-    local_point,
-    mass_of,
-    riding_body,
-    sliding_angle,
-    turned,
-)
+from models.scene.joints import Frame
+from sim.engine.refusals import refuse_massless
+from sim.engine.ties import Hinge, hinges
 
 SAID = re.compile(r"Python WARNING|Python ERROR")
 """Beginning of each of exudyn's messages about a run."""
@@ -77,32 +66,34 @@ Index = Any
 class PlaneSystem:
     """A system before its assembly: the bodies by name, in the order they were added.
 
-    ``centre`` is the place of a body's node in the frame of its link [m]. ``hinge`` has, by pin,
-    the joints of its first body with each of the others, ``prismatic`` the joint of each slider;
-    ``weight`` is the load of each body's gravity. Nodes of beams are in ``node`` alone, and their
-    angles at the start [rad] in ``looked``; the elements of each beam are in ``elements``. A system
-    lives as long as its ``container``.
+    ``centre`` is the place of a body's node in the frame of its link [m], ``start_rad`` the angle
+    of a body or the ground at the start. ``hinge`` has the joints of pins, ``prismatic`` the joint
+    of each slider; ``weight`` is the load of each body's gravity. Nodes of beams are in ``node``
+    alone, and their angles at the start [rad] in ``looked``; the elements of each beam are in
+    ``elements``. A system lives as long as its ``container``.
     """
 
+    scene: Scene
+    start_rad: Mapping[str, float]
     container: Any
     system: Any
     ground: Index
     body: dict[str, Index] = field(default_factory=dict)
     node: dict[str, Index] = field(default_factory=dict)
     centre: dict[str, Point] = field(default_factory=dict)
-    hinge: dict[str, dict[tuple[str, str], Index]] = field(default_factory=dict)
+    hinge: dict[Hinge, Index] = field(default_factory=dict)
     prismatic: dict[str, Index] = field(default_factory=dict)
     weight: dict[str, Index] = field(default_factory=dict)
     looked: dict[str, float] = field(default_factory=dict)
     elements: dict[str, list[Index]] = field(default_factory=dict)
 
-    def marker(self, scene: Scene, name: str, point: str) -> Index:
+    def marker(self, name: str, point: str) -> Index:
         """Add a marker at a point of a body or of the ground."""
-        return self.marker_at(name, local_point(scene, name, point))
+        return self.marker_at(name, pairs.local_point(self.scene, name, point))
 
     def marker_at(self, name: str, place: Point) -> Index:
         """Add a marker at a place in the frame of a body or of the ground [m]."""
-        x, y = less(place, self.centre.get(name, (0.0, 0.0)))
+        x, y = pairs.less(place, self.centre.get(name, (0.0, 0.0)))
         if name in self.looked:
             if (x, y) != (0.0, 0.0):
                 raise EngineError(
@@ -115,21 +106,13 @@ class PlaneSystem:
             items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, y, 0.0])
         )
 
-    def crank_markers(self, link: str, base: str = GROUND) -> list[Index]:
-        """Add markers of the angles of a base and of a body."""
-        return [self.angle_marker(base), self.angle_marker(link)]
-
-    def place_markers(self, link: str, coordinate: int) -> list[Index]:
-        """Add markers of a coordinate of the ground, which is 0, and of a body's centre."""
-        own = items.MarkerNodeCoordinate(nodeNumber=self.node[link], coordinate=coordinate)
-        return [self.angle_marker(GROUND), self.system.AddMarker(own)]
-
-    def angle_marker(self, name: str) -> Index:
-        """Add a marker of the angle of a body or of the ground, which both count from the start.
+    def coordinate_marker(self, name: str, coordinate: int = ANGLE) -> Index:
+        """Add a marker of a coordinate of a body's node, or of the ground, which is 0; angles count
+        from the start.
 
         Raises EngineError for the node of a beam, whose angle is no coordinate.
         """
-        if name in self.looked:
+        if name in self.looked and coordinate == ANGLE:
             raise EngineError(
                 f"{name}: something turns it, and the nodes of exudyn's beams have no angle; give "
                 "that link segments (--springs plain)"
@@ -137,19 +120,18 @@ class PlaneSystem:
         if name == GROUND:
             node, coordinate = self.system.AddNode(items.NodePointGround()), 0
         else:
-            node, coordinate = self.node[name], ANGLE
+            node = self.node[name]
         return self.system.AddMarker(
             items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)
         )
 
-    def weigh(self, scene: Scene, name: str, body: Index) -> None:
+    def weigh(self, name: str, body: Index) -> None:
         """Add gravity to a body or an element."""
-        if any(scene.gravity_m_s2):
+        gravity = self.scene.gravity_m_s2
+        if any(gravity):
             marker = self.system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
             self.weight[name] = self.system.AddLoad(
-                items.LoadMassProportional(
-                    markerNumber=marker, loadVector=[*scene.gravity_m_s2, 0.0]
-                )
+                items.LoadMassProportional(markerNumber=marker, loadVector=[*gravity, 0.0])
             )
 
     def masses(self) -> Mapping[str, tuple[float, float]]:
@@ -180,7 +162,7 @@ def add_node(made: PlaneSystem, name: str, frame: Frame, state: State) -> None:
     made.looked[name] = frame.theta
 
 
-def add_elements(scene: Scene, made: PlaneSystem, beam: Beam) -> None:
+def add_elements(made: PlaneSystem, beam: Beam) -> None:
     """Add the elements between the nodes of a beam, straight at rest for any place of these.
 
     An element is a cubic in its own length (absolute nodal coordinates); it bends by EI times the
@@ -204,10 +186,10 @@ def add_elements(scene: Scene, made: PlaneSystem, beam: Beam) -> None:
         for near, far in zip(beam.nodes, beam.nodes[1:], strict=False)
     ]
     for i, element in enumerate(made.elements[beam.name]):
-        made.weigh(scene, f"{beam.name} {i}", element)
+        made.weigh(f"{beam.name} {i}", element)
 
 
-def held_beams(scene: Scene, made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]]:
+def held_beams(made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]]:
     """Return exudyn's values of each beam, by element: a beam of one element each."""
     return {
         name: tuple(
@@ -216,7 +198,7 @@ def held_beams(scene: Scene, made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]
                 made.elements[name], zip(beam.nodes, beam.nodes[1:], strict=False), strict=True
             )
         )
-        for name, beam in scene.beams.items()
+        for name, beam in made.scene.beams.items()
     }
 
 
@@ -236,10 +218,10 @@ def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> Beam:
     )
 
 
-def node_masses(scene: Scene, made: PlaneSystem) -> dict[str, float]:
+def node_masses(made: PlaneSystem) -> dict[str, float]:
     """Return the mass of each node [kg], half of the adjacent elements' in exudyn."""
     found: dict[str, float] = {}
-    for elements in held_beams(scene, made).values():
+    for elements in held_beams(made).values():
         for one in elements:
             for node in one.nodes:
                 half = 0.5 * one.density_kg_m * one.length_m
@@ -268,19 +250,20 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     """
     container = exu.SystemContainer()
     system = container.AddSystem()
-    made = PlaneSystem(container, system, system.AddObject(items.ObjectGround()))
-    ties = joints(scene)
-    held = {prism.body for prism in ties.prisms}
-    where = frames(scene, state)
+    where = pairs.frames(scene, state)
+    start_rad = {name: frame.theta for name, frame in where.items()}
+    ground = system.AddObject(items.ObjectGround())
+    made = PlaneSystem(scene, start_rad, container, system, ground)
+    held = {prism.body for prism in pairs.joints(scene).prisms}
     nodes = {node for beam in scene.beams.values() for node in beam.nodes}
-    for name in bodies(scene):
+    for name in pairs.bodies(scene):
         if name in nodes:
             add_node(made, name, where[name], state)
             continue
-        mass, inertia = mass_of(scene, name)
+        mass, inertia = pairs.mass_of(scene, name)
         if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
-            _refuse_massless(name, mass, inertia, turns=name not in held)
-        frame, centre = where[name], centre_of(scene, name)
+            refuse_massless("exudyn", name, mass, inertia, turns=name not in held)
+        frame, centre = where[name], pairs.centre_of(scene, name)
         place = frame.at(centre)
         made.centre[name] = centre
         made.node[name] = system.AddNode(
@@ -292,54 +275,31 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
         made.body[name] = system.AddObject(
             items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=made.node[name])
         )
-        made.weigh(scene, name, made.body[name])
+        made.weigh(name, made.body[name])
     for beam in scene.beams.values():
-        add_elements(scene, made, beam)
-    _join(scene, made)
+        add_elements(made, beam)
+    _join(made)
     return made
 
 
-def _refuse_massless(name: str, mass: float, inertia: float, *, turns: bool) -> None:
-    """Refuse a body that a force would move at no cost. Raises EngineError."""
-    if mass <= 0.0 or (inertia <= 0.0 and turns):
-        raise EngineError(
-            f"{name}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; exudyn moves no body without "
-            "both, give them"
-        )
-
-
-def _join(scene: Scene, made: PlaneSystem) -> None:
-    """Add all joints."""
-    ties = joints(scene)
-    for pin in ties.pins:
-        first, *others = sorted(pin.bodies, key=lambda name: name != GROUND)
-        made.hinge[pin.point] = {
-            (first, other): made.system.AddObject(
-                items.ObjectJointRevolute2D(
-                    markerNumbers=[
-                        made.marker(scene, first, pin.point),
-                        made.marker(scene, other, pin.point),
-                    ]
-                )
-            )
-            for other in others
-        }
-    for slide in ties.slides:
-        slider, rider = slide.slider, riding_body(slide)
-        axis = turned((1.0, 0.0), slider.direction_rad - _kept_angle(slide))
-        normal = turned((0.0, 1.0), slider.direction_rad)
+def _join(made: PlaneSystem) -> None:
+    for hinge in hinges(made.scene, GROUND):
+        ends = [made.marker(body, hinge.point) for body in (hinge.first, hinge.other)]
+        joint = items.ObjectJointRevolute2D(markerNumbers=ends)
+        made.hinge[hinge] = made.system.AddObject(joint)
+    for slide in pairs.joints(made.scene).slides:
+        slider, keeps = slide.slider, isinstance(slide, pairs.Prism)
+        rider, guide = pairs.riding_body(slide), slider.on
+        kept_angle = pairs.sliding_angle(slider) if keeps else 0.0
+        axis = pairs.turned((1.0, 0.0), slider.direction_rad - kept_angle)
+        normal = pairs.turned((0.0, 1.0), slider.direction_rad)
         joint = items.ObjectJointPrismatic2D(
             markerNumbers=[
-                made.marker(scene, rider, slider.point),
-                made.marker_at(slider.on, slider.through_m),
+                made.marker(rider, slider.point),
+                made.marker_at(guide, slider.through_m),
             ],
             axisMarker0=[*axis, 0.0],
             normalMarker1=[*normal, 0.0],
-            constrainRotation=isinstance(slide, Prism),
+            constrainRotation=keeps,
         )
         made.prismatic[slider.name] = made.system.AddObject(joint)
-
-
-def _kept_angle(slide: Prism | Slot) -> float:
-    """Return the constant angle of a sliding body to its guide [rad]; 0 for a point on a line."""
-    return sliding_angle(slide.slider) if isinstance(slide, Prism) else 0.0

@@ -22,23 +22,9 @@ from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue
 from sim.engine import drive as drives
 from sim.engine.settings import SettingError
 from sim.engine.tree_poses import body_poses
+from sim.mujoco import settings as own
 from sim.mujoco.loading import Loading
-from sim.mujoco.reactions import JointForces, reactions
-from sim.mujoco.settings import (
-    AS_SHIPPED,
-    INTEGRATORS,
-    TUNED,
-    checked,
-    held_iterations,
-    held_share,
-    holds,
-    in_seconds,
-    integrator,
-    used,
-    velocity_shift,
-    weight_share,
-    writing,
-)
+from sim.mujoco.reactions import JointForces, TreeReactions
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 
 
@@ -48,21 +34,21 @@ class MujocoSession(SteppedModel):
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
-        super().__init__(state.time_s, dt_s, velocity_shift(settings, drive))
+        super().__init__(state.time_s, dt_s, own.velocity_shift(settings, drive))
         self._scene, self._settings, self._drive = scene, settings, drive
-        chosen = writing(scene, settings, dt_s, drive)
+        chosen = own.writing(scene, settings, dt_s, drive)
         self._tree = tree = _tree(scene, state, chosen)
         self._limbs = tree.limbs
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         with heard(self._warnings.append):
             model = compiled(build(scene, state, chosen, tree))
         self._weights = model.body_invweight0.copy()
-        model.body_invweight0[:] *= weight_share(scene, settings, drive)
+        model.body_invweight0[:] *= own.weight_share(scene, settings, drive)
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
         self._free = chosen.free
-        staged = self._free and integrator(settings, drive) == "RK4"
+        staged = self._free and own.integrator(settings, drive) == "RK4"
         self._loading = Loading(
             scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else None
         )
@@ -80,18 +66,17 @@ class MujocoSession(SteppedModel):
         model = self._model
         names = [limb.body for limb in self._limbs]
         opt = model.opt
+        share = float(model.body_invweight0.sum() / self._weights.sum())
+        counted = int(opt.iterations), float(f"{share:.12g}")
         settings: dict[str, SettingValue] = {
-            **used(self._settings, self._drive),
-            **holds(self._settings, self._dt, self._drive),
+            **own.used(self._settings, self._drive),
+            **own.holds(self._settings, self._dt, self._drive),
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
-            **held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
-            "integrator": INTEGRATORS[int(opt.integrator)],
+            **own.held(self._scene, self._settings, self._drive, *counted),
+            "integrator": own.INTEGRATORS[int(opt.integrator)],
         }
-        if self._free:
-            share = self._share_of_weights()
-            settings |= held_share(self._scene, self._settings, self._drive, share)
         if model.neq:
             settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
             settings["solref_dampratio"] = float(model.eq_solref[0, 1])
@@ -110,16 +95,12 @@ class MujocoSession(SteppedModel):
             springs={tendon.spring.name: self._spring(tendon) for tendon in self._tendons},
         )
 
-    def _share_of_weights(self) -> float:
-        """Return the ratio of the bodies' inverse weights to the compiled ones."""
-        share = float(self._model.body_invweight0.sum() / self._weights.sum())
-        return float(f"{share:.12g}")
-
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log, as `record`, with the forces of `mj_forward` at each kept state."""
         joint_forces = JointForces(self._model, self._limbs, self._loading.first, self._tendons)
         log = self._recorded(steps, every, joint_forces.look)
-        return replace(log, forces=reactions(self._scene, self._tree, log.poses, joint_forces))
+        forces = TreeReactions(self._scene, self._tree, log.poses, joint_forces).forces()
+        return replace(log, forces=forces)
 
     def _spring(self, tendon: SpringTendon) -> tuple[float, float, float]:
         """Return rate, damping and slack length or angle of a spring, as in `Facts`."""
@@ -197,7 +178,6 @@ class MujocoSession(SteppedModel):
 
 
 def _pair(vector: Array) -> Point:
-    """Return the first two components of a vector, in the plane."""
     return float(vector[0]), float(vector[1])
 
 
@@ -214,12 +194,12 @@ def _tree(scene: Scene, state: State, chosen: Writing) -> Tree:
 
 ENGINE = Engine(
     "mujoco",
-    {"as-shipped": AS_SHIPPED, "tuned": TUNED},
+    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
     version=lambda: VERSION,
-    check=checked,
+    check=own.checked,
     open=MujocoSession,
-    holds=holds,
-    in_seconds=in_seconds,
+    holds=own.holds,
+    in_seconds=own.in_seconds,
     forces_of="states",
     applies_loads=True,
     applies_constant_friction=True,

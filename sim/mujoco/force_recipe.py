@@ -1,9 +1,11 @@
 """Program that reads reactions and the driving torque out of MuJoCo."""
 
+from collections.abc import Iterable
+
 from models.errors import EngineError
 from models.mjcf.document import build
 from models.mjcf.forces import planned
-from models.mjcf.tree import Tree, driven_freedom
+from models.mjcf.tree import driven_freedom
 from models.motion import State
 from models.scene import Scene
 from models.scene.characteristics import Constant
@@ -11,7 +13,7 @@ from models.scene.joints import joined_at
 from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.mujoco.settings import writing
-from sim.registry.offers import ForceRecipe
+from sim.registry.offers import ForceRecipe, written
 
 PROGRAM = '''"""Reactions and driving torque of {scene} in MuJoCo, over one turn of {driver}."""
 
@@ -73,18 +75,26 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
     _check_held(scene)
     chosen = writing(scene, settings, dt_s, "prescribed")
     tree = planned(scene, state, chosen)
-    loops = _loops(scene, tree)
+    loops = _signed(
+        scene,
+        (
+            (closure.point, closure.bodies[0], f"{closure.point}: {' to '.join(closure.bodies)}")
+            for closure in tree.closures
+        ),
+    )
     if not loops:
         raise EngineError(
             f"{scene.name}: no loop closes at a pin of two bodies, whose reaction this recipe "
             "reads; take another scene, or close it elsewhere (setting close)"
         )
+    limbs = () if scene.loads or scene.springs else tree.limbs
+    hinges = _signed(scene, ((e.point, e.body, e.body) for e in limbs if e.slider is None))
     return PROGRAM.format(
         scene=scene.name,
         driver=scene.driver.link,
         model=build(scene, state, chosen, tree).replace("\\", "\\\\").replace('"""', '\\"""'),
-        loops=_listed(loops),
-        hinges=_listed({} if scene.loads or scene.springs else _hinges(scene, tree)),
+        loops=written(loops),
+        hinges=written(hinges),
         joint=driven_freedom(scene, tree.limbs)[0],
         steps=round(scene.driver.law.period_s / dt_s) + 1,
         start=state.time_s,
@@ -117,36 +127,15 @@ def _check_held(scene: Scene) -> None:
         )
 
 
-def _loops(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
-    """Return, by pin and its second body, the connect, and the sign of its force there."""
+def _signed(scene: Scene, ties: Iterable[tuple[str, str, str]]) -> dict[str, tuple[str, int]]:
+    """Return, by pin and its second body, the names of ties at pins of two bodies, and the sign of
+    their force there; a tie is a point, the body that it pushes, and a name."""
     pins = joined_at(scene)
     return {
-        f"{c.point}.{pins[c.point][1]}": (
-            f"{c.point}: {c.bodies[0]} to {c.bodies[1]}",
-            1 if c.bodies[0] == pins[c.point][1] else -1,
-        )
-        for c in tree.closures
-        if len(pins[c.point]) == 2
+        f"{point}.{pins[point][1]}": (name, 1 if body == pins[point][1] else -1)
+        for point, body, name in ties
+        if len(pins[point]) == 2
     }
-
-
-def _hinges(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
-    """Return, by pin and its second body, the child body there, and the sign of the force on it."""
-    pins = joined_at(scene)
-    return {
-        f"{limb.point}.{pins[limb.point][1]}": (
-            limb.body,
-            1 if limb.body == pins[limb.point][1] else -1,
-        )
-        for limb in tree.limbs
-        if limb.slider is None and len(pins[limb.point]) == 2
-    }
-
-
-def _listed(table: dict[str, tuple[str, int]]) -> str:
-    """Write a dictionary, an entry a line."""
-    rows = "".join(f"    {key!r}: {value!r},\n" for key, value in table.items())
-    return f"{{\n{rows}}}" if rows else "{}"
 
 
 FORCE_RECIPE: ForceRecipe = write_recipe

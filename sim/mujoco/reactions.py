@@ -7,18 +7,20 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
 from models.mjcf.forces import SpringTendon, point_of_application, rubbing_freedom
 from models.mjcf.tree import Limb, Tree
 from models.motion import Forces, SliderForces
-from models.scene import GROUND, Point, Scene, Slider
-from models.scene.joints import block_name, joined_at, joints, line_ends, local_point, riding_body
+from models.scene import Point, Scene, Slider
+from models.scene.joints import block_name, joined_at, local_point
 from models.scene.loads import LineSpring, PinSpring, SlideSpring, Spring
 from sim.engine import Poses
-from sim.engine.measure import arms, directions
+from sim.engine.measure import PointPath, body_paths, directions
+from sim.engine.momentum_balance import PinForces
+from sim.engine.ties import spring_ends
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,14 @@ def springs_between_points_are_outside() -> bool:
     return bool(data.cfrc_ext[1].any())
 
 
+class Rows(list[Array]):
+    """Numbers of many things at recorded states, a row a state."""
+
+    def column(self, k: int) -> Array:
+        """Return the numbers of one thing over the states."""
+        return np.array([row[k] for row in self])
+
+
 class JointForces:
     """Forces in the joints at recorded states, one row a state.
 
@@ -87,18 +97,16 @@ class JointForces:
         model: Any,
         limbs: tuple[Limb, ...],
         first_load: int,
-        tendons: tuple[SpringTendon, ...] = (),
+        tendons: tuple[SpringTendon, ...],
     ) -> None:
         self._bodies = np.array([model.body(limb.body).id for limb in limbs])
         self._roots = model.body_rootid[self._bodies]
-        self._limbs = limbs
-        self._wrenches: list[Array] = []
-        self._centres: list[Array] = []
-        self._loops: list[Array] = []
-        self._friction: list[Array] = []
-        self._first_load, self._sizes = first_load, list[Array]()
+        self._limbs, self._first_load = limbs, first_load
         self._senses = np.array([tendon.sense for tendon in tendons])
-        self._pulls: list[Array] = []
+        self._wrenches, self._centres = Rows(), Rows()
+        self.loops, self.friction, self.loads, self.pulls = Rows(), Rows(), Rows(), Rows()
+        """Force of each connect on its first body, friction along each coordinate, size of each
+        load, and force or torque with which each spring pulls its q back."""
 
     def look(self, model: Any, data: Any) -> None:
         """Record the forces of a state, after `mj_forward`."""
@@ -109,55 +117,32 @@ class JointForces:
         # Equalities come first among the rows of constraints; an inactive one has none. Friction
         # follows them, a row for each joint that has some.
         loops[data.efc_id[: data.ne : 3]] = data.efc_force[: data.ne].reshape(-1, 3)
-        self._loops.append(loops[:, :2])
+        self.loops.append(loops[:, :2])
         friction = np.zeros(model.nv)
         rubbing = slice(data.ne, data.ne + data.nf)
         friction[data.efc_id[rubbing]] = data.efc_force[rubbing]
-        self._friction.append(friction)
-        self._sizes.append(data.ctrl[self._first_load :].copy())
+        self.friction.append(friction)
+        self.loads.append(data.ctrl[self._first_load :].copy())
         longer = data.ten_length - model.tendon_lengthspring[:, 0]
         pulls = model.tendon_stiffness * longer + model.tendon_damping * data.ten_velocity
-        self._pulls.append(self._senses * pulls)
+        self.pulls.append(self._senses * pulls)
 
     def from_parent(self, limb: Limb) -> JointWrench:
         """Return the wrench of the parent on a limb, about the place where MuJoCo has it: the
         centre of mass of the limb's tree."""
         k = self._limbs.index(limb)
-        given = np.array([each[k] for each in self._wrenches])
-        return JointWrench(given[:, 1:], given[:, 0], np.array([each[k] for each in self._centres]))
-
-    def of_load(self, load: int) -> Array:
-        """Return the size of a load, (T,)."""
-        return np.array([each[load] for each in self._sizes])
-
-    def of_spring(self, spring: int) -> Array:
-        """Return the force or torque with which a spring pulls its q back, (T,)."""
-        return np.array([each[spring] for each in self._pulls])
-
-    def of_friction(self, joint: int) -> Array:
-        """Return the friction along a coordinate, (T,)."""
-        return np.array([each[joint] for each in self._friction])
-
-    def at_loop(self, equality: int) -> Array:
-        """Return the force of a connect on its first body, (T, 2)."""
-        return np.array([each[equality] for each in self._loops])
+        given = self._wrenches.column(k)
+        return JointWrench(given[:, 1:], given[:, 0], self._centres.column(k))
 
 
-def reactions(scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> Forces:
-    """Return the forces at the states of ``poses``, which act at their positions' instants."""
-    return _Reactions(scene, tree, poses, joint_forces).forces()
-
-
-class _Reactions:
+class TreeReactions:
     """Builder of the reactions, joint by joint."""
 
     def __init__(self, scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> None:
-        self._scene, self._tree, self._poses, self._joint_forces = scene, tree, poses, joint_forces
+        self._scene, self._tree, self._joint_forces = scene, tree, joint_forces
+        self._time_s, self._paths = poses.time_s, body_paths(poses)
         count = len(poses.time_s)
-        self._pins = {
-            point: {body: np.zeros((count, 2)) for body in names}
-            for point, names in joined_at(scene).items()
-        }
+        self._pins = PinForces(scene, count)
         self._sliders: dict[str, SliderForces] = {}
         self._torque = np.full(count, np.nan)
         self._loads = [self._load(k) for k in range(len(scene.loads))]
@@ -165,10 +150,11 @@ class _Reactions:
             end
             for k, spring in enumerate(scene.springs.values())
             if not (isinstance(spring, LineSpring) and springs_between_points_are_outside())
-            for end in self._ends(spring, joint_forces.of_spring(k))
+            for end in self._ends(spring, joint_forces.pulls.column(k))
         ]
 
     def forces(self) -> Forces:
+        """Return the forces at the states of the poses; they act at the positions' instants."""
         for limb in self._tree.limbs:
             if limb.slider is None:
                 self._hinge(limb)
@@ -176,12 +162,11 @@ class _Reactions:
                 self._slide(limb, limb.slider)
         for k, closure in enumerate(self._tree.closures):
             taker, giver = closure.bodies
-            self._pin(closure.point, giver, taker, self._joint_forces.at_loop(k))
+            self._pins.add(closure.point, giver, taker, self._joint_forces.loops.column(k))
         sliders = {name: self._sliders[name] for name in self._scene.sliders}
         friction = self._friction()
         self._torque = self._torque - self._of_driven_joint(friction)
-        time_s = self._poses.time_s
-        return Forces(time_s, self._pins, sliders, self._torque, friction=friction)
+        return Forces(self._time_s, self._pins, sliders, self._torque, friction=friction)
 
     def _friction(self) -> dict[str, Array]:
         """Return the friction: in pins the couple of the first body on the second, in sliders the
@@ -192,7 +177,7 @@ class _Reactions:
             for k, (limb, freedom) in enumerate(freedoms):
                 if rubbing_freedom(self._scene, limb, one.joint) is freedom:
                     sign = self._sense(limb, one.joint) if freedom.kind == "hinge" else 1.0
-                    found[one.joint] = sign * self._joint_forces.of_friction(k)
+                    found[one.joint] = sign * self._joint_forces.friction.column(k)
         return found
 
     def _of_driven_joint(self, friction: Mapping[str, Array]) -> Array | float:
@@ -213,14 +198,9 @@ class _Reactions:
             turning = block_name(slider)
         return 1.0 if joined_at(self._scene)[point][1] == turning else -1.0
 
-    def _pin(self, point: str, giver: str, taker: str, force: Array) -> None:
-        """Add the force of one body on another at their pin."""
-        self._pins[point][taker] += force
-        self._pins[point][giver] -= force
-
     def _hinge(self, limb: Limb) -> None:
         given = self._from_parent(limb)
-        self._pin(limb.point, limb.parent, limb.body, given.force)
+        self._pins.add(limb.point, limb.parent, limb.body, given.force)
         if self._is_driven(limb):
             torque = given.moment_about(self._point(limb.body, limb.point))
             self._torque = torque if limb.body == self._scene.driver.link else -torque
@@ -240,29 +220,28 @@ class _Reactions:
         moment = given.moment_about(self._point(rider, slider.point))
         if slider.link is None and slider.mass_kg == 0.0:
             moment = moment + self._block(slider, rider, given.force)
-        across = self._theta(slider.on) + slider.direction_rad + 0.5 * np.pi
-        normal = given.force[:, 0] * np.cos(across) + given.force[:, 1] * np.sin(across)
+        line = self._theta(slider.on) + slider.direction_rad
+        normal = (given.force * directions(line + 0.5 * np.pi)).sum(axis=1)
         self._sliders[slider.name] = SliderForces(normal, moment)
         if slider.name == self._scene.driver.slider:
-            along = self._theta(slider.on) + slider.direction_rad
-            self._torque = given.force[:, 0] * np.cos(along) + given.force[:, 1] * np.sin(along)
+            self._torque = (given.force * directions(line)).sum(axis=1)
 
     def _block(self, slider: Slider, rider: str, force: Array) -> Array:
         """Pass on the forces on a block without mass, which add up to nothing: the forces of its
         guide, loads and springs along its line go to the pin. Return the moment that its guide
         takes from loads."""
         block = block_name(slider)
-        self._pin(slider.point, block, rider, force)
+        self._pins.add(slider.point, block, rider, force)
         for k, spring in enumerate(self._scene.springs.values()):
             if isinstance(spring, SlideSpring) and spring.slider == slider.name:
-                pull = self._joint_forces.of_spring(k)[:, None] * self._along(slider)
-                self._pin(slider.point, block, rider, -pull)
+                pull = self._joint_forces.pulls.column(k)[:, None] * self._along(slider)
+                self._pins.add(slider.point, block, rider, -pull)
         moment = np.zeros_like(self._torque)
         for (body, load), spec in zip(self._loads, self._scene.loads.values(), strict=True):
             if spec.body == block and spec.point is None:
                 moment -= load.moment
             elif spec.body == block:
-                self._pin(slider.point, block, body, load.force)
+                self._pins.add(slider.point, block, body, load.force)
         return moment
 
     def _from_parent(self, limb: Limb) -> JointWrench:
@@ -281,7 +260,7 @@ class _Reactions:
     def _load(self, k: int) -> tuple[str, JointWrench]:
         """Return the body of a load in MuJoCo, and its wrench there."""
         load = list(self._scene.loads.values())[k]
-        size, at = self._joint_forces.of_load(k), point_of_application(self._scene, load)
+        size, at = self._joint_forces.loads.column(k), point_of_application(self._scene, load)
         place = self._place(at.body, at.place)
         if load.point is None:
             return at.body, JointWrench(np.zeros_like(place), size, place)
@@ -296,17 +275,15 @@ class _Reactions:
             place = self._point(second, spring.point)
             couple = JointWrench(np.zeros_like(place), -pull, place)
             return [(first, -couple), (second, couple)]
+        (first, a), (second, b) = spring_ends(self._scene, spring)
+        end = self._place(second, b)
         if isinstance(spring, LineSpring):
-            (first, a), (second, b) = line_ends(self._scene, spring)
-            start, end = self._place(first, a), self._place(second, b)
+            start = self._place(first, a)
             way = end - start
             length = np.hypot(*way.T)[:, None]
             axis = np.divide(way, length, out=np.zeros_like(way), where=length > 0.0)
         else:
-            slide = next(s for s in joints(self._scene).slides if s.slider.name == spring.slider)
-            first, second = slide.slider.on, riding_body(slide)
-            start = end = self._point(second, slide.slider.point)
-            axis = self._along(slide.slider)
+            start, axis = end, self._along(self._scene.sliders[spring.slider])
         force, none = pull[:, None] * axis, np.zeros_like(pull)
         return [(first, JointWrench(force, none, start)), (second, JointWrench(-force, none, end))]
 
@@ -319,8 +296,7 @@ class _Reactions:
 
     def _place(self, body: str, local: Point) -> Array:
         """Return the position of a place of a body's frame, (T, 2)."""
-        arm = arms(self._theta(body), local)
-        return arm if body == GROUND else arm + self._poses.bodies[body].origin
+        return PointPath(self._paths[body], local).position
 
     def _theta(self, body: str) -> Array:
-        return np.zeros_like(self._torque) if body == GROUND else self._poses.bodies[body].theta
+        return self._paths[body].pose.theta

@@ -131,8 +131,7 @@ class ReadModel:
             text = variants.diff(self.path, raw, new)
         except EngineError as error:
             return f"{error}: {told.words()}\n"
-        line = variants.profiles((), advised)[variants.RECOMMENDED]
-        settings = {name: setting.value for name, setting in line.settings.items()}
+        settings = variants.profiles((), advised)[variants.RECOMMENDED].values
         wanted = copy.copy(planar.model)
         variants.applied(wanted, planar.loops, settings, dt_s)
         if variants.held(found, planar.loops, settings) != variants.held(
@@ -152,7 +151,7 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         that is not finite, or a hinge that is many turns away.
     """
     model = load(path)
-    names = [name_of(model, mujoco.mjtObj.mjOBJ_KEY, index) for index in range(model.nkey)]
+    names = [name_of(model, "key", index) for index in range(model.nkey)]
     if key is not None and key not in names:
         there = [name for name in names if name]
         hint = suggestion(key, there, "it has") if there else "the model has none with a name"
@@ -186,7 +185,7 @@ def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
 def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
     for what in ("qpos", "mpos", "mquat"):
         if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
-            name = name_of(model, mujoco.mjtObj.mjOBJ_KEY, keyframe)
+            name = name_of(model, "key", keyframe)
             raise ModelError(f"{path}: keyframe {name}: its {what} is not finite")
 
 

@@ -9,7 +9,7 @@ from models.scene import Scene
 from models.scene.joints import inertia_scale
 from models.scene.loads import SegmentSpring
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
-from sim.engine.settings import check_choices, check_ranges
+from sim.engine.settings import as_held, checker
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 """Integrators in MuJoCo's own order."""
@@ -130,10 +130,7 @@ TUNED = Profile(
 )
 
 
-def checked(settings: Settings) -> None:
-    """Refuse values that MuJoCo does not take. Raises SettingError."""
-    check_choices(settings, CHOICES)
-    check_ranges(settings, RANGES)
+checked = checker(CHOICES, RANGES)
 
 
 def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> options.Writing:
@@ -198,35 +195,28 @@ def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
     return max(asked, SEGMENTS_SHARE) if ringing and asked < 1.0 else asked
 
 
-def held_share(
-    scene: Scene, settings: Settings, drive: Drive, found: float
+def held(
+    scene: Scene, settings: Settings, drive: Drive, iterations: int, share: float
 ) -> dict[str, SettingValue]:
-    """Return the share ``found`` in a model, as settings: the requested share, with the share of
-    segments if it differs."""
-    asked = float(settings["free_inverse_weight_share"])
-    given = weight_share(scene, settings, drive)
-    if given != asked and found == given:
-        return {"free_inverse_weight_share": asked, "free_inverse_weight_share_of_segments": found}
-    return {"free_inverse_weight_share": found}
-
-
-def held_iterations(
-    scene: Scene, settings: Settings, drive: Drive, found: int
-) -> dict[str, SettingValue]:
-    """Return the iterations ``found`` in a model, as settings: the requested ones, with the
-    iterations for friction, springs or lower weights if they differ."""
-    cause = _iterating(scene, settings, drive)
-    if cause and found == _iterations(scene, settings, drive):
-        return {"iterations": int(settings["iterations"]), f"iterations_of_{cause}": found}
-    return {"iterations": found}
+    """Return what is found in a model, as settings: its iterations and, in free motion, the ratio
+    of the bodies' inverse weights to the compiled ones."""
+    cause, given = _iterating(scene, settings, drive), _iterations(scene, settings, drive)
+    told = as_held("iterations", int(settings["iterations"]), given, iterations, cause)
+    if drive != "free":
+        return told
+    asked, scaled = settings["free_inverse_weight_share"], weight_share(scene, settings, drive)
+    cause = "segments" if scaled != asked else ""
+    return told | as_held("free_inverse_weight_share", asked, scaled, share, cause)
 
 
 def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     """Return the settings as MuJoCo has them, with the values that depend on step and drive;
     without the pins that close the loops, which depend on the scene."""
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
-    steps = closing_steps(settings, drive)
-    return {name: value for name, value in used(settings, drive).items() if name != "close"} | {
+    in_force = used(settings, drive)
+    own_steps = float(in_force.get("free_timeconst_steps", 0.0))
+    steps = own_steps or float(settings["solref_timeconst_steps"])
+    return {name: value for name, value in in_force.items() if name != "close"} | {
         "integrator": integrator(settings, drive),
         "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
         "solref_timeconst_steps": steps,
@@ -237,12 +227,6 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
 def used(settings: Settings, drive: Drive) -> Settings:
     """Return the settings that have an effect with a drive."""
     return {name: value for name, value in settings.items() if name not in NOT_USED[drive]}
-
-
-def closing_steps(settings: Settings, drive: Drive) -> float:
-    """Return the time constant of the loops in steps; 0 if given in seconds."""
-    own = float(used(settings, drive).get("free_timeconst_steps", 0.0))
-    return own or float(settings["solref_timeconst_steps"])
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:

@@ -1,37 +1,33 @@
 """MuJoCo settings as MJCF."""
 
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
-from sim.mujoco.settings import AS_SHIPPED, closing_steps
-from sim.registry.offers import SnippetWriter, Stepping
+from sim.mujoco.settings import AS_SHIPPED, holds
+from sim.registry.offers import ALONE, WIDTH, SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
 INSET = "  "
 """Indent of an element within a comment: it keeps its own line."""
 LOOP_CLASS = "crankcheck-loop"
 """Default class of the connects that close the mechanism, and of nothing else."""
-WIDTH = 96
 
 
 def mujoco_snippet(
-    settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
-) -> str:
+    asked: Settings, defaults: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
+) -> list[str]:
     """Write sections to paste into ``<mujoco>``, which merges sections that it has twice.
 
     A class for the loop's own connects, and the step and integrator, which can only be the whole
     model's. Other differences from MuJoCo's defaults would change the rest of a user's model and
     are in a comment; see `sim.registry.offers.snippet`.
     """
-    defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
-    complete = defaults | dict(settings)
-    complete["solref_timeconst_steps"] = closing_steps(complete, drive)
     dt_s = stepping.dt_s
-    connect = _connect(complete, defaults, dt_s)
-    integrator = complete["servo_integrator" if drive == "servo" else "integrator"]
-    whole = {"timestep": repr(dt_s), "integrator": str(integrator)}
-    lines = [
+    complete = {**asked, **holds(asked, dt_s, drive)}
+    connect = _connect(complete, defaults)
+    whole = {"timestep": repr(dt_s), "integrator": str(complete["integrator"])}
+    return [
         *_comment([*head, _where(complete, paired=bool(connect))]),
         *connect,
         *_comment(
@@ -43,9 +39,8 @@ def mujoco_snippet(
             ]
         ),
         f"<option{_attributes(whole)}/>",
-        *_comment(_measured(complete, defaults, drive)),
+        *_comment(_alone(complete, defaults) + DRIVES[drive](asked)),
     ]
-    return "\n".join(lines) + "\n"
 
 
 def _where(complete: Settings, *, paired: bool) -> str:
@@ -58,10 +53,11 @@ def _where(complete: Settings, *, paired: bool) -> str:
     return text
 
 
-def _connect(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
+def _connect(complete: Settings, defaults: Settings) -> list[str]:
     """Write the class of the connects, unless it is MuJoCo's own; complete, as the model's own
     defaults would fill the rest."""
-    timeconst, damping = _timeconst(complete, dt_s), float(complete["solref_dampratio"])
+    timeconst = float(complete["solref_timeconst_s"])
+    damping = float(complete["solref_dampratio"])
     impedance = tuple(complete[name] for name in IMPEDANCE)
     own = (defaults["solref_timeconst_s"], defaults["solref_dampratio"])
     if (timeconst, damping) == own and impedance == tuple(defaults[name] for name in IMPEDANCE):
@@ -79,30 +75,19 @@ def _connect(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
     ]
 
 
-def _timeconst(complete: Settings, dt_s: float) -> float:
-    """Return the time constant of the loop closures [s]."""
-    steps = float(complete["solref_timeconst_steps"])
-    return steps * dt_s if steps else float(complete["solref_timeconst_s"])
-
-
 def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
     """Say how to scale the step for another crank speed, or for free motion."""
-    per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     steps = float(complete["solref_timeconst_steps"])
     stiff = f", and solref = {steps:g} timestep." if steps else "."
     counted = stepping.counted_in(drive)
     if counted == "nothing":
         return f"Let go: timestep = {stepping.dt_s:g} s{stiff}"
     if counted == "turns":
-        return (
-            f"{per_turn} steps a turn of a crank at {speed}. At another speed: timestep = 2 pi / "
-            f"({per_turn} speed)" + stiff
-        )
-    frame, number = f"{stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
+        return stepping.scaled_by_speed("timestep") + stiff
+    number, more = stepping.substeps, stepping.scaled_in_frames("them")
     return (
-        f"A frame of {frame} is {number} of these steps: mj_step(model, data, nstep={number}). A "
-        f"crank at {speed} has {per_turn} of them in a turn; a faster one needs more of them in a "
-        "frame, in proportion: timestep = frame / their number" + stiff
+        f"A frame of {stepping.frame} is {number} of these steps: mj_step(model, data, "
+        f"nstep={number}). {more}: timestep = frame / their number{stiff}"
     )
 
 
@@ -127,23 +112,15 @@ def _coarse(defaults: Settings, dt_s: float) -> list[str]:
     ]
 
 
-def _measured(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
-    """List the other settings of the measured runs: for a model of nothing else, and the drive."""
-    driven = {"prescribed": _flywheel, "servo": _servo, "free": _free}[drive](complete)
-    return [*_alone(complete, defaults, drive), *driven]
-
-
-def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
+def _alone(complete: Settings, defaults: Settings) -> list[str]:
     """Write the option element for a model of the mechanism alone."""
     row = {
         name: str(complete[name])
         for name in ("solver", "iterations")
         if complete[name] != defaults[name]
     }
-    ratio = float(complete["flywheel_ratio"]) if drive == "prescribed" else 1.0
-    tolerance = float(complete["tolerance"]) / ratio
-    if tolerance != defaults["tolerance"]:
-        row["tolerance"] = _short(tolerance)
+    if complete["tolerance"] != defaults["tolerance"]:
+        row["tolerance"] = _short(complete["tolerance"])
     flags = {
         flag: str(complete[name])
         for name, flag in (("islands", "island"), ("contact", "contact"))
@@ -154,13 +131,15 @@ def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
     lines = [f"<option{_attributes(row)}/>"]
     if flags:
         lines = [f"<option{_attributes(row)}>", f"  <flag{_attributes(flags)}/>", "</option>"]
-    title = "ONLY TO MEASURE AS WE DID, in a model with nothing else in it:"
     harm = "Without contacts bodies fall through each other; with them the numbers are the same."
-    return [title, *(INSET + line for line in lines), *([harm] if "contact" in flags else [])]
+    return [
+        ALONE.format("model"),
+        *(INSET + line for line in lines),
+        *([harm] if "contact" in flags else []),
+    ]
 
 
 def _flywheel(complete: Settings) -> list[str]:
-    """Describe the drive of the crank, and its demands on the solver."""
     ratio, tolerance = _short(complete["flywheel_ratio"]), _short(complete["tolerance"])
     return [
         f"Drive: the crank's hinge has armature = {ratio} (sum over all bodies of mass L^2 + "
@@ -172,7 +151,6 @@ def _flywheel(complete: Settings) -> list[str]:
 
 
 def _servo(complete: Settings) -> list[str]:
-    """Describe the drive by a servo."""
     return [
         "Drive: <velocity joint=... kv=.../> on the crank's hinge, kv = "
         f"{complete['servo_gain']:g} speed (sum over all bodies of mass L^2 + inertia), L the "
@@ -190,6 +168,14 @@ def _free(complete: Settings) -> list[str]:
     )
     start = "Drive: none. All hinges start with the angles and speeds of the start."
     return [start, *([scaled] if share != "1" else [])]
+
+
+DRIVES: Mapping[Drive, Callable[[Settings], list[str]]] = {
+    "prescribed": _flywheel,
+    "servo": _servo,
+    "free": _free,
+}
+"""Description of the drive in the measured runs."""
 
 
 def _short(value: SettingValue) -> str:
@@ -214,4 +200,4 @@ def _comment(paragraphs: Sequence[str]) -> list[str]:
     return [*lines[:-1], f"{lines[-1]} -->"]
 
 
-SNIPPET = SnippetWriter("xml", mujoco_snippet)
+SNIPPET = SnippetWriter("xml", AS_SHIPPED, mujoco_snippet)

@@ -44,14 +44,13 @@ class SteppedModel(ABC):
         self._model: Any
         self._data: Any
 
-    def _hold(self, model: Any, keyframe: int | None = None) -> None:
+    def _hold(self, model: Any, keyframe: int | None) -> None:
         """Take a compiled model, at one of its keyframes."""
         self._model, self._data = model, mujoco.MjData(model)
         if keyframe is not None:
             mujoco.mj_resetDataKeyframe(model, self._data, keyframe)
 
     def _forward(self) -> None:
-        """Compute the derived quantities of the state."""
         with self._at_work():
             mujoco.mj_forward(self._model, self._data)
 
@@ -129,7 +128,6 @@ class SteppedModel(ABC):
         return np.asarray(states[0])
 
     def _full_state(self) -> Array:
-        """Return time, positions and velocities as MuJoCo stores them."""
         state = np.empty(mujoco.mj_stateSize(self._model, FULL))
         mujoco.mj_getState(self._model, self._data, state, FULL)
         return state

@@ -62,9 +62,8 @@ def looked_over(spelling: str, value: object) -> Engine:
 def _faults_of_placing(made: Engine) -> Iterator[str]:
     """Yield faults of its placing under the settings of its profiles."""
     for name, profile in made.profiles.items():
-        settings = {each: setting.value for each, setting in profile.settings.items()}
         try:
-            found: object = made.placing(settings)
+            found: object = made.placing(profile.values)
         except Exception as error:  # any error of a user's function
             found = error
         if found not in get_args(Placing):

@@ -8,21 +8,20 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Scene
 from models.scene.characteristics import Staircase
 from models.scene.joints import Slot, block_name, joints, riding_body, sliding_angle, turned
 from models.scene.loads import ConstantFriction, Load
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
-from sim.pymunk.bodies import Course, Frames, SliderCourse, anchor_of, frames_at_end
+from sim.pymunk.bodies import Course, Frames, SliderCourse, frames_at_end
 from sim.pymunk.native import NONE, Pushes
 from sim.pymunk.space import SpaceModel
 from sim.pymunk.spring_steps import ChainSprings, SpringSteps, chain_springs
 
 
 class LoadSteps:
-    """Loads of a scene in a space; ``slots`` are its blocks without mass, by body name.
+    """Loads in a space; ``slots`` are the blocks without mass, by body name.
 
     With the magnitudes of the end of a step the loads act where the joints do, and the step keeps
     its order. With those of its start they would be a step late, and of first order: with a force
@@ -37,14 +36,14 @@ class LoadSteps:
 
     def __init__(
         self,
-        scene: Scene,
         model: SpaceModel,
         slots: Mapping[str, Slot],
         tracks: Mapping[str, SliderCourse],
         dt_s: float,
         drive: Drive,
     ) -> None:
-        self._scene, self._model, self._dt, self._drive = scene, model, dt_s, drive
+        self._model, self._dt, self._drive = model, dt_s, drive
+        self._scene = scene = model.scene
         self._slots, self._tracks = slots, tracks
         self._turning = {
             load.body: Course(model.bodies[load.body].angle, dt_s)
@@ -86,10 +85,7 @@ class LoadSteps:
             course.go_on(frames[body].theta)
         for name, load in self._scene.loads.items():
             size = self._known[name][step] if name in self._known else self._size(load, step)
-            if load.body in self._slots:
-                self._on_block(load, size, frames, pushes)
-            else:
-                self._on_body(load, size, frames, pushes)
+            self._apply(load, size, frames, pushes)
 
     def _size(self, load: Load, step: int) -> float:
         """Return the magnitude of a load that follows the motion, at the end of a step."""
@@ -114,28 +110,24 @@ class LoadSteps:
         forward = high / (high - low) if turns else float(here > 0.0)
         return forward if load.stroke == "forward" else 1.0 - forward
 
-    def _on_body(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Apply a load on a body of the space."""
+    def _apply(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
+        """Apply a load: on a massless block, a force to its pin's body, a torque to its guide."""
+        slot = self._slots.get(load.body)
+        body, turning, theta = load.body, load.body, 0.0
+        if slot is not None:
+            body, turning, theta = riding_body(slot), slot.slider.on, sliding_angle(slot.slider)
         if load.point is None:
-            pushes.torque(load.body, size)
-            return
-        frame = frames[load.body]
-        place = frame.at(anchor_of(self._scene, self._model, load.body, load.point))
-        pushes.force(load.body, frame, place, _along(load, size, frame.theta))
-
-    def _on_block(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Apply a load on a massless block: a force to its pin's body, a torque to its guide."""
-        slot = self._slots[load.body]
-        slider = slot.slider
-        if load.point is None:
-            pushes.note(slider.name, (0.0, 0.0, size))
-            pushes.torque(slider.on, size)
-            return
-        force = _along(load, size, frames[slider.on].theta + sliding_angle(slider))
-        pushes.note(slider.name, (*force, 0.0))
-        rider = riding_body(slot)
-        place = frames[rider].at(anchor_of(self._scene, self._model, rider, slider.point))
-        pushes.force(rider, frames[rider], place, force)
+            push = 0.0, 0.0, size
+            pushes.torque(turning, size)
+        else:
+            own = frames[turning].theta + theta if load.frame == "body" else 0.0
+            fx, fy = turned((size, 0.0), load.direction_rad + own)
+            push = fx, fy, 0.0
+            point = load.point if slot is None else slot.slider.point
+            place = frames[body].at(self._model.anchor(body, point))
+            pushes.force(body, frames[body], place, (fx, fy))
+        if slot is not None:
+            pushes.note(slot.slider.name, push)
 
 
 def late_share(steps: Staircase, times: Array, dt_s: float, *, first: bool) -> Array:
@@ -153,11 +145,6 @@ def late_share(steps: Staircase, times: Array, dt_s: float, *, first: bool) -> A
             after[0] = (times[0] - place) / dt_s + 0.5
         added += rise * (after - (times >= place))
     return added
-
-
-def _along(load: Load, size: float, theta: float) -> Point:
-    """Return the force of a load on a body at that angle."""
-    return turned((size, 0.0), load.direction_rad + (theta if load.frame == "body" else 0.0))
 
 
 def slider_friction(scene: Scene, drive: Drive) -> dict[str, float]:
@@ -181,28 +168,25 @@ def slider_friction(scene: Scene, drive: Drive) -> dict[str, float]:
 
 
 class Acting:
-    """Loads, springs and friction of sliders of a scene, in a space."""
+    """Loads, springs and friction of sliders in a space."""
 
-    def __init__(
-        self, scene: Scene, model: SpaceModel, state: State, dt_s: float, drive: Drive
-    ) -> None:
+    def __init__(self, model: SpaceModel, dt_s: float, drive: Drive) -> None:
+        scene = model.scene
         slides = joints(scene).slides
         followed = {load.slider for load in scene.loads.values()}
         followed |= {getattr(one, "slider", None) for one in scene.springs.values()}
         followed |= {*scene.friction}
         tracks = {
-            slide.slider.name: SliderCourse(
-                scene, model, slide, state.displacement[slide.slider.name], dt_s
-            )
+            slide.slider.name: SliderCourse(model, slide, dt_s)
             for slide in slides
             if slide.slider.name in followed
         }
         slots = {block_name(slide.slider): slide for slide in slides if isinstance(slide, Slot)}
         self._model, self._dt, self._tracks = model, dt_s, tracks
-        self._loads = LoadSteps(scene, model, slots, tracks, dt_s, drive)
+        self._loads = LoadSteps(model, slots, tracks, dt_s, drive)
         chained = () if model.springs else chain_springs(scene)
         self._chain = ChainSprings(model, chained, dt_s) if chained else None
-        self._springs = SpringSteps(scene, model, tracks, dt_s, but=chained)
+        self._springs = SpringSteps(model, tracks, dt_s, but=chained)
         self._friction = slider_friction(scene, drive)
         self._others = bool(scene.loads or self._springs or self._friction)
         self._bodies = (GROUND, *model.bodies)

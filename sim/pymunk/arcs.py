@@ -57,6 +57,5 @@ class Arcs:
 
 
 def _anchored(pin: pymunk.PivotJoint) -> tuple[pymunk.PivotJoint, Point, Point]:
-    """Return a pin with its anchors."""
     a, b = pin.anchor_a, pin.anchor_b
     return pin, (a.x, a.y), (b.x, b.y)

@@ -19,8 +19,8 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.scene import GROUND, Point, Scene
-from models.scene.joints import FIXED, Frame, Prism, Slot, less, local_point, riding_body, turned
+from models.scene import GROUND, Point
+from models.scene.joints import FIXED, Frame, Prism, Slot, less, riding_body, turned
 from sim.engine import BodyPose
 from sim.engine.measure import across, arms
 from sim.pymunk.native import Pushes
@@ -85,11 +85,6 @@ def frames_at_end(model: SpaceModel, dt_s: float) -> Frames:
     }
 
 
-def anchor_of(scene: Scene, model: SpaceModel, body: str, point: str) -> Point:
-    """Return a named point in the coordinates of its pymunk body [m]."""
-    return less(local_point(scene, body, point), model.centre[body])
-
-
 class Course(Generic[Value]):
     """A quantity, or many, at the ends of the last steps, and its rate."""
 
@@ -124,15 +119,13 @@ class Course(Generic[Value]):
 class SliderCourse:
     """Displacement of a slider [m], and pushes along its line."""
 
-    def __init__(
-        self, scene: Scene, model: SpaceModel, slide: Prism | Slot, start_m: float, dt_s: float
-    ) -> None:
+    def __init__(self, model: SpaceModel, slide: Prism | Slot, dt_s: float) -> None:
         self._slide, slider, self._rider = slide, slide.slider, riding_body(slide)
         self._guide = slider.on
-        self._anchor = anchor_of(scene, model, self._rider, slider.point)
+        self._anchor = model.anchor(self._rider, slider.point)
         self._start = less(slider.through_m, model.centre[slider.on])
         self._along = turned((1.0, 0.0), slider.direction_rad)
-        self.course = Course(start_m, dt_s)
+        self.course = Course(model.state.displacement[slider.name], dt_s)
 
     def follow(self, frames: Frames) -> None:
         """Go on to the positions of the bodies at the end of a step."""

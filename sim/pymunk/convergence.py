@@ -46,7 +46,7 @@ def held_by_iterations(scene: Scene, settings: Settings) -> bool:
     return float(settings["error_bias"]) == 0.0 and bool(chain_springs(scene))
 
 
-def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
+def iterations(settings: Settings, model: SpaceModel) -> int:
     """Return the iterations of the settings, or more where the chain of a scene needs them.
 
     Raises
@@ -55,13 +55,13 @@ def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
         More than `MOST` are needed, and fewer requested.
     """
     asked = int(settings["iterations"])
-    if not held_by_iterations(scene, settings):
+    if not held_by_iterations(model.scene, settings):
         return asked
     needed = chain_iterations(model)
     if needed > max(asked, MOST):
         raise EngineError(
-            f"{scene.name}: the joints of its segments need {needed} iterations in each step of "
-            f"pymunk, and {MOST} are done at most: what hangs on the segments is too heavy for "
+            f"{model.scene.name}: the joints of its segments need {needed} iterations in each step "
+            f"of pymunk, and {MOST} are done at most: what hangs on the segments is too heavy for "
             "them; take fewer segments, another engine, or set so many iterations yourself"
         )
     return max(asked, needed)
@@ -88,7 +88,6 @@ def left_over(model: SpaceModel) -> float:
 
 
 def _inverse_masses(body: pymunk.Body) -> Array:
-    """Return the inverse masses of a body along x, along y, and in turning; 0 for a driven body."""
     if not moves_freely(body):
         return np.zeros(3)
     return 1.0 / np.array([body.mass, body.mass, body.moment])

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 import pymunk
 
-from models.scene import Point, Scene
+from models.scene import Point
 from models.scene.joints import turned
 from sim.engine import Drive
 from sim.pymunk.space import SpaceModel
@@ -20,13 +20,9 @@ as-shipped settle, and adjacent joints open at any step; from 0.2 on in some pos
 class DrivenJoint(Protocol):
     """Driver of a space."""
 
-    def start(self, speed: float) -> None:
-        """Take the speed of the first step."""
-        ...
-
-    def turn(self, place: float, speed: float) -> None:
+    def turn(self, place: float | None, speed: float) -> None:
         """Set the driver before a step: at a position from which the speed, of the step after it,
-        moves it to the law's position at its end."""
+        moves it to the law's position at its end. None is where it is, at the start."""
         ...
 
 
@@ -36,11 +32,9 @@ class KinematicCrank:
 
     body: pymunk.Body
 
-    def start(self, speed: float) -> None:
-        self.body.angular_velocity = speed
-
-    def turn(self, place: float, speed: float) -> None:
-        self.body.angle = place
+    def turn(self, place: float | None, speed: float) -> None:
+        if place is not None:
+            self.body.angle = place
         self.body.angular_velocity = speed
 
 
@@ -52,12 +46,10 @@ class KinematicSlider:
     base: Point
     along: Point
 
-    def start(self, speed: float) -> None:
-        self.body.velocity = speed * self.along[0], speed * self.along[1]
-
-    def turn(self, place: float, speed: float) -> None:
+    def turn(self, place: float | None, speed: float) -> None:
         (x, y), (u, v) = self.base, self.along
-        self.body.position = x + place * u, y + place * v
+        if place is not None:
+            self.body.position = x + place * u, y + place * v
         self.body.velocity = speed * u, speed * v
 
 
@@ -67,10 +59,7 @@ class ServoMotor:
 
     motor: pymunk.SimpleMotor
 
-    def start(self, speed: float) -> None:
-        self.motor.rate = speed
-
-    def turn(self, place: float, speed: float) -> None:
+    def turn(self, place: float | None, speed: float) -> None:
         self.motor.rate = speed
 
 
@@ -84,21 +73,19 @@ class PinMotor:
     whole_turns_rad: float
     dt_s: float
 
-    def start(self, speed: float) -> None:
-        self.motor.rate = speed
-
-    def turn(self, place: float, speed: float) -> None:
+    def turn(self, place: float | None, speed: float) -> None:
+        if place is None:
+            self.motor.rate = speed
+            return
         moves = self.link.angular_velocity - self.base.angular_velocity
         comes_to = self.link.angle - self.base.angle - self.whole_turns_rad + moves * self.dt_s
         due = place + speed * self.dt_s
         self.motor.rate = speed + SHARE * (due - comes_to) / self.dt_s
 
 
-def driven_joint(
-    scene: Scene, model: SpaceModel, start_s: float, dt_s: float, drive: Drive
-) -> DrivenJoint:
+def driven_joint(model: SpaceModel, dt_s: float, drive: Drive) -> DrivenJoint:
     """Make the driver of a space at its start."""
-    driver = scene.driver
+    scene, driver = model.scene, model.scene.driver
     if drive == "servo" and model.motor is not None:
         return ServoMotor(model.motor)
     if driver.slider is not None:
@@ -114,7 +101,7 @@ def driven_joint(
     if driver.is_inner and model.motor is not None:
         base_body = model.bodies[driver.base]
         apart = model.crank.angle - base_body.angle
-        at_start = float(driver.law.at(np.array([start_s]))[0][0])
+        at_start = float(driver.law.at(np.array([model.state.time_s]))[0][0])
         whole = math.tau * round((apart - at_start) / math.tau)
         return PinMotor(model.motor, model.crank, base_body, whole, dt_s)
     return KinematicCrank(model.crank)

@@ -14,24 +14,16 @@ from models.scene import Point, Scene
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
+from sim.engine.settings import as_held
+from sim.pymunk import settings as own
 from sim.pymunk.acting import Acting
 from sim.pymunk.arcs import Arcs
 from sim.pymunk.bodies import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.convergence import iterations
-from sim.pymunk.driven_joint import DrivenJoint, driven_joint
+from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
 from sim.pymunk.reactions import BEFORE, Reactions
-from sim.pymunk.settings import (
-    AS_SHIPPED,
-    TUNED,
-    checked,
-    exact_lines,
-    held_iterations,
-    in_seconds,
-    paths_are_arcs,
-    springs_as_forces,
-)
-from sim.pymunk.space import SpaceModel, build
+from sim.pymunk.space import build
 from sim.pymunk.spring_steps import chain_springs
 
 ROOM = 64
@@ -47,19 +39,19 @@ class PymunkSession:
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
-        checked(settings)
+        own.checked(settings)
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
-        self._model: SpaceModel = build(
+        self._model = build(
             scene,
             state,
             drive=drive,
-            exact_lines=exact_lines(settings),
-            with_springs=not springs_as_forces(settings),
+            exact_lines=settings["lines"] == "exact",
+            with_springs=settings["springs"] == "native",
             delay_s=VELOCITY_SHIFT * dt_s,
         )
         self._space = self._model.space
-        self._iterations = iterations(scene, settings, self._model)
+        self._iterations = iterations(settings, self._model)
         self._space.iterations = self._iterations
         self._space.damping = float(settings["damping"])
         for constraint in self._space.constraints:
@@ -67,21 +59,23 @@ class PymunkSession:
         law = scene.driver.law
         inner = scene.driver.is_inner and drive == "prescribed"
         self._coasts = drive == "free" or (isinstance(law, ConstantSpeed) and not inner)
-        self._driven: DrivenJoint = driven_joint(scene, self._model, state.time_s, dt_s, drive)
+        self._driven = driven_joint(self._model, dt_s, drive)
         if drive != "free":
-            self._driven.start(drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
+            self._driven.turn(None, drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
-        self._acting = Acting(scene, self._model, state, dt_s, drive)
-        rigid = not chain_springs(scene)
-        bent = rigid and paths_are_arcs(settings, drive)
+        self._acting = Acting(self._model, dt_s, drive)
+        # Pins are closed for the arcs of a step in free motion, if a step corrects the whole error.
+        wanted = settings["free_paths"] == "arcs" and float(settings["error_bias"]) == 0.0
+        bent = wanted and drive == "free" and not chain_springs(scene)
         self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
 
     def facts(self) -> Facts:
         """Read the space as pymunk holds it now; only freely moving bodies have a mass."""
         free = {name: body for name, body in self._model.bodies.items() if moves_freely(body)}
-        space = self._space
+        space, asked = self._space, int(self._settings["iterations"])
+        cause = "segments" if self._iterations > asked else ""
         biases = {float(constraint.error_bias) for constraint in space.constraints}
         return Facts(
             version=VERSION,
@@ -93,7 +87,7 @@ class PymunkSession:
             settings=dict(self._settings)
             | {
                 "timestep_s": self._dt,
-                **held_iterations(self._settings, self._iterations, int(space.iterations)),
+                **as_held("iterations", asked, self._iterations, int(space.iterations), cause),
                 "damping": float(space.damping),
                 **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
             },
@@ -114,7 +108,7 @@ class PymunkSession:
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log with the forces of each logged step; the first sample has none."""
         bent = self._arcs is not None
-        reactions = Reactions(self._scene, self._model, self._rows, self._dt, bent=bent)
+        reactions = Reactions(self._model, self._rows, self._dt, bent=bent)
         log, rows = self._recorded(steps, every, reactions)
         count = len(log.poses.time_s)
         before, after = rows[1::2][: max(count - 1, 0)], rows[0::2][:count]
@@ -158,12 +152,11 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if reactions or self._acting or self._arcs is not None:
-            self._each(steps, every, reactions)
-        elif self._coasts:
+        bare = not (reactions or self._acting or self._arcs)
+        if bare and self._coasts:
             self._coast(steps, every)
         else:
-            self._follow(steps, every)
+            self._each(steps, every, reactions)
         self._done += steps
 
     def _coast(self, steps: int, every: int) -> None:
@@ -182,20 +175,6 @@ class PymunkSession:
         for _ in range(steps % every if every else steps):
             step(dt)
 
-    def _follow(self, steps: int, every: int) -> None:
-        """Step with the crank on its law.
-
-        A step turns the crank by speed * dt before the other bodies' velocities are solved for, so
-        the crank is set back by the next step's turn and ends at the law's angle, with the speed of
-        the next step.
-        """
-        step, dt, turn = self._space.step, self._dt, self._driven.turn
-        for k, (angle, speed) in enumerate(self._turns(steps), 1):
-            turn(angle, speed)
-            step(dt)
-            if every and k % every == 0:
-                self._log()
-
     def _turns(self, steps: int) -> list[tuple[float, float]]:
         """Return the angle and the speed of the crank before each of the next steps."""
         law, first = self._scene.driver.law, self._done + 1
@@ -203,17 +182,22 @@ class PymunkSession:
         chord = drives.chords(law, self._start_s, self._dt, first, first + steps - 1)
         return list(zip((theta - chord * self._dt).tolist(), chord.tolist(), strict=True))
 
-    def _each(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
-        """Step with all actions, and log every ``every``-th step; with ``reactions`` also before
-        it, with the impulses of its joints."""
+    def _each(self, steps: int, every: int, reactions: Reactions | None) -> None:
+        """Step with the crank on its law and all actions, and log every ``every``-th step; with
+        ``reactions`` also before it, with the impulses of its joints.
+
+        A step turns the crank by speed * dt before the other bodies' velocities are solved for, so
+        the crank is set back by the next step's turn and ends at the law's angle, with the speed of
+        the next step.
+        """
         space, dt, turn = self._space, self._dt, self._driven.turn
-        turns = None if self._coasts else self._turns(steps)
+        turns = [] if self._coasts else self._turns(steps)
         acting = self._acting if self._acting else None
         if acting is not None:
             ends = self._done + 1 + np.arange(steps, dtype=np.float64)
             acting.look_ahead(self._start_s + dt * ends)
         for k in range(steps):
-            if turns is not None:
+            if turns:
                 turn(*turns[k])
             if acting is not None:
                 acting.apply(k)
@@ -239,18 +223,17 @@ class PymunkSession:
 
 
 def _sum(a: Point, b: Point) -> Point:
-    """Return the sum of two vectors."""
     return a[0] + b[0], a[1] + b[1]
 
 
 ENGINE = Engine(
     "pymunk",
-    {"as-shipped": AS_SHIPPED, "tuned": TUNED},
+    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
     version=lambda: VERSION,
-    check=checked,
+    check=own.checked,
     open=PymunkSession,
     reports_accelerations=False,
-    in_seconds=in_seconds,
+    in_seconds=own.in_seconds,
     forces_of="steps",
     applies_loads=True,
     applies_constant_friction=True,

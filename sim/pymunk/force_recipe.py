@@ -13,7 +13,7 @@ from models.scene.joints import Slot, bodies, centre_of, joints, less, mass_of, 
 from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.pymunk.engine import VELOCITY_SHIFT
-from sim.pymunk.settings import checked, exact_lines
+from sim.pymunk.settings import checked
 from sim.pymunk.space import SpaceModel, build
 from sim.registry.offers import ForceRecipe
 
@@ -25,7 +25,7 @@ def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
     checked(settings)
     _check_covered(scene)
     delay = VELOCITY_SHIFT * dt_s
-    model = build(scene, state, exact_lines=exact_lines(settings), delay_s=delay)
+    model = build(scene, state, exact_lines=settings["lines"] == "exact", delay_s=delay)
     turn = scene.driver.law.period_s
     texts = {
         "NAME": repr(scene.name),
@@ -37,12 +37,12 @@ def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
         "ITERATIONS": repr(int(settings["iterations"])),
         "DAMPING": repr(float(settings["damping"])),
         "BIAS": repr(float(settings["error_bias"])),
-        "CRANK": _crank(scene, model),
+        "CRANK": _crank(model),
         "BODIES": _rows(_bodies(model)),
-        "PINS": _rows(_pins(scene, model)),
-        "READ": repr(_read(scene, model)),
+        "PINS": _rows(_pins(model)),
+        "READ": repr(_read(model)),
         "FAR": repr(2.0 * scene.longest_m),
-        "SLIDES": _rows(_slides(scene, model)),
+        "SLIDES": _rows(_slides(model)),
     }
     return re.sub("<([A-Z_]+)>", lambda found: texts[found[1]], program(bool(scene.sliders)))
 
@@ -72,11 +72,11 @@ def _check_covered(scene: Scene) -> None:
         )
 
 
-def _crank(scene: Scene, model: SpaceModel) -> str:
+def _crank(model: SpaceModel) -> str:
     """Return name and mass of the crank, and the way from its pivot to its centre of mass."""
-    name = scene.driver.link
-    centre = less(centre_of(scene, name), model.centre[name])
-    return repr((name, mass_of(scene, name)[0], centre))
+    name = model.scene.driver.link
+    centre = less(centre_of(model.scene, name), model.centre[name])
+    return repr((name, mass_of(model.scene, name)[0], centre))
 
 
 def _bodies(model: SpaceModel) -> Iterator[str]:
@@ -88,25 +88,24 @@ def _bodies(model: SpaceModel) -> Iterator[str]:
         yield f"({name!r}, {mass!r}, {turning}, {', '.join(map(repr, moving))})"
 
 
-def _pins(scene: Scene, model: SpaceModel) -> Iterator[str]:
+def _pins(model: SpaceModel) -> Iterator[str]:
     """Yield the point, its two bodies, and its place on each, from its origin."""
     for hinge, joint in model.hinges.items():
         if isinstance(joint, pymunk.PivotJoint):
             anchors = _pair(joint.anchor_a), _pair(joint.anchor_b)
         else:
-            anchors = scene.ground[hinge.point], (0.0, 0.0)
+            anchors = model.scene.ground[hinge.point], (0.0, 0.0)
             if hinge.first != GROUND:
                 anchors = anchors[1], anchors[0]
         yield repr((hinge.point, hinge.first, hinge.other, *anchors))
 
 
-def _slides(scene: Scene, model: SpaceModel) -> Iterator[str]:
+def _slides(model: SpaceModel) -> Iterator[str]:
     """Yield the guide, the body, its anchor, a place of the line and its direction, the ends of the
     groove or None for a rail, and the constant angle: None for a block without mass, 0 where an
     infinite moment keeps it."""
-    for slide in joints(scene).slides:
+    for slide in joints(model.scene).slides:
         slider, line = slide.slider, model.lines[slide.slider.name]
-        centre = (0.0, 0.0) if slider.on == GROUND else model.centre[slider.on]
         assert isinstance(line, pymunk.GrooveJoint | pymunk.PinJoint)
         anchor, ends = _pair(line.anchor_b), None
         if isinstance(line, pymunk.GrooveJoint):
@@ -116,14 +115,14 @@ def _slides(scene: Scene, model: SpaceModel) -> Iterator[str]:
         if isinstance(gear, pymunk.GearJoint):
             kept = gear.phase
         along = turned((1.0, 0.0), slider.direction_rad)
-        start = less(slider.through_m, centre)
+        start = less(slider.through_m, model.centre[slider.on])
         yield repr((slider.on, riding_body(slide), anchor, start, along, ends, kept))
 
 
-def _read(scene: Scene, model: SpaceModel) -> list[int]:
+def _read(model: SpaceModel) -> list[int]:
     """Return the pins whose force on their second body is the force of the hinge: not those with a
     block without mass."""
-    blocks = {slot.slider.point for slot in joints(scene).slots}
+    blocks = {slot.slider.point for slot in joints(model.scene).slots}
     return [k for k, hinge in enumerate(model.hinges) if hinge.point not in blocks]
 
 
@@ -132,7 +131,6 @@ def _pair(vector: pymunk.Vec2d) -> Point:
 
 
 def _rows(items: Iterable[str]) -> str:
-    """Write the items of a tuple, one a line."""
     return "".join(f"\n    {item}," for item in items)
 
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
-from sim.pymunk.settings import exact_lines
 from sim.pymunk.space import build
 from sim.registry.offers import Knob, SearchSpace, Work, rungs
 
@@ -34,7 +33,7 @@ def work(scene: Scene, start: State) -> Work:
         each[exact] = sum(us * kinds[kind] for kind, us in PASS_US.items())
 
     def us(settings: Settings) -> float:
-        exact = exact_lines(settings)
+        exact = settings["lines"] == "exact"
         return base[exact] + each[exact] * float(settings["iterations"])
 
     return us

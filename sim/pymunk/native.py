@@ -1,8 +1,9 @@
-"""Actions on bodies in a step, and a space's own springs and friction in pins."""
+"""Bodies of a scene in a space, actions on them in a step, and the space's own springs and friction
+in pins."""
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pymunk
@@ -10,23 +11,11 @@ import pymunk
 from models.array import Array
 from models.errors import EngineError
 from models.motion import State
-from models.scene import Point, Scene
-from models.scene.joints import (
-    End,
-    Frame,
-    Prism,
-    Slot,
-    block_name,
-    joined_at,
-    joints,
-    less,
-    line_ends,
-    local_point,
-    riding_body,
-    turned,
-    whole_turns,
-)
+from models.scene import GROUND, Point, Scene
+from models.scene import joints as pairs
+from models.scene.joints import End, Frame, less
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
+from sim.engine.ties import slide_of, spring_ends
 
 Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""
@@ -36,6 +25,28 @@ NONE: Push = (0.0, 0.0, 0.0)
 def moves_freely(body: pymunk.Body) -> bool:
     """True if pushes move a body: it is neither the ground nor driven."""
     return bool(body.body_type == pymunk.Body.DYNAMIC)
+
+
+@dataclass(frozen=True)
+class SpaceBodies:
+    """Moving bodies of a scene in a space, placed at a state, by name in the order they were added.
+
+    ``centre`` is the origin of each pymunk body, and of the ground, in the frame of its link [m].
+    """
+
+    scene: Scene
+    state: State
+    space: pymunk.Space
+    bodies: dict[str, pymunk.Body] = field(default_factory=dict)
+    centre: dict[str, Point] = field(default_factory=lambda: {GROUND: (0.0, 0.0)})
+
+    def body(self, name: str) -> pymunk.Body:
+        """Return a body or the ground."""
+        return self.space.static_body if name == GROUND else self.bodies[name]
+
+    def anchor(self, body: str, point: str) -> Point:
+        """Return a named point in the coordinates of its pymunk body [m]."""
+        return less(pairs.local_point(self.scene, body, point), self.centre[body])
 
 
 class Pushes:
@@ -55,6 +66,18 @@ class Pushes:
         x, y = less(place, frame.origin)
         push = force[0], force[1], x * force[1] - y * force[0]
         self.on_bodies[body] = _sum(self.on_bodies[body], push)
+
+    def pull(self, first: End, second: End, frames: Mapping[str, Frame], size: float) -> Point:
+        """Pull two places on pymunk bodies together by a force [N]; return it as the first body has
+        it. Where they meet it has no direction."""
+        (one, a), (other, b) = first, second
+        here, there = frames[one].at(a), frames[other].at(b)
+        way = less(there, here)
+        per_length = size / (math.hypot(*way) or math.inf)
+        fx, fy = per_length * way[0], per_length * way[1]
+        self.force(one, frames[one], here, (fx, fy))
+        self.force(other, frames[other], there, (-fx, -fy))
+        return fx, fy
 
     def note(self, slider: str, push: Push) -> None:
         """Note an action on a block without mass, beside the bodies that take it."""
@@ -106,36 +129,28 @@ class PinFriction:
         )
 
 
-def pin_friction(scene: Scene, made: Mapping[str, pymunk.Body]) -> tuple[PinFriction, ...]:
-    """Make the constant friction of the pins of a scene, for its bodies in the space, by name, with
-    the ground. Raises EngineError for a pin without exactly two."""
-    guides = {
-        block_name(slide.slider): slide.slider.on
-        for slide in joints(scene).slides
-        if isinstance(slide, Slot)
-    }
-    rubs = []
+def pin_friction(placed: SpaceBodies) -> tuple[PinFriction, ...]:
+    """Make the constant friction of the pins of a scene. Raises EngineError for a pin without
+    exactly two bodies."""
+    scene, rubs = placed.scene, []
+    guides = {pairs.block_name(slot.slider): slot.slider.on for slot in pairs.joints(scene).slots}
     for joint, law in scene.friction.items():
-        if isinstance(law, ConstantFriction) and joint not in scene.sliders:
-            first, second = _two(scene, joint, guides)
-            ends = made[first], made[second]
-            motor = None
-            if any(map(moves_freely, ends)):
-                motor = pymunk.SimpleMotor(*ends, 0.0)
-                motor.max_force = law.size
-            rubs.append(PinFriction(joint, first, second, law.size, motor))
+        if not isinstance(law, ConstantFriction) or joint in scene.sliders:
+            continue
+        names = pairs.joined_at(scene).get(joint, ())
+        if len(names) != 2:
+            raise EngineError(
+                f"{scene.name}: friction.{joint}: {len(names)} bodies meet there, and two rub on "
+                "one another; use a pin of two, or a slider"
+            )
+        first, second = (guides.get(name, name) for name in names)
+        ends = placed.body(first), placed.body(second)
+        motor = None
+        if any(map(moves_freely, ends)):
+            motor = pymunk.SimpleMotor(*ends, 0.0)
+            motor.max_force = law.size
+        rubs.append(PinFriction(joint, first, second, law.size, motor))
     return tuple(rubs)
-
-
-def _two(scene: Scene, joint: str, guides: Mapping[str, str]) -> tuple[str, str]:
-    """Return the two bodies in the space that a pin joins."""
-    names = joined_at(scene).get(joint, ())
-    if len(names) != 2:
-        raise EngineError(
-            f"{scene.name}: friction.{joint}: {len(names)} bodies meet there, and two rub on one "
-            "another; use a pin of two, or a slider"
-        )
-    return guides.get(names[0], names[0]), guides.get(names[1], names[1])
 
 
 @dataclass(frozen=True)
@@ -169,89 +184,56 @@ class NativeSpring:
             pushes.torque(self.first, impulse / dt_s)
             pushes.torque(self.second, -impulse / dt_s)
             return
-        here = frames[self.first].at((own.anchor_a.x, own.anchor_a.y))
-        there = frames[self.second].at((own.anchor_b.x, own.anchor_b.y))
-        way = less(there, here)
-        size = impulse / dt_s / (math.hypot(*way) or math.inf)
-        fx, fy = size * way[0], size * way[1]
-        pushes.force(self.first, frames[self.first], here, (-fx, -fy))
-        pushes.force(self.second, frames[self.second], there, (fx, fy))
+        first = self.first, (own.anchor_a.x, own.anchor_a.y)
+        second = self.second, (own.anchor_b.x, own.anchor_b.y)
+        fx, fy = pushes.pull(first, second, frames, -impulse / dt_s)
         if self.block is not None:
-            pushes.note(self.block, (fx, fy, 0.0))
+            pushes.note(self.block, (-fx, -fy, 0.0))
 
 
-def native_springs(
-    scene: Scene,
-    state: State,
-    made: Mapping[str, pymunk.Body],
-    centre: Mapping[str, Point],
-    far_m: float,
-) -> dict[str, NativeSpring]:
-    """Make the springs of a scene between its bodies in the space, by name, with the ground.
+def native_springs(placed: SpaceBodies, far_m: float) -> dict[str, NativeSpring]:
+    """Make the springs of a scene, by name.
 
     A spring between two bodies that do not move freely is left out: pymunk takes none there. A
     spring along a line hangs on a place of it ``far_m`` behind the slider, out of its reach.
     """
-    slides = {slide.slider.name: slide for slide in joints(scene).slides}
     springs = {}
-    for name, spring in scene.springs.items():
-        if isinstance(spring, PinSpring):
-            own = _in_pin(spring, made)
-        elif isinstance(spring, LineSpring):
-            own = _between(spring, line_ends(scene, spring), made, centre)
-        else:
-            slide = slides[spring.slider]
-            behind, ends = _behind(scene, slide, state, far_m)
-            block = spring.slider if isinstance(slide, Slot) else None
-            own = _between(spring, ends, made, centre, behind, block)
-        if own is not None:
-            springs[name] = own
+    for name, spring in placed.scene.springs.items():
+        ends = spring_ends(placed.scene, spring)
+        if any(moves_freely(placed.body(body)) for body, _ in ends):
+            if isinstance(spring, PinSpring):
+                springs[name] = _in_pin(placed, spring)
+            else:
+                springs[name] = _between(placed, spring, ends, far_m)
     return springs
 
 
-def _in_pin(spring: PinSpring, made: Mapping[str, pymunk.Body]) -> NativeSpring | None:
-    first, second = spring.bodies
-    if not (moves_freely(made[first]) or moves_freely(made[second])):
-        return None
-    turns = whole_turns(spring, made[second].angle - made[first].angle)
+def _in_pin(placed: SpaceBodies, spring: PinSpring) -> NativeSpring:
+    first, second = (placed.body(name) for name in spring.bodies)
+    turns = pairs.whole_turns(spring, second.angle - first.angle)
     # Chipmunk counts the angle of its first body against its second.
-    own = pymunk.DampedRotarySpring(
-        made[second], made[first], spring.free - turns, spring.rate, spring.damping
-    )
-    return NativeSpring(own, first, second, turns)
+    own = pymunk.DampedRotarySpring(second, first, spring.free - turns, spring.rate, spring.damping)
+    return NativeSpring(own, *spring.bodies, turns)
 
 
 def _between(
-    spring: LineSpring | SlideSpring,
-    ends: tuple[End, End],
-    made: Mapping[str, pymunk.Body],
-    centre: Mapping[str, Point],
-    q_at_zero: float = 0.0,
-    block: str | None = None,
-) -> NativeSpring | None:
+    placed: SpaceBodies, spring: LineSpring | SlideSpring, ends: tuple[End, End], far_m: float
+) -> NativeSpring:
     (first, here), (second, there) = ends
-    if not (moves_freely(made[first]) or moves_freely(made[second])):
-        return None
+    q_at_zero, block = 0.0, None
+    if isinstance(spring, SlideSpring):
+        slide = slide_of(placed.scene, spring.slider)
+        q_at_zero = placed.state.displacement[spring.slider] - far_m
+        x, y = pairs.turned((q_at_zero, 0.0), slide.slider.direction_rad)
+        here = here[0] + x, here[1] + y
+        block = spring.slider if isinstance(slide, pairs.Slot) else None
     own = pymunk.DampedSpring(
-        made[first],
-        made[second],
-        less(here, centre[first]),
-        less(there, centre[second]),
+        placed.body(first),
+        placed.body(second),
+        less(here, placed.centre[first]),
+        less(there, placed.centre[second]),
         spring.free - q_at_zero,
         spring.rate,
         spring.damping,
     )
     return NativeSpring(own, first, second, q_at_zero, block)
-
-
-def _behind(
-    scene: Scene, slide: Prism | Slot, state: State, far_m: float
-) -> tuple[float, tuple[End, End]]:
-    """Return the displacement of a place of the line behind the slider, and a spring's ends there
-    and at the slider."""
-    slider, rider = slide.slider, riding_body(slide)
-    behind = state.displacement[slider.name] - far_m
-    ux, uy = turned((behind, 0.0), slider.direction_rad)
-    x, y = slider.through_m
-    start = slider.on, (x + ux, y + uy)
-    return behind, (start, (rider, local_point(scene, rider, slider.point)))

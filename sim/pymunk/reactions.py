@@ -21,7 +21,6 @@ import pymunk.batch
 
 from models.array import Array
 from models.motion import Forces
-from models.scene import Scene
 from models.scene.joints import centre_of, mass_of, turned
 from sim.engine.momentum_balance import JointPushes, MomentumGain, forces_by_body, joint_pushes
 from sim.pymunk.native import Push, Pushes, moves_freely
@@ -44,17 +43,9 @@ and near dead points. Where anchors are bent for arcs, arms are off by half the 
 class Reactions:
     """Forces in the joints of a space, from the readings at each logged step."""
 
-    def __init__(
-        self,
-        scene: Scene,
-        model: SpaceModel,
-        rows: Mapping[str, int],
-        dt_s: float,
-        *,
-        bent: bool = False,
-    ):
+    def __init__(self, model: SpaceModel, rows: Mapping[str, int], dt_s: float, *, bent: bool):
         self._bent = bent
-        self._scene, self._model, self._rows, self._dt = scene, model, rows, dt_s
+        self._scene, self._model, self._rows, self._dt = model.scene, model, rows, dt_s
         joints = (*model.hinges.values(), *model.lines.values(), *model.gears.values())
         self._constraints = [one for one in (*joints, model.motor) if one is not None]
         self._driven = model.motor is not None or not moves_freely(model.crank)

@@ -21,7 +21,7 @@ def pymunk_remedies(scene: Scene, state: State, settings: Settings) -> list[Sett
         asked = int(settings["iterations"])
         return [{"iterations": count} for count in ITERATIONS if count > asked]
     try:
-        held = iterations(scene, settings, build(scene, state))
+        held = iterations(settings, build(scene, state))
     except EngineError:
         return []
     _, most = RANGES["iterations"]

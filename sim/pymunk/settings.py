@@ -1,7 +1,7 @@
 """pymunk's settings: the two profiles."""
 
-from sim.engine import Drive, Profile, Setting, Settings, SettingValue
-from sim.engine.settings import check_choices, check_ranges
+from sim.engine import Profile, Setting, Settings
+from sim.engine.settings import checker
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -65,24 +65,12 @@ RANGES = {
 """Ranges in Chipmunk; some values outside of them end the process."""
 
 
-def checked(settings: Settings) -> None:
-    """Refuse values that Chipmunk does not take. Raises SettingError."""
-    choices = {
-        "lines": ("groove", "exact"),
-        "springs": ("native", "forces"),
-        "free_paths": ("chords", "arcs"),
-    }
-    check_choices(settings, choices)
-    check_ranges(settings, RANGES)
-
-
-def held_iterations(settings: Settings, given: int, found: int) -> dict[str, SettingValue]:
-    """Return the iterations ``found`` in a space, as settings: if they are the number ``given`` for
-    a chain of segments (`sim.pymunk.convergence`), it stands beside the requested one."""
-    asked = int(settings["iterations"])
-    if found == given > asked:
-        return {"iterations": asked, "iterations_of_segments": found}
-    return {"iterations": found}
+CHOICES = {
+    "lines": ("groove", "exact"),
+    "springs": ("native", "forces"),
+    "free_paths": ("chords", "arcs"),
+}
+checked = checker(CHOICES, RANGES)
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:
@@ -90,20 +78,3 @@ def in_seconds(settings: Settings) -> tuple[str, ...]:
     takes all at once, or nothing."""
     biased, damped = settings["error_bias"] not in (0.0, 1.0), settings["damping"] != 1.0
     return ("error_bias",) * biased + ("damping",) * damped
-
-
-def exact_lines(settings: Settings) -> bool:
-    """True if points on lines are held exactly."""
-    return settings["lines"] == "exact"
-
-
-def paths_are_arcs(settings: Settings, drive: Drive) -> bool:
-    """True if pins are closed for the arcs of a step: in free motion, if a step corrects the whole
-    error."""
-    wanted = settings["free_paths"] == "arcs" and float(settings["error_bias"]) == 0.0
-    return wanted and drive == "free"
-
-
-def springs_as_forces(settings: Settings) -> bool:
-    """True if springs are forces of the end of each step, and not pymunk's own."""
-    return settings["springs"] == "forces"

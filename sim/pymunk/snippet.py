@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
 from sim.pymunk.settings import AS_SHIPPED
-from sim.registry.offers import SnippetWriter, Stepping, comment
+from sim.registry.offers import ALONE, SnippetWriter, Stepping, comment
 
-WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
     "prescribed": "Drive: the crank is a kinematic body with its origin on its pivot and a "
     "constant angular_velocity; the others start with the velocities that go with it.",
@@ -33,8 +32,8 @@ OF_FREE = {
 
 
 def pymunk_snippet(
-    settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
-) -> str:
+    complete: Settings, defaults: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
+) -> list[str]:
     """Write lines that act on variables ``space`` and ``joints``, and make the space's next step,
     or all of a frame.
 
@@ -42,48 +41,38 @@ def pymunk_snippet(
     space's. Other differences from pymunk's defaults would change the rest of a user's space and
     are in a comment; see `sim.registry.offers.snippet`.
     """
-    defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
-    complete = defaults | dict(settings)
-    lines = comment(head, WIDTH)
+    lines = comment(*head)
     if complete["error_bias"] != defaults["error_bias"]:
         lines += [
             "for joint in joints:  # those that hold the mechanism together, and no others",
             f"    joint.error_bias = {float(complete['error_bias'])!r}",
         ]
-    lines += comment(_notes(complete, defaults, drive), WIDTH)
+    lines += comment(*_notes(complete, defaults, drive))
     if (iterations := int(complete["iterations"])) > int(defaults["iterations"]):
         lines.append(
             f"space.iterations = max(space.iterations, {iterations})  # the whole space's, "
             "contacts' too"
         )
-    lines += [*_alone(complete, defaults), *_steps(stepping, drive)]
-    lines += comment([DRIVES[drive]], WIDTH)
-    return "\n".join(lines) + "\n"
+    alone = _alone(complete, defaults)
+    return [*lines, *alone, *_steps(stepping, drive), *comment(DRIVES[drive])]
 
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
-    """Write the next step, or the steps of a frame."""
     counted = stepping.counted_in(drive)
     if counted == "nothing":
         return [f"dt = {stepping.dt_s!r}", "space.step(dt)  # steps all that the space holds"]
-    per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
+    per_turn, number = stepping.per_turn, stepping.substeps
     if counted == "turns":
         return [
-            f"dt = {stepping.dt_s!r}  # 2 pi / ({per_turn} speed), here for a crank at {speed}",
+            f"dt = {stepping.dt_s!r}  # 2 pi / ({per_turn} speed), here for a crank at "
+            f"{stepping.speed}",
             f"space.step(dt)  # {per_turn} times a turn; steps all that the space holds",
         ]
-    frame, number = f"a frame of {stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
     return [
-        f"dt = {stepping.dt_s!r}  # {frame}" + f" / {number}" * (number > 1),
+        f"dt = {stepping.dt_s!r}  # a frame of {stepping.frame}" + f" / {number}" * (number > 1),
         f"for _ in range({number}):  # in every frame; steps all that the space holds",
         "    space.step(dt)",
-        *comment(
-            [
-                f"A crank at {speed} has {per_turn} of these steps in a turn; a faster one needs "
-                "more of them in a frame, in proportion."
-            ],
-            WIDTH,
-        ),
+        *comment(stepping.scaled_in_frames("these steps") + "."),
     ]
 
 
@@ -114,8 +103,7 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
         lines.append(f"#   space.iterations = {complete['iterations']!r}")
     if complete["damping"] != defaults["damping"]:
         lines.append(f"#   space.damping = {complete['damping']!r}")
-    title = "ONLY TO MEASURE AS WE DID, in a space with nothing else in it:"
-    return [*comment([title], WIDTH), *lines] if lines else []
+    return [*comment(ALONE.format("space")), *lines] if lines else []
 
 
-SNIPPET = SnippetWriter("python", pymunk_snippet)
+SNIPPET = SnippetWriter("python", AS_SHIPPED, pymunk_snippet)

@@ -17,32 +17,20 @@ by one scalar constraint across the line.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import pymunk
 
 from models.errors import EngineError
 from models.motion import State
-from models.scene import GROUND, Point, Scene, Slider, span
-from models.scene.joints import (
-    Joints,
-    Prism,
-    Slot,
-    along,
-    bodies,
-    centre_of,
-    frames,
-    joints,
-    less,
-    local_point,
-    mass_of,
-    riding_body,
-    sliding_angle,
-    turned,
-)
+from models.scene import GROUND, Point, Scene, span
+from models.scene import joints as pairs
+from models.scene.joints import Prism, Slot, less, turned
 from sim.engine import Drive
-from sim.engine.momentum_balance import Hinge
-from sim.pymunk.native import NativeSpring, PinFriction, moves_freely, native_springs, pin_friction
+from sim.engine.refusals import refuse_driver_angle, refuse_massless
+from sim.engine.ties import Hinge, hinges
+from sim.pymunk import native
+from sim.pymunk.native import SpaceBodies, moves_freely
 
 
 @dataclass(frozen=True)
@@ -85,25 +73,25 @@ slider travels much further than any link is long. Chipmunk then rounds at 1e-13
 
 
 @dataclass(frozen=True)
-class SpaceModel:
-    """A space, its moving bodies by name in the order they were added, and the crank.
+class SpaceModel(SpaceBodies):
+    """A space with its bodies and constraints, and the crank.
 
-    ``centre`` is the origin of each pymunk body in the frame of the link [m]. ``motor`` is the
-    servo, or the motor of an inner pin, if any. Of the constraints, ``hinges`` belong to the pins
-    (None for a kinematic crank), and by slider ``lines`` hold a point on its line, ``gears`` an
-    angle. ``rubs`` is the friction of pins; ``springs`` are the space's own.
+    ``motor`` is the servo, or the motor of an inner pin, if any. Of the constraints, ``hinges``
+    belong to the pins (None for a kinematic crank), and by slider ``lines`` hold a point on its
+    line, ``gears`` an angle. ``rubs`` is the friction of pins; ``springs`` are the space's own.
     """
 
-    space: pymunk.Space
-    bodies: Mapping[str, pymunk.Body]
-    centre: Mapping[str, Point]
-    crank: pymunk.Body
-    motor: pymunk.SimpleMotor | None
-    hinges: Mapping[Hinge, pymunk.Constraint | None]
-    lines: Mapping[str, pymunk.Constraint]
-    gears: Mapping[str, pymunk.Constraint]
-    rubs: tuple[PinFriction, ...]
-    springs: Mapping[str, NativeSpring]
+    motor: pymunk.SimpleMotor | None = None
+    hinges: Mapping[Hinge, pymunk.Constraint | None] = field(default_factory=dict)
+    lines: Mapping[str, pymunk.Constraint] = field(default_factory=dict)
+    gears: Mapping[str, pymunk.Constraint] = field(default_factory=dict)
+    rubs: tuple[native.PinFriction, ...] = ()
+    springs: Mapping[str, native.NativeSpring] = field(default_factory=dict)
+
+    @property
+    def crank(self) -> pymunk.Body:
+        """The driven body."""
+        return self.bodies[self.scene.driver.link]
 
 
 def build(
@@ -130,65 +118,75 @@ def build(
     driver = scene.driver
     _check_drive(scene, drive)
     pinned = drive != "prescribed" or driver.is_inner
-    space = pymunk.Space()
-    space.gravity = scene.gravity_m_s2
-    ties = joints(scene)
-    fixed_angle = {p.body for p in ties.prisms if p.slider.on == GROUND}
-    where = frames(scene, state, delay_s)
-    made: dict[str, pymunk.Body] = {GROUND: space.static_body}
-    centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
-    for name in bodies(scene):
-        kinematic = name == driver.link and not pinned
-        turns = kinematic and driver.slider is None
-        pivot = scene.driver_pivot
-        centre[name] = local_point(scene, name, pivot) if turns else centre_of(scene, name)
-        body = _body(scene, name, kinematic, name in fixed_angle)
-        body.position = where[name].at(centre[name])
-        body.angle = where[name].theta
-        body.velocity = where[name].velocity_at(body.position) if not turns else (0.0, 0.0)
-        body.angular_velocity = where[name].omega
-        made[name] = body
-        space.add(body)
+    placed = _placed(scene, state, delay_s, None if pinned else driver.link)
     motor = None
-    crank = made[driver.link]
     if pinned and drive != "free":
-        rate = where[driver.link].omega - where[driver.base].omega
-        motor = pymunk.SimpleMotor(crank, made[driver.base], rate)
-        space.add(_plain(motor))
-    hinges = _pins(scene, ties, made, centre, pinned=pinned)
-    for constraint in hinges.values():
-        if constraint is not None:
-            space.add(_plain(constraint))
+        ends = placed.body(driver.link), placed.body(driver.base)
+        motor = pymunk.SimpleMotor(*ends, ends[0].angular_velocity - ends[1].angular_velocity)
+        _add(placed, motor)
+    pivots = _pins(placed, pinned=pinned)
+    for pivot in pivots.values():
+        _add(placed, pivot)
     lines: dict[str, pymunk.Constraint] = {}
     gears: dict[str, pymunk.Constraint] = {}
-    for slide in ties.slides:
+    for slide in pairs.joints(scene).slides:
         name = slide.slider.name
         if name == driver.slider and not pinned:
             continue  # a kinematic body, at a prescribed position
-        lines[name] = _line(scene, state, slide, made, centre, exact_lines)
-        space.add(_plain(lines[name]))
+        lines[name] = _line(placed, slide, exact_lines)
+        _add(placed, lines[name])
         if isinstance(slide, Prism) and slide.slider.on != GROUND:
-            gears[name] = _gear(slide, made)
-            space.add(_plain(gears[name]))
-    rubs = pin_friction(scene, made)
+            gears[name] = _gear(placed, slide)
+            _add(placed, gears[name])
+    rubs = native.pin_friction(placed)
     for rub in rubs:
-        if rub.motor is not None:
-            space.add(_plain(rub.motor))
-    springs = native_springs(scene, state, made, centre, _reach(scene)) if with_springs else {}
+        _add(placed, rub.motor)
+    springs = native.native_springs(placed, _reach(scene)) if with_springs else {}
     for spring in springs.values():
-        space.add(_plain(spring.constraint))
-    del made[GROUND]
-    return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears, rubs, springs)
+        _add(placed, spring.constraint)
+    return SpaceModel(
+        **vars(placed),
+        motor=motor,
+        hinges=pivots,
+        lines=lines,
+        gears=gears,
+        rubs=rubs,
+        springs=springs,
+    )
+
+
+def _placed(scene: Scene, state: State, delay_s: float, kinematic: str | None) -> SpaceBodies:
+    """Add the bodies of a scene to a new space; one may be ``kinematic``."""
+    placed = SpaceBodies(scene, state, pymunk.Space())
+    placed.space.gravity = scene.gravity_m_s2
+    fixed_angle = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
+    where = pairs.frames(scene, state, delay_s)
+    for name in pairs.bodies(scene):
+        turns = name == kinematic and scene.driver.slider is None
+        centre = pairs.centre_of(scene, name)
+        if turns:
+            centre = pairs.local_point(scene, name, scene.driver_pivot)
+        body = _body(scene, name, name == kinematic, name in fixed_angle)
+        body.position = where[name].at(centre)
+        body.angle = where[name].theta
+        body.velocity = (0.0, 0.0) if turns else where[name].velocity_at(body.position)
+        body.angular_velocity = where[name].omega
+        placed.centre[name], placed.bodies[name] = centre, body
+        placed.space.add(body)
+    return placed
+
+
+def _add(placed: SpaceBodies, constraint: pymunk.Constraint | None) -> None:
+    """Add a constraint, if there is one, without collision bookkeeping; there are no shapes."""
+    if constraint is not None:
+        constraint.collide_bodies = False
+        placed.space.add(constraint)
 
 
 def _check_drive(scene: Scene, drive: Drive) -> None:
     """Refuse a joint that pymunk cannot drive. Raises EngineError."""
     driver = scene.driver
-    if not driver.is_crank and any(load.over == "angle" for load in scene.loads.values()):
-        raise EngineError(
-            f"{scene.name}: a load goes with the driver's angle, and pymunk is given that of a "
-            f"crank alone; this driver is {driver.joint}"
-        )
+    refuse_driver_angle(scene, "pymunk")
     if driver.slider is None or drive == "free":
         return
     if driver.is_inner or drive == "servo":
@@ -206,76 +204,50 @@ def _check_drive(scene: Scene, drive: Drive) -> None:
 
 
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
-    """Make a body with the mass of the scene."""
     if kinematic:
         return pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    mass, inertia = mass_of(scene, name)
-    if mass <= 0.0 or (inertia <= 0.0 and not fixed_angle):
-        raise EngineError(
-            f"{name}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; pymunk moves no body without "
-            "both, give them"
-        )
+    mass, inertia = pairs.mass_of(scene, name)
+    refuse_massless("pymunk", name, mass, inertia, turns=not fixed_angle)
     return pymunk.Body(mass, math.inf if fixed_angle else inertia)
 
 
-def _plain(constraint: pymunk.Constraint) -> pymunk.Constraint:
-    """Return the constraint without collision bookkeeping; there are no shapes."""
-    constraint.collide_bodies = False
-    return constraint
-
-
-def _pins(
-    scene: Scene,
-    ties: Joints,
-    made: Mapping[str, pymunk.Body],
-    centre: Mapping[str, Point],
-    *,
-    pinned: bool,
-) -> dict[Hinge, pymunk.Constraint | None]:
+def _pins(placed: SpaceBodies, *, pinned: bool) -> dict[Hinge, pymunk.Constraint | None]:
     """Make all pins; a kinematic crank needs none to the ground and is not ``pinned``."""
-    hinges: dict[Hinge, pymunk.Constraint | None] = {}
-    for joint in ties.pins:
-        first, *others = _pinned_bodies(scene, joint.bodies)
-        for other in others:
-            hinge = Hinge(joint.point, first, other)
-            driven = {first, other} == {GROUND, scene.driver.link} and not pinned
-            if driven and joint.point == scene.driver_pivot:
-                hinges[hinge] = None
-                continue
-            a = _anchor(scene, centre, first, joint.point)
-            b = _anchor(scene, centre, other, joint.point)
-            hinges[hinge] = pymunk.PivotJoint(made[first], made[other], a, b)
-    return hinges
+    scene, driver = placed.scene, placed.scene.driver
+    made: dict[Hinge, pymunk.Constraint | None] = {}
+    # Immovable bodies first, so that all others hang on the firmest.
+    for hinge in hinges(scene, *([GROUND] if driver.is_inner else [GROUND, driver.link])):
+        names = hinge.first, hinge.other
+        driven = set(names) == {GROUND, driver.link} and not pinned
+        if driven and hinge.point == scene.driver_pivot:
+            made[hinge] = None
+            continue
+        first, other = map(placed.body, names)
+        a, b = (placed.anchor(name, hinge.point) for name in names)
+        made[hinge] = pymunk.PivotJoint(first, other, a, b)
+    return made
 
 
-def _line(
-    scene: Scene,
-    state: State,
-    slide: Prism | Slot,
-    made: Mapping[str, pymunk.Body],
-    centre: Mapping[str, Point],
-    exact_lines: bool,
-) -> pymunk.Constraint:
-    """Make the constraint of a point on a line."""
-    slider, rider = slide.slider, riding_body(slide)
-    guide, body = made[slider.on], made[rider]
-    anchor = _anchor(scene, centre, rider, slider.point)
+def _line(placed: SpaceBodies, slide: Prism | Slot, exact_lines: bool) -> pymunk.Constraint:
+    scene, slider, rider = placed.scene, slide.slider, pairs.riding_body(slide)
+    guide, body = placed.body(slider.on), placed.body(rider)
+    anchor = placed.anchor(rider, slider.point)
     along_line = turned((1.0, 0.0), slider.direction_rad)
-    start = less(slider.through_m, centre[slider.on])
+    start = less(slider.through_m, placed.centre[slider.on])
     off = abs(along_line[0] * start[1] - along_line[1] * start[0])
     small = 1e-12 * scene.longest_m
     sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
     if sound or not exact_lines:
-        ends = [less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
-        return pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor)
+        a, b = _groove(placed, slide)
+        return pymunk.GrooveJoint(guide, body, a, b, anchor)
     return Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m).joint()
 
 
-def _gear(prism: Prism, made: Mapping[str, pymunk.Body]) -> pymunk.Constraint:
+def _gear(placed: SpaceBodies, prism: Prism) -> pymunk.Constraint:
     """Make the gear for a sliding body's angle on a moving guide."""
-    guide, body = made[prism.slider.on], made[prism.body]
+    guide, body = placed.body(prism.slider.on), placed.body(prism.body)
     # A gear counts whole turns, and each of the two bodies comes with some of its own.
-    kept = sliding_angle(prism.slider)
+    kept = pairs.sliding_angle(prism.slider)
     kept += math.tau * round((body.angle - guide.angle - kept) / math.tau)
     return pymunk.GearJoint(guide, body, kept, 1.0)
 
@@ -285,29 +257,17 @@ def _firm(body: pymunk.Body) -> bool:
     return not moves_freely(body) or math.isinf(body.moment)
 
 
-def _anchor(scene: Scene, centre: Mapping[str, Point], body: str, point: str) -> Point:
-    """Return a point in the coordinates of the pymunk body."""
-    return less(local_point(scene, body, point), centre[body])
-
-
-def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the bodies of a pin, immovable ones first, so that all others hang on the firmest."""
-    firm = {GROUND: 0} if scene.driver.is_inner else {GROUND: 0, scene.driver.link: 1}
-    return tuple(sorted(names, key=lambda name: firm.get(name, 2)))
-
-
 def _reach(scene: Scene) -> float:
     """Return a distance out of reach of any slider [m]."""
     return FAR * sum(map(span, (scene.ground, *(link.points for link in scene.links.values()))))
 
 
-def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Point, Point]:
-    """Return the ends of a groove in the frame of the guide [m], out of reach of any motion."""
-    where = frames(scene, state)
-    place = where[rider].at(local_point(scene, rider, slider.point))
-    now, _ = along(slider, where[slider.on], place, (0.0, 0.0))
-    reach = _reach(scene)
-    u = turned((1.0, 0.0), slider.direction_rad)
-    a, b = now - reach, now + reach
-    x, y = slider.through_m
-    return (x + a * u[0], y + a * u[1]), (x + b * u[0], y + b * u[1])
+def _groove(placed: SpaceBodies, slide: Prism | Slot) -> list[Point]:
+    """Return the ends of a groove on the guide [m], out of reach of any motion."""
+    scene, slider, rider = placed.scene, slide.slider, pairs.riding_body(slide)
+    where = pairs.frames(scene, placed.state)
+    place = where[rider].at(pairs.local_point(scene, rider, slider.point))
+    now, _ = pairs.along(slider, where[slider.on], place, (0.0, 0.0))
+    u, (x, y) = turned((1.0, 0.0), slider.direction_rad), slider.through_m
+    ends = now - _reach(scene), now + _reach(scene)
+    return [less((x + s * u[0], y + s * u[1]), placed.centre[slider.on]) for s in ends]

@@ -117,7 +117,6 @@ def _model(session: Session) -> SpaceModel:
 
 
 def _last(session: Session) -> pymunk.Body:
-    """Return the body that was added last."""
     return list(_model(session).bodies.values())[-1]
 
 

@@ -8,9 +8,10 @@ import numpy as np
 import pymunk.batch
 
 from models.array import Array
-from models.scene import Point, Scene
-from models.scene.joints import less, line_ends, whole_turns
+from models.scene import Scene
+from models.scene.joints import less, whole_turns
 from models.scene.loads import LineSpring, PinSpring, SegmentSpring, SlideSpring, Spring
+from sim.engine.ties import spring_ends
 from sim.pymunk.bodies import Course, Frames, SliderCourse, frames_at_end, rows_of
 from sim.pymunk.native import Pushes
 from sim.pymunk.space import SpaceModel
@@ -21,19 +22,18 @@ class SpringSteps:
 
     def __init__(
         self,
-        scene: Scene,
         model: SpaceModel,
         tracks: Mapping[str, SliderCourse],
         dt_s: float,
-        but: Collection[Spring] = (),
+        but: Collection[Spring],
     ) -> None:
         start = frames_at_end(model, 0.0)
         self._steps: list[_OnLine | _InPin | _OnSlide] = []
-        for name, spring in scene.springs.items():
+        for name, spring in model.scene.springs.items():
             if name in model.springs or spring in but:
                 continue
             if isinstance(spring, LineSpring):
-                self._steps.append(_OnLine(scene, model, spring, start, dt_s))
+                self._steps.append(_OnLine(model, spring, start, dt_s))
             elif isinstance(spring, PinSpring):
                 self._steps.append(_InPin(spring, start, dt_s))
             else:
@@ -55,38 +55,26 @@ class SpringSteps:
 
 
 class _OnLine:
-    """A spring between two points."""
-
-    def __init__(
-        self, scene: Scene, model: SpaceModel, spring: LineSpring, start: Frames, dt_s: float
-    ) -> None:
+    def __init__(self, model: SpaceModel, spring: LineSpring, start: Frames, dt_s: float) -> None:
         self.spring = spring
-        self._ends = tuple(
-            (body, less(place, model.centre[body])) for body, place in line_ends(scene, spring)
+        first, second = (
+            (body, less(place, model.centre[body]))
+            for body, place in spring_ends(model.scene, spring)
         )
-        self._course = Course(math.dist(*self._places(start)), dt_s)
+        self._ends = first, second
+        self._course = Course(self._length(start), dt_s)
 
-    def _places(self, frames: Frames) -> tuple[Point, Point]:
-        first, second = (frames[body].at(anchor) for body, anchor in self._ends)
-        return first, second
+    def _length(self, frames: Frames) -> float:
+        return math.dist(*(frames[body].at(anchor) for body, anchor in self._ends))
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
-        """Apply the spring at the end of the step; at length 0 it has no direction."""
-        first, second = self._places(frames)
-        length = math.dist(first, second)
+        """Apply the spring at the end of the step."""
+        length = self._length(frames)
         self._course.go_on(length)
-        if length == 0.0:
-            return
-        pull = self.spring.pull(length, self._course.rate) / length
-        fx, fy = pull * (second[0] - first[0]), pull * (second[1] - first[1])
-        (one, _), (other, _) = self._ends
-        pushes.force(one, frames[one], first, (fx, fy))
-        pushes.force(other, frames[other], second, (-fx, -fy))
+        pushes.pull(*self._ends, frames, self.spring.pull(length, self._course.rate))
 
 
 class _InPin:
-    """A spring between two bodies that meet in a pin."""
-
     def __init__(self, spring: PinSpring, start: Frames, dt_s: float) -> None:
         self.spring = spring
         opened = self._opened(start)
@@ -107,8 +95,6 @@ class _InPin:
 
 
 class _OnSlide:
-    """A spring along the line of a slider."""
-
     def __init__(self, spring: SlideSpring, track: SliderCourse) -> None:
         self.spring, self._track = spring, track
 

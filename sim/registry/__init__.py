@@ -111,7 +111,6 @@ def offering(what: Capability) -> list[str]:
 
 
 def _loaded(name: str, part: str) -> object:
-    """Return the value of a file in the folder of an engine."""
     package = declaration(name).package
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)

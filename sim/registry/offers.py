@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol, cast
 
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
-from sim.engine import Drive, Settings, SettingValue
+from sim.engine import Drive, Profile, Settings, SettingValue
 from sim.registry import capability, declaration, offering
 
 Values = Settings
@@ -76,11 +76,11 @@ class SearchSpace:
         return complete
 
 
-def rungs(low: float, high: float, ratio: float, digits: int = 2) -> tuple[float, ...]:
+def rungs(low: float, high: float, ratio: float) -> tuple[float, ...]:
     """Return round numbers from ``low`` to ``high``, each about ``ratio`` times the one before."""
     count = round(math.log(high / low) / math.log(ratio))
     exact = (low * (high / low) ** (k / count) for k in range(count + 1))
-    return tuple(dict.fromkeys(float(f"{value:.{digits}g}") for value in exact))
+    return tuple(dict.fromkeys(float(f"{value:.2g}") for value in exact))
 
 
 def search_space(engine: str) -> SearchSpace:
@@ -109,6 +109,35 @@ class Stepping:
     def steps_per_turn(self) -> float:
         return self.period_s / self.dt_s
 
+    @property
+    def speed(self) -> str:
+        """The crank's speed, in words."""
+        return f"{self.speed_rad_s:.6g} rad/s"
+
+    @property
+    def per_turn(self) -> str:
+        """The number of steps in a turn, in words."""
+        return f"{self.steps_per_turn:g}"
+
+    @property
+    def frame(self) -> str:
+        """The length of a frame, in words."""
+        return f"{self.dt_s * self.substeps:.6g} s"
+
+    def scaled_by_speed(self, step: str) -> str:
+        """Say what ``step`` is at another speed, without the end of the sentence."""
+        return (
+            f"{self.per_turn} steps a turn of a crank at {self.speed}. At another speed: {step} = "
+            f"2 pi / ({self.per_turn} speed)"
+        )
+
+    def scaled_in_frames(self, them: str) -> str:
+        """Say that a faster crank needs more of ``them``, without the end of the sentence."""
+        return (
+            f"A crank at {self.speed} has {self.per_turn} of {them} in a turn; a faster one needs "
+            "more of them in a frame, in proportion"
+        )
+
     def counted_in(self, drive: Drive) -> Literal["turns", "frames", "nothing"]:
         """Return the whole that its steps divide: no speed sets their length in free motion."""
         if drive == "free":
@@ -118,14 +147,24 @@ class Stepping:
 
 @dataclass(frozen=True)
 class SnippetWriter:
-    """Writer of the snippets of an engine.
+    """Writer of the snippets of an engine (see `snippet`).
 
-    ``language`` is the language for colouring; ``write`` gets the settings, the stepping, the
-    drive, and lines of comment to begin with (see `snippet`).
+    ``language`` is the language for colouring, ``shipped`` the profile of the engine's own
+    defaults. ``lines`` gets the complete settings, the defaults, the stepping, the drive, and
+    lines of comment to begin with.
     """
 
     language: str
-    write: Callable[[Settings, Stepping, Drive, Sequence[str]], str]
+    shipped: Profile
+    lines: Callable[[Settings, Settings, Stepping, Drive, Sequence[str]], list[str]]
+
+    def write(
+        self, settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
+    ) -> str:
+        """Write a snippet, with the defaults for what ``settings`` leave out."""
+        defaults = self.shipped.values
+        complete = defaults | dict(settings)
+        return "\n".join(self.lines(complete, defaults, stepping, drive, head)) + "\n"
 
 
 def snippet_writer(engine: str) -> SnippetWriter:
@@ -133,11 +172,17 @@ def snippet_writer(engine: str) -> SnippetWriter:
     return cast(SnippetWriter, capability(engine, "snippet"))
 
 
-def comment(paragraphs: Sequence[str], width: int) -> list[str]:
-    """Return the paragraphs as comment lines of Python, at most so wide."""
+WIDTH = 96
+"""Most characters in a line of a snippet."""
+ALONE = "ONLY TO MEASURE AS WE DID, in a {} with nothing else in it:"
+"""Title of what would change the rest of a user's model."""
+
+
+def comment(*paragraphs: str) -> list[str]:
+    """Return the paragraphs as comment lines of Python."""
     lines: list[str] = []
     for paragraph in paragraphs:
-        wrapped = textwrap.wrap(paragraph, width - 2, break_on_hyphens=False)
+        wrapped = textwrap.wrap(paragraph, WIDTH - 2, break_on_hyphens=False)
         lines += [f"# {line}" for line in wrapped]
     return lines
 
@@ -185,6 +230,17 @@ class ForceRecipe(Protocol):
         hold, or that the recipe does not cover.
         """
         ...
+
+
+def written(rows: Mapping[str, object] | Iterable[object]) -> str:
+    """Write a dict or a list of a recipe, an entry a line."""
+    if isinstance(rows, Mapping):
+        (first, last), entries = "{}", [f"{key!r}: {row!r}" for key, row in rows.items()]
+    else:
+        (first, last), entries = "[]", [repr(row) for row in rows]
+    return (
+        "\n".join([first, *(f"    {each}," for each in entries), last]) if entries else first + last
+    )
 
 
 def force_recipe(

@@ -323,7 +323,6 @@ def time_run(
 
 
 def _wall(session: Session, steps: int, every: int) -> float:
-    """Return the wall time of the steps [s]."""
     if every:
         return sum(session.record(n, every).wall_s for n in chunks(steps, every))
     began = time.perf_counter()

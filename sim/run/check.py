@@ -88,7 +88,6 @@ def refuse_unknown_forces(
 
 
 def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
-    """Yield differences of mass, inertia and gravity."""
     for body in bodies(scene):
         mass, inertia = mass_of(scene, body)
         if body not in facts.mass_kg:

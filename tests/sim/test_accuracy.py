@@ -291,14 +291,3 @@ def test_any_pin_of_the_loop_may_be_the_closed_one(close: str) -> None:
     assert worst(scene, result) < 5e-7
     assert result.gaps[close].max() > 1e-10
     assert max(gap.max() for name, gap in result.gaps.items() if name != close) < 1e-12
-
-
-def test_a_groove_of_pymunk_leaks_where_the_body_turns_and_a_rail_does_not() -> None:
-    scene = load_scene("slider-crank-excel-350")
-    groove, exact = (
-        [worst(scene, ran(scene, "pymunk", per_turn=n, settings=own)) for n in (200, 800)]
-        for own in ({"lines": "groove"}, None)
-    )
-    assert groove[1] > groove[0] / 4**1.3
-    assert exact[1] < exact[0] / 4**1.8
-    assert exact[1] < 0.02 * groove[1]

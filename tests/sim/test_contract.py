@@ -13,10 +13,10 @@ from models.files.reading import load_scene
 from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, put_to
 from reports.contract.subject import Subject, numbers
-from sim.engine import BodyPose, Engine, Facts
+from sim.engine import BodyPose, Engine, Facts, SettingValue
 from sim.registry import ENGINES, engine
 from sim.run.check import refuse_other_model
-from tests.worlds.runs import opened, start_of
+from tests.worlds.runs import all_series, opened, start_of
 from tests.worlds.tiers import slowly
 
 DT_S = 1e-3
@@ -86,6 +86,27 @@ def declares(adapter: Engine, clause: str) -> bool:
     return adapter.forces_of != "nothing" and (
         adapter.applies_constant_friction or clause != "EC86"
     )
+
+
+@pytest.mark.parametrize(("name", "drive", "settings"), [
+    ("mujoco", "prescribed", {}),
+    ("pymunk", "prescribed", {}),
+    ("pymunk", "servo", {}),
+    ("pymunk", "free", {}),
+    ("exudyn", "prescribed", {}),
+    ("exudyn", "prescribed", {"adaptive_step": "disable"}),
+])  # fmt: skip
+def test_forces_change_no_number_of_the_motion(
+    name: str, drive: str, settings: dict[str, SettingValue]
+) -> None:
+    """Accelerations too, which the contract leaves open."""
+    scene = load_scene("slider-crank-offset")
+    plain, beside = (opened(scene, name, settings, dt_s=DT_S, drive=drive) for _ in range(2))
+    for every in (3, 1):
+        alone, log = plain.record(60, every), beside.record_forces(60, every)
+        assert alone.forces is None
+        np.testing.assert_array_equal(all_series(alone.poses), all_series(log.poses))
+        np.testing.assert_array_equal(log.forces.time_s, log.poses.time_s)
 
 
 def test_two_stretches_equal_one_for_a_solver_that_has_not_converged() -> None:

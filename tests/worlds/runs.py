@@ -35,6 +35,12 @@ def rubbing(scene: Scene, **sizes: float) -> Scene:
     return acted_on(scene, *(ConstantFriction(*each) for each in sizes.items()))
 
 
+def massless(scene: Scene) -> Scene:
+    """The scene with blocks without mass."""
+    blocks = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
+    return replace(scene, sliders=blocks)
+
+
 def driven_by(law: Law, scene: str = "fourbar-lecture-1") -> Scene:
     own = load_scene(scene)
     return replace(own, driver=replace(own.driver, law=law))

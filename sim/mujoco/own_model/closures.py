@@ -80,14 +80,15 @@ class Coupling:
     bodies: tuple[int, ...]
 
 
-def name_of(model: Any, kind: Any, index: int) -> str:
-    """Return the name in the file; empty without one."""
-    return mujoco.mj_id2name(model, kind.value, index) or ""
+def name_of(model: Any, kind: str, index: int) -> str:
+    """Return the name in the file of a ``joint``, a ``body`` and the like; empty without one."""
+    own = getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}")
+    return mujoco.mj_id2name(model, own.value, index) or ""
 
 
 def body_name(model: Any, body: int) -> str:
     """Return the name of a body, or its number."""
-    return name_of(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body{body}"
+    return name_of(model, "body", body) or f"body{body}"
 
 
 def equalities(model: Any, data: Any) -> tuple[list[ModelClosure], list[Coupling]]:
@@ -97,7 +98,7 @@ def equalities(model: Any, data: Any) -> tuple[list[ModelClosure], list[Coupling
         return [], []
     for index in map(int, np.flatnonzero(model.eq_active0)):
         kind = KINDS[int(model.eq_type[index])]
-        name = name_of(model, mujoco.mjtObj.mjOBJ_EQUALITY, index)
+        name = name_of(model, "equality", index)
         if kind in ("connect", "weld"):
             closures.append(_closure(model, data, index, name, kind))
         else:
@@ -115,7 +116,7 @@ def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> ModelCl
         anchors = tuple(data.site_xpos[site].copy() for site in ends)
         frames = [data.site_xmat[site].reshape(3, 3) for site in ends]
         rotation = frames[0] @ frames[1].T @ _rotation(data, second)
-        sites = [name_of(model, mujoco.mjtObj.mjOBJ_SITE, site) for site in ends]
+        sites = [name_of(model, "site", site) for site in ends]
         name = name or REMARK.join(filter(None, sites))
     else:
         first, second = ends

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
@@ -146,7 +146,7 @@ def component(model: Any, joint: str) -> Component:
 
 def _driven(model: Any, joint: str) -> int:
     """Return the joint of that name, or refuse it as the driver."""
-    names = [name_of(model, mujoco.mjtObj.mjOBJ_JOINT, index) for index in range(model.njnt)]
+    names = [name_of(model, "joint", index) for index in range(model.njnt)]
     able = [name for index, name in enumerate(names) if name and not _not_drivable(model, index)]
     can = f"drivable: {few(able, SHOWN)}" if able else "no named hinge turns against the ground"
     if not joint:
@@ -174,9 +174,14 @@ def _not_drivable(model: Any, index: int) -> str:
     return ""
 
 
+def is_hinge(model: Any, joint: int) -> bool:
+    """True if a joint turns, and does not slide."""
+    return bool(JOINTS[int(model.jnt_type[joint])] == "hinge")
+
+
 def joint_name(model: Any, joint: int) -> str:
     """Return the name of a joint, or of its body."""
-    name = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint)
+    name = name_of(model, "joint", joint)
     return name or f"a joint of {body_name(model, int(model.jnt_bodyid[joint]))}"
 
 

@@ -4,12 +4,19 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import few
 from sim.mujoco.own_model.closures import body_name, equalities, name_of, tendon_bodies
-from sim.mujoco.own_model.component import JOINTS, PARALLEL_DEG, WORLD, Component, joint_name, rigid
+from sim.mujoco.own_model.component import (
+    PARALLEL_DEG,
+    WORLD,
+    Component,
+    is_hinge,
+    joint_name,
+    rigid,
+)
 from sim.mujoco.own_model.linkage import NEAR, Linkage, size
 from sim.registry.own_models import Disturbance
 
@@ -51,12 +58,12 @@ def _marks(component: Component, body: int) -> Iterator[tuple[str, complex]]:
         return
     for site in range(model.nsite):
         if rigid(model, int(model.site_bodyid[site])) == body:
-            name = name_of(model, mujoco.mjtObj.mjOBJ_SITE, site) or "without a name"
+            name = name_of(model, "site", site) or "without a name"
             yield f"site {name}", plane.flat(data.site_xpos[site])
     for geom in range(model.ngeom):
         if rigid(model, int(model.geom_bodyid[geom])) != body:
             continue
-        name = name_of(model, mujoco.mjtObj.mjOBJ_GEOM, geom)
+        name = name_of(model, "geom", geom)
         of = f"geom {name}" if name else "a geom"
         kind, middle = int(model.geom_type[geom]), plane.flat(data.geom_xpos[geom])
         if kind == BALL:
@@ -84,11 +91,11 @@ def disturbances(linkage: Linkage) -> list[Disturbance]:
     with a switch is a key of `variants.OFF`."""
     model = linkage.component.model
     ids = {body.id for body in linkage.component.bodies}
-    return [
+    found = [
         *_passive(model, ids, linkage.component.driven),
         *_readings(model, ids),
         *_keyframes(linkage),
-        *(Disturbance("missed", text) for text in misses(linkage)),
+        *(("missed", text) for text in misses(linkage)),
         *_tendons(model, ids),
         *_actuators(model, ids),
         *_loads(linkage),
@@ -97,6 +104,11 @@ def disturbances(linkage: Linkage) -> list[Disturbance]:
         *_apart(linkage),
         *_others(model, ids),
     ]
+    return [Disturbance(kind, text) for kind, text in found]
+
+
+Kind = tuple[str, str]
+"""Kind and text of a disturbance."""
 
 
 def _own(model: Any, ids: set[int]) -> Iterator[tuple[int, int, str]]:
@@ -106,11 +118,11 @@ def _own(model: Any, ids: set[int]) -> Iterator[tuple[int, int, str]]:
             yield joint, int(model.jnt_dofadr[joint]), joint_name(model, joint)
 
 
-def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
+def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Kind]:
     """Yield springs, damping, dry friction, heavy armatures and limits of joints; the driven
     joint's armature does not matter."""
     for joint, dof, name in _own(model, ids):
-        hinge = JOINTS[int(model.jnt_type[joint])] == "hinge"
+        hinge = is_hinge(model, joint)
         force, length = ("N m", "rad") if hinge else ("N", "m")
         at = f"joint {name}"
         for kind, value, what, unit in (
@@ -119,41 +131,40 @@ def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
             ("friction", model.dof_frictionloss[dof], "dry friction", force),
         ):
             if np.any(value):
-                yield Disturbance(kind, f"{at}: {what} of {float(np.ravel(value)[0]):g} {unit}")
+                yield kind, f"{at}: {what} of {float(np.ravel(value)[0]):g} {unit}"
         rotor = float(model.dof_armature[dof])
         if rotor > HEAVY * float(model.body_inertia[1:].max()) and joint != driven:
             inertia = f"{rotor:.3g} {'kg m^2' if hinge else 'kg'}"
-            yield Disturbance("armature", f"{at}: an armature of {inertia}, which is hard to move")
+            yield "armature", f"{at}: an armature of {inertia}, which is hard to move"
         if model.jnt_limited[joint]:
             span = " to ".join(_reading(float(end), hinge) for end in model.jnt_range[joint])
             more = ", and it is the driven one" if joint == driven else ""
-            yield Disturbance("limits", f"{at}: limited to {span}{more}")
+            yield "limits", f"{at}: limited to {span}{more}"
             yield from _out_of_range(model, joint, at, hinge)
 
 
-def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Disturbance]:
+def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Kind]:
     """Yield a joint that is drawn outside its limits: its ref is wrong, or they are."""
     drawn = float(model.qpos0[model.jnt_qposadr[joint]])
     low, high = (float(end) for end in model.jnt_range[joint])
     if not low <= drawn <= high:
         text = f"{at}: it reads {_reading(drawn, hinge)} as it is drawn, outside its limits"
-        yield Disturbance("reading", f"{text}; is its ref right?")
+        yield "reading", f"{text}; is its ref right?"
 
 
-def _readings(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+def _readings(model: Any, ids: set[int]) -> Iterator[Kind]:
     """Yield the joints that have a coordinate other than 0 as drawn, by their ref."""
     readings = [
-        f"{name} {_reading(ref, JOINTS[int(model.jnt_type[joint])] == 'hinge')}"
+        f"{name} {_reading(ref, is_hinge(model, joint))}"
         for joint, _, name in _own(model, ids)
         if (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
     ]
     if readings:
         text = f"ref makes joints read as they are drawn: {few(readings, SHOWN)}"
-        yield Disturbance("reading", text)
+        yield "reading", text
 
 
-def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
-    """Yield keyframes with open loops."""
+def _keyframes(linkage: Linkage) -> Iterator[Kind]:
     component, extent = linkage.component, size(linkage)
     model, data = component.model, mujoco.MjData(component.model)
     own = {each.index for each in component.closures}
@@ -167,19 +178,18 @@ def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
         ]
         gap, name = max(gaps)
         if gap > OPEN * extent:
-            called = name_of(model, mujoco.mjtObj.mjOBJ_KEY, key) or str(key)
-            yield Disturbance("reading", f"keyframe {called}: loop {name} is open by {gap:.3g} m")
+            called = name_of(model, "key", key) or str(key)
+            yield "reading", f"keyframe {called}: loop {name} is open by {gap:.3g} m"
 
 
 def _reading(coordinate: float, hinge: bool) -> str:
-    """Format a joint coordinate in degrees or metres."""
     return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
 
 
-def _tendons(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+def _tendons(model: Any, ids: set[int]) -> Iterator[Kind]:
     for tendon in range(model.ntendon):
         if any(rigid(model, body) in ids for body in tendon_bodies(model, tendon)):
-            name = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon) or str(tendon)
+            name = name_of(model, "tendon", tendon) or str(tendon)
             acts = [
                 kind
                 for kind, value in (
@@ -191,14 +201,14 @@ def _tendons(model: Any, ids: set[int]) -> Iterator[Disturbance]:
                 if np.any(value)
             ]
             for kind in acts:
-                yield Disturbance(kind, f"tendon {name} goes over the linkage: {kind}")
+                yield kind, f"tendon {name} goes over the linkage: {kind}"
             rotor = float(model.tendon_armature[tendon])
             if rotor:
                 text = f"tendon {name} goes over the linkage: an armature of {rotor:g}"
-                yield Disturbance("armature", f"{text}, which moves with it")
+                yield "armature", f"{text}, which moves with it"
 
 
-def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+def _actuators(model: Any, ids: set[int]) -> Iterator[Kind]:
     """Yield actuators of joints and tendons of the linkage; their control is 0, or the key's."""
     kinds = mujoco.mjtTrn
     for index in range(model.nu):
@@ -212,31 +222,25 @@ def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
         else:
             on, where = list(range(model.nbody)), "bodies"
         if any(rigid(model, body) in ids for body in on):
-            name = name_of(model, mujoco.mjtObj.mjOBJ_ACTUATOR, index) or str(index)
-            yield Disturbance("actuators", f"actuator {name} acts on {where}")
+            name = name_of(model, "actuator", index) or str(index)
+            yield "actuators", f"actuator {name} acts on {where}"
 
 
-def _loads(linkage: Linkage) -> Iterator[Disturbance]:
+def _loads(linkage: Linkage) -> Iterator[Kind]:
     """Yield gravity, and a medium."""
     opt, plane = linkage.component.model.opt, linkage.component.plane
     gravity = np.array(opt.gravity, dtype=np.float64)
     across = plane.height(gravity)
     if abs(plane.flat(gravity)) > 0.0:
-        yield Disturbance(
-            "gravity", f"gravity of {abs(plane.flat(gravity)):.4g} m/s^2 in the plane"
-        )
+        yield "gravity", f"gravity of {abs(plane.flat(gravity)):.4g} m/s^2 in the plane"
     if abs(across) > math.sin(math.radians(PARALLEL_DEG)) * (float(np.linalg.norm(gravity)) or 1.0):
-        yield Disturbance(
-            "gravity",
-            f"gravity of {abs(across):.4g} m/s^2 across the plane: the bearings carry it",
-        )
+        text = f"gravity of {abs(across):.4g} m/s^2 across the plane: the bearings carry it"
+        yield "gravity", text
     if float(opt.density) or float(opt.viscosity):
-        yield Disturbance(
-            "medium", f"a medium of density {opt.density:g}, viscosity {opt.viscosity:g}"
-        )
+        yield "medium", f"a medium of density {opt.density:g}, viscosity {opt.viscosity:g}"
 
 
-def _carried(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+def _carried(model: Any, ids: set[int]) -> Iterator[Kind]:
     """Yield bodies of the linkage whose weight is reduced or increased, where there is gravity."""
     if not np.any(model.opt.gravity):
         return
@@ -244,10 +248,10 @@ def _carried(model: Any, ids: set[int]) -> Iterator[Disturbance]:
         if rigid(model, int(body)) in ids:
             share, name = float(model.body_gravcomp[body]), body_name(model, int(body))
             text = f"body {name}: gravcomp lifts it by {share:g} x its weight"
-            yield Disturbance("gravity", text)
+            yield "gravity", text
 
 
-def _loops(linkage: Linkage) -> Iterator[Disturbance]:
+def _loops(linkage: Linkage) -> Iterator[Kind]:
     """Yield loops that are softer than MuJoCo's own."""
     model = linkage.component.model
     for each in linkage.component.closures:
@@ -255,37 +259,32 @@ def _loops(linkage: Linkage) -> Iterator[Disturbance]:
         # Both above 0 are a time constant and a damping ratio, both below a stiffness and a damping
         # with the sign changed; for others MuJoCo takes its own.
         if first > SOFT_S * (1 + 1e-9) and second > 0.0:
-            yield Disturbance(
-                "softness",
-                f"loop {each.name}: solref gives it a time constant of {first:g} s, "
-                f"{first / SOFT_S:.2g} times MuJoCo's own",
-            )
+            text = f"time constant of {first:g} s, {first / SOFT_S:.2g} times MuJoCo's own"
+            yield "softness", f"loop {each.name}: solref gives it a {text}"
         elif max(first, second) <= 0.0 and (-first < STIFFNESS or -second < DAMPING):
-            yield Disturbance(
-                "softness",
-                f"loop {each.name}: solref gives it a stiffness of {abs(first):g} 1/s^2 and a "
-                f"damping of {abs(second):g} 1/s; MuJoCo's own are {STIFFNESS:g} and {DAMPING:g}",
+            text = (
+                f"stiffness of {abs(first):g} 1/s^2 and a damping of {abs(second):g} 1/s; "
+                f"MuJoCo's own are {STIFFNESS:g} and {DAMPING:g}"
             )
+            yield "softness", f"loop {each.name}: solref gives it a {text}"
 
 
-def _apart(linkage: Linkage) -> Iterator[Disturbance]:
+def _apart(linkage: Linkage) -> Iterator[Kind]:
     """Yield closures whose two points are at different heights over the plane: they never meet."""
     component = linkage.component
     for each in component.closures:
         first, second = each.anchors
         apart = abs(component.plane.height(second - first))
         if apart > 1e-9 * max(1.0, float(np.abs(first).max())):
-            yield Disturbance(
-                "apart",
-                f"loop {each.name}: its two points are {apart:.4g} m apart across the plane",
-            )
+            text = f"its two points are {apart:.4g} m apart across the plane"
+            yield "apart", f"loop {each.name}: {text}"
 
 
-def _others(model: Any, ids: Iterable[int]) -> Iterator[Disturbance]:
+def _others(model: Any, ids: Iterable[int]) -> Iterator[Kind]:
     """Yield moving bodies beside the linkage, and mocap bodies."""
     roots = {int(body) for body in model.body_weldid} - set(ids) - {WORLD}
     moving = [body_name(model, body) for body in sorted(roots) if int(model.body_mocapid[body]) < 0]
     if moving:
-        yield Disturbance("others", f"bodies beside the linkage: {few(moving, SHOWN)}")
+        yield "others", f"bodies beside the linkage: {few(moving, SHOWN)}"
     if model.nmocap:
-        yield Disturbance("others", "mocap bodies count as ground")
+        yield "others", "mocap bodies count as ground"

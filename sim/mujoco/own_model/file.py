@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 from xml.parsers import expat
 
-import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import EngineError, cut
@@ -78,11 +77,6 @@ NUMBERS = (
     *(("site", f"site_{name}") for name in ("pos", "quat")),
 )
 """Numbers of a model that MuJoCo accepts even if not finite."""
-KINDS = {
-    "body": mujoco.mjtObj.mjOBJ_BODY,
-    "jnt": mujoco.mjtObj.mjOBJ_JOINT,
-    "site": mujoco.mjtObj.mjOBJ_SITE,
-}
 INCLUDING = ("include", "model")
 """Elements that read another MJCF file."""
 CURE = "give an MJCF file, such as model.xml"
@@ -104,14 +98,10 @@ def load(path: Path) -> Any:
         raise ModelError(f"{path}: {cut(' '.join(str(error).split()), 600)}") from None
     for kind, name in NUMBERS:
         if len(wrong := np.argwhere(~np.isfinite(getattr(model, name)))):
-            at = _called(model, kind, int(wrong[0][0]))
+            index = int(wrong[0][0])
+            at = name_of(model, "joint" if kind == "jnt" else kind, index) or f"{kind} {index}"
             raise ModelError(f"{path}: {name} of {at} is not finite")
     return model
-
-
-def _called(model: Any, kind: str, index: int) -> str:
-    """Return the name of an element in the file, or its number."""
-    return name_of(model, KINDS[kind], index) or f"{kind} {index}"
 
 
 def text_of(path: Path) -> bytes:

@@ -162,7 +162,6 @@ def _placement(component: Component, weld: ModelClosure) -> Placement:
 
 
 def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | ModelGuide]:
-    """Yield the pair of a body and its parent."""
     kinds = " ".join(joint.kind for joint in body.joints)
     kind = PAIRS.get(kinds)
     if kind is None:

@@ -90,21 +90,17 @@ def coordinates(
     order of the freedoms and in the senses of the scene; hinges get the whole turns that bring them
     nearest to the coordinates ``near``."""
     moving = {GROUND: STILL} | _moving(scene, state)
-    q: list[float] = []
-    rate: list[float] = []
-    push: list[float] = []
+    rows: list[Row] = []
     for limb in limbs.limbs:
         base = moving[limbs.of.get(limb.parent, GROUND)]
-        relative = _seen_from(base, moving[limbs.of[limb.body]])
-        for values, found in zip((q, rate, push), _joints(limb, relative), strict=True):
-            values.extend(found)
+        rows += _joints(limb, _seen_from(base, moving[limbs.of[limb.body]]))
+    q, rate, push = np.array(rows).T
     hinges = [freedom.kind == "hinge" for limb in limbs.limbs for freedom in limb.freedoms]
-    turns = np.where(hinges, np.round((near - np.array(q)) / math.tau), 0.0)
-    return np.array(q) + math.tau * turns, np.array(rate), np.array(push)
+    turns = np.where(hinges, np.round((near - q) / math.tau), 0.0)
+    return q + math.tau * turns, rate, push
 
 
 def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
-    """Return the frames of links and blocks at a state."""
     frames: dict[str, _Moving] = {GROUND: STILL}
     for link in scene.links.values():
         theta, omega, alpha = (each[link.name] for each in (state.theta, state.omega, state.alpha))
@@ -112,29 +108,26 @@ def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
         if point is None:
             continue
         arm = complex(*link.points[point]) * cmath.exp(1j * theta)
-        frames[link.name] = _Moving(
-            complex(*state.position[point]) - arm,
-            theta,
-            complex(*state.velocity[point]) - 1j * omega * arm,
-            omega,
-            complex(*state.acceleration[point]) - (1j * alpha - omega**2) * arm,
-            alpha,
-        )
+        frames[link.name] = _placed(state, point, arm, theta, omega, alpha)
     for name, slider in blocks(scene).items():
         guide = frames[slider.on]
-        frames[name] = _Moving(
-            complex(*state.position[slider.point]),
-            guide.theta + sliding_angle(slider),
-            complex(*state.velocity[slider.point]),
-            guide.omega,
-            complex(*state.acceleration[slider.point]),
-            guide.alpha,
-        )
+        theta = guide.theta + sliding_angle(slider)
+        frames[name] = _placed(state, slider.point, 0j, theta, guide.omega, guide.alpha)
     return frames
 
 
+def _placed(
+    state: State, point: str, arm: complex, theta: float, omega: float, alpha: float
+) -> _Moving:
+    """Return the frame from which a point of its body is at ``arm``."""
+    place, speed, push = (
+        complex(*each[point]) for each in (state.position, state.velocity, state.acceleration)
+    )
+    speed, push = speed - 1j * omega * arm, push - (1j * alpha - omega**2) * arm
+    return _Moving(place - arm, theta, speed, omega, push, alpha)
+
+
 def _seen_from(base: _Moving, body: _Moving) -> _Moving:
-    """Return a frame relative to another one."""
     back = cmath.exp(-1j * base.theta)
     place = body.place - base.place
     turning = 1j * base.omega
@@ -150,8 +143,12 @@ def _seen_from(base: _Moving, body: _Moving) -> _Moving:
     )
 
 
-def _joints(limb: Limb, seen: _Moving) -> tuple[list[float], list[float], list[float]]:
-    """Return the joint coordinates of a limb and their rates, by its motion in its parent."""
+Row = tuple[float, float, float]
+"""A joint coordinate, and its first and second rates."""
+
+
+def _joints(limb: Limb, seen: _Moving) -> list[Row]:
+    """Return the joint coordinates of a limb, from their refs on, by its motion in its parent."""
     turn = math.remainder(seen.theta - limb.angle_rad, math.tau)
     angle, place = limb.angle_rad, complex(*limb.offset)
     pivot, after = place, False
@@ -176,24 +173,11 @@ def _joints(limb: Limb, seen: _Moving) -> tuple[list[float], list[float], list[f
     turning = sum((v * d for v, d, own in zip(sped, axes, late, strict=True) if own), 0j)
     swing = (1j * seen.alpha - seen.omega**2) * arm if after else 0j
     pushed = _split(axes, seen.push - swing - 2 * spin * turning)
-    own_turn = ((turn, seen.omega, seen.alpha), slid, sped, pushed)
-    return _in_order(limb, own_turn)
-
-
-def _in_order(
-    limb: Limb,
-    values: tuple[tuple[float, float, float], list[float], list[float], list[float]],
-) -> tuple[list[float], list[float], list[float]]:
-    """Return coordinates from their refs on, and rates, in the order of the freedoms."""
-    turns, slid, sped, pushed = values
     slides = iter(zip(slid, sped, pushed, strict=True))
-    rows = [turns if freedom.kind == "hinge" else next(slides) for freedom in limb.freedoms]
+    turned = turn, seen.omega, seen.alpha
+    rows = [turned if freedom.kind == "hinge" else next(slides) for freedom in limb.freedoms]
     refs = [freedom.ref for freedom in limb.freedoms]
-    return (
-        [ref + row[0] for ref, row in zip(refs, rows, strict=True)],
-        [row[1] for row in rows],
-        [row[2] for row in rows],
-    )
+    return [(ref + x, v, a) for ref, (x, v, a) in zip(refs, rows, strict=True)]
 
 
 def _split(axes: Sequence[complex], vector: complex) -> list[float]:

@@ -214,7 +214,6 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
 
 
 def _link(parts: SceneParts, link: int, frame: Placement) -> Link:
-    """Make a link in its own frame."""
     matter = parts.matter[link]
     return Link(
         parts.called[link],
@@ -261,7 +260,6 @@ def _slider(
     frames: Mapping[int, Placement],
     sliders: Mapping[str, Slider],
 ) -> Slider:
-    """Make a sliding pair."""
     rider, on = guide.rider, frames[guide.on]
     direction = cmath.phase(on.turn * guide.direction)
     if guide.mark is None:

@@ -23,7 +23,7 @@ from models.scene.joints import bodies
 from sim.engine import Drive, Facts, Log, Poses, Settings
 from sim.engine.tree_poses import body_poses
 from sim.mujoco.own_model.closures import ModelError, body_name, name_of
-from sim.mujoco.own_model.component import JOINTS, joint_name, rigid
+from sim.mujoco.own_model.component import is_hinge, joint_name, rigid
 from sim.mujoco.own_model.linkage import size
 from sim.mujoco.own_model.planar_model import PlanarModel, coordinates
 from sim.mujoco.own_model.variants import applied, held
@@ -208,10 +208,9 @@ def _touching(own: PlanarModel, data: Any) -> set[tuple[str, str]]:
 
 
 def _geom(model: Any, geom: int) -> str:
-    """Return the name of a geom, or of its body."""
     if geom < 0:
         return "a flex"
-    name = name_of(model, mujoco.mjtObj.mjOBJ_GEOM, geom)
+    name = name_of(model, "geom", geom)
     return name or f"a geom of {body_name(model, int(model.geom_bodyid[geom]))}"
 
 
@@ -226,7 +225,7 @@ def _passed(own: PlanarModel, low: Any, high: Any) -> list[str]:
             least, most = (float(end) for end in model.jnt_range[joint])
             past = max(least - float(low[at]), float(high[at]) - most)
             if past > 0.0:
-                hinge = JOINTS[int(model.jnt_type[joint])] == "hinge"
-                far = f"{math.degrees(past):.3g} deg" if hinge else f"{past:.3g} m"
+                turns = is_hinge(model, joint)
+                far = f"{math.degrees(past):.3g} deg" if turns else f"{past:.3g} m"
                 texts.append(f"joint {joint_name(model, joint)} is led past its limit by {far}")
     return texts

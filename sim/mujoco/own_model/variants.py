@@ -8,7 +8,7 @@ from difflib import unified_diff
 from pathlib import Path
 from typing import Any
 
-import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 
 from models.errors import EngineError
 from models.mjcf.options import STIFF_DAMPING, STIFF_IMPEDANCE, STIFF_STEPS
@@ -259,7 +259,6 @@ def _tag(name: bytes, attributes: Mapping[str, str]) -> bytes:
 
 
 def _with(raw: bytes, tag: Tag, attributes: Mapping[str, str]) -> bytes:
-    """Return a start tag of the text with some attributes set."""
     return _set(raw[tag.start : tag.end], attributes)
 
 

@@ -101,27 +101,36 @@ def test_our_trapezoidal_rule_is_that_of_exudyn() -> None:
     assert held["integrator"] == "TrapezoidalIndex2"
 
 
-@pytest.mark.parametrize(("name", "setting", "value"), [
-    ("mujoco", "integrator", "implicitfast"),
-    ("mujoco", "solver", "CG"),
-    ("mujoco", "iterations", 7),
-    ("mujoco", "solref_dampratio", 1.5),
-    ("mujoco", "solimp_dmin", 0.91),
-    ("mujoco", "solimp_dmax", 0.96),
-    ("mujoco", "solimp_width", 0.002),
-    ("pymunk", "iterations", 7),
-    ("pymunk", "damping", 0.75),
-    ("pymunk", "error_bias", 0.25),
-    ("exudyn", "integrator", "TrapezoidalIndex2"),
-    ("exudyn", "spectral_radius", 0.75),
-    ("exudyn", "relative_tolerance", 1e-6),
-    ("exudyn", "absolute_tolerance", 1e-7),
-    ("exudyn", "iterations", 17),
-    ("exudyn", "jacobian", "each-iteration"),
-    ("exudyn", "jacobian", "as-needed"),
-    ("exudyn", "adaptive_step", "disable"),
-    ("exudyn", "ignore_singular", "disable"),
-])  # fmt: skip
+TAKEN: dict[str, list[tuple[str, SettingValue]]] = {
+    "mujoco": [
+        ("integrator", "implicitfast"), ("solver", "CG"), ("iterations", 7),
+        ("solref_dampratio", 1.5), ("solimp_dmin", 0.91), ("solimp_dmax", 0.96),
+        ("solimp_width", 0.002)],
+    "pymunk": [("iterations", 7), ("damping", 0.75), ("error_bias", 0.25)],
+    "exudyn": [
+        ("integrator", "TrapezoidalIndex2"), ("spectral_radius", 0.75),
+        ("relative_tolerance", 1e-6), ("absolute_tolerance", 1e-7), ("iterations", 17),
+        ("jacobian", "each-iteration"), ("jacobian", "as-needed"), ("adaptive_step", "disable"),
+        ("ignore_singular", "disable")],
+}  # fmt: skip
+REFUSED: dict[str, list[tuple[str, SettingValue]]] = {
+    "mujoco": [
+        ("iterations", 0), ("tolerance", -1.0), ("solref_dampratio", 0.0), ("solimp_dmin", 5.0),
+        ("flywheel_ratio", 0.0)],
+    "pymunk": [
+        ("iterations", 0), ("damping", -1.0), ("error_bias", -1.0), ("error_bias", float("nan")),
+        ("lines", "loose")],
+    "exudyn": [
+        ("integrator", "RK44"), ("spectral_radius", 1.5), ("relative_tolerance", -1.0),
+        ("iterations", 0), ("jacobian", "never"), ("linear_solver", "LAPACK")],
+}  # fmt: skip
+
+
+def each_of(values: dict[str, list[tuple[str, SettingValue]]]) -> list[tuple[object, ...]]:
+    return [(name, *each) for name, own in values.items() for each in own]
+
+
+@pytest.mark.parametrize(("name", "setting", "value"), each_of(TAKEN))
 def test_a_setting_reaches_the_engine(name: str, setting: str, value: SettingValue) -> None:
     assert facts(name, {setting: value}).settings[setting] == value
     assert opened(name, "tuned").facts().settings[setting] != value
@@ -132,24 +141,7 @@ def test_so_does_a_linear_solver_of_exudyn() -> None:
         assert facts("exudyn", {"linear_solver": name}).settings["linear_solver_used"] == name
 
 
-@pytest.mark.parametrize(("name", "setting", "value"), [
-    ("mujoco", "iterations", 0),
-    ("mujoco", "tolerance", -1.0),
-    ("mujoco", "solref_dampratio", 0.0),
-    ("mujoco", "solimp_dmin", 5.0),
-    ("mujoco", "flywheel_ratio", 0.0),
-    ("pymunk", "iterations", 0),
-    ("pymunk", "damping", -1.0),
-    ("pymunk", "error_bias", -1.0),
-    ("pymunk", "error_bias", float("nan")),
-    ("pymunk", "lines", "loose"),
-    ("exudyn", "integrator", "RK44"),
-    ("exudyn", "spectral_radius", 1.5),
-    ("exudyn", "relative_tolerance", -1.0),
-    ("exudyn", "iterations", 0),
-    ("exudyn", "jacobian", "never"),
-    ("exudyn", "linear_solver", "LAPACK"),
-])  # fmt: skip
+@pytest.mark.parametrize(("name", "setting", "value"), each_of(REFUSED))
 def test_a_value_that_an_engine_does_not_take_is_refused(
     name: str, setting: str, value: SettingValue
 ) -> None:

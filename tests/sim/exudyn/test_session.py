@@ -1,6 +1,5 @@
 """Sessions of exudyn: its clock, its silence, its redundant joints, its drives."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ from models.scene import Scene
 from models.scene.hard import double_parallelogram
 from models.scene.laws import FromRest, Oscillating, SpeedChange
 from sim.engine import Run, Settings
-from sim.exudyn.crank_drive import CrankCourse, speeds
+from sim.exudyn.crank_drive import CrankCourse
 from sim.exudyn.engine import ENGINE, ExudynSession
 from tests.worlds import runs
 from tests.worlds.runs import driven_by
@@ -148,14 +147,6 @@ def test_a_law_that_starts_accelerating_leaves_nothing_that_rings(
     assert fine[40:].max() < coarse[10:].max() / 4**1.6
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_speeds_lead_by_the_trapezoidal_rule_to_the_angles_of_the_law(law: str) -> None:
-    dt_s, steps = 1e-3, 300
-    told = speeds(LAWS[law], 0.0, dt_s, steps)
-    angles = LAWS[law].at(dt_s * np.arange(steps + 1))[0]
-    np.testing.assert_allclose(np.diff(angles), (told[1:] + told[:-1]) / 2 * dt_s, atol=1e-15)
-
-
 def test_between_the_steps_the_crank_is_told_the_law_itself() -> None:
     law = LAWS["oscillating"]
     course = CrankCourse(law, 0.2, 1e-3)
@@ -176,10 +167,3 @@ def test_a_servo_lags_by_what_its_gain_leaves(law: str | None) -> None:
     )
     assert 1e-7 < stiff < 1e-3
     assert soft == pytest.approx(10.0 * stiff, rel=0.2)
-
-
-def test_a_crank_without_mass_is_driven_all_the_same() -> None:
-    crank = replace(FOURBAR.links["crank"], mass_kg=0.0, inertia_kg_m2=0.0)
-    scene = replace(FOURBAR, links={**FOURBAR.links, "crank": crank})
-    assert off(scene, ran(scene), "rocker", "theta").max() < 1e-11
-    assert ran(scene, drive="servo").reason.startswith("crank: mass_kg 0")

@@ -17,7 +17,7 @@ from models.scene.hard import WindowChain
 from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
 from sim.mujoco.engine import MujocoSession
-from sim.mujoco.loading import LoadStages, forward_parts, stage_sizes
+from sim.mujoco.loading import LoadStages, forward_parts
 from sim.run import run
 from tests.worlds.runs import acted_on, opened
 from tests.worlds.tiers import slowly
@@ -90,14 +90,6 @@ def test_a_jump_is_at_its_step_however_long_the_clock_has_added_up_rounding() ->
     stages = LoadStages([load], 0.0, 1e-4, 299_999, 2)
     seen = [stages.at(clock + 1e-4 * c)[0] for c in (-1.0, -0.5, -0.5, 0.0, 0.0, 0.5, 0.5, 1.0)]
     assert seen == [0.0] * 4 + [1.0] * 4
-
-
-def test_the_stages_of_a_step_with_a_jump_have_its_moments() -> None:
-    """Of 1 from 0.3 of a step on, by Simpson's rule: 0.7 of speed, 0.7^2 / 2 of place."""
-    load = Load("on", "crank", None, Staircase((0.3,), (1.0,)))
-    ((start, middle, end),) = stage_sizes(load, 0.0, 1.0, 0, 1)
-    assert (start + 4.0 * middle + end) / 6.0 == pytest.approx(0.7)
-    assert (start + 2.0 * middle) / 6.0 == pytest.approx(0.5 * 0.7**2)
 
 
 def test_other_integrators_are_given_the_load_of_each_step() -> None:

@@ -118,8 +118,7 @@ def started(
     own = read_model(path, "motor")
     scene = assembled(own, ModelRequest(path, "motor", 10.0)).scene
     start = solve(scene, np.zeros(1), bound=False).state()
-    profile = own.engine(Advised()).profiles["as-written"]
-    settings = {name: each.value for name, each in profile.settings.items()}
+    settings = own.engine(Advised()).profiles["as-written"].values
     settings["integrator"] = integrator
     return OwnModelSession(own.planar, scene, start, settings, 0.002, "prescribed"), start
 
@@ -185,8 +184,7 @@ def read(path: Path, text: str) -> ReadModel:
 
 def wanted(own: ReadModel, dt_s: float, advised: Advised) -> mujoco.MjModel:
     """The model with what the line `recommended` sets."""
-    line = profiles((), advised)[RECOMMENDED]
-    settings = {name: setting.value for name, setting in line.settings.items()}
+    settings = profiles((), advised)[RECOMMENDED].values
     model = mujoco.MjModel.from_xml_path(str(own.path))
     applied(model, own.planar.loops, settings, dt_s)
     return model

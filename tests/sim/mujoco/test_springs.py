@@ -2,22 +2,18 @@
 what its file says.
 """
 
-import math
 from dataclasses import replace
-from itertools import pairwise
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.free.release import release
 from models.array import Array
 from models.errors import EngineError
 from models.files.reading import load_scene, parse_scene
 from models.mjcf.document import build
-from models.motion import State
-from models.scene import GROUND, Driver, Link, Point, Scene
+from models.scene import GROUND, Driver, Scene
 from models.scene.characteristics import Polynomial, Pulse
 from models.scene.driver import Released
 from models.scene.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
@@ -26,24 +22,18 @@ from sim.run import run
 from sim.run.check import refuse_other_model
 from tests.analytic.multibody.scenes import start_state
 from tests.worlds import runs
-from tests.worlds.equilibrium import left_over
 from tests.worlds.let_go import released
-from tests.worlds.runs import acted_on
+from tests.worlds.reported_forces import left_over
+from tests.worlds.runs import acted_on, massless
 
 DT_S = 1e-4
-START_RAD, SPEED_RAD_S = 0.7, 3.0
 
 
-def let_go(name: str, *springs: Spring, speed_rad_s: float = SPEED_RAD_S) -> Scene:
+def let_go(name: str, *springs: Spring) -> Scene:
     """A shipped scene, let go in some position of its own."""
     scene = load_scene(name)
-    driver = Driver(scene.driver.link, Released(START_RAD, speed_rad_s, 1.0))
+    driver = Driver(scene.driver.link, Released(0.7, 3.0, 1.0))
     return acted_on(replace(scene, driver=driver), *springs)
-
-
-def massless(scene: Scene) -> Scene:
-    blocks = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
-    return replace(scene, sliders=blocks)
 
 
 FOURBAR, CRANK = "fourbar-lecture-1", "slider-crank-excel-210"
@@ -192,74 +182,19 @@ def test_a_spring_between_bodies_that_never_turn_against_each_other_moves_nothin
     assert abs(pulled) == pytest.approx(abs(idle.pull(0.0, 0.0)))
 
 
-PULSE = Pulse(1.0, 0.31, 0.1)
-START = np.array([0.3, -0.8, 0.5, 1.0])
-END_S = 0.6
-
-
-def rod(name: str, first: str, second: str) -> Link:
-    return Link(name, {first: (0.0, 0.0), second: (1.0, 0.0)}, 1.0, (0.5, 0.0), 1.0 / 12.0)
-
-
-SCENE = Scene(
-    "double-pendulum", "test", {"A": (0.0, 0.0)},
-    {"upper": rod("upper", "A", "B"), "lower": rod("lower", "B", "C")}, {},
-    Driver("upper", Released(START[0], START[2], END_S)), gravity_m_s2=(0.0, -9.81),
-    springs={
-        "knee": PinSpring("knee", 3.0, 0.1, 0.2, "B", ("upper", "lower")),
-        "line": LineSpring("line", 5.0, 0.1, 0.5, ("A", "C"))},
-    loads={"pulse": Load("pulse", "lower", None, PULSE)})  # fmt: skip
-
-
-def rates(time_s: float, y: Array) -> Array:
-    """Of angles and speeds of both rods, by Lagrange's equations for rods of 1 kg and 1 m."""
-    a, b, da, db = y
-    apart = math.cos(a - b), math.sin(a - b)
-    mass = np.array([[4.0 / 3.0, 0.5 * apart[0]], [0.5 * apart[0], 1.0 / 3.0]])
-    push = 0.5 * apart[1] * np.array([-(db**2), da**2])
-    push -= 9.81 * np.array([1.5 * math.cos(a), 0.5 * math.cos(b)])
-    knee = 3.0 * (b - a - 0.2) + 0.1 * (db - da)
-    push += np.array([knee, -knee])
-    push[1] += PULSE.at(np.array([time_s]))[0]
-    along = np.array([math.cos(a) + math.cos(b), math.sin(a) + math.sin(b)])
-    ways = np.array([[-math.sin(a), math.cos(a)], [-math.sin(b), math.cos(b)]])
-    length = math.hypot(*along)
-    unit = along / length
-    line = 5.0 * (length - 0.5) + 0.1 * unit @ (da * ways[0] + db * ways[1])
-    return np.concatenate([[da, db], np.linalg.solve(mass, push - line * ways @ unit)])
-
-
-def start() -> State:
-    a, b, da, db = START
-    alpha = rates(0.0, START)[2:]
-    place, speed, push = (np.zeros(2),), (np.zeros(2),), (np.zeros(2),)
-    for angle, omega, spin in ((a, da, alpha[0]), (b, db, alpha[1])):
-        arm = np.array([math.cos(angle), math.sin(angle)])
-        across = np.array([-arm[1], arm[0]])
-        place += (place[-1] + arm,)
-        speed += (speed[-1] + omega * across,)
-        push += (push[-1] + spin * across - omega**2 * arm,)
-
-    def named(vectors: tuple[Array, ...]) -> dict[str, Point]:
-        return {p: (float(v[0]), float(v[1])) for p, v in zip("ABC", vectors, strict=True)}
-
-    by_rod = (
-        dict(zip(SCENE.links, map(float, pair), strict=True)) for pair in ((a, b), (da, db), alpha)
-    )
-    return State(0.0, *by_rod, named(place), named(speed), named(push), {}, {})
-
-
-def test_it_moves_as_lagrange_s_equations_say_to_fourth_order() -> None:
+def test_an_open_chain_of_two_freedoms_is_followed_to_fourth_order() -> None:
     """Where no loop is closed, nothing is soft."""
-    state, kinks = START, (0.0, 0.1, 0.41, END_S)
-    for first, last in pairwise(kinks):
-        done = solve_ivp(rates, (first, last), state, method="DOP853", rtol=1e-11, atol=1e-11)
-        state = done.y[:, -1]
-    errors = []
-    for dt_s in (4e-3, 2e-3):
-        given = {"dt_s": dt_s, "steps": round(END_S / dt_s), "drive": "free"}
-        ran = runs.ran(SCENE, "mujoco", start=start(), **given)
-        ends = np.array([ran.motion.links[rod].theta[-1] for rod in SCENE.links])
-        errors.append(np.abs(ends - state[:2]).max())
+    scene = acted_on(
+        load_scene("double-pendulum"),
+        PinSpring("knee", 3.0, 0.1, 0.2, "B", ("upper", "lower")),
+        LineSpring("line", 5.0, 0.1, 0.5, ("A", "C")),
+        Load("pulse", "lower", None, Pulse(1.0, 0.31, 0.1)),
+    )
+    true, errors = release(scene, 0.15).at(np.array([0.15]), bound=False).links, []
+    for steps in (150, 300):
+        given = {"dt_s": 0.15 / steps, "steps": steps, "every": steps, "drive": "free"}
+        ran = runs.ran(scene, "mujoco", start=start_state(scene), **given)
+        off = [ran.motion.links[rod].theta[-1] - true[rod].theta[0] for rod in scene.links]
+        errors.append(np.abs(off).max())
     assert errors[1] < 5e-9
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.7)

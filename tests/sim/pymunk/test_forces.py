@@ -9,20 +9,19 @@ import numpy as np
 import pytest
 
 from analytic.forces.kinetostatics import forces
-from models.array import Array
 from models.files.reading import load_scene
-from models.motion import Forces
 from models.scene import GROUND, Scene
 from models.scene.characteristics import Constant, Sine
 from models.scene.hard import double_parallelogram
 from models.scene.loads import Load
-from reports.contract.clauses.reactions import named
 from sim.engine import Drive, Run
-from sim.engine.momentum_balance import Hinge, MomentumGain, joint_pushes
+from sim.engine.momentum_balance import MomentumGain, joint_pushes
+from sim.engine.ties import Hinge
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.spoiler import SPOILER
 from sim.run import run
-from tests.worlds.runs import acted_on, all_series, opened, ran, rubbing, start_of
+from tests.worlds.reported_forces import misses
+from tests.worlds.runs import acted_on, opened, ran, rubbing, start_of
 
 START = 4
 """The samples that the start takes: of the first there are no forces, in the next two the joints
@@ -34,10 +33,9 @@ def of_a_turn(scene: Scene, steps: int, **given: object) -> Run:
 
 
 def errors(scene: Scene, steps: int) -> dict[str, float]:
-    """The worst of a turn."""
+    """The worst of a turn, after the start."""
     found = of_a_turn(scene, steps).motion.forces
-    exact = forces(scene, found.time_s, bound=False)
-    return {key: float(off.max()) for key, off in misses(found, exact, scene.longest_m).items()}
+    return {key: float(off[START:].max()) for key, off in misses(scene, found).items()}
 
 
 def of_second_order(scene: Scene, most: float) -> None:
@@ -46,23 +44,6 @@ def of_second_order(scene: Scene, most: float) -> None:
     for key, least in fine.items():
         assert least < most, key
         assert least < 1e-12 or 3.0 < coarse[key] / least < 5.0, key  # or there is none
-
-
-def misses(found: Forces, exact: Forces, longest_m: float) -> dict[str, Array]:
-    """Errors after the start: of reactions over the largest, of moments over that times the longest
-    link, of the torque over its own largest, (T,)."""
-    right, off = dict(named(exact)), {}
-    assert [name for name, _ in named(found)] == list(right)
-    for name, series in named(found):
-        kind = next(kind for kind in ("force", "moment", "torque") if kind in name)
-        error = np.abs(series - right[name]).reshape(len(series), -1).max(axis=1)[START:]
-        off[kind] = np.maximum(off.get(kind, 0.0), error)
-    force, torque = (
-        max(np.abs(series).max() for name, series in right.items() if kind in name)
-        for kind in ("force", "torque")
-    )
-    sizes = {"force": force, "moment": force * longest_m, "torque": torque}
-    return {kind: error / sizes[kind] for kind, error in off.items()}
 
 
 @pytest.mark.parametrize("name", [
@@ -76,17 +57,6 @@ def misses(found: Forces, exact: Forces, longest_m: float) -> dict[str, Array]:
 ])  # fmt: skip
 def test_forces_are_the_reference_s_to_the_second_order(name: str) -> None:
     of_second_order(load_scene(name), 5e-4)
-
-
-def test_the_motion_is_that_of_a_run_without_forces_to_the_bit() -> None:
-    scene = load_scene("slider-crank-offset")
-    for drive in ("prescribed", "servo", "free"):
-        one, other = (opened(scene, ENGINE, dt_s=1e-3, drive=drive) for _ in range(2))
-        for every in (3, 1):
-            told, alone = other.record_forces(10, every), one.record(10, every)
-            assert alone.forces is None
-            np.testing.assert_array_equal(told.forces.time_s, told.poses.time_s)
-            np.testing.assert_array_equal(all_series(told.poses), all_series(alone.poses))
 
 
 def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
@@ -232,8 +202,9 @@ def test_constant_friction_is_against_the_motion(where: str) -> None:
         agree = np.isclose(found.friction[joint], exact.friction[joint], atol=1e-9 * law.size)
         assert (~agree).sum() <= 1 + 2, joint  # the first sample, and the ends of two strokes
         same &= agree
-    for key, off in misses(found, exact, scene.longest_m).items():
-        assert off[same[START:]].max() < 1e-3, key
+    same[:START] = False
+    for key, off in misses(scene, found).items():
+        assert off[same].max() < 1e-3, key
 
 
 def test_friction_of_a_pin_brings_a_free_mechanism_to_rest_and_that_of_a_slider_is_refused() -> (

@@ -12,7 +12,6 @@ import pytest
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
-from models.errors import EngineError
 from models.files.reading import load_scene
 from models.scene import GROUND, Driver, Scene
 from models.scene.characteristics import Constant, Polynomial, Sine, Staircase
@@ -23,7 +22,6 @@ from models.scene.tabulated import Tabulated
 from sim.engine import Run
 from sim.engine.settings import resolved
 from sim.pymunk.engine import ENGINE
-from sim.pymunk.force_recipe import FORCE_RECIPE
 from sim.pymunk.snippet import SNIPPET
 from sim.registry.offers import Stepping
 from sim.run import run
@@ -192,14 +190,6 @@ def test_the_snippet_of_free_motion_says_how_it_starts_and_names_no_speed() -> N
     assert "DampedSpring" in text
     driven = SNIPPET.write(settings, Stepping(10.0, 1e-3), "prescribed", [])
     assert "DampedSpring" not in driven
-
-
-def test_the_force_recipe_refuses_springs_and_free_motion() -> None:
-    scene = cranking(KNEE)
-    state = released(scene)[0]
-    settings = resolved(ENGINE.profiles["tuned"], None)
-    with pytest.raises(EngineError, match=r"leaves out springs\.knee, a driver that is let go"):
-        FORCE_RECIPE(scene, state, settings, 1e-3)
 
 
 def off(name: str, dt_s: float, paths: str) -> float:

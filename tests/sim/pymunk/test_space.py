@@ -1,15 +1,12 @@
 """The pymunk space: only what the scene needs, assembled, and what it refuses."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pymunk
 import pytest
 
-from models.errors import EngineError
 from models.files.reading import load_scene, parse_scene, shipped
-from models.scene import Scene
 from sim.pymunk.space import build
 from tests.worlds.runs import start_of
 
@@ -83,21 +80,6 @@ def test_only_the_groove_lets_the_sliding_speed_leak_across_the_line(joint: str)
     speed = rod.velocity_at_local_point((x - centre[0], y - centre[1]))
     leak = abs(speed[1]) / abs(speed[0])
     assert leak > 1e-3 if joint == "groove" else leak < 1e-7
-
-
-def test_a_free_link_without_mass_is_named_but_a_prescribed_crank_needs_none() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    state = start_of(scene)
-
-    def bare(name: str) -> Scene:
-        link = replace(scene.links[name], mass_kg=0.0, inertia_kg_m2=0.0)
-        return replace(scene, links={**scene.links, name: link})
-
-    with pytest.raises(EngineError, match="rocker: mass_kg 0, inertia_kg_m2 0; pymunk"):
-        build(bare("rocker"), state)
-    build(bare("crank"), state)
-    with pytest.raises(EngineError, match="crank: mass_kg 0"):
-        build(bare("crank"), state, drive="servo")
 
 
 @pytest.mark.parametrize("line", [20.0, 200.0, 340.0])

@@ -4,6 +4,7 @@ import contextlib
 import io
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +13,14 @@ import pytest
 from analytic.forces import kinetostatics
 from models.errors import EngineError
 from models.files.reading import load_scene
-from models.scene import Scene
+from models.scene import Driver, Scene
 from models.scene.characteristics import Constant, Sine
+from models.scene.driver import Released
 from models.scene.hard import double_parallelogram
-from models.scene.loads import ConstantFriction, Load
+from models.scene.loads import ConstantFriction, Load, PinSpring
 from sim.registry import offering
 from sim.registry.offers import force_recipe
+from tests.worlds.let_go import released
 from tests.worlds.runs import acted_on, start_of, tuned
 from tests.worlds.tiers import few
 
@@ -99,14 +102,6 @@ def test_that_of_mujoco_reads_past_loads_friction_and_sliders() -> None:
     assert off(engine_like, columns_of(printed(recipe("mujoco", engine_like)))) < 1e-4
 
 
-def test_that_of_mujoco_is_refused_where_a_file_does_not_hold_what_drives_or_loads() -> None:
-    pulse = acted_on(FOURBAR, Load("pulse", "rocker", None, Sine(1.0, 1.0)))
-    with pytest.raises(EngineError, match=r"loads.pulse comes as a control of each step"):
-        recipe("mujoco", pulse)
-    with pytest.raises(EngineError, match=r"tangent: driver comes as a control"):
-        recipe("mujoco", load_scene("tangent"))
-
-
 @pytest.mark.parametrize(("name", "steps", "most"), [
     ("fourbar-lecture-1", 720, 5e-4),
     ("slider-crank-excel-350", 360, 2e-3),  # a rail
@@ -124,11 +119,22 @@ def test_that_of_pymunk_holds_every_kind_of_line_from_the_first_step_on(
     assert off(scene, columns, settled=0) < most
 
 
-def test_what_that_of_pymunk_would_leave_out_is_refused() -> None:
-    loaded = acted_on(FOURBAR, Load("push", "rocker", None, Constant(1.0)))
-    with pytest.raises(EngineError, match=r"leaves out loads\.push; take them out"):
-        recipe("pymunk", loaded)
-    with pytest.raises(EngineError, match="leaves out a driver whose speed is not constant"):
-        recipe("pymunk", load_scene("tangent"))
-    with pytest.raises(EngineError, match="redundant links leave the reactions open"):
-        recipe("pymunk", double_parallelogram("double-parallelogram", source="test"))
+PULSE, PUSH = (Load("push", "rocker", None, course) for course in (Sine(1.0, 1.0), Constant(1.0)))
+SPRING = PinSpring("knee", 1.5, 0.02, -0.3, "B", ("crank", "coupler"))
+FREE = replace(FOURBAR, driver=Driver("crank", Released(1.0, 2.0, 1.0)))
+REDUNDANT = double_parallelogram("double-parallelogram", source="test")
+
+
+@pytest.mark.parametrize(("name", "scene", "words"), [
+    ("mujoco", acted_on(FOURBAR, PULSE), r"loads.push comes as a control of each step"),
+    ("mujoco", load_scene("tangent"), r"tangent: driver comes as a control"),
+    ("pymunk", acted_on(FOURBAR, PUSH), r"leaves out loads\.push; take them out"),
+    ("pymunk", acted_on(FREE, SPRING), r"leaves out springs\.knee, a driver that is let go"),
+    ("pymunk", load_scene("tangent"), "leaves out a driver whose speed is not constant"),
+    ("pymunk", REDUNDANT, "redundant links leave the reactions open"),
+    ("exudyn", acted_on(FOURBAR, PUSH), "does not cover loads; take that out"),
+])  # fmt: skip
+def test_what_a_recipe_would_leave_out_is_refused(name: str, scene: Scene, words: str) -> None:
+    start = released(scene)[0] if scene.is_free else start_of(scene)
+    with pytest.raises(EngineError, match=words):
+        force_recipe(name, scene, start, tuned(name), 90.0)

@@ -25,15 +25,10 @@ from sim.pymunk.space import build
 from sim.registry import ENGINES, available, declaration, engine
 from sim.run import time_run
 from tests.worlds import runs
-from tests.worlds.runs import acted_on, start_of
+from tests.worlds.runs import acted_on, massless, start_of
 from tests.worlds.tiers import slowly
 
 FOURBAR = load_scene("fourbar-lecture-1")
-
-
-def massless_blocks(scene: Scene) -> Scene:
-    blocks = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
-    return replace(scene, sliders=blocks)
 
 
 def ran(
@@ -173,16 +168,25 @@ def test_an_engine_that_raises_or_refuses_is_a_row_with_a_reason(fake_engine: Mo
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_a_free_link_without_mass_is_unsupported_and_named(name: str) -> None:
-    bare = replace(FOURBAR.links["rocker"], mass_kg=0.0, inertia_kg_m2=0.0)
-    scene = replace(FOURBAR, links={**FOURBAR.links, "rocker": bare})
-    result = ran(scene, name)
+@pytest.mark.parametrize(
+    ("link", "drive"), [("rocker", "prescribed"), ("crank", "servo"), ("crank", "free")]
+)
+def test_a_link_without_mass_is_unsupported_and_named_unless_it_is_driven(
+    link: str, drive: str, name: str
+) -> None:
+    bare = replace(FOURBAR.links[link], mass_kg=0.0, inertia_kg_m2=0.0)
+    scene = replace(FOURBAR, links={**FOURBAR.links, link: bare})
+    result = ran(scene, name, drive=drive)
     assert result.status == "unsupported"
-    assert result.reason.startswith("rocker: mass_kg 0")
+    assert result.reason.startswith(f"{link}: mass_kg 0")
+    if drive == "servo" and name != "mujoco":  # which moves no body without
+        done = ran(scene, name, steps=100)
+        exact = solve(scene, done.motion.time_s).links["rocker"].theta
+        np.testing.assert_allclose(done.motion.links["rocker"].theta, exact, atol=1e-4)
 
 
 def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
-    scene = massless_blocks(load_scene("scotch-yoke"))
+    scene = massless(load_scene("scotch-yoke"))
     refused = ran(scene, "mujoco")
     assert refused.status == "unsupported"
     assert "sliders.B a mass_kg" in refused.reason
@@ -191,7 +195,7 @@ def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_point_that_only_massless_blocks_share_is_named(name: str) -> None:
-    result = ran(massless_blocks(load_scene("tangent")), name)
+    result = ran(massless(load_scene("tangent")), name)
     assert result.status == "unsupported"
     assert "mass_kg" in result.reason
 

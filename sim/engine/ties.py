@@ -1,0 +1,45 @@
+"""Pairs of bodies as engines join them: the hinges of pins, the lines of sliders, the ends of
+springs."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from models.scene import Scene
+from models.scene.joints import End, Prism, Slot, joints, line_ends, local_point, riding_body
+from models.scene.loads import LineSpring, PinSpring, Spring
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """Two bodies that share a point, as an engine joins them."""
+
+    point: str
+    first: str
+    other: str
+
+
+def hinges(scene: Scene, *firm: str) -> Iterator[Hinge]:
+    """Yield the hinges of each pin: of its firmest body, in the order of ``firm``, with the others,
+    one less than it has bodies."""
+    for pin in joints(scene).pins:
+        first, *others = sorted(pin.bodies, key=lambda name: (*firm, name).index(name))
+        for other in others:
+            yield Hinge(pin.point, first, other)
+
+
+def slide_of(scene: Scene, slider: str) -> Prism | Slot:
+    """Return the joint of a slider."""
+    return next(slide for slide in joints(scene).slides if slide.slider.name == slider)
+
+
+def spring_ends(scene: Scene, spring: Spring) -> tuple[End, End]:
+    """Return the two bodies of a spring with the places on them [m]: its two points, the two copies
+    of its pin, or a place of the line on the guide and the sliding point."""
+    if isinstance(spring, LineSpring):
+        return line_ends(scene, spring)
+    if isinstance(spring, PinSpring):
+        first, second = ((body, local_point(scene, body, spring.point)) for body in spring.bodies)
+        return first, second
+    slide = slide_of(scene, spring.slider)
+    slider, rider = slide.slider, riding_body(slide)
+    return (slider.on, slider.through_m), (rider, local_point(scene, rider, slider.point))
