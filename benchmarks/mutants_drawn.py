@@ -32,6 +32,12 @@ CHANGED = {
         "load.direction_rad - lean",
         "(load.direction_rad + lean)",
     ),
+    6: ("for head, table in _tables(scene, flywheels or {}):", "flywheels", "scene"),
+    7: (
+        "if isinstance(slider, str) and slider not in names.sliders:",
+        "slider not in names.sliders",
+        "(slider in names.sliders)",
+    ),
     38: (
         "(-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned",
         "-k2",

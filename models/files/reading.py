@@ -3,17 +3,15 @@
 from collections.abc import Iterable, Mapping
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
-from models.files.assemble import scene_from_table
+from models.files.assemble import SceneTable, faults_of_names, scene_from_table
 from models.files.driver_table import DRIVERS, SLIDES, DriverTable
 from models.files.inputs import UnreadableError, names_in, regular_text, tables
-from models.files.load_table import LOADS, LawOfLoad
-from models.files.names import faults_of_names
-from models.files.schema import ElasticTable, SceneTable
+from models.files.load_table import LOADS, LoadTable
 from models.scene import Scene
 from models.scene.driver import Controlled, Released
 
@@ -200,9 +198,9 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
     return _validated(model, raw, "driver.", faults)
 
 
-def _loads(raw: object, faults: list[str]) -> dict[str, LawOfLoad]:
+def _loads(raw: object, faults: list[str]) -> dict[str, LoadTable]:
     """Validate the tables of the loads by the models of their laws."""
-    loads: dict[str, LawOfLoad] = {}
+    loads: dict[str, LoadTable] = {}
     for name, table in (raw if isinstance(raw, Mapping) else {}).items():
         if not isinstance(table, Mapping):
             continue  # already a fault of SceneTable
@@ -265,16 +263,7 @@ def _line(
 
 def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
     """List the valid keys of the table that holds the unknown key ``loc``."""
-    from models.files import schema
-
-    tables: dict[str, type[BaseModel]] = {
-        "ground": schema.GroundTable,
-        "links": schema.LinkTable,
-        "sliders": schema.SliderTable,
-        "friction": schema.FrictionTable,
-        "springs": schema.SpringTable,
-        "start": schema.StartTable,
-        "elastic": ElasticTable,
-    }
-    owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
-    return list(owner.model_fields)
+    if len(loc) > 1:  # in a table of the scene, or in one of its tables by name
+        kind = model.model_fields[str(loc[0])].annotation
+        model = (kind, *get_args(kind))[-1]
+    return list(model.model_fields)
