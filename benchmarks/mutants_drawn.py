@@ -32,6 +32,11 @@ CHANGED = {
         "load.direction_rad - lean",
         "(load.direction_rad + lean)",
     ),
+    5: (
+        "links=each_array(change, self.links),",
+        "each_array(change, self.links)",
+        "(each_array(self.links, change))",
+    ),
     6: ("for head, table in _tables(scene, flywheels or {}):", "flywheels", "scene"),
     7: (
         "if isinstance(slider, str) and slider not in names.sliders:",

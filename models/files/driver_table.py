@@ -153,7 +153,8 @@ SLIDES: dict[str, type[SlidingDriver]] = {
     "accelerating": AcceleratingSlide,
 }
 """Models of drivers that name a slider."""
-LAWS: dict[str, type[Law]] = {
+LawInFile = ConstantSpeed | Oscillating | FromRest | Accelerating | Released
+LAWS: dict[str, type[LawInFile]] = {
     "constant": ConstantSpeed,
     "oscillating": Oscillating,
     "from-rest": FromRest,
@@ -174,9 +175,8 @@ KEYS = {
 the travel of an angle is a turn, and has no key."""
 
 
-def _keys_of(law: type[Law], *, slides: bool) -> Iterator[tuple[str, str]]:
-    """Yield the fields of a law with their keys."""
-    for field in fields(law):  # type: ignore[arg-type]  # each law is a dataclass
+def _keys_of(law: type[LawInFile], *, slides: bool) -> Iterator[tuple[str, str]]:
+    for field in fields(law):
         if key := KEYS.get(field.name, (field.name, field.name))[slides]:
             yield field.name, key
 
@@ -226,15 +226,15 @@ def driver_table(driver: Driver) -> Mapping[str, object]:
 
 def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
     """Write the table of a law of an angle, or of a displacement."""
-    kind = next((kind for kind, known in LAWS.items() if type(law) is known), None)
-    if kind is None:
+    kind, known = next((each for each in LAWS.items() if type(law) is each[1]), ("", None))
+    if known is None:
         raise CrankcheckError(
             f"law {type(law).__name__}: a scene file has no words for it; take another"
         )
     if slides and kind == "free":
         raise CrankcheckError("what is let go is told by a link: a scene file has no free slider")
     table: dict[str, object] = {} if kind == "constant" else {"law": kind}
-    for name, key in _keys_of(type(law), slides=slides):
+    for name, key in _keys_of(known, slides=slides):
         value = getattr(law, name)
         table[key] = schema.in_degrees(value) if key.endswith("_deg") else value
     return table

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from analytic.mechanism.travel import coriolis
 from models.array import Array
-from models.motion import BodyMotion, Forces, Motion
+from models.motion import Forces, Motion, each_array
 from models.scene import Scene
 from models.scene.driver import driver_place
 from reports.describe.facts import SpeedFacts
@@ -200,25 +200,21 @@ def run_frame(run: Run) -> pd.DataFrame:
 def cleaned(motion: Motion) -> Motion:
     """Return the motion for readers: numbers that are 0 within their own bound are 0, and those
     with an infinite bound NaN."""
-    if motion.bound is None:
+    bound = motion.bound
+    if bound is None:
         return motion
-    links, points, sliders = motion.bound.links, motion.bound.points, motion.bound.sliders
+
+    def clean(values: Array, limit: Array) -> Array:
+        """Clean a series (T,) or (T, 2) by its bound (T,)."""
+        shown = np.where(np.abs(values.T) <= limit, 0.0, values.T)
+        return np.where(np.isfinite(limit), shown, np.nan).T
+
     return replace(
         motion,
-        links={n: _cleaned(m, links[n]) for n, m in motion.links.items()},
-        points={n: _cleaned(m, points[n]) for n, m in motion.points.items()},
-        sliders={n: _cleaned(m, sliders[n]) for n, m in motion.sliders.items()},
+        links=each_array(clean, motion.links, bound.links),
+        points=each_array(clean, motion.points, bound.points),
+        sliders=each_array(clean, motion.sliders, bound.sliders),
     )
-
-
-def _cleaned(body: BodyMotion, bound: BodyMotion) -> BodyMotion:
-    """Return one body's arrays; a bound is per sample, also for vectors."""
-    fields = {}
-    for name, values in vars(body).items():
-        limit = vars(bound)[name]
-        shown = np.where(np.abs(values.T) <= limit, 0.0, values.T)
-        fields[name] = np.where(np.isfinite(limit), shown, np.nan).T
-    return type(body)(**fields)
 
 
 def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:

@@ -12,7 +12,7 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Forces, Motion, SliderForces
+from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.driver import driver_place, driver_shown, driver_unit
@@ -165,20 +165,8 @@ def cleaned_forces(acting: Forces) -> Forces:
     def clean(series: Array, limit: Array) -> Array:
         return _cleaned(series, np.where(jams, 0.0, limit))
 
-    pins = {
-        point: {body: clean(force, bound.pins[point][body]) for body, force in bodies.items()}
-        for point, bodies in acting.pins.items()
-    }
-    sliders = {
-        name: SliderForces(
-            clean(slider.normal, bound.sliders[name].normal),
-            clean(slider.moment, bound.sliders[name].moment),
-        )
-        for name, slider in acting.sliders.items()
-    }
-    friction = {n: clean(series, bound.friction[n]) for n, series in acting.friction.items()}
-    torque = clean(acting.torque, bound.torque)
-    return replace(acting, pins=pins, sliders=sliders, torque=torque, friction=friction)
+    clear = acting.each_series(clean, bound)
+    return replace(clear, bound=bound, friction_solution=acting.friction_solution)
 
 
 def _cleaned(series: Array, limit: Array) -> Array:
