@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.table import Table
@@ -25,10 +24,6 @@ from models.scene.elastic import Shape
 from reports.describe.elastic_words import described
 from reports.describe.motion_tables import Columns, tables_over_time
 from reports.output.console import plain_table
-
-if TYPE_CHECKING:
-    pass
-
 
 SHARES = np.linspace(0.0, 1.0, 41)
 """Points of an elastic link at which its shape is computed, over its length; with the middle."""
