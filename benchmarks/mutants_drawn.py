@@ -37,7 +37,7 @@ CHANGED = {
         "each_array(change, self.links)",
         "(each_array(self.links, change))",
     ),
-    6: ("for head, table in _tables(scene, flywheels or {}):", "flywheels", "scene"),
+    6: ("return toml_text(head, dict(_tables(scene, flywheels or {})))", "flywheels", "scene"),
     7: (
         "if isinstance(slider, str) and slider not in names.sliders:",
         "slider not in names.sliders",

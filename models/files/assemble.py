@@ -137,26 +137,12 @@ def scene_text(scene: Scene, flywheels: Mapping[str, float] | None = None) -> st
     """Return TOML that reads as the scene (`models.files.reading.parse_scene`), except for the last
     digit of angles, written in degrees. ``flywheels`` [kg m^2] are written beside the links' own
     inertia. Raises CrankcheckError for a law of another kind."""
-    lines = [
-        f"{name} = {toml_value(value)}"
-        for name, value in (
-            ("name", scene.name),
-            ("source", scene.source),
-            ("note", scene.note),
-            ("gravity_m_s2", scene.gravity_m_s2),
-        )
-    ]
-    for head, table in _tables(scene, flywheels or {}):
-        lines += [
-            "",
-            f"[{head}]",
-            *(f"{key} = {toml_value(value)}" for key, value in table.items()),
-        ]
-    return "\n".join(lines) + "\n"
+    keys = ("name", "source", "note", "gravity_m_s2")
+    head = {key: getattr(scene, key) for key in keys}
+    return toml_text(head, dict(_tables(scene, flywheels or {})))
 
 
 def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str, Table]]:
-    """Yield the tables of the file, in its order."""
     yield "ground", {"points": scene.ground}
     for name, link in scene.links.items():
         yield f"links.{name}", body_table.link_table(link, flywheels.get(name))
@@ -176,6 +162,15 @@ def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str,
     for joint, friction in scene.friction.items():
         slides = joint in scene.sliders
         yield f"friction.{joint}", spring_table.friction_table(friction, slides=slides)
+
+
+def toml_text(head: Table, tables: Mapping[str, Table]) -> str:
+    """Write keys with their values, then tables by their names."""
+    lines = [f"{key} = {toml_value(value)}" for key, value in head.items()]
+    for name, table in tables.items():
+        lines += ["", f"[{name}]"]
+        lines += [f"{key} = {toml_value(value)}" for key, value in table.items()]
+    return "\n".join(lines) + "\n"
 
 
 def toml_value(value: object) -> str:

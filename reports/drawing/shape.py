@@ -67,6 +67,12 @@ def size_of_motion(path: Motion) -> float:
     return float(np.max(high - low)) / (1 + 2 * MARGIN)
 
 
+def foot_of(place: Array, size: float) -> Array:
+    """Return the corners of the foot below a pin of the ground [m], (3, 2)."""
+    foot = 0.035 * size
+    return place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+
+
 def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
     """Return the unit vector along a guide at a sample."""
     angle = slider.direction_rad
@@ -75,10 +81,10 @@ def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
     return np.array([math.cos(angle), math.sin(angle)])
 
 
-def colours_of(scene: Scene) -> dict[str, str]:
+def colours_of(scene: Scene, colours: Sequence[str] = COLOURS) -> dict[str, str]:
     """Return a colour for every link, the driver's first."""
     names = sorted(scene.links, key=lambda name: name != scene.driver.link)
-    return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
+    return dict(zip(names, itertools.cycle(colours), strict=False))
 
 
 def clear_of_locking(acting: Forces) -> Forces:

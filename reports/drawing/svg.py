@@ -64,7 +64,7 @@ def svg(
     wide, tall = (float(each) * per_m for each in high - low)
     paper = _Paper(float(low[0]), float(high[1]), per_m)
     size = shape.size_of_motion(path)
-    colours = colours_of(scene)
+    colours = shape.colours_of(scene, COLOURS)
     spare_m = 0.08 * size
     sheet = shape.Sheet(
         low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH
@@ -89,12 +89,6 @@ def svg(
         f'height="{tall:.0f}" viewBox="0 0 {wide:.0f} {tall:.0f}" style="max-width:100%" '
         f'fill="none" stroke="currentColor"><title>{escape(title)}</title>{"".join(parts)}</svg>'
     )
-
-
-def colours_of(scene: Scene) -> dict[str, str]:
-    """Return a colour for every link, the driver's first."""
-    order = sorted(scene.links, key=lambda name: name != scene.driver.link)
-    return {name: COLOURS[index % len(COLOURS)] for index, name in enumerate(order)}
 
 
 def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[str]:
@@ -144,8 +138,7 @@ def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
 
 def _feet(place: Array, paper: _Paper, size: float) -> str:
     """Return the foot of a pin of the ground."""
-    foot = 0.035 * size
-    corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+    corners = shape.foot_of(place, size)
     return (
         f'<polygon points="{_points(paper.at(corners))}" fill="currentColor" opacity="0.55" '
         'stroke="none"/>'
@@ -160,12 +153,10 @@ def _pin(place: Array, paper: _Paper) -> str:
 def _arrow(arrow: Arrow, paper: _Paper, size: float, colours: dict[str, str]) -> str:
     """Return a force in the colour of the body that it acts on; on a block in the text colour."""
     colour = colours.get(arrow.body, "currentColor")
-    head = arrow.head(size)
-    ends = np.array([arrow.tail, head[1:].mean(axis=0) if arrow.is_whole else arrow.tip])
-    corners = f'<polygon points="{_points(paper.at(head))}" fill="{colour}" stroke="none"/>'
+    head, line = (_points(paper.at(each)) for each in (arrow.head(size), arrow.line(size)))
+    corners = f'<polygon points="{head}" fill="{colour}" stroke="none"/>'
     return (
-        f'<polyline points="{_points(paper.at(ends))}" stroke="{colour}" stroke-width="2"/>'
-        f"{corners * arrow.is_whole}"
+        f'<polyline points="{line}" stroke="{colour}" stroke-width="2"/>{corners * arrow.is_whole}'
     )
 
 
