@@ -225,7 +225,6 @@ def driver_table(driver: Driver) -> Mapping[str, object]:
 
 
 def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
-    """Write the table of a law of an angle, or of a displacement."""
     kind, known = next((each for each in LAWS.items() if type(law) is each[1]), ("", None))
     if known is None:
         raise CrankcheckError(
@@ -259,7 +258,6 @@ def faults_of_driver(driver: schema.RawTables, names: schema.NamesInTables) -> I
 
 
 def _faults_of_pin(pin: str, links: object, names: schema.NamesInTables) -> Iterator[str]:
-    """Yield faults of a pin that is none, or does not join the named links."""
     joined = names.at(pin)
     blocks = {point: name for name, point in names.blocks.items()}
     if len(joined) == 1 and pin in blocks:

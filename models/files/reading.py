@@ -178,7 +178,6 @@ def read_text(path: Path) -> str:
 
 
 def _driver(raw: object, faults: list[str]) -> DriverTable | None:
-    """Validate the driver table by the model of its law."""
     if isinstance(raw, list):
         faults.append(
             f"driver: found a list of {len(raw)}; a scene has one driver, one [driver] table"
@@ -199,7 +198,6 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
 
 
 def _loads(raw: object, faults: list[str]) -> dict[str, LoadTable]:
-    """Validate the tables of the loads by the models of their laws."""
     loads: dict[str, LoadTable] = {}
     for name, table in (raw if isinstance(raw, Mapping) else {}).items():
         if not isinstance(table, Mapping):
@@ -240,7 +238,6 @@ def _line(
     message: str,
     found: object,
 ) -> str:
-    """Describe one fault in one line: key, value found, remedy."""
     parts = [str(part) for part in loc if part != "[key]"]
     key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
     if kind == "missing":

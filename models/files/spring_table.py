@@ -122,7 +122,6 @@ def faults_of_springs(springs: schema.RawTables, names: schema.NamesInTables) ->
 
 
 def _faults_of_pin(key: str, pin: str, bodies: object, met: list[str]) -> Iterator[str]:
-    """Yield faults of a pin that is none, or leaves open the two bodies of the spring."""
     if len(met) < 2:
         yield f"{key}.pin: fewer than two links, or links and the ground, meet at {cut(pin)}"
     elif bodies is None and len(met) > 2:

@@ -117,7 +117,6 @@ class _Reader:
         return self.tokens[self.next]
 
     def _take(self, *texts: str) -> str | None:
-        """Take the next sign, if it is one of these."""
         token = self._look()
         if token.kind != "sign" or token.text not in texts:
             return None

@@ -140,7 +140,6 @@ class SchemeTable(Table):
 
 
 def _vectors(joint: JointTable) -> list[tuple[str, list[float]]]:
-    """Return the points and directions of a joint with their keys."""
     one = ((key, getattr(joint, key)) for key in ("at_m", "axis", "normal"))
     pairs = ((key, each) for key in ("axes", "centres_m") for each in getattr(joint, key) or ())
     return [(key, vector) for key, vector in (*one, *pairs) if vector is not None]
@@ -241,7 +240,6 @@ def load_scheme(name_or_path: str) -> Scheme:
 
 
 def _faults(joint: JointTable, links: list[str]) -> list[str]:
-    """List the faults of a joint beyond its own table."""
     faults = [
         f"between: no link {each}; {suggestion(each, (GROUND, *links), 'there are')}"
         for each in joint.between
@@ -287,7 +285,6 @@ def _joint(name: str, table: JointTable) -> SchemeJoint:
 
 
 def _place(given: list[float] | tuple[float, ...]) -> Place:
-    """Extend two or three coordinates to three."""
     x, y, z = (*given, 0.0)[:3]
     return (x, y, z)
 
@@ -303,6 +300,5 @@ def _unit(vector: Place) -> Place:
 
 
 def _sine(a: Place, b: Place) -> float:
-    """Return the sine of the angle between two directions."""
     cross = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
     return _size(cross) / (_size(a) * _size(b))

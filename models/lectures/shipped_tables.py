@@ -60,7 +60,6 @@ def table_of(raw: dict[str, object], model: type[M], place: str) -> M:
 
 
 def _line(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
-    """Describe one fault in one line: key, value found, remedy."""
     key = ".".join(cut(str(part)) for part in loc if part != "[key]")
     if kind == "missing":
         return f"{key}: missing; add it"

@@ -82,7 +82,6 @@ def build(
 
 
 def _check_masses(scene: Scene) -> None:
-    """Refuse bodies that MuJoCo cannot move."""
     for body in bodies(scene):
         mass, inertia = mass_of(scene, body)
         if mass < LEAST_MASS or inertia < LEAST_MASS:
@@ -139,7 +138,6 @@ def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
 
 
 def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str) -> list[str]:
-    """Write the child bodies of ``parent``."""
     lines: list[str] = []
     for limb in (limb for limb in tree.limbs if limb.parent == parent):
         place: AttributeRow = {"name": limb.body, "pos": (*limb.offset, 0.0)}
@@ -202,7 +200,6 @@ def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
 
 
 def _equality(tree: Tree) -> list[str]:
-    """Write one connect per pin that closes a loop."""
     rows = [
         {"name": f"{c.point}: {c.bodies[0]} to {c.bodies[1]}"}
         | {f"site{i}": f"{body}.{c.point}" for i, body in enumerate(c.bodies, start=1)}
@@ -222,7 +219,6 @@ def _actuator(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
 
 
 def _drive(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
-    """Write the actuator of the crank, if any."""
     if not has_control(scene, writing):
         return []
     driven, sense = driven_freedom(scene, tree.limbs)

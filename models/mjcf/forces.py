@@ -69,7 +69,6 @@ def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
 
 
 def _block_without_mass(scene: Scene, body: str) -> Slot | None:
-    """Return the slot of a block without mass; None for other bodies."""
     slots = joints(scene).slots
     return next((slot for slot in slots if block_name(slot.slider) == body), None)
 
@@ -247,7 +246,6 @@ def tendon_lines(scene: Scene, tendons: tuple[SpringTendon, ...]) -> list[str]:
 
 
 def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
-    """Write the element of a tendon with its sites or joints."""
     spring = tendon.spring
     row: AttributeRow = {"name": tendon.name, "stiffness": spring.rate, "damping": spring.damping}
     row["springlength"] = tendon.slack_length

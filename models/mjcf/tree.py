@@ -194,7 +194,6 @@ def _lightness(scene: Scene) -> Callable[[_Edge], float]:
 
 
 def _slides(slide: Prism | Slot) -> list[_Edge]:
-    """Return the ways to hold a slide."""
     slider = slide.slider
     if isinstance(slide, Prism):
         return [_Edge(slider.on, slide.body, slider.point, slider, turns=False)]
@@ -204,7 +203,6 @@ def _slides(slide: Prism | Slot) -> list[_Edge]:
 
 
 def _needs_mass(slider: Slider) -> str:
-    """Return the remedy for a slide that would have to close a loop."""
     return (
         f"slider {slider.name}: a massless block cannot be held here, as MuJoCo closes loops only "
         f"at pins; give sliders.{slider.name} a mass_kg above 0"
@@ -212,7 +210,6 @@ def _needs_mass(slider: Slider) -> str:
 
 
 def _check_close(scene: Scene, close: Sequence[str]) -> None:
-    """Refuse closing points that are not pins, and the driver's own."""
     pins = [pin.point for pin in joints(scene).pins]
     for point in close:
         if point not in pins or point == scene.driver_pivot:
@@ -234,11 +231,9 @@ def _closures(scene: Scene, at_point: _Groups) -> tuple[LoopPin, ...]:
 
 
 def _limbs(scene: Scene, where: dict[str, Frame], edges: Sequence[_Edge]) -> tuple[Limb, ...]:
-    """Make the limbs, from the ground outwards."""
     placed = [GROUND]
 
     def grown(parent: str) -> list[Limb]:
-        """Return the child limbs of ``parent``, each followed by its own."""
         limbs: list[Limb] = []
         for edge in edges:
             child = {edge.a: edge.b, edge.b: edge.a}.get(parent)
@@ -261,7 +256,6 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
     rate = body.omega - base.omega
 
     def hinge(anchor: Point) -> Freedom:
-        """Make the hinge about a point of the child."""
         return Freedom(f"{child}.{edge.point}", "hinge", anchor, 0.0, angle, rate)
 
     if edge.slider is None:

@@ -62,11 +62,9 @@ class CutScene(ABC):
         """Return the index of the body that carries a place of the link, and the place in it."""
 
     def _springs(self, link: str) -> Mapping[str, Spring]:
-        """Springs between these bodies."""
         return {}
 
     def _beam(self, link: str) -> Beam | None:
-        """Beam that joins them."""
         return None
 
     def nodes(self, link: str) -> tuple[str, ...]:
@@ -107,7 +105,6 @@ class CutScene(ABC):
         return self.bodies(body)[piece], line.lean_rad
 
     def _put(self, load: Load) -> Load:
-        """Move a load to the body that carries its point."""
         if load.point is None:
             return load
         body, lean = self._carrier(load.body, load.point)
@@ -158,7 +155,6 @@ class CutScene(ABC):
         return LinkMotion(theta, omega, alpha)
 
     def _shape(self, motion: Motion, link: str) -> ElasticMotion:
-        """Return its deflection and extension."""
         first, last = (motion.points[pin].position for pin in line_of(self.scene, link).pins)
         way = last - first
         far = np.hypot(way[:, 0], way[:, 1])

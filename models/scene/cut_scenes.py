@@ -89,7 +89,6 @@ class SegmentedScene(CutScene):
         }
 
     def _springs(self, link: str) -> dict[str, SegmentSpring]:
-        """Make the springs in all pins between segments."""
         own, line = self.scene.elastic[link], line_of(self.scene, link)
         names, nodes = self.segments(link), self.nodes(link)
         rate = segment_spring(own, line.length_m, self.count, corrected=self.corrected)

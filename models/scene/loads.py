@@ -100,7 +100,6 @@ class Load:
             raise self._beyond(error) from None
 
     def _beyond(self, error: ValueError) -> CrankcheckError:
-        """Error of a place beyond the characteristic."""
         return CrankcheckError(
             f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
         )

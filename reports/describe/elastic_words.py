@@ -87,7 +87,6 @@ def _link(scene: Scene, own: ElasticLink) -> str:
 
 
 def _ratio(scene: Scene, first_rad_s: float) -> str:
-    """Return a frequency, and its ratio to the driver's speed where that is constant."""
     words = f"{first_rad_s:.6g} rad/s on"
     law = scene.driver.law
     if isinstance(law, ConstantSpeed):

@@ -159,7 +159,6 @@ def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int
 
 
 def _effort(scene: Scene) -> str:
-    """Return the drive's effort, with its unit."""
     return f"{scene.driver.effort} {scene.driver.effort_unit}"
 
 

@@ -93,7 +93,6 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
 
 
 def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
-    """Return the driver's angles at samples in words."""
     if driver_place(scene, motion) is None:
         return count(samples.size, "instant")
     places, unit = driver_shown(scene, motion)[samples], driver_unit(scene)

@@ -152,7 +152,6 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
 
 
 def _legend(figure: Figure, turn: _Turn) -> None:
-    """Draw the links by colour, below everything that moves."""
     colours = shape.colours_of(turn.scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
     if turn.arrows is not None:
@@ -165,7 +164,6 @@ def _legend(figure: Figure, turn: _Turn) -> None:
 
 
 def _draw(axes: Axes, turn: _Turn, index: int) -> None:
-    """Draw one position with the paths of the points behind it."""
     scene, motion = turn.scene, turn.motion
     low, high = turn.box
     axes.set_xlim(low[0], high[0])

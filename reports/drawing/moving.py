@@ -186,7 +186,6 @@ def displacements(
 
 
 def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
-    """Return a slider: its point and guide, the guide's angle there, and its travel."""
     slider = scene.sliders[name]
     travel = motion.sliders[name].displacement
     return {
@@ -214,7 +213,6 @@ def first_turn(angle_rad: Array) -> Array:
 
 
 def _rows(vectors: Iterable[Array], samples: int) -> Array:
-    """Return vectors (T, 2) as rows: x and y of each."""
     return _stacked([row for vector in vectors for row in vector.T], samples)
 
 

@@ -173,7 +173,6 @@ def _costs(
     boxes: Sequence[tuple[float, float, float, float]],
     frame: tuple[float, float],
 ) -> Array:
-    """Return the cost of each place (k, 2), shape (k,)."""
     half = np.array(label.size) / 2
     room = np.min(_distance(heavy[:, :2], centres, half) - heavy[:, 2], axis=1, initial=CLEAR)
     for x, y, width, height in boxes:
@@ -307,7 +306,6 @@ def _middle(sides: Sequence[Side]) -> Array:
 
 
 def _sampled(a: Array, b: Array) -> Array:
-    """Return points along a side, closely."""
     return np.linspace(a, b, max(int(np.linalg.norm(b - a) / BAR), 1) + 1)
 
 

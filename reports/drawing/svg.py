@@ -92,7 +92,6 @@ def svg(
 
 
 def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[str]:
-    """Yield the paths of the moving points, as far as they are finite."""
     for name, point in motion.points.items():
         places = point.position[np.isfinite(point.position).all(axis=1)]
         few = places[:: max(1, len(places) // SAMPLES)]
@@ -103,7 +102,6 @@ def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[s
 def _guides(
     scene: Scene, path: Motion, at: int, paper: _Paper, spare_m: float, colours: dict[str, str]
 ) -> Iterable[str]:
-    """Yield the lines of sliders, as far as they run on them."""
     for slider in scene.sliders.values():
         ends = shape.rail(slider, path, at, spare_m)[[0, -1]]
         colour = "currentColor" if slider.on == GROUND else colours[slider.on]
@@ -125,7 +123,6 @@ def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: 
 
 
 def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
-    """Return the block of a slider, along its line."""
     direction = shape.guide_direction(slider, path, at)
     across = np.array([-direction[1], direction[0]])
     half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * BLOCK / paper.per_m
@@ -137,7 +134,6 @@ def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
 
 
 def _feet(place: Array, paper: _Paper, size: float) -> str:
-    """Return the foot of a pin of the ground."""
     corners = shape.foot_of(place, size)
     return (
         f'<polygon points="{_points(paper.at(corners))}" fill="currentColor" opacity="0.55" '
@@ -190,5 +186,4 @@ def _size(text: str, is_point: bool) -> tuple[float, float]:
 
 
 def _points(places: Sequence[Array] | Array) -> str:
-    """Return corners in SVG format."""
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
