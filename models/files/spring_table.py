@@ -11,16 +11,7 @@ from pydantic import model_validator
 from models.errors import cut, few
 from models.files import schema
 from models.files.schema import LISTED, Name, NonNegative
-from models.scene import GROUND, Link, Point
-from models.scene.loads import (
-    ConstantFriction,
-    CoulombFriction,
-    Friction,
-    LineSpring,
-    PinSpring,
-    SlideSpring,
-    Spring,
-)
+from models.scene import GROUND, Link, Point, loads
 
 
 class SpringTable(schema.Table):
@@ -62,24 +53,26 @@ class SpringTable(schema.Table):
             raise ValueError(f"free_m is {self.free_m:g}; a distance is 0 or more")
         return self
 
-    def spring(self, name: str, ground: Mapping[str, Point], links: Mapping[str, Link]) -> Spring:
+    def spring(
+        self, name: str, ground: Mapping[str, Point], links: Mapping[str, Link]
+    ) -> loads.Spring:
         """Make the spring of a scene without faults (`faults_of_springs`)."""
         if self.pin is not None:
             points = {link: each.points for link, each in links.items()}
             first, second = self.bodies or schema.bodies_at(self.pin, ground, points)
             rate, damping = self.rate_n_m_rad or 0.0, self.damping_n_m_s or 0.0
             free = math.radians(self.free_deg or 0.0)
-            return PinSpring(name, rate, damping, free, self.pin, (first, second))
+            return loads.PinSpring(name, rate, damping, free, self.pin, (first, second))
         own = (name, self.rate_n_m or 0.0, self.damping_n_s_m or 0.0, self.free_m or 0.0)
         if self.points is not None:
-            return LineSpring(*own, self.points)
+            return loads.LineSpring(*own, self.points)
         assert self.slider is not None
-        return SlideSpring(*own, self.slider)
+        return loads.SlideSpring(*own, self.slider)
 
 
-def spring_table(spring: Spring) -> Mapping[str, object]:
+def spring_table(spring: loads.Spring) -> Mapping[str, object]:
     """Write the table of a spring."""
-    if isinstance(spring, PinSpring):
+    if isinstance(spring, loads.PinSpring):
         return {
             "pin": spring.point,
             "bodies": spring.bodies,
@@ -88,7 +81,7 @@ def spring_table(spring: Spring) -> Mapping[str, object]:
             "free_deg": schema.in_degrees(spring.free),
         }
     own = {"rate_n_m": spring.rate, "damping_n_s_m": spring.damping, "free_m": spring.free}
-    if isinstance(spring, LineSpring):
+    if isinstance(spring, loads.LineSpring):
         return {"points": spring.points, **own}
     return {"slider": spring.slider, **own}
 
@@ -154,18 +147,18 @@ class FrictionTable(schema.Table):
             )
         return self
 
-    def friction(self, joint: str) -> Friction:
+    def friction(self, joint: str) -> loads.Friction:
         """Make the friction of a joint."""
         if self.mu is not None:
-            return CoulombFriction(joint, self.mu, self.radius_m or 0.0)
+            return loads.CoulombFriction(joint, self.mu, self.radius_m or 0.0)
         size = self.torque_n_m if self.force_n is None else self.force_n
         assert size is not None
-        return ConstantFriction(joint, size)
+        return loads.ConstantFriction(joint, size)
 
 
-def friction_table(friction: Friction, *, slides: bool) -> Mapping[str, object]:
+def friction_table(friction: loads.Friction, *, slides: bool) -> Mapping[str, object]:
     """Write the table of friction, in a slider or a pin."""
-    if isinstance(friction, ConstantFriction):
+    if isinstance(friction, loads.ConstantFriction):
         return {"force_n" if slides else "torque_n_m": friction.size}
     table = {"mu": friction.mu}
     return table if slides else {**table, "radius_m": friction.radius_m}

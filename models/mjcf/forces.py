@@ -6,20 +6,9 @@ from models.errors import EngineError
 from models.mjcf.options import AttributeRow, Writing, attributes, commentable
 from models.mjcf.tree import Freedom, Limb, Tree, closings, plan
 from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Point, Scene, joints
 from models.scene.characteristics import Constant
 from models.scene.driver import driver_place_in
-from models.scene.joints import (
-    Slot,
-    block_name,
-    centre_of,
-    joints,
-    line_ends,
-    local_point,
-    riding_body,
-    turned,
-    whole_turns,
-)
 from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, Spring
 
 AXES = "ground axes"
@@ -49,14 +38,14 @@ def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
     slot = _block_without_mass(scene, load.body)
     if slot is None:
         if load.point is None:
-            return PointOfApplication(load.body, centre_of(scene, load.body))
-        place = local_point(scene, load.body, load.point)
+            return PointOfApplication(load.body, joints.centre_of(scene, load.body))
+        place = joints.local_point(scene, load.body, load.point)
         return PointOfApplication(load.body, place, load.direction_rad, load.frame == "body")
     slider = slot.slider
     if load.point is None:
         return PointOfApplication(slider.on, slider.through_m)
-    carrier = riding_body(slot)
-    place, direction = local_point(scene, carrier, slider.point), load.direction_rad
+    carrier = joints.riding_body(slot)
+    place, direction = joints.local_point(scene, carrier, slider.point), load.direction_rad
     if load.frame == "body":
         if slider.on != GROUND:
             raise EngineError(
@@ -68,9 +57,9 @@ def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
     return PointOfApplication(carrier, place, direction)
 
 
-def _block_without_mass(scene: Scene, body: str) -> Slot | None:
-    slots = joints(scene).slots
-    return next((slot for slot in slots if block_name(slot.slider) == body), None)
+def _block_without_mass(scene: Scene, body: str) -> joints.Slot | None:
+    slots = joints.joints(scene).slots
+    return next((slot for slot in slots if joints.block_name(slot.slider) == body), None)
 
 
 def load_sites(scene: Scene, body: str) -> list[AttributeRow]:
@@ -116,7 +105,7 @@ def load_actuators(scene: Scene) -> list[str]:
         else:
             if _needs_axes(load, at):
                 row["refsite"] = AXES
-            row["gear"] = (*turned((1.0, 0.0), at.direction_rad), 0, 0, 0, 0)
+            row["gear"] = (*joints.turned((1.0, 0.0), at.direction_rad), 0, 0, 0, 0)
         lines.append(f"    <motor{attributes(row)}/>")
     return lines
 
@@ -186,15 +175,15 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
         signs = {name: 1 for name in second if name not in first}
         signs |= {name: -1 for name in first if name not in second}
         start, end = (0.0 if b == GROUND else state.theta[b] for b in spring.bodies)
-        shift = after - before + whole_turns(spring, end - start)
+        shift = after - before + joints.whole_turns(spring, end - start)
     else:
         signs, shift = {_sliding(tree, spring.slider): 1}, 0.0
     if not signs:  # they never turn against each other; a tendon asks for a joint all the same
         signs = {next(freedom.name for limb in tree.limbs for freedom in limb.freedoms): 0}
     slack = spring.free - shift
     sense = -1 if slack < 0.0 else 1
-    joints = tuple((name, sense * sign) for name, sign in signs.items())
-    return SpringTendon(spring, joints, shift, sense)
+    signed = tuple((name, sense * sign) for name, sign in signs.items())
+    return SpringTendon(spring, signed, shift, sense)
 
 
 def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
@@ -227,7 +216,7 @@ def spring_points(scene: Scene, body: str) -> list[str]:
         point
         for spring in scene.springs.values()
         if isinstance(spring, LineSpring)
-        for point, (carrier, _) in zip(spring.points, line_ends(scene, spring), strict=True)
+        for point, (carrier, _) in zip(spring.points, joints.line_ends(scene, spring), strict=True)
         if carrier == body
     ]
 
@@ -251,7 +240,7 @@ def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
     row["springlength"] = tendon.slack_length
     if isinstance(spring, LineSpring):
         kind, part = "spatial", "site"
-        ends = zip(spring.points, line_ends(scene, spring), strict=True)
+        ends = zip(spring.points, joints.line_ends(scene, spring), strict=True)
         parts: list[AttributeRow] = [{"site": f"{body}.{point}"} for point, (body, _) in ends]
     else:
         kind, part = "fixed", "joint"
