@@ -232,9 +232,6 @@ def faults_of_elastic(elastic: schema.RawTables, names: schema.NamesInTables) ->
             yield f"{key}: an elastic link lies between two pins; it has {len(pins)}: {found}"
 
 
-OF_LINKS, OF_SLIDERS = ("angles_deg", "rates_rad_s"), ("displacements_m", "speeds_m_s")
-
-
 class StartTable(schema.Table):
     """Start of free motion beyond the driver, by link and by slider; and of elastic links."""
 
@@ -268,12 +265,16 @@ def start_table(start: Start) -> Mapping[str, object]:
 
 def faults_of_start(start: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
     """Yield one line per link or slider of the raw table that the scene lacks."""
-    for keys, known in ((OF_LINKS, names.points), (OF_SLIDERS, names.sliders)):
-        for key in keys:
-            for name in schema.raw_tables(start, key):
-                if name not in known:
-                    have = schema.use_one_of(known, "there is none")
-                    yield f"start.{key}: found {cut(name)}; {have}"
+    for key, known in (
+        ("angles_deg", names.points),
+        ("rates_rad_s", names.points),
+        ("displacements_m", names.sliders),
+        ("speeds_m_s", names.sliders),
+    ):
+        for name in schema.raw_tables(start, key):
+            if name not in known:
+                have = schema.use_one_of(known, "there is none")
+                yield f"start.{key}: found {cut(name)}; {have}"
 
 
 def faults_of_free_motion(scene: Scene) -> Iterator[str]:

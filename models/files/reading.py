@@ -64,16 +64,16 @@ def run_where_named(kind: str) -> list[str]:
     """List the shipped scenes of a kind that run only by their own name: scenes for the reference
     alone, and elastic links in free motion or with a controlled driver, whose reference takes
     longer than all others."""
-    scenes = _scenes_of(kind)
-    return [name for name in scenes if scenes[name].coulomb_joints or _is_loose(scenes[name])]
+    slow = Released | Controlled
+    return [
+        name
+        for name, scene in _scenes_of(kind).items()
+        if scene.coulomb_joints or (scene.elastic and isinstance(scene.driver.law, slow))
+    ]
 
 
 def _scenes_of(kind: str) -> dict[str, Scene]:
     return {name: read_scene(path) for name, path in shipped(kind).items()}
-
-
-def _is_loose(scene: Scene) -> bool:
-    return bool(scene.elastic) and isinstance(scene.driver.law, Released | Controlled)
 
 
 def load_scene(name_or_path: str | PathLike[str]) -> Scene:

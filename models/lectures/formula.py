@@ -166,7 +166,7 @@ class _Reader:
     def _named(self, token: _Token) -> Evaluation:
         self.next += 1
         if token.text == VARIABLE:
-            return _variable
+            return lambda x: x
         if token.text in CONSTANTS:
             return _constant(CONSTANTS[token.text])
         if token.text not in FUNCTIONS:
@@ -194,10 +194,6 @@ class _Reader:
             f"formula {cut(self.text)!r}: at character {token.place} stands {there}, where "
             f"{wanted} was expected"
         )
-
-
-def _variable(x: Array) -> Array:
-    return x
 
 
 def _constant(value: float) -> Evaluation:

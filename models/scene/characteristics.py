@@ -52,9 +52,9 @@ class Characteristic(ABC):
     def steepest(self, x: Array, by: Array | float) -> Array | float:
         """Return a bound on the slope within ``by`` of ``x``."""
 
-    @abstractmethod
     def rounding(self, x: Array) -> Array | float:
         """Return a bound on the rounding error of `at`."""
+        return 0.0
 
     @abstractmethod
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Characteristic:
@@ -75,9 +75,6 @@ class Constant(Characteristic):
         return float(self.value)
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
-        return 0.0
-
-    def rounding(self, x: Array) -> Array | float:
         return 0.0
 
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Constant:
@@ -191,9 +188,6 @@ class Staircase(Characteristic):
         low = np.searchsorted(self.places, np.asarray(x) - by, side="left")
         high = np.searchsorted(self.places, np.asarray(x) + by, side="right")
         return np.where((high > low) & (np.asarray(by) > 0.0), np.inf, 0.0)
-
-    def rounding(self, x: Array) -> Array | float:
-        return 0.0
 
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Staircase:
         if stretch < 0.0:

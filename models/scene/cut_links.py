@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -60,6 +60,13 @@ class CutScene(ABC):
     @abstractmethod
     def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
         """Return the index of the body that carries a place of the link, and the place in it."""
+
+    def _carry(self, link: Link, line: LinkLine, points: Sequence[dict[str, Point]]) -> None:
+        """Add the points of a link, but for its pins, to those of the bodies that carry them."""
+        for name, place in link.points.items():
+            if name not in line.pins:
+                body, there = self._carried(line, place)
+                points[body][name] = there
 
     def _springs(self, link: str) -> Mapping[str, Spring]:
         return {}

@@ -259,9 +259,7 @@ def names(
     """
     blocks = {slider.point for slider in scene.sliders.values()}
     spots = {
-        name: _Spot(
-            (point.position[at] - sheet.low) * sheet.per_m, sheet.block if name in blocks else PIN
-        )
+        name: _Spot(sheet.place(point.position[at]), sheet.block if name in blocks else PIN)
         for name, point in path.points.items()
     }
     bars = {

@@ -6,7 +6,7 @@ from models.errors import SceneError
 from models.files.reading import parse_scene
 from tests.models.files.test_files import GOOD
 from tests.models.scene.test_elastic import GOOD as ELASTIC
-from tests.models.scene.test_elastic import SECTION, SLIDER
+from tests.models.scene.test_elastic import SECTION
 from tests.models.scene.test_free_scenes import FREE
 from tests.models.scene.test_loads import PRESS, RUBBING
 
@@ -170,6 +170,11 @@ def test_fault_is_named_with_its_place(kind: str, fault: str) -> None:
 COUPLER = '{ bar = ["B", "C"], length_m = 0.75'
 ROCKER = 'rocker = { bar = ["D", "C"], length_m = 0.75 }\n'
 PLATE, ARM = ", points = { E = [0.3, 0.1] }", 'arm = { bar = ["E", "F"], length_m = 0.2 }\n'
+SLIDER = """
+[sliders.C]
+link = "coupler"
+on = "ground"
+"""
 HEAVY = SECTION + 'density_kg_m3 = 2700.0\n[start]\nshape = "periodic"\n'
 RAMP = ELASTIC.replace("speed_rad_s = 7.37", 'law = "from-rest"\nspeed_rad_s = 7.37\nrise_s = 0.3')
 

@@ -29,13 +29,6 @@ speed_rad_s = 7.37
 start_deg = 90.0
 """
 SECTION = "[elastic.coupler]\nmodulus_pa = 70e9\nwidth_m = 0.03\nheight_m = 0.003\n"
-SLIDER = """
-[sliders.C]
-link = "coupler"
-on = "ground"
-through_m = [0.0, 0.0]
-direction_deg = 0.0
-"""
 
 
 def test_a_section_says_stiffness_and_mass() -> None:
