@@ -202,12 +202,10 @@ def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
 
 def _sliding(tree: Tree, slider: str) -> str:
     """Return the joint for the displacement of a slider; all slides are in the tree."""
-
-    def slides(limb: Limb) -> bool:
-        return limb.slider is not None and limb.slider.name == slider
-
-    limb = next(limb for limb in tree.limbs if slides(limb))
-    return next(freedom.name for freedom in limb.freedoms if freedom.kind == "slide")
+    freedoms = next(
+        limb.freedoms for limb in tree.limbs if limb.slider and limb.slider.name == slider
+    )
+    return next(freedom.name for freedom in freedoms if freedom.kind == "slide")
 
 
 def spring_points(scene: Scene, body: str) -> list[str]:

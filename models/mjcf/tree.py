@@ -302,17 +302,9 @@ def driven_freedom(scene: Scene, limbs: Sequence[Limb]) -> tuple[str, float]:
     if driver.is_crank:
         return f"{driver.link}.{scene.driver_pivot}", 1.0
     for limb in limbs:
-        slides = limb.slider is not None
-        if slides and limb.slider.name == driver.slider:  # type: ignore[union-attr]  # it has one
-            return next(f.name for f in limb.freedoms if f.kind == "slide"), 1.0
-        if (
-            not slides
-            and limb.point == driver.pin
-            and {limb.body, limb.parent}
-            == {
-                driver.base,
-                driver.link,
-            }
-        ):
+        if limb.slider is not None:
+            if limb.slider.name == driver.slider:
+                return next(f.name for f in limb.freedoms if f.kind == "slide"), 1.0
+        elif limb.point == driver.pin and {limb.body, limb.parent} == {driver.base, driver.link}:
             return limb.freedoms[0].name, 1.0 if limb.body == driver.link else -1.0
     raise EngineError(f"{scene.name}: the tree closes a loop at {driver.joint}, which is driven")

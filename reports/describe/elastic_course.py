@@ -239,10 +239,9 @@ def _extreme(
 def extremes_table(scene: Scene, rows: list[DeflectionExtreme]) -> Table:
     """Return a table of `extremes`."""
     table = plain_table(gap=2)
-    table.add_column("largest", no_wrap=True)
-    table.add_column("", justify="right", no_wrap=True)
-    table.add_column("", no_wrap=True)
-    table.add_column(f"{scene.driver.link} at", justify="right", no_wrap=True)
+    for name, number in (("largest", ""), ("", f"{scene.driver.link} at")):
+        table.add_column(name, no_wrap=True)
+        table.add_column(number, justify="right", no_wrap=True)
     table.add_column("", overflow="fold")
     for row in rows:
         value = "-" if math.isnan(row.value) else f"{row.value:.6g}"
