@@ -128,8 +128,8 @@ def _rods(**links: tuple[str, float] | str) -> str:
     for name, table in links.items():
         text = table
         if not isinstance(table, str):
-            (first, second), length_m = table
-            text = f'bar = ["{first}", "{second}"], length_m = {length_m!r}'
+            ends, length_m = table
+            text = f'bar = ["{ends[0]}", "{ends[1]}"], length_m = {length_m!r}'
         lines.append(f"{name} = {{ {text} }}")
     return "\n".join(lines) + "\n"
 
