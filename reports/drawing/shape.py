@@ -70,7 +70,8 @@ def size_of_motion(path: Motion) -> float:
 def foot_of(place: Array, size: float) -> Array:
     """Return the corners of the foot below a pin of the ground [m], (3, 2)."""
     foot = 0.035 * size
-    return np.asarray(place + [[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+    corners = np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+    return np.asarray(place + corners)
 
 
 def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
