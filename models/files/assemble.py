@@ -74,11 +74,8 @@ def scene_from_table(
 ) -> Scene:
     """Return the scene of the tables.
 
-    Raises
-    ------
-    SceneError
-        Links without length or too far away, masses that cannot be derived, loads that have no
-        magnitude or act on no mass, an impossible free motion.
+    Raises SceneError for links without length or too far away, masses that cannot be derived, loads
+    that have no magnitude or act on no mass, an impossible free motion.
     """
     ground = table.ground.points
     points = {name: link.every_point for name, link in table.links.items()}

@@ -73,13 +73,8 @@ class Formula:
 
 
 def parse_formula(text: str) -> Formula:
-    """Parse a formula by the rules above.
-
-    Raises
-    ------
-    CrankcheckError
-        Text that is no formula: the message gives the character, its place and the expected tokens.
-    """
+    """Parse a formula by the rules above. Raises CrankcheckError for text that is none: the message
+    gives the character, its place and the expected tokens."""
     if len(text) > LONGEST_TEXT:
         raise CrankcheckError(
             f"a formula of {len(text)} characters was given; at most {LONGEST_TEXT} are read: "

@@ -205,15 +205,8 @@ def find_scheme(name_or_path: str) -> Path:
 
 
 def load_scheme(name_or_path: str) -> Scheme:
-    """Load a shipped scheme by name, or a scheme of a file.
-
-    Raises
-    ------
-    CrankcheckError
-        No such scheme.
-    SceneError
-        A file with faults, all in one message.
-    """
+    """Load a shipped scheme by name, or a scheme of a file. Raises CrankcheckError where there is
+    none, and SceneError for a file with faults, all in one message."""
     path = find_scheme(name_or_path)
     table = read_table(path, SchemeTable)
     faults: list[str] = []

@@ -36,11 +36,8 @@ def build(
     The default ``writing`` is `exact`, which runs as it is in any MuJoCo at constant speed; another
     law needs its control at each step. ``tree`` is a tree planned before.
 
-    Raises
-    ------
-    EngineError
-        A body without mass, a controlled driver, a slider that needs a mass, or a pin in ``close``
-        that closes no loop; a load or friction that MuJoCo cannot have there.
+    Raises EngineError for a body without mass, a controlled driver, a slider that needs a mass, or
+    a pin in ``close`` that closes no loop; a load or friction that MuJoCo cannot have there.
     """
     _check_masses(scene)
     _check_driver(scene)

@@ -28,13 +28,8 @@ class PointOfApplication:
 
 def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
     """Return the point of a load. A block without mass is no body: it transfers a force to the body
-    pinned to it, and a torque to its guide.
-
-    Raises
-    ------
-    EngineError
-        A force on a block without mass, along a moving guide.
-    """
+    pinned to it, and a torque to its guide. Raises EngineError for a force on a block without mass,
+    along a moving guide."""
     slot = _block_without_mass(scene, load.body)
     if slot is None:
         if load.point is None:
@@ -253,13 +248,9 @@ def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
 def planned(scene: Scene, state: State, writing: Writing) -> Tree:
     """Plan the tree of a scene, with all joints with friction in it.
 
-    Raises
-    ------
-    EngineError
-        As `models.mjcf.tree.plan`; where every way to close the loops takes a pin with friction.
-
     MuJoCo has constant friction (``frictionloss``) in hinges and slides of the tree; a connect,
-    which closes a loop, has none. So loops close at pins without friction.
+    which closes a loop, has none. So loops close at pins without friction. Raises EngineError as
+    `models.mjcf.tree.plan`, and where every way to close the loops takes a pin with friction.
     """
     tree = plan(scene, state, writing.close, delay_s=writing.delay_s)
     rubbing = [one.joint for one in scene.friction.values() if one.joint not in scene.sliders]
@@ -293,12 +284,7 @@ def rubbing_freedom(scene: Scene, limb: Limb, joint: str) -> Freedom | None:
 
 def friction_of(scene: Scene, limb: Limb, freedom: Freedom, writing: Writing) -> AttributeRow:
     """Return the attributes of a joint with friction, as stiff as the step allows; else none.
-
-    Raises
-    ------
-    EngineError
-        Coulomb's friction, which MuJoCo has in contacts only.
-    """
+    Raises EngineError for Coulomb's friction, which MuJoCo has in contacts only."""
     for name, one in scene.friction.items():
         if rubbing_freedom(scene, limb, one.joint) is not freedom:
             continue

@@ -118,11 +118,8 @@ def plan(
 
     The rates of the coordinates belong to ``delay_s`` later (see `models.scene.joints.frames`).
 
-    Raises
-    ------
-    EngineError
-        A pin in ``close`` that does not exist or cannot close a loop; a slider that would have to
-        close a loop and so needs a mass; an unconnected body.
+    Raises EngineError for a pin in ``close`` that does not exist or cannot close a loop; a slider
+    that would have to close a loop and so needs a mass; an unconnected body.
     """
     close = names_in(close, "close")
     _check_close(scene, close)
@@ -291,13 +288,8 @@ def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
 
 def driven_freedom(scene: Scene, limbs: Sequence[Limb]) -> tuple[str, float]:
     """Return the name of the driven freedom, and 1.0 if it reads as the driver's own coordinate, or
-    -1.0 if the driven link carries its base.
-
-    Raises
-    ------
-    EngineError
-        The driven joint is not in the tree.
-    """
+    -1.0 if the driven link carries its base. Raises EngineError where the driven joint is not in
+    the tree."""
     driver = scene.driver
     if driver.is_crank:
         return f"{driver.link}.{scene.driver_pivot}", 1.0

@@ -33,11 +33,8 @@ def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: boo
     ``by_law`` is True if its times are instants of the driver's law, which determine the forces;
     else the whole motion itself is taken.
 
-    Raises
-    ------
-    CrankcheckError
-        As `analytic.forces.kinetostatics.forces`, for dead points only where all samples are in
-        one; a load over time on a motion whose times are mere labels.
+    Raises CrankcheckError as `analytic.forces.kinetostatics.forces`, for dead points only where all
+    samples are in one; and for a load over time on a motion whose times are mere labels.
     """
     if not by_law:
         _refuse_loads_over_time(scene)

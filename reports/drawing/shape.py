@@ -134,13 +134,9 @@ def place(
 ) -> list[tuple[float, float]]:
     """Return the centre of each label [inch], in the order given; earlier ones choose first.
 
-    Parameters
-    ----------
-    heavy, light : Array
-        Points that no label may cover, and points that it should not, shape (n, 3) and (m, 2); the
-        third number is a radius [inch].
-    frame : tuple
-        Width and height of the drawing [inch]; all is measured from its lower left corner.
+    No label may cover ``heavy`` points, (n, 3), the third number a radius [inch], nor should it
+    ``light`` ones, (m, 2). ``frame`` is the width and height of the drawing [inch]; all is measured
+    from its lower left corner.
     """
     centres: list[tuple[float, float]] = []
     boxes: list[tuple[float, float, float, float]] = []
