@@ -118,11 +118,8 @@ Order = Literal[0, 1, 2]
 
 @dataclass(frozen=True)
 class LinkMotion:
-    """Angle ``theta`` [rad], ``omega`` [rad/s], ``alpha`` [rad/s^2].
-
-    The angle is continuous with the driver's, its whole turns counted from time 0, for any instants
-    in any order.
-    """
+    """Angle ``theta`` [rad], ``omega`` [rad/s], ``alpha`` [rad/s^2]. The angle is continuous with
+    the driver's, its whole turns counted from time 0, for any instants in any order."""
 
     theta: Array
     omega: Array
@@ -172,11 +169,8 @@ class Bound:
 
 @dataclass(frozen=True)
 class Crossing:
-    """A change point that a motion passes through on the smooth branch.
-
-    ``dyad`` is named by its inner joint, as in the conditioning; ``driver_rad`` is the driver's
-    angle [rad], 0 to 2 pi.
-    """
+    """A change point that a motion passes through on the smooth branch. ``dyad`` is named by its
+    inner joint, as in the conditioning; ``driver_rad`` is the driver's angle [rad], 0 to 2 pi."""
 
     dyad: str
     driver_rad: float

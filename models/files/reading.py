@@ -40,10 +40,7 @@ def every_shipped() -> dict[str, Path]:
 
 def names_of_scenes(names: str | Iterable[str]) -> list[str]:
     """Return names and paths of scenes, each once; the name of a kind stands for all its scenes
-    except `run_where_named`.
-
-    Raises CrankcheckError for other values than a name or several.
-    """
+    except `run_where_named`. Raises CrankcheckError for other values than a name or several."""
     known = kinds()
     written_out = (
         [one for one in shipped(name) if one not in run_where_named(name)]
@@ -142,9 +139,7 @@ def read_scene(path: Path) -> Scene:
 
 def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
     """Return the text of each scene's file, by the scene's own name; all of kinematics for none.
-
-    Raises CrankcheckError as `load_scene`.
-    """
+    Raises CrankcheckError as `load_scene`."""
     texts: dict[str, str] = {}
     for given in names_of_scenes(names) or shipped():
         path = find_scene(given)

@@ -149,11 +149,8 @@ def _freedoms(scene: Scene, tree: Tree, limb: Limb, writing: Writing, pad: str) 
 
 
 def _matter(scene: Scene, body: str, pad: str) -> list[str]:
-    """Write the mass, and capsules to look at.
-
-    All three moments of inertia equal the one about z: only it matters in the plane, and MuJoCo
-    refuses the flat bodies that would be exact.
-    """
+    """Write the mass, and capsules to look at. All three moments of inertia equal the one about z:
+    only it matters in the plane, and MuJoCo refuses the flat bodies that would be exact."""
     mass, inertia = mass_of(scene, body)
     row: AttributeRow = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
     row["diaginertia"] = (inertia, inertia, inertia)

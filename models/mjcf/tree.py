@@ -268,10 +268,8 @@ def _limb(
 
 
 def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
-    """Yield values of ``close`` in `plan` that close other pins than the default.
-
-    The fewest pins first; each choice of closures once. Raises EngineError as `plan` does.
-    """
+    """Yield values of ``close`` in `plan` that close other pins than the default. The fewest pins
+    first; each choice of closures once. Raises EngineError as `plan` does."""
     default = plan(scene, state).closures
     seen = {frozenset(default)}
     pins = [pin.point for pin in joints.joints(scene).pins if pin.point != scene.driver_pivot]

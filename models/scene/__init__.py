@@ -79,11 +79,8 @@ KEPT = 64
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid link.
-
-    ``points`` and ``centre_m`` (the centre of mass) are in the link's own frame; ``inertia_kg_m2``
-    is about the centre of mass.
-    """
+    """A rigid link. ``points`` and ``centre_m`` (the centre of mass) are in the link's own frame;
+    ``inertia_kg_m2`` is about the centre of mass."""
 
     name: str
     points: Mapping[str, Point]

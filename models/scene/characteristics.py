@@ -16,10 +16,7 @@ EPS = float(np.finfo(np.float64).eps)
 
 class Characteristic(ABC):
     """The magnitude of a load [N or N m] over time [s], driver angle [rad], displacement [m] or
-    speed [m/s or rad/s].
-
-    Raises ValueError for numbers that give no magnitude.
-    """
+    speed [m/s or rad/s]. Raises ValueError for numbers that give no magnitude."""
 
     @abstractmethod
     def at(self, x: Array) -> Array:
@@ -154,11 +151,8 @@ class Polynomial(Characteristic):
 
 @dataclass(frozen=True)
 class Staircase(Characteristic):
-    """``values[k]`` from ``places[k]`` on, up to the next place; 0 before the first.
-
-    The new value holds in the place itself. The slope is unbounded there: `steepest` gives
-    infinity.
-    """
+    """``values[k]`` from ``places[k]`` on, up to the next place; 0 before the first. The new value
+    holds in the place itself. The slope is unbounded there: `steepest` gives infinity."""
 
     places: tuple[float, ...]
     values: tuple[float, ...]
@@ -199,9 +193,7 @@ class Staircase(Characteristic):
 @dataclass(frozen=True)
 class Pulse(Characteristic):
     """amplitude sin(2 pi (x - start) / period) for one period from ``start`` on, and 0 beside it.
-
-    Source: the thesis on elastic mechanisms (torque on the crank).
-    """
+    Source: the thesis on elastic mechanisms (torque on the crank)."""
 
     amplitude: float
     period: float

@@ -29,10 +29,8 @@ def fourbar(
     start_deg: float = START_DEG,
     speed_rad_s: float = SPEED_RAD_S,
 ) -> Scene:
-    """A four-bar A B C D with A at the origin and D on the x-axis, all lengths in m.
-
-    C lies to the left of the line from B to D.
-    """
+    """A four-bar A B C D with A at the origin and D on the x-axis, all lengths in m. C lies to the
+    left of the line from B to D."""
     lengths_m = (crank_m, coupler_m, rocker_m, ground_m)
     return _fourbar(name, source, lengths_m, _turning(start_deg, speed_rad_s))
 
@@ -64,10 +62,8 @@ def slider_crank(name: str, crank_m: float, rod_m: float, *, source: str) -> Sce
 def slider_crank_by_piston(
     name: str, crank_m: float, rod_m: float, *, source: str, amplitude_m: float
 ) -> Scene:
-    """The slider-crank of `slider_crank`, whose block is driven to and fro about mid-stroke.
-
-    B lies to the left of the line from A to C.
-    """
+    """The slider-crank of `slider_crank`, whose block is driven to and fro about mid-stroke. B lies
+    to the left of the line from A to C."""
     driver = _swinging('slider = "C"', "m", rod_m, amplitude_m)
     return _scene(name, source, "A = [0.0, 0.0]", _slider_crank_bodies(crank_m, rod_m), driver)
 

@@ -26,9 +26,7 @@ from reports.output.numbers import listed
 
 def position_friction_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:
     """Return tables at one position: power of the drive with its loss; and friction of each joint.
-
-    None without friction.
-    """
+    None without friction."""
     flow = flow_of(scene, motion, acting)
     if flow is None:
         return []

@@ -89,9 +89,7 @@ def size_of(series: int, samples: int) -> int:
 
 def policy(scripts: list[str]) -> str:
     """Return the content security policy of a page that runs only these scripts and loads nothing.
-
-    Plotly writes styles as it draws, and makes pictures of diagrams out of blobs.
-    """
+    Plotly writes styles as it draws, and makes pictures of diagrams out of blobs."""
     digests = (_base64(hashlib.sha256(script.encode()).digest()) for script in scripts)
     hashes = " ".join(f"'sha256-{digest}'" for digest in digests)
     return (
