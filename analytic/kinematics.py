@@ -146,7 +146,6 @@ def reach(scene: Scene) -> list[Range]:
 
 
 def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:
-    """Return the driver under its law, by spans of the times."""
     law = scene.driver.law
     if scene.is_free and np.any(time_s != 0.0):
         raise CrankcheckError(
@@ -171,7 +170,7 @@ def _scaled(scene: Scene, driver: Callable[[slice], Driven]) -> Callable[[slice]
     def scaled(span: slice) -> Driven:
         theta, omega, alpha, error = driver(span)
         if error is not None:
-            error = AngleError(error.theta / scale, error.omega / scale, error.alpha / scale)
+            error = AngleError(*(bound / scale for bound in error))
         return theta / scale, omega / scale, alpha / scale, error
 
     return scaled
@@ -185,7 +184,6 @@ def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
 
 
 def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
-    """Return the rounding of a law at times ``t``, where it has the angles ``theta``."""
     peak = law.peak_speed_rad_s
     if isinstance(law, ConstantSpeed):
         # A product, a sum, and the degrees of the start; its speed is exact.

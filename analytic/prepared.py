@@ -23,12 +23,12 @@ from analytic.dyads.redundant import BridgeStep
 from analytic.dyads.riding import PlacedBodies
 from analytic.dyads.steps import DYAD_STEPS, FollowedStep, Step, stretched
 from analytic.result import MotionArrays, Selection
-from analytic.structure.groups import Bridge, Group, Triad
+from analytic.structure.groups import Bridge, Triad
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array, Mask
 from models.errors import ReachError
 from models.files.body_table import MOST_ASSEMBLIES
-from models.motion import Crossing, Motion
+from models.motion import Motion
 from models.scene import GROUND, KEPT, Same, Scene
 
 CHUNK = 12288
@@ -104,14 +104,10 @@ class Prepared:
             counted = wanted.links and low < high  # at the start itself there is nothing to count
             counter = Counter(self.turns, driven[0]) if counted else None
             result.write(span, self.chunk(*driven), counter)
-        return replace(result.motion(), crossings=self._passed(low, high))
-
-    def _passed(self, low: float, high: float) -> tuple[Crossing, ...]:
-        """Return the change points that a driver passes between two angles [rad]."""
         crossings = passed(self.passages, low, high)
         for step in self.followed:
             crossings += step.passed(self.passages, low, high)
-        return crossings
+        return replace(result.motion(), crossings=crossings)
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
     def chunk(
@@ -135,18 +131,15 @@ class Prepared:
         return chunk
 
     def _open(self, step: Step, theta: Array, short_m: Array) -> str:
-        """Return the text of an open loop: its place, its gap, and the reachable range."""
         scene, index = self.scene, int(np.argmax(short_m))
         if isinstance(step, FollowedStep):
             index = int(np.argmax(short_m > 0.0))  # the first, beside the end
-            ends = step.end_in_words(self.passages, float(theta[index]))
-            return (
-                f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: {ends}. "
-                f"{describe_reach(scene, self.stretched, self.looked_turns)}"
-            )
+            fault = step.end_in_words(self.passages, float(theta[index]))
+        else:
+            open_m = float(np.ravel(short_m)[index])
+            fault = f"the loop cannot close at {step.key}, it is open by {open_m:.3g} m"
         return (
-            f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: the loop "
-            f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "
+            f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: {fault}. "
             f"{describe_reach(scene, self.stretched, self.looked_turns)}"
         )
 
@@ -212,10 +205,7 @@ def _closer(stretched: Stretched, whole: Range) -> list[Range]:
     grid = np.linspace(low, high, SCAN + 1)
     closes = shortage(stretched, grid) <= 0.0
     closes[[0, -1]] = True
-    edges = np.flatnonzero(closes[1:] != closes[:-1])
-    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
-    ends: list[float] = [low, *borders, high]
-    return list(zip(ends[::2], ends[1::2], strict=True))
+    return _parts(stretched, grid, closes)
 
 
 def with_valleys(shortage_at: Callable[[Array], Array], theta: Array) -> Array:
@@ -246,6 +236,11 @@ def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:
     unlike = np.count_nonzero(closes[SCAN:] != closes[:-SCAN])
     if unlike <= 2 * turns:  # looks beside an end, by rounding
         return None
+    return _parts(stretched, grid, closes)
+
+
+def _parts(stretched: Stretched, grid: Array, closes: Mask) -> list[Range]:
+    """Return the ranges between the first and the last angle of a grid."""
     edges = np.flatnonzero(closes[1:] != closes[:-1])
     borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
     ends = [float(grid[0])] * bool(closes[0]) + borders + [float(grid[-1])] * bool(closes[-1])
@@ -291,18 +286,13 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
         elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
-            steps.append(_step_of_class_three(placed, part, steps))
+            from analytic.assur.mounting import Mounting  # few scenes need it
+            from analytic.assur.step import AssurStep
+
+            steps.append(AssurStep(Mounting(placed, part), steps))
         else:
             steps.append(DYAD_STEPS[part.kind](placed, part))
         known.update(part.bodies)
         if compound is not None and compound.name in part.bodies:
             known.update((compound.base, compound.link))
     return steps
-
-
-def _step_of_class_three(placed: PlacedBodies, part: Group | Triad, before: Sequence[Step]) -> Step:
-    """Return the step of a triad, or of a dyad with a compound: few scenes need it."""
-    from analytic.assur.mounting import Mounting
-    from analytic.assur.step import AssurStep
-
-    return AssurStep(Mounting(placed, part), before)

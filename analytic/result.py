@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -25,7 +25,6 @@ class Counting(Protocol):
 
     def count(self, name: str, angle: Array) -> None:
         """Add the missing whole turns to the angles of a link [rad], (T,)."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -65,8 +64,7 @@ def _chosen(
     return chosen
 
 
-@dataclass(frozen=True)
-class Derivatives:
+class Derivatives(NamedTuple):
     """Quantity with its first and second derivative, each (T,) or (T, 2)."""
 
     value: Array
@@ -77,13 +75,13 @@ class Derivatives:
         self.value[span], self.rate[span], self.second[span] = value, rate, second
 
     def put_bounds(self, span: slice, *bounds: Real) -> None:
-        """Store bounds, infinite where they are undefined (0 times infinity)."""
-        for array, bound in zip(self.arrays, bounds, strict=True):
-            np.copyto(array[span], np.where(np.isnan(bound), np.inf, bound))
+        for array, bound in zip(self, bounds, strict=True):
+            put_bound(array[span], bound)
 
-    @property
-    def arrays(self) -> tuple[Array, Array, Array]:
-        return self.value, self.rate, self.second
+
+def put_bound(array: Array, bound: Real) -> None:
+    """Store a bound, infinite where it is undefined (0 times infinity)."""
+    np.copyto(array, np.where(np.isnan(bound), np.inf, bound))
 
 
 class _Block:
@@ -142,8 +140,7 @@ class MotionArrays:
             sliding = chunk.sliders[name]
             track.put(span, sliding.s, sliding.speed, sliding.acceleration)
             if self.certified and sliding.error is not None:
-                e = sliding.error
-                self.slider_bounds[name].put_bounds(span, e.displacement, e.speed, e.acceleration)
+                self.slider_bounds[name].put_bounds(span, *sliding.error)
 
     def _write_link(
         self, span: slice, name: str, body: BodyKinematics, counter: Counting | None
@@ -165,26 +162,29 @@ class MotionArrays:
 
     def _write_point(self, span: slice, name: str, at: PointKinematics) -> None:
         track = self.points[name]
-        for array, vec in zip(track.arrays, (at.p, at.v, at.a), strict=True):
+        for array, vec in zip(track, (at.p, at.v, at.a), strict=True):
             array[span, 0], array[span, 1] = vec.x, vec.y
         if self.certified and at.error is not None:
-            e = at.error
-            self.point_bounds[name].put_bounds(span, e.position, e.velocity, e.acceleration)
+            self.point_bounds[name].put_bounds(span, *at.error)
 
     def motion(self) -> Motion:
         """Return the filled arrays as a motion."""
         bound = None
         if self.certified:
-            bound = Bound(
-                {k: LinkMotion(*track.arrays) for k, track in self.link_bounds.items()},
-                {k: PointMotion(*track.arrays) for k, track in self.point_bounds.items()},
-                {k: SliderMotion(*track.arrays) for k, track in self.slider_bounds.items()},
-            )
-        return Motion(
-            self.time_s,
-            {k: LinkMotion(*track.arrays) for k, track in self.links.items()},
-            {k: PointMotion(*track.arrays) for k, track in self.points.items()},
-            {k: SliderMotion(*track.arrays) for k, track in self.sliders.items()},
-            self.sines,
-            bound,
-        )
+            bounds = (self.link_bounds, self.point_bounds, self.slider_bounds)
+            bound = Bound(*_by_name(*bounds))
+        series = _by_name(self.links, self.points, self.sliders)
+        return Motion(self.time_s, *series, self.sines, bound)
+
+
+Tracks = Mapping[str, Derivatives]
+
+
+def _by_name(
+    links: Tracks, points: Tracks, sliders: Tracks
+) -> tuple[dict[str, LinkMotion], dict[str, PointMotion], dict[str, SliderMotion]]:
+    return (
+        {k: LinkMotion(*track) for k, track in links.items()},
+        {k: PointMotion(*track) for k, track in points.items()},
+        {k: SliderMotion(*track) for k, track in sliders.items()},
+    )

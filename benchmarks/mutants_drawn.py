@@ -43,6 +43,7 @@ CHANGED = {
         "slider not in names.sliders",
         "(slider in names.sliders)",
     ),
+    24: ("if error is not None:", "error is not None", "(not (error is not None))"),
     38: (
         "(-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned",
         "-k2",
@@ -72,9 +73,14 @@ CHANGED = {
         "(not (left is None or not _elsewhere(beside, far)))",
     ),
     76: (
-        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
-        "compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)",
+        "any_log.refuse_run(scene, log, replace(asked, require=required))",
+        "any_log.refuse_run(scene, log, replace(asked, require=required))",
         "pass",
+    ),
+    78: (
+        "option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name",
+        "name not in own and OTHERS.get(name) in own",
+        "(name not in own or OTHERS.get(name) in own)",
     ),
     86: ("log: OwnLog = field(kw_only=True)", "True", "False"),
     101: (

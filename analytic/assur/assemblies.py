@@ -22,6 +22,7 @@ from analytic.assur.eliminant import (
     Turn,
     eliminant,
     is_zero,
+    lengths_of,
     places_on_line,
     rational,
     row_polynomial,
@@ -192,4 +193,4 @@ def _assembly(one: _Solution, turn: Turn, size: float) -> TriadAssembly:
 
 def _size(rows: LegRows) -> float:
     """Return the smallest length in the rows but 0 [m]."""
-    return min((abs(length) for row in rows for length in row.lengths if length), default=1.0)
+    return min((abs(each) for row in rows for each in lengths_of(row) if each), default=1.0)

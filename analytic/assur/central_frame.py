@@ -5,25 +5,17 @@ driver's coordinate q: turned by q about the driven pin, or shifted by it along 
 """
 
 import math
+import operator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analytic.assur.sampled_rows import LocalPoint
+from analytic.dyads import plane
 from analytic.dyads.chunk import SINES, Chunk, driver_scale
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    AngleError,
-    BodyKinematics,
-    PointError,
-    Real,
-    Vec,
-    direction,
-    rounding_of_angles,
-)
+from analytic.dyads.plane import EPS, EXACT_ANGLE, Vec, direction, rounding_of_angles
 from analytic.structure.groups import Compound
-from models.scene import Point, Scene
+from models.scene import Point, Scene, Slider
 from models.scene.joints import less, local_point, sliding_angle
 
 
@@ -32,9 +24,9 @@ class Leaning:
     """Direction in the frame: a unit vector, its rotation there, and bounds."""
 
     along: Vec
-    omega: Real = 0.0
-    alpha: Real = 0.0
-    error: AngleError = EXACT_ANGLE
+    omega: plane.Real = 0.0
+    alpha: plane.Real = 0.0
+    error: plane.AngleError = EXACT_ANGLE
 
 
 @dataclass(frozen=True)
@@ -54,43 +46,41 @@ class CentralFrame:
     def leaning(self, chunk: Chunk, part: str, angle_rad: float) -> Leaning:
         """Return a direction at a constant angle in the frame of one of the bodies."""
         along, rounding = direction(angle_rad), rounding_of_angles(angle_rad)
-        error = replace(EXACT_ANGLE, theta=rounding)
-        if part == self.body:
-            return Leaning(along, error=error)
-        by = self._between(chunk)
-        total = AngleError(by.error.theta + rounding, by.error.omega, by.error.alpha)
+        if self.compound is None or part == self.body:
+            return Leaning(along, error=EXACT_ANGLE._replace(theta=rounding))
+        by = self._between(chunk, self.compound)
+        total = by.error._replace(theta=by.error.theta + rounding)
         return Leaning(along.turned(by.along), by.omega, by.alpha, total)
 
-    def _between(self, chunk: Chunk) -> Leaning:
+    def _between(self, chunk: Chunk, compound: Compound) -> Leaning:
         """Return the x-axis of the other body."""
-        assert self.compound is not None
-        if self.compound.slider is not None:
-            slider = self.scene.sliders[self.compound.slider]
+        if compound.slider is not None:
+            slider = self.scene.sliders[compound.slider]
             angle = sliding_angle(slider)
             rounding = rounding_of_angles(slider.direction_rad, slider.angle_rad)
-            return Leaning(direction(angle), error=replace(EXACT_ANGLE, theta=rounding))
+            return Leaning(direction(angle), error=EXACT_ANGLE._replace(theta=rounding))
         q = chunk.driver
         along = Vec(np.cos(q.theta), np.sin(q.theta))
         return Leaning(along, q.omega, q.alpha, q.error or EXACT_ANGLE)
 
     def local(self, chunk: Chunk, part: str, place: Point) -> LocalPoint:
         """Return a point of one of the bodies, given in its own frame, from the anchor."""
-        if part == self.body:
-            return LocalPoint.at(less(place, self.origin))
-        assert self.compound is not None
-        if self.compound.pin is not None:
-            return self._about_pin(chunk, place, self.compound.pin)
-        return self._along_line(chunk, place)
+        compound = self.compound
+        if compound is None or part == self.body:
+            return LocalPoint(Vec(*less(place, self.origin)))
+        if compound.pin is not None:
+            return self._about_pin(chunk, place, compound, compound.pin)
+        assert compound.slider is not None
+        return self._along_line(chunk, place, compound, self.scene.sliders[compound.slider])
 
-    def _about_pin(self, chunk: Chunk, place: Point, pin: str) -> LocalPoint:
-        assert self.compound is not None
-        base = less(local_point(self.scene, self.compound.base, pin), self.origin)
-        arm = less(place, local_point(self.scene, self.compound.link, pin))
-        by = self._between(chunk)
+    def _about_pin(self, chunk: Chunk, place: Point, compound: Compound, pin: str) -> LocalPoint:
+        base = less(local_point(self.scene, compound.base, pin), self.origin)
+        arm = less(place, local_point(self.scene, compound.link, pin))
+        by = self._between(chunk, compound)
         reach = Vec(*arm).turned(by.along)
         r, w, g, e = math.hypot(*arm), by.omega, by.alpha, by.error
         ww = np.abs(w) + e.omega
-        error = PointError(
+        error = plane.PointError(
             r * (e.theta + 3 * EPS) + EPS * math.hypot(*base),
             r * (e.omega + ww * e.theta + 4 * EPS * np.abs(w)),
             r
@@ -102,13 +92,12 @@ class CentralFrame:
             reach + Vec(*base), reach.perp(w), reach.perp(g) + reach * -(w * w), error, True
         )
 
-    def _along_line(self, chunk: Chunk, place: Point) -> LocalPoint:
-        assert self.compound is not None
-        assert self.compound.slider is not None
-        slider = self.scene.sliders[self.compound.slider]
+    def _along_line(
+        self, chunk: Chunk, place: Point, compound: Compound, slider: Slider
+    ) -> LocalPoint:
         q = chunk.driver.sliding(driver_scale(self.scene))
-        arm = less(place, local_point(self.scene, self.compound.link, slider.point))
-        by, along = self._between(chunk), direction(slider.direction_rad)
+        arm = less(place, local_point(self.scene, compound.link, slider.point))
+        by, along = self._between(chunk, compound), direction(slider.direction_rad)
         reach = Vec(*arm).turned(by.along) + Vec(*less(slider.through_m, self.origin))
         lean = rounding_of_angles(slider.direction_rad) + 3 * EPS
         size = math.hypot(*arm) + math.hypot(*less(slider.through_m, self.origin))
@@ -117,17 +106,16 @@ class CentralFrame:
         off = [lean * np.abs(one) for one in ends]
         off[0] = off[0] + (by.error.theta + 3 * EPS) * size
         if q.error is not None:
-            own = (q.error.displacement, q.error.speed, q.error.acceleration)
-            off = [one + more for one, more in zip(off, own, strict=True)]
-        return LocalPoint(reach + p, v, a, PointError(*off), True)
+            off = [one + more for one, more in zip(off, q.error, strict=True)]
+        return LocalPoint(reach + p, v, a, plane.PointError(*off), True)
 
-    def place(self, chunk: Chunk, body: BodyKinematics) -> None:
+    def place(self, chunk: Chunk, body: plane.BodyKinematics) -> None:
         """Add the bodies of the solved link, and its driven slider, to the chunk."""
         chunk.bodies[self.body] = replace(body, local=self.origin)
         compound = self.compound
         if compound is None:
             return
-        by = self._between(chunk)
+        by = self._between(chunk, compound)
         joint = compound.pin
         if compound.slider is not None:
             joint = self.scene.sliders[compound.slider].point
@@ -137,10 +125,8 @@ class CentralFrame:
         anchor = self.local(chunk, compound.link, own).on(body)
         error = body.error
         if error is not None:
-            e = by.error
-            error = AngleError(
-                error.theta + e.theta + SINES, error.omega + e.omega, error.alpha + e.alpha
-            )
+            error = plane.AngleError(*map(operator.add, error, by.error))
+            error = error._replace(theta=error.theta + SINES)
         turn = body.turn.turned(by.along)
         omega, alpha = body.omega + by.omega, body.alpha + by.alpha
-        chunk.bodies[compound.link] = BodyKinematics(own, anchor, turn, omega, alpha, error)
+        chunk.bodies[compound.link] = plane.BodyKinematics(own, anchor, turn, omega, alpha, error)

@@ -12,28 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.change_points.sign import (
-    COUNT,
-    FEWER,
-    HALVES,
-    LEAST_CERTAIN,
-    WINDOW,
-    Index,
-    Interpolant,
-    Rates,
-    nodes,
-)
+from analytic.change_points import sign
+from analytic.change_points.sign import Interpolant
 from analytic.dyads.chunk import DrivenCoordinate
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Real,
-    Vec,
-)
+from analytic.dyads.plane import EPS, AngleError, BodyKinematics, PointError, PointKinematics, Vec
 from models.array import Array, Mask
 
 Solved = Callable[[Array], BodyKinematics]
@@ -41,32 +23,21 @@ Solved = Callable[[Array], BodyKinematics]
 
 
 @dataclass(frozen=True)
-class CrossingPiece:
-    """Place and angle of the link as functions of the driver's angle, about ``centre`` [rad]."""
+class CrossingPiece(sign.SmoothPiece):
+    """Place and angle of the link as functions of the driver's angle."""
 
-    centre: float
-    half: float
     series: tuple[Interpolant, Interpolant, Interpolant]
-    doubt: float
 
     @staticmethod
     def about(solved: Solved, centre: float, room: float, size_m: float) -> CrossingPiece | None:
         """Return the widest that is about as certain as any, within ``room`` [rad]; None where the
         motion is not certainly smooth."""
-        best: CrossingPiece | None = None
-        for half in HALVES:
-            if half > room:
-                continue
-            piece = _piece(solved, centre, half, size_m)
-            if best is None or not piece.doubt >= best.doubt:
-                best = piece
-            elif piece.doubt > 4.0 * best.doubt and best.doubt < LEAST_CERTAIN:
-                break
-        return best if best is not None and best.doubt < LEAST_CERTAIN else None
+        halves = (half for half in sign.HALVES if half <= room)
+        return sign.widest(halves, lambda half: _piece(solved, centre, half, size_m))
 
     def near(self, from_centre: Array) -> Mask:
         """Return the mask of driver angles, from the centre, at which it is used."""
-        return np.asarray(np.abs(from_centre) < self.half * WINDOW)
+        return np.asarray(np.abs(from_centre) < self.window)
 
     def put(
         self, body: BodyKinematics, from_centre: Array, driver: DrivenCoordinate
@@ -75,38 +46,25 @@ class CrossingPiece:
         index = np.flatnonzero(self.near(from_centre))
         if not index.size:
             return body
-        shape = from_centre.shape
-        rates = _rates(driver, index, shape)
+        rates = sign.rates_at(driver, index)
         found = [one.at(from_centre[index] / self.half, rates) for one in self.series]
-        (x, y, angle), errors = ([each[k] for each in found] for k in (0, 1))
-
-        def into(old: Real, new: Array) -> Array:
-            array = np.array(np.broadcast_to(old, shape))
-            array[index] = new
-            return array
-
-        at = body.anchor
-        p, v, a = (
-            Vec(into(old.x, x[k]), into(old.y, y[k])) for k, old in enumerate((at.p, at.v, at.a))
-        )
-        turn = Vec(into(body.turn.x, np.cos(angle[0])), into(body.turn.y, np.sin(angle[0])))
+        (x, y, angle), errors = zip(*found, strict=True)
+        new, at = sign.into(from_centre.shape, index), body.anchor
+        levels = zip((at.p, at.v, at.a), x, y, strict=True)
+        p, v, a = (Vec(new(old.x, each_x), new(old.y, each_y)) for old, each_x, each_y in levels)
+        turn = Vec(new(body.turn.x, np.cos(angle[0])), new(body.turn.y, np.sin(angle[0])))
         anchor = PointKinematics(p, v, a, at.error)
-        body = replace(
-            body, turn=turn, omega=into(body.omega, angle[1]), alpha=into(body.alpha, angle[2])
-        )
+        omega, alpha = new(body.omega, angle[1]), new(body.alpha, angle[2])
+        body = replace(body, anchor=anchor, turn=turn, omega=omega, alpha=alpha)
         if body.error is None or at.error is None:
-            return replace(body, anchor=anchor)
-        place, e = at.error, body.error
-        levels = zip((place.position, place.velocity, place.acceleration), range(3), strict=True)
-        point = [into(old, np.hypot(errors[0][k], errors[1][k])) for old, k in levels]
-        turned = [into(old, errors[2][k]) for k, old in enumerate((e.theta, e.omega, e.alpha))]
-        anchor = replace(anchor, error=PointError(*point))
-        return replace(body, anchor=anchor, error=AngleError(*turned))
+            return body
+        point = PointError(*map(new, at.error, map(np.hypot, errors[0], errors[1])))
+        turned = AngleError(*map(new, body.error, errors[2]))
+        return replace(body, anchor=replace(anchor, error=point), error=turned)
 
 
-@np.errstate(all="ignore")
 def _piece(solved: Solved, centre: float, half: float, size_m: float) -> CrossingPiece:
-    wide, narrow = centre + half * nodes(COUNT), centre + half * nodes(FEWER)
+    wide, narrow = centre + half * sign.nodes(sign.COUNT), centre + half * sign.nodes(sign.FEWER)
     fine, coarse = _levels(solved(wide), wide), _levels(solved(narrow), narrow)
     series = [
         Interpolant.of(one, other, half, turning=k == 2)
@@ -117,31 +75,20 @@ def _piece(solved: Solved, centre: float, half: float, size_m: float) -> Crossin
         for k, one in enumerate(series)
     ]
     doubt = float(np.nan_to_num(np.max(doubts), nan=math.inf))
-    return CrossingPiece(centre, half, (series[0], series[1], series[2]), doubt)
+    return CrossingPiece(half, doubt, (series[0], series[1], series[2]))
 
 
 def _levels(body: BodyKinematics, theta: Array) -> list[tuple[Array, Array]]:
     """Return place and angle at the nodes, with two derivatives, and their bounds, each (3, n)."""
     assert body.error is not None
     assert body.anchor.error is not None
-    at, e, own = body.anchor, body.anchor.error, body.error
+    at, e = body.anchor, body.anchor.error
     angle = np.unwrap(np.arctan2(body.turn.y, body.turn.x))
-    turned = own.theta + 2 * EPS * (np.abs(angle) + math.pi)
+    turned = body.error._replace(theta=body.error.theta + 2 * EPS * (np.abs(angle) + math.pi))
     rows = (
-        ((at.p.x, at.v.x, at.a.x), (e.position, e.velocity, e.acceleration)),
-        ((at.p.y, at.v.y, at.a.y), (e.position, e.velocity, e.acceleration)),
-        ((angle, body.omega, body.alpha), (turned, own.omega, own.alpha)),
+        (at.p.x, at.v.x, at.a.x, *e),
+        (at.p.y, at.v.y, at.a.y, *e),
+        (angle, body.omega, body.alpha, *turned),
     )
-    return [(_table(values, theta.shape), _table(bounds, theta.shape)) for values, bounds in rows]
-
-
-def _table(rows: tuple[Real, ...], shape: tuple[int, ...]) -> Array:
-    return np.stack([np.broadcast_to(row, shape) for row in rows])
-
-
-def _rates(driver: DrivenCoordinate, index: Index, shape: tuple[int, ...]) -> Rates:
-    error = driver.error or EXACT_ANGLE
-    each = (driver.theta, driver.omega, driver.alpha, error.theta, error.omega, error.alpha)
-    theta, omega, alpha, *bounds = (np.broadcast_to(one, shape)[index] for one in each)
-    bounds[0] = bounds[0] + 4 * EPS * (np.abs(theta) + math.tau)
-    return Rates(omega, alpha, AngleError(*bounds))
+    tables = (np.stack([np.broadcast_to(each, theta.shape) for each in row]) for row in rows)
+    return [(table[:3], table[3:]) for table in tables]

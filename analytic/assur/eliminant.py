@@ -19,11 +19,6 @@ class CircleRow:
     pin: Point
     length: float
 
-    @property
-    def lengths(self) -> tuple[float, ...]:
-        """Its values in metres."""
-        return (*self.a, *self.pin, self.length)
-
 
 @dataclass(frozen=True)
 class LineRow:
@@ -32,11 +27,6 @@ class LineRow:
     a: Point
     normal: Point
     through: Point
-
-    @property
-    def lengths(self) -> tuple[float, ...]:
-        """Its values in metres."""
-        return (*self.a, *self.through)
 
 
 @dataclass(frozen=True)
@@ -48,11 +38,6 @@ class ThroughRow:
     b: Point
     pin: Point
 
-    @property
-    def lengths(self) -> tuple[float, ...]:
-        """Its values in metres."""
-        return (*self.b, *self.pin)
-
 
 @dataclass(frozen=True)
 class AngleRow:
@@ -60,14 +45,18 @@ class AngleRow:
 
     along: Point
 
-    @property
-    def lengths(self) -> tuple[float, ...]:
-        """Its values in metres."""
-        return ()
-
 
 LegRow = CircleRow | LineRow | ThroughRow | AngleRow
 LegRows = tuple[LegRow, LegRow, LegRow]
+
+
+def lengths_of(row: LegRow) -> tuple[float, ...]:
+    """Return the values of a row in metres."""
+    if isinstance(row, CircleRow):
+        return (*row.a, *row.pin, row.length)
+    if isinstance(row, LineRow):
+        return (*row.a, *row.through)
+    return (*row.b, *row.pin) if isinstance(row, ThroughRow) else ()
 
 
 W = fmpq_poly([1, 0, 1])
@@ -128,17 +117,14 @@ def row_polynomial(row: LegRow, turn: Turn) -> RowPolynomial:
     return RowPolynomial(False, (-normal[0], -normal[1]), k)
 
 
-def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
+def eliminant(rows: LegRows, turn: Turn) -> Eliminant:
     """Return the eliminant of three rows, none of which gives an angle."""
     assert not any(isinstance(row, AngleRow) for row in rows)
     own = sorted((row_polynomial(row, turn) for row in rows), key=lambda row: row.is_circle)
     last = own[2]
     one, other = (row.less(last) if row.is_circle else row for row in own[:2])
     over = one.u[0] * other.u[1] - one.u[1] * other.u[0]
-    place = (
-        one.u[1] * other.k - one.k * other.u[1],
-        one.k * other.u[0] - one.u[0] * other.k,
-    )
+    place = (one.u[1] * other.k - one.k * other.u[1], one.k * other.u[0] - one.u[0] * other.k)
     shared = _without_w(over.gcd(place[0]).gcd(place[1]))
     if not all(map(is_zero, (over, *place))):
         over, place = over / shared, (place[0] / shared, place[1] / shared)

@@ -9,29 +9,11 @@ from typing import Literal
 
 import numpy as np
 
-from analytic.assur.platform import (
-    CentralPose,
-    RowsAt,
-    SolvedPlatform,
-    Wrenches,
-    ahead,
-    pose_at,
-    pose_of,
-    solve_platform,
-)
+from analytic.assur import platform
+from analytic.assur.platform import CentralPose, RowsAt, SolvedPlatform, largest
 from analytic.assur.sampled_rows import SampledRow
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    EXACT_POINT,
-    ZERO,
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Real,
-    Vec,
-)
+from analytic.dyads import plane
+from analytic.dyads.plane import EPS, ZERO, BodyKinematics, Vec
 from models.array import Array, Mask
 
 SHARE = 0.5
@@ -45,10 +27,8 @@ class CellsAlong:
 
     theta: Array
     far: Array
-    middle: BodyKinematics
-    border: BodyKinematics
-    det_middle: Array
-    det_border: Array
+    middle: SolvedPlatform
+    border: SolvedPlatform
     good: int
 
 
@@ -72,16 +52,16 @@ def along(
     sure &= _inside(middle.body, border.body, far - theta, e, t)
     sure &= _inside(middle.body, _shifted(last, border.body), near - theta, e, t)
     good = int(sure.size if sure.all() else np.argmin(sure))
-    return CellsAlong(theta, far, middle.body, border.body, middle.det, border.det, good)
+    return CellsAlong(theta, far, middle, border, good)
 
 
 def _solved(
     rows: RowsAt, last: CentralPose, theta: Array, size_m: float
 ) -> tuple[SolvedPlatform, Sequence[SampledRow]]:
     """Return the assembly that a pose leads to, at driver angles known to rounding."""
-    place, turn = ahead(last, theta)
+    place, turn = platform.ahead(last, theta)
     own = rows(theta, 8 * EPS * np.abs(theta))
-    return solve_platform(own, place, turn, size_m, certified=True), own
+    return platform.solve_platform(own, place, turn, size_m, certified=True), own
 
 
 def _boxes(
@@ -93,48 +73,39 @@ def _boxes(
 ) -> tuple[Array, Array, Mask]:
     """Return the largest distance of the assembly from the straight way of the middle, in a cell,
     and the mask where it is the only one so near; ``over`` are the whole cell's rows."""
-    wrenches = Wrenches.of(rows, body, size_m)
-    still = PointKinematics(body.anchor.p, body.anchor.v, ZERO, EXACT_POINT)
-    straight = replace(body, anchor=still, alpha=0.0, error=EXACT_ANGLE)
+    wrenches = platform.Wrenches.of(rows, body, size_m)
+    still = plane.PointKinematics(body.anchor.p, body.anchor.v, ZERO, plane.EXACT_POINT)
+    straight = replace(body, anchor=still, alpha=0.0, error=plane.EXACT_ANGLE)
     way, swing = body.anchor.v.norm() * half, np.abs(body.omega) * half
     open_ = []
-    moved = _widened(straight, way, swing)
+    moved = platform.widened(straight, way, swing)
     for row, whole in zip(rows, over, strict=True):
-        place, rate, second = row.gap(0, straight), row.gap(1, straight), whole.gap(2, moved)
-        open_.append(_most(place) + half * _most(rate) + 0.5 * half * half * _most(second))
-    shift, by = wrenches.bound((open_[0], open_[1], open_[2]))
+        place, rate = largest(row.gap(0, straight)), largest(row.gap(1, straight))
+        open_.append(place + half * rate + 0.5 * half * half * largest(whole.gap(2, moved)))
+    shift, by = wrenches.bound(open_)
     e, t = 2.02 * shift + 16 * EPS * size_m, 2.02 * by + 16 * EPS
-    sway = [row.sway(_widened(straight, way + e, swing + t)) for row in over]
+    sway = [row.sway(platform.widened(straight, way + e, swing + t)) for row in over]
     change = [(lean + 8 * EPS) * e + (turning + 8 * EPS * size_m) * t for lean, turning in sway]
-    grown, more = wrenches.bound((change[0], change[1], change[2]))
+    grown, more = wrenches.bound(change)
     share = np.maximum(grown / e, more / t)
     sure = (share <= SHARE) & np.isfinite(e) & (t + swing < 1.0)
     return np.asarray(e), np.asarray(t), np.asarray(sure)
 
 
-def _most(gap: tuple[Real, Real]) -> Real:
-    return np.abs(gap[0]) + gap[1]
-
-
-def _widened(body: BodyKinematics, e: Real, t: Real) -> BodyKinematics:
-    anchor = replace(body.anchor, error=PointError(e, 0.0, 0.0))
-    return replace(body, anchor=anchor, error=AngleError(t, 0.0, 0.0))
-
-
 def _shifted(last: CentralPose, border: BodyKinematics) -> BodyKinematics:
     """Return the near borders: the last pose, and then each far border but one."""
 
-    def after(first: float, rest: Real) -> Array:
+    def after(first: float, rest: plane.Real) -> Array:
         return np.concatenate([[first], np.asarray(rest)[:-1]])
 
     assert border.error is not None
     assert border.anchor.error is not None
     p, turn = border.anchor.p, border.turn
     place = Vec(after(last.place[0], p.x), after(last.place[1], p.y))
-    error = PointError(after(0.0, border.anchor.error.position), 0.0, 0.0)
-    anchor = PointKinematics(place, ZERO, ZERO, error)
+    error = plane.PointError(after(0.0, border.anchor.error.position), 0.0, 0.0)
+    anchor = plane.PointKinematics(place, ZERO, ZERO, error)
     along_ = Vec(after(math.cos(last.angle), turn.x), after(math.sin(last.angle), turn.y))
-    angle = AngleError(after(0.0, border.error.theta), 0.0, 0.0)
+    angle = plane.AngleError(after(0.0, border.error.theta), 0.0, 0.0)
     return BodyKinematics((0.0, 0.0), anchor, along_, 0.0, 0.0, angle)
 
 
@@ -180,10 +151,9 @@ def end_beside(poses: list[CentralPose], way: float) -> TrackEnd:
     if a == b or not 0.0 < det[a] < det[b]:
         return TrackEnd(last.theta, "doubtful position")
     rates = [math.hypot(*poses[k].rate) for k in near]
+    # There the speed goes as the inverse square of the way.
     if rates[0] > 0.01 * (away[b] / away[a]) ** 2 * rates[1] > 0.0:
-        return TrackEnd(
-            last.theta, "run to infinity"
-        )  # its speed goes as the inverse square of the way
+        return TrackEnd(last.theta, "run to infinity")
     power = math.log(det[b] / det[a]) / math.log(away[b] / away[a])
     if power < 0.2 or power > 1.4:
         return TrackEnd(last.theta, "doubtful position")
@@ -199,27 +169,22 @@ def end_beside(poses: list[CentralPose], way: float) -> TrackEnd:
 def runs_away(start: CentralPose, last: CentralPose, size_m: float) -> bool:
     """True if a link is far away, and doubles its distance before the driver has moved on by
     `SOON`: it runs to infinity."""
-    away, rate = _away(start, last), math.hypot(*last.rate)
+    away, rate = math.dist(start.place, last.place), math.hypot(*last.rate)
     return away > FAR * (size_m + math.hypot(*start.rate)) and away < SOON * rate
 
 
 def end_at_infinity(poses: list[CentralPose]) -> TrackEnd:
     """Return the driver angle at which a link is at infinity: it is a smooth function of the
     inverse of its distance, here a polynomial through five of its poses."""
-    start, last = poses[0], poses[-1]
-    inverse, theta = [1.0 / _away(start, last)], [last.theta]
+    start, last = poses[0].place, poses[-1]
+    inverse, theta = [1.0 / math.dist(start, last.place)], [last.theta]
     for pose in reversed(poses[1:]):
-        if 2.0 * inverse[-1] * _away(start, pose) < 1.0 and len(theta) < 5:
-            inverse.append(1.0 / _away(start, pose))
+        if 2.0 * inverse[-1] * math.dist(start, pose.place) < 1.0 and len(theta) < 5:
+            inverse.append(1.0 / math.dist(start, pose.place))
             theta.append(pose.theta)
     powers = np.arange(len(theta))
     scaled = np.array(inverse)[:, None] / inverse[-1]
     return TrackEnd(float(np.linalg.solve(scaled**powers, np.array(theta))[0]), "run to infinity")
-
-
-def _away(start: CentralPose, pose: CentralPose) -> float:
-    """Return the distance of a pose from that at the start [m]."""
-    return math.hypot(pose.place[0] - start.place[0], pose.place[1] - start.place[1])
 
 
 BLOCK = 16
@@ -317,11 +282,8 @@ def _handed_over(cells: CellsAlong, last: CentralPose) -> list[CentralPose]:
     found: list[CentralPose] = []
     angle = last.angle
     for j in range(cells.good):
-        for body, det, theta, k in (
-            (cells.middle, cells.det_middle, cells.theta, j),
-            (cells.border, cells.det_border, cells.far, j),
-        ):
-            pose = pose_of(body, det, float(theta[k]), k, angle)
+        for solved, theta in ((cells.middle, cells.theta), (cells.border, cells.far)):
+            pose = platform.pose_of(solved.body, solved.det, float(theta[j]), j, angle)
             found.append(pose)
             angle = pose.angle
     return found
@@ -333,8 +295,8 @@ def _beyond(
     """Return the assembly beyond a crossing: straight on, its determinant of other sign."""
     before = next((p for p in reversed(poses) if abs(p.theta - end.theta) > SIDE), poses[0])
     theta = end.theta + way * SIDE
-    place, turn = ahead(before, np.array([theta]))
-    found = pose_at(rows, theta, place, turn, size_m)
+    place, turn = platform.ahead(before, np.array([theta]))
+    found = platform.pose_at(rows, theta, place, turn, size_m)
     if found is None or found.det * before.det >= 0.0:
         return None
     turns = round((before.angle - found.angle) / math.tau)

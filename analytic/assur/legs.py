@@ -5,70 +5,87 @@ link and sliders to the chunk.
 """
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
 from analytic.assur.central_frame import CentralFrame
-from analytic.assur.sampled_rows import KeptAngle, OnLine, RowCircle, SampledRow, Through
+from analytic.assur.sampled_rows import (
+    KeptAngle,
+    LocalPoint,
+    OnLine,
+    RowCircle,
+    SampledRow,
+    Through,
+)
 from analytic.dyads import prp
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import MovingLine, SlideError, Sliding, Turning
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    AngleError,
-    BodyKinematics,
-    PointKinematics,
-    Vec,
-)
-from analytic.dyads.riding import Bar, PlacedBodies, RidingLine, following_body, riding_point
+from analytic.dyads.plane import EPS, EXACT_ANGLE, AngleError, BodyKinematics, PointKinematics, Vec
+from analytic.dyads.riding import Bar, PlacedBodies, RidingLine, riding_point
 from models.scene import Point
 
 
-class TriadLeg(Protocol):
-    """Leg or joint that holds the central link by one row or two."""
-
-    def rows(self, chunk: Chunk) -> list[SampledRow]:
-        """Return its rows while the central link is unknown."""
-        ...
-
-    def place(self, chunk: Chunk, body: BodyKinematics) -> None:
-        """Add its own link and sliders; ``body`` is the central link by its anchor."""
-        ...
-
-    def locals(self) -> list[tuple[str, Point]]:
-        """Return the points of the central link that it holds, by body."""
-        ...
-
-
 @dataclass(frozen=True)
-class BarLeg:
-    """RR: a link between a known pin and one of the central link."""
+class TriadLeg(ABC):
+    """Leg or joint that holds the body ``part`` of the central link by one row or two."""
 
     frame: CentralFrame
     placed: PlacedBodies
     part: str
+
+    @abstractmethod
+    def rows(self, chunk: Chunk) -> list[SampledRow]:
+        """Return its rows while the central link is unknown."""
+
+    @abstractmethod
+    def place(self, chunk: Chunk, body: BodyKinematics) -> None:
+        """Add its own link and sliders; ``body`` is the central link by its anchor."""
+
+    @property
+    def held(self) -> Point | None:
+        """Point of the part that it holds; None where it holds an angle alone."""
+        return None
+
+    def end(self, chunk: Chunk) -> LocalPoint:
+        """Return that point in the frame of the central link."""
+        assert self.held is not None
+        return self.frame.local(chunk, self.part, self.held)
+
+    def known_pin(self, chunk: Chunk, pin: str) -> PointKinematics:
+        """Return the motion of a pin of a known body."""
+        return chunk.point(self.placed.holder(pin), pin)
+
+
+@dataclass(frozen=True)
+class LinkLeg(TriadLeg):
+    """Leg by its link, its pair to a known body and that to the central link."""
+
     link: str
     outer: str
     inner: str
 
     @property
+    def held(self) -> Point | None:
+        return self.placed.local(self.part, self.inner)
+
+
+@dataclass(frozen=True)
+class BarLeg(LinkLeg):
+    """RR: a link between a known pin and one of the central link."""
+
+    @property
     def _bar(self) -> Bar:
         return Bar(self.placed, self.link, self.outer, self.inner)
 
-    def locals(self) -> list[tuple[str, Point]]:
-        return [(self.part, self.placed.local(self.part, self.inner))]
-
     def rows(self, chunk: Chunk) -> list[SampledRow]:
-        bar, at = self._bar, self.frame.local(chunk, *self.locals()[0])
-        return [RowCircle(at, bar.anchor(chunk), bar.length)]
+        bar = self._bar
+        return [RowCircle(self.end(chunk), bar.anchor(chunk), bar.length)]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
         bar = self._bar
-        far = self.frame.local(chunk, *self.locals()[0]).on(body)
-        near = bar.anchor(chunk)
+        far, near = self.end(chunk).on(body), bar.anchor(chunk)
         chunk.bodies[self.link] = bar.body(spanning(near, far, bar.length), near)
 
 
@@ -79,14 +96,8 @@ def spanning(near: PointKinematics, far: PointKinematics, length: float) -> Turn
     omega, alpha = span.cross(drift) * square, span.cross(pull) * square
     error = None
     if near.error is not None and far.error is not None:
-        place, loose, shove = (
-            (one + other) / length
-            for one, other in (
-                (near.error.position, far.error.position),
-                (near.error.velocity, far.error.velocity),
-                (near.error.acceleration, far.error.acceleration),
-            )
-        )
+        pairs = zip(near.error, far.error, strict=True)
+        place, loose, shove = ((one + other) / length for one, other in pairs)
         place = place + 4 * EPS
         lean = np.where(place < 0.5, 1.2 * place, np.pi)
         speed, shift = drift.norm() / length, pull.norm() / length
@@ -99,36 +110,22 @@ def spanning(near: PointKinematics, far: PointKinematics, length: float) -> Turn
 
 
 @dataclass(frozen=True)
-class SlidingLeg:
+class SlidingLeg(LinkLeg):
     """PR: a body that slides on, or along, a known one, pinned to the central link."""
 
-    frame: CentralFrame
-    placed: PlacedBodies
-    part: str
-    link: str
-    slider: str
-    inner: str
-
     def _riding(self) -> tuple[RidingLine, RidingLine, float, Point]:
-        riding, own = (
-            RidingLine.of(self.placed, self.slider),
-            self.placed.local(self.link, self.inner),
-        )
+        riding = RidingLine.of(self.placed, self.outer)
+        own = self.placed.local(self.link, self.inner)
         return riding, *riding.through(own), own
 
-    def locals(self) -> list[tuple[str, Point]]:
-        return [(self.part, self.placed.local(self.part, self.inner))]
-
     def rows(self, chunk: Chunk) -> list[SampledRow]:
-        at = self.frame.local(chunk, *self.locals()[0])
-        return [OnLine(at, self._riding()[1].line(chunk))]
+        return [OnLine(self.end(chunk), self._riding()[1].line(chunk))]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
         riding, through, lead, own = self._riding()
-        pin = self.frame.local(chunk, *self.locals()[0]).on(body)
-        known = chunk.bodies[riding.known]
-        chunk.bodies[self.link] = following_body(known, riding.follow, riding.rounding, own, pin)
-        chunk.sliders[self.slider] = through.displacement(sliding(through.line(chunk), pin), lead)
+        pin = self.end(chunk).on(body)
+        chunk.bodies[self.link] = riding.follower(chunk, own, pin)
+        chunk.sliders[self.outer] = through.displacement(sliding(through.line(chunk), pin), lead)
 
 
 def sliding(line: MovingLine, point: PointKinematics) -> Sliding:
@@ -151,63 +148,49 @@ def sliding(line: MovingLine, point: PointKinematics) -> Sliding:
 
 
 @dataclass(frozen=True)
-class GuidedLeg:
+class GuidedLeg(LinkLeg):
     """RP: a body pinned to a known one that slides on, or along, the central link."""
-
-    frame: CentralFrame
-    placed: PlacedBodies
-    part: str
-    link: str
-    outer: str
-    slider: str
 
     def _riding(self) -> tuple[RidingLine, RidingLine, float, Point]:
         central = replace(self.placed, known=frozenset({self.part}))
-        riding, own = RidingLine.of(central, self.slider), self.placed.local(self.link, self.outer)
+        riding, own = RidingLine.of(central, self.inner), self.placed.local(self.link, self.outer)
         return riding, *riding.through(own), own
 
-    def _pin(self, chunk: Chunk) -> PointKinematics:
-        return chunk.point(self.placed.holder(self.outer), self.outer)
-
-    def locals(self) -> list[tuple[str, Point]]:
-        return [(self.part, self._riding()[1].base)]
+    @property
+    def held(self) -> Point | None:
+        return self._riding()[1].base
 
     def _row(self, chunk: Chunk) -> Through:
-        _, through, _, _ = self._riding()
-        at = self.frame.local(chunk, self.part, through.base)
+        through, at = self._riding()[1], self.end(chunk)
         lean = self.frame.leaning(chunk, self.part, through.angle)
-        slack = through.slack
-        if slack:
-            at = replace(at, error=replace(at.error, position=at.error.position + slack))
-        turning = (lean.omega, lean.alpha)
-        return Through(at, lean.along, self._pin(chunk), turning, lean.error)
+        if through.slack:
+            error = at.error._replace(position=at.error.position + through.slack)
+            at = replace(at, error=error)
+        pin = self.known_pin(chunk, self.outer)
+        return Through(at, lean.along, pin, (lean.omega, lean.alpha), lean.error)
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
         return [self._row(chunk)]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
         riding, through, lead, own = self._riding()
-        pin, line = self._pin(chunk), self._row(chunk).line(body)
-        carrier = chunk.bodies[self.part]
-        chunk.bodies[self.link] = following_body(carrier, riding.follow, riding.rounding, own, pin)
-        chunk.sliders[self.slider] = through.displacement(sliding(line, pin), lead)
+        pin, line = self.known_pin(chunk, self.outer), self._row(chunk).line(body)
+        chunk.bodies[self.link] = riding.follower(chunk, own, pin)
+        chunk.sliders[self.inner] = through.displacement(sliding(line, pin), lead)
 
 
 @dataclass(frozen=True)
-class PinnedThere:
+class PinnedThere(TriadLeg):
     """R: the central link is pinned to a known body."""
 
-    frame: CentralFrame
-    placed: PlacedBodies
-    part: str
     pin: str
 
-    def locals(self) -> list[tuple[str, Point]]:
-        return [(self.part, self.placed.local(self.part, self.pin))]
+    @property
+    def held(self) -> Point | None:
+        return self.placed.local(self.part, self.pin)
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
-        at = self.frame.local(chunk, *self.locals()[0])
-        known = chunk.point(self.placed.holder(self.pin), self.pin)
+        at, known = self.end(chunk), self.known_pin(chunk, self.pin)
         error = EXACT_ANGLE if chunk.certified else None
         return [
             OnLine(at, MovingLine(known, along, 0.0, 0.0, error))
@@ -219,41 +202,37 @@ class PinnedThere:
 
 
 @dataclass(frozen=True)
-class SlidingThere:
+class SlidingThere(TriadLeg):
     """P: the central link slides on, or along, a known body."""
 
-    frame: CentralFrame
-    placed: PlacedBodies
-    part: str
     slider: str
     size_m: float
 
+    @property
     def _riding(self) -> RidingLine:
         return RidingLine.of(self.placed, self.slider)
 
-    def locals(self) -> list[tuple[str, Point]]:
-        return [(self.part, self._riding().rider)]
+    @property
+    def held(self) -> Point | None:
+        return self._riding.rider
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
-        riding = self._riding()
-        at = self.frame.local(chunk, *self.locals()[0])
-        kept = kept_angle(self.frame, chunk, self.part, riding, 0.0, self.size_m)
-        return [kept, OnLine(at, riding.line(chunk))]
+        riding, at = self._riding, self.end(chunk)
+        return [kept_angle(self, chunk, riding, 0.0, self.size_m), OnLine(at, riding.line(chunk))]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
-        riding = self._riding()
-        at = self.frame.local(chunk, *self.locals()[0]).on(body)
+        riding, at = self._riding, self.end(chunk).on(body)
         chunk.sliders[self.slider] = riding.displacement(sliding(riding.line(chunk), at), 0.0)
 
 
 def kept_angle(
-    frame: CentralFrame, chunk: Chunk, part: str, riding: RidingLine, back: float, size_m: float
+    leg: TriadLeg, chunk: Chunk, riding: RidingLine, back: float, size_m: float
 ) -> KeptAngle:
-    """Return the row of a central link that keeps its angle to a known body: one of its bodies
-    follows by ``riding``, less the angle ``back``."""
+    """Return the row of a central link that keeps its angle to a known body: the part that a leg
+    holds follows by ``riding``, less the angle ``back``."""
     known = chunk.bodies[riding.known]
     along = known.unit(riding.follow - back)
-    own = frame.leaning(chunk, part, 0.0)
+    own = leg.frame.leaning(chunk, leg.part, 0.0)
     omega, alpha, error = known.omega - own.omega, known.alpha - own.alpha, known.error
     along = along.turned(Vec(own.along.x, -own.along.y))
     if error is not None:
@@ -264,15 +243,9 @@ def kept_angle(
 
 
 @dataclass(frozen=True)
-class DoublySlidingLeg:
+class DoublySlidingLeg(LinkLeg):
     """PP: a body that slides on a known one, and the central link on it: that keeps its angle."""
 
-    frame: CentralFrame
-    placed: PlacedBodies
-    part: str
-    link: str
-    outer: str
-    inner: str
     size_m: float
 
     def _ridings(self) -> tuple[RidingLine, RidingLine]:
@@ -280,28 +253,26 @@ class DoublySlidingLeg:
         leg = replace(self.placed, known=frozenset({self.link}))
         return RidingLine.of(self.placed, self.outer), RidingLine.of(leg, self.inner)
 
-    def locals(self) -> list[tuple[str, Point]]:
-        return []
+    @property
+    def held(self) -> Point | None:
+        return None
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
         outer, inner = self._ridings()
-        kept = kept_angle(self.frame, chunk, self.part, outer, -inner.follow, self.size_m)
+        kept = kept_angle(self, chunk, outer, -inner.follow, self.size_m)
         if kept.error is not None:
             theta = kept.error.theta + inner.rounding
-            kept = replace(kept, error=replace(kept.error, theta=theta))
+            kept = replace(kept, error=kept.error._replace(theta=theta))
         return [kept]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
         """Place the leg where its line meets the one through the rider of the central link."""
         outer, inner = self._ridings()
         rider = self.frame.local(chunk, self.part, inner.rider).on(body)
-        known = chunk.bodies[outer.known]
         line = outer.line(chunk)
         # The line of a leg at displacement 0, on the known body, goes through the rider when it is
         # shifted along the known line.
-        chunk.bodies[self.link] = following_body(
-            known, outer.follow, outer.rounding, outer.rider, line.point
-        )
+        chunk.bodies[self.link] = outer.follower(chunk, outer.rider, line.point)
         guide = inner.line(chunk)
         shifted = MovingLine(guide.point, line.along, line.omega, line.alpha, line.error)
         across = MovingLine(rider, guide.along, line.omega, line.alpha, guide.error)
@@ -309,8 +280,6 @@ class DoublySlidingLeg:
             shifted, across, certified=chunk.certified, stretch=chunk.stretch
         ).first
         at = riding_point(line, crossing)
-        chunk.bodies[self.link] = following_body(
-            known, outer.follow, outer.rounding, outer.rider, at
-        )
+        chunk.bodies[self.link] = outer.follower(chunk, outer.rider, at)
         chunk.sliders[self.outer] = outer.displacement(crossing, 0.0)
         chunk.sliders[self.inner] = inner.displacement(sliding(inner.line(chunk), rider), 0.0)

@@ -1,6 +1,7 @@
 """Mounting of the central link of a group: its frame, and the legs or joints that hold it."""
 
 import math
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,28 +12,21 @@ from analytic.assur.legs import (
     BarLeg,
     DoublySlidingLeg,
     GuidedLeg,
+    LinkLeg,
     PinnedThere,
     SlidingLeg,
     SlidingThere,
     TriadLeg,
 )
 from analytic.assur.sampled_rows import LocalPoint, RowCircle, SampledRow
+from analytic.dyads import plane
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.plane import (
-    EPS,
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Real,
-    Vec,
-)
+from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics
 from analytic.dyads.riding import PlacedBodies
 from analytic.structure.groups import Compound, Group, JointKey, Triad, as_triad
 from analytic.structure.groups import Leg as LegOfGroup
 from models.errors import StructureError
 from models.scene import Point, Scene, span
-from models.scene.joints import local_point
 
 
 class Mounting:
@@ -47,11 +41,13 @@ class Mounting:
         central, held, joint = as_triad(group, own)
         body = central if own is None else own.base
         self.frame, self.size_m = CentralFrame(scene, body, (0.0, 0.0), own), scene.longest_m
-        points = [
-            place for leg in self._made(held, joint) for at, place in leg.locals() if at == body
-        ]
-        middle = _middle(points) if points else next(iter(scene.links[body].points.values()))
-        self.frame = replace(self.frame, origin=middle)
+        legs = [leg for leg in self._made(held, joint) if leg.part == body]
+        points = [leg.held for leg in legs if leg.held is not None]
+        origin = next(iter(scene.links[body].points.values()))
+        if points:
+            x, y = (math.fsum(row) / len(points) for row in zip(*points, strict=True))
+            origin = x, y
+        self.frame = replace(self.frame, origin=origin)
         self.size_m = _size(scene, self.frame, points)
         self.legs = self._made(held, joint)
 
@@ -74,7 +70,6 @@ class Mounting:
         return next(body for body in self.placed.structure.pins[pin] if body in chunk.bodies)
 
     def _part(self, joint: JointKey) -> str:
-        """Return the body of the central link that has a joint."""
         kind, name = joint
         for body in self.frame.bodies:
             if kind == "R" and body in self.placed.structure.pins[name]:
@@ -107,21 +102,14 @@ class Mounting:
                 "here; drive another joint, or a leg with pins at both ends"
             )
         own = CentralFrame(scene, compound.base, (0.0, 0.0), compound)
-        outer, inner = leg.outer[1], leg.inner[1]
-        return DrivenBarLeg(self.frame, self.placed, part, own, outer, inner)
+        ends = (leg.body, leg.outer[1], leg.inner[1])
+        return DrivenBarLeg(self.frame, self.placed, part, *ends, own)
 
     def _joint(self, joint: JointKey) -> TriadLeg:
         part = self._part(joint)
         if joint[0] == "R":
             return PinnedThere(self.frame, self.placed, part, joint[1])
         return SlidingThere(self.frame, self.placed, part, joint[1], self.size_m)
-
-
-def _middle(points: list[Point]) -> Point:
-    return (
-        math.fsum(p[0] for p in points) / len(points),
-        math.fsum(p[1] for p in points) / len(points),
-    )
 
 
 def _size(scene: Scene, frame: CentralFrame, points: Sequence[Point]) -> float:
@@ -132,7 +120,7 @@ def _size(scene: Scene, frame: CentralFrame, points: Sequence[Point]) -> float:
 
 
 @dataclass(frozen=True)
-class DrivenBarLeg:
+class DrivenBarLeg(LinkLeg):
     """RR: ``own`` is the frame of the leg's two bodies.
 
     ::
@@ -140,36 +128,18 @@ class DrivenBarLeg:
           o---[cylinder]==[rod]---o       between a pin to a known body and one to the central link
     """
 
-    frame: CentralFrame
-    placed: PlacedBodies
-    part: str
     own: CentralFrame
-    outer: str
-    inner: str
 
-    def locals(self) -> list[tuple[str, Point]]:
-        return [(self.part, self.placed.local(self.part, self.inner))]
-
-    def _end(self, chunk: Chunk, pin: str) -> LocalPoint:
+    def _pin(self, chunk: Chunk, pin: str) -> LocalPoint:
         """Return a pin in the frame of the leg."""
-        body = self.body_of(pin)
-        return self.own.local(chunk, body, local_point(self.placed.scene, body, pin))
-
-    def body_of(self, pin: str) -> str:
-        """Return the body of the leg that carries a pin."""
-        return next(b for b in self.own.bodies if b in self.placed.structure.pins[pin])
+        body = next(b for b in self.own.bodies if b in self.placed.structure.pins[pin])
+        return self.own.local(chunk, body, self.placed.local(body, pin))
 
     def span(self, chunk: Chunk) -> LocalPoint:
         """Return the vector from the outer pin to the inner one, in the frame of the leg."""
-        near, far = self._end(chunk, self.outer), self._end(chunk, self.inner)
-        e, f = near.error, far.error
-        error = PointError(
-            e.position + f.position, e.velocity + f.velocity, e.acceleration + f.acceleration
-        )
+        near, far = self._pin(chunk, self.outer), self._pin(chunk, self.inner)
+        error = plane.PointError(*map(operator.add, near.error, far.error))
         return LocalPoint(far.p - near.p, far.v - near.v, far.a - near.a, error, True)
-
-    def _known(self, chunk: Chunk) -> PointKinematics:
-        return chunk.point(self.placed.holder(self.outer), self.outer)
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
         d = self.span(chunk)
@@ -186,31 +156,29 @@ class DrivenBarLeg:
             + (4.0 * speed * e.velocity + 4.0 * speed * speed * e.position / length) / length
             + 8 * EPS * (d.a.norm() + speed * speed / length),
         )
-        at = self.frame.local(chunk, *self.locals()[0])
-        return [RowCircle(at, self._known(chunk), length, rate, second, off)]
+        near = self.known_pin(chunk, self.outer)
+        return [RowCircle(self.end(chunk), near, length, rate, second, off)]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
-        near = self._known(chunk)
-        far = self.frame.local(chunk, *self.locals()[0]).on(body)
-        turn, omega, alpha, error = _turned(near, far, self.span(chunk))
-        anchor = _beside(self._end(chunk, self.outer), near, turn, omega, alpha, error)
-        self.own.place(chunk, BodyKinematics((0.0, 0.0), anchor, turn, omega, alpha, error))
+        near, far = self.known_pin(chunk, self.outer), self.end(chunk).on(body)
+        leg = _turned(near, far, self.span(chunk))
+        anchor = _origin(leg, self._pin(chunk, self.outer), near)
+        self.own.place(chunk, replace(leg, anchor=anchor))
 
 
-def _turned(
-    near: PointKinematics, far: PointKinematics, d: LocalPoint
-) -> tuple[Vec, Real, Real, AngleError | None]:
-    """Return the rotation of a frame in which the way between two points is ``d``."""
+def _turned(near: PointKinematics, far: PointKinematics, d: LocalPoint) -> BodyKinematics:
+    """Return the frame in which the way between two points is ``d``, with its origin at rest."""
+    still = plane.fixed_point((0.0, 0.0))
     span, drift, pull = far.p - near.p, far.v - near.v, far.a - near.a
     square = 1.0 / d.p.square()
-    turn = span.turned(Vec(d.p.x, -d.p.y)) * square
+    turn = span.turned(plane.Vec(d.p.x, -d.p.y)) * square
     turn = turn * (1.0 / turn.norm())
     own = drift - d.v.turned(turn)
     omega = span.cross(own) * square
     rest = pull - d.a.turned(turn) - d.v.turned(turn).perp(2.0 * omega)
     alpha = span.cross(rest) * square
     if near.error is None or far.error is None:
-        return turn, omega, alpha, None
+        return BodyKinematics((0.0, 0.0), still, turn, omega, alpha, None)
     length = d.p.norm()
     e, f, g = near.error, far.error, d.error
     lean = (e.position + f.position + g.position) / length + 4 * EPS
@@ -222,27 +190,15 @@ def _turned(
     a = (e.acceleration + f.acceleration + g.acceleration) / length + shift * theta
     a = a + 2.0 * (slip * w + np.abs(omega) * (g.velocity / length + slip * theta))
     a = a * (1.0 + lean) + 2.0 * (lean + 6 * EPS) * rest.norm() / length
-    return turn, omega, alpha, AngleError(theta, w, a)
+    error = plane.AngleError(theta, w, a)
+    return BodyKinematics((0.0, 0.0), still, turn, omega, alpha, error)
 
 
-def _beside(
-    local: LocalPoint,
-    at: PointKinematics,
-    turn: Vec,
-    omega: Real,
-    alpha: Real,
-    error: AngleError | None,
-) -> PointKinematics:
+def _origin(frame: BodyKinematics, local: LocalPoint, at: PointKinematics) -> PointKinematics:
     """Return the origin of a frame from the known place of a point that may move in it."""
-    still = PointKinematics(Vec(0.0, 0.0), Vec(0.0, 0.0), Vec(0.0, 0.0), PointError(0.0, 0.0, 0.0))
-    frame = BodyKinematics((0.0, 0.0), still, turn, omega, alpha, error)
     way = replace(local, moves=True).on(frame)
     bounds = None
     if at.error is not None and way.error is not None:
-        e, f = at.error, way.error
-        bounds = PointError(
-            e.position + f.position + EPS * at.p.norm(),
-            e.velocity + f.velocity + EPS * at.v.norm(),
-            e.acceleration + f.acceleration + EPS * at.a.norm(),
-        )
+        levels = zip(at.error, way.error, (at.p, at.v, at.a), strict=True)
+        bounds = plane.PointError(*(e + f + EPS * known.norm() for e, f, known in levels))
     return PointKinematics(at.p - way.p, at.v - way.v, at.a - way.a, bounds)

@@ -10,6 +10,7 @@ certain, nor any rate.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,27 +19,15 @@ from typing import Protocol
 import numpy as np
 
 from analytic.assur.sampled_rows import Gap, SampledRow
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    EXACT_POINT,
-    ZERO,
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Real,
-    Vec,
-)
+from analytic.dyads import plane
+from analytic.dyads.plane import EPS, AngleError, BodyKinematics, PointError, Real, Vec, sample
 from models.array import Array, Mask
 from models.motion import Order
-from models.scene import Point
 
 STEPS = 12
 """Most steps of Newton's method; a good guess takes two or three."""
 TURN = 0.5
 """Largest turn of one step [rad]."""
-Three = tuple[Real, Real, Real]
 
 
 @dataclass(frozen=True)
@@ -46,26 +35,25 @@ class Wrenches:
     """Inverse of the matrix whose rows are n and r x n over a length: by column three numbers, the
     last over that length; ``det`` over the product of the lengths of the rows is in [-1, 1]."""
 
-    columns: tuple[Three, Three, Three]
+    columns: Sequence[plane.Three]
     size_m: float
     det: Real
 
     @staticmethod
     def of(rows: Sequence[SampledRow], body: BodyKinematics, size_m: float) -> Wrenches:
-        own = []
-        for row in rows:
-            n, turning = row.wrench(body)
-            own.append((n.x, n.y, turning / size_m))
-        a, b, c = own
-        crosses = (_cross(b, c), _cross(c, a), _cross(a, b))
-        det = _dot(a, crosses[0])
+        wrenches = (row.wrench(body) for row in rows)
+        a, b, c = ((n.x, n.y, turning / size_m) for n, turning in wrenches)
+        crosses = (plane.cross_three(b, c), plane.cross_three(c, a), plane.cross_three(a, b))
+        det = plane.dot_three(a, crosses[0])
         with np.errstate(divide="ignore", invalid="ignore"):
             inverse = 1.0 / det
-            columns = tuple((x * inverse, y * inverse, z * inverse) for x, y, z in crosses)
-            sine = det / np.sqrt(_dot(a, a) * _dot(b, b) * _dot(c, c))
-        return Wrenches((columns[0], columns[1], columns[2]), size_m, sine)
+            columns = [(x * inverse, y * inverse, z * inverse) for x, y, z in crosses]
+            sine = det / np.sqrt(
+                plane.dot_three(a, a) * plane.dot_three(b, b) * plane.dot_three(c, c)
+            )
+        return Wrenches(columns, size_m, sine)
 
-    def solve(self, gaps: Three) -> tuple[Vec, Real]:
+    def solve(self, gaps: Sequence[Real]) -> tuple[Vec, Real]:
         """Return the shift [m] and the turn [rad] that lower the rows by these gaps."""
         x, y, z = (
             sum(column[i] * gap for column, gap in zip(self.columns, gaps, strict=True))
@@ -73,7 +61,7 @@ class Wrenches:
         )
         return Vec(x, y), z / self.size_m
 
-    def bound(self, gaps: Three) -> tuple[Real, Real]:
+    def bound(self, gaps: Sequence[Real]) -> tuple[Real, Real]:
         """Return the largest shift and turn for rows with these errors."""
         x, y, z = (
             sum(np.abs(column[i]) * gap for column, gap in zip(self.columns, gaps, strict=True))
@@ -96,12 +84,7 @@ class SolvedPlatform:
 
 @np.errstate(all="ignore")
 def solve_platform(
-    rows: Sequence[SampledRow],
-    place: Vec,
-    turn: Vec,
-    size_m: float,
-    *,
-    certified: bool,
+    rows: Sequence[SampledRow], place: Vec, turn: Vec, size_m: float, *, certified: bool
 ) -> SolvedPlatform:
     """Solve for the central link near a guess.
 
@@ -133,8 +116,7 @@ def _placed(
     last = np.full(np.shape(place.x), np.inf)
     for _ in range(STEPS):
         wrenches = Wrenches.of(rows, body, size_m)
-        gaps = [row.gap(0, body)[0] for row in rows]
-        shift, by = wrenches.solve((gaps[0], gaps[1], gaps[2]))
+        shift, by = wrenches.solve(_gaps(rows, 0, body))
         length = size_m + place.norm()
         least = np.minimum(1.0, TURN / np.maximum(np.abs(by) + shift.norm() / length, 1e-300))
         move = shift.norm() + size_m * np.abs(by)
@@ -146,28 +128,26 @@ def _placed(
         last = move
         if settled.all():
             break
-    far = [np.abs(row.gap(0, body)[0]) for row in rows]
-    worst = np.maximum(np.maximum(far[0], far[1]), far[2])
+    worst = functools.reduce(np.maximum, map(np.abs, _gaps(rows, 0, body)))
     return body, np.asarray(worst <= 1e-10 * (size_m + place.norm()))
 
 
 def _still(place: Vec, turn: Vec) -> BodyKinematics:
-    anchor = PointKinematics(place, ZERO, ZERO, None)
+    anchor = plane.PointKinematics(place, plane.ZERO, plane.ZERO, None)
     return BodyKinematics((0.0, 0.0), anchor, turn, 0.0, 0.0, None)
 
 
 def _moving(rows: Sequence[SampledRow], body: BodyKinematics, wrenches: Wrenches) -> BodyKinematics:
     """Add the rates, from those of the rows of a link at rest, and the second ones likewise."""
     velocity, omega = wrenches.solve(_gaps(rows, 1, body))
-    anchor = PointKinematics(body.anchor.p, -velocity, ZERO, None)
+    anchor = plane.PointKinematics(body.anchor.p, -velocity, plane.ZERO, None)
     body = replace(body, anchor=anchor, omega=-omega)
     pull, alpha = wrenches.solve(_gaps(rows, 2, body))
     return replace(body, anchor=replace(anchor, a=-pull), alpha=-alpha)
 
 
-def _gaps(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> Three:
-    one, two, three = (row.gap(order, body)[0] for row in rows)
-    return one, two, three
+def _gaps(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> list[Real]:
+    return [row.gap(order, body)[0] for row in rows]
 
 
 def _bounded(
@@ -175,23 +155,23 @@ def _bounded(
 ) -> tuple[BodyKinematics, Mask]:
     """Return the link with bounds of all levels, and the mask where they are certain."""
     size = wrenches.size_m
-    exact = replace(body, anchor=replace(body.anchor, error=EXACT_POINT), error=EXACT_ANGLE)
+    exact = replace(
+        body, anchor=replace(body.anchor, error=plane.EXACT_POINT), error=plane.EXACT_ANGLE
+    )
     shift, by = wrenches.bound(_loose(rows, 0, exact))
     # A box of up to twice the first order, in the larger of both measures.
     e = 2.02 * np.maximum(shift, size * by) + EPS * size
     t = e / size
-    near = _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
-    change = tuple(
-        lean * e + (turning + 8 * EPS * size) * t + 8 * EPS * e
-        for lean, turning in (row.sway(near) for row in rows)
-    )
-    grown, more = wrenches.bound((change[0], change[1], change[2]))
+    near = widened(body, e, t)
+    sways = (row.sway(near) for row in rows)
+    change = [lean * e + (turning + 8 * EPS * size) * t + 8 * EPS * e for lean, turning in sways]
+    grown, more = wrenches.bound(change)
     # The second order takes no more than the first.
     share = np.maximum(grown, size * more) / e
     sure = np.asarray((share <= 0.49) & (t < 1.0))
     e, t = np.where(sure, shift + grown, np.inf), np.where(sure, by + more, math.pi)
     lost = np.where(sure, 1.0 / (1.0 - share), np.inf)
-    near = _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
+    near = widened(body, e, t)
     v, w = _weighed(wrenches.bound(_loose(rows, 1, near)), lost, size)
     near = _within(body, PointError(e, v, 0.0), AngleError(t, w, 0.0))
     a, g = _weighed(wrenches.bound(_loose(rows, 2, near)), lost, size)
@@ -214,31 +194,18 @@ def _within(body: BodyKinematics, point: PointError, angle: AngleError) -> BodyK
     return replace(body, anchor=replace(body.anchor, error=point), error=angle)
 
 
-def _loose(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> Three:
-    """Return the largest possible gaps of the rows."""
-
-    def whole(gap: Gap) -> Real:
-        return np.abs(gap[0]) + gap[1]
-
-    one, two, three = (whole(row.gap(order, body)) for row in rows)
-    return one, two, three
+def widened(body: BodyKinematics, e: Real, t: Real) -> BodyKinematics:
+    """Return a pose that is known but for ``e`` [m] in its place and ``t`` [rad] in its angle."""
+    return _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
 
 
-def _cross(a: Three, b: Three) -> Three:
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
+def _loose(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> list[Real]:
+    return [largest(row.gap(order, body)) for row in rows]
 
 
-def _dot(a: Three, b: Three) -> Real:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def place_of(local: Point) -> Vec:
-    """Return a point of a link's frame as a vector."""
-    return Vec(*local)
+def largest(gap: Gap) -> Real:
+    """Return the largest possible size of a gap."""
+    return np.abs(gap[0]) + gap[1]
 
 
 class RowsAt(Protocol):
@@ -273,18 +240,14 @@ def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) ->
 
 def pose_of(body: BodyKinematics, det: Array, theta: float, k: int, near: float) -> CentralPose:
     """Return one sample as a pose, its angle nearest to a given one."""
-
-    def one(value: object) -> float:
-        flat = np.ravel(np.asarray(value))
-        return float(flat[k if flat.size > 1 else 0])
-
-    turned = math.atan2(one(body.turn.y), one(body.turn.x))
+    turned = math.atan2(sample(body.turn.y, k), sample(body.turn.x, k))
     angle = turned + math.tau * round((near - turned) / math.tau)
-    at = body.anchor
-    return CentralPose(
-        theta, (one(at.p.x), one(at.p.y)), angle, (one(at.v.x), one(at.v.y)), one(body.omega),
-        (one(at.a.x), one(at.a.y)), one(body.alpha), one(det),
-    )  # fmt: skip
+    place, rate, second = (
+        (sample(vec.x, k), sample(vec.y, k))
+        for vec in (body.anchor.p, body.anchor.v, body.anchor.a)
+    )
+    omega, alpha = sample(body.omega, k), sample(body.alpha, k)
+    return CentralPose(theta, place, angle, rate, omega, second, alpha, sample(det, k))
 
 
 def ahead(pose: CentralPose, theta: Array) -> tuple[Vec, Vec]:

@@ -8,25 +8,16 @@ g at the motion found, from its errors and those of the inputs.
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from analytic.assur.eliminant import AngleRow, CircleRow, LegRow, LineRow, ThroughRow
+from analytic.dyads import plane
 from analytic.dyads.parts import MovingLine
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    EXACT_POINT,
-    ZERO,
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Real,
-    Vec,
-)
+from analytic.dyads.plane import EPS, ZERO, AngleError, BodyKinematics, PointKinematics, Real, Vec
 from models.motion import Order
 from models.scene import Point
 
@@ -43,12 +34,8 @@ class LocalPoint:
     p: Vec
     v: Vec = ZERO
     a: Vec = ZERO
-    error: PointError = EXACT_POINT
+    error: plane.PointError = plane.EXACT_POINT
     moves: bool = False
-
-    @staticmethod
-    def at(place: Point) -> LocalPoint:
-        return LocalPoint(Vec(*place))
 
     def on(self, body: BodyKinematics) -> PointKinematics:
         """Return its motion, carried by the link."""
@@ -67,7 +54,7 @@ class LocalPoint:
             return motion
         return replace(motion, error=self._error(body, motion))
 
-    def _error(self, body: BodyKinematics, motion: PointKinematics) -> PointError:
+    def _error(self, body: BodyKinematics, motion: PointKinematics) -> plane.PointError:
         assert body.error is not None
         assert body.anchor.error is not None
         e, at, own = body.error, body.anchor.error, self.error
@@ -75,7 +62,7 @@ class LocalPoint:
         w, g = np.abs(body.omega), np.abs(body.alpha)
         ww, gg = w + e.omega, g + e.alpha
         gain = e.alpha + e.omega * (2.0 * w + e.omega)
-        return PointError(
+        return plane.PointError(
             at.position + r * e.theta + own.position + EPS * (motion.p.norm() + 4.0 * r),
             at.velocity
             + r * (e.omega + ww * e.theta)
@@ -98,19 +85,15 @@ class SampledRow(Protocol):
 
     def wrench(self, body: BodyKinematics) -> tuple[Vec, Real]:
         """Return n, and r x n [m]; for an angle 0, and a length."""
-        ...
 
     def gap(self, order: Order, body: BodyKinematics) -> Gap:
         """Return g, its rate or its second rate."""
-        ...
 
     def sway(self, body: BodyKinematics) -> Sway:
         """Return the largest change of the wrench within the bounds of the pose."""
-        ...
 
     def at(self, index: int) -> LegRow:
         """Return the row at one sample, in the link's frame."""
-        ...
 
 
 def moment(body: BodyKinematics, place: Vec, force: Vec) -> Real:
@@ -177,9 +160,8 @@ class RowCircle:
         return lean, arm * (lean + body.error.theta) + self.point.error.position
 
     def at(self, index: int) -> LegRow:
-        return CircleRow(
-            _one(self.point.p, index), _one(self.pin.p, index), _number(self.length, index)
-        )
+        length = plane.sample(self.length, index)
+        return CircleRow(_one(self.point.p, index), _one(self.pin.p, index), length)
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,16 +198,14 @@ class Through:
     along: Vec
     pin: PointKinematics
     turning: tuple[Real, Real] = (0.0, 0.0)
-    leaning: AngleError = EXACT_ANGLE
+    leaning: AngleError = plane.EXACT_ANGLE
 
     def line(self, body: BodyKinematics) -> MovingLine:
         """Return the line in motion."""
         error = None
         if body.error is not None:
-            e, own = body.error, self.leaning
-            error = AngleError(
-                e.theta + own.theta + 2 * EPS, e.omega + own.omega, e.alpha + own.alpha
-            )
+            error = AngleError(*map(operator.add, body.error, self.leaning))
+            error = error._replace(theta=error.theta + 2 * EPS)
         w, g = body.omega + self.turning[0], body.alpha + self.turning[1]
         return MovingLine(self.point.on(body), self.along.turned(body.turn), w, g, error)
 
@@ -317,9 +297,5 @@ def gap_of_line(order: Order, line: MovingLine, point: PointKinematics) -> Gap:
     return value, shove + point.error.acceleration + across + lean * pull.norm() + 5 * EPS * sizes
 
 
-def _number(value: Real, index: int) -> float:
-    return float(np.ravel(value)[index if np.size(value) > 1 else 0])
-
-
 def _one(vector: Vec, index: int) -> Point:
-    return _number(vector.x, index), _number(vector.y, index)
+    return plane.sample(vector.x, index), plane.sample(vector.y, index)

@@ -17,13 +17,12 @@ from analytic.assur.track import AssemblyTrack
 from analytic.change_points.sign import AT_START, HALVES, whole_turns_off
 from analytic.dyads.chunk import Chunk, Passage, driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
-from analytic.dyads.plane import STEADY, AngleError, BodyKinematics, Vec
-from analytic.dyads.steps import FollowedStep, Step
+from analytic.dyads.plane import BodyKinematics, Vec
+from analytic.dyads.steps import FollowedStep, Step, uncertain_chunk
 from analytic.structure.groups import Group
 from models.array import Array, Mask
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.motion import Crossing
-from models.scene import Scene
 
 SIDE = HALVES[0]
 """Range of influence of a change point [rad]."""
@@ -35,33 +34,20 @@ if TYPE_CHECKING:
     from analytic.assur.assemblies import TriadAssembly
 
 
-class Before:
-    """Steps before a step, which it depends on."""
-
-    def __init__(self, scene: Scene, steps: Sequence[Step]) -> None:
-        self.scene, self.steps = scene, tuple(steps)
-
-    def chunk(self, theta: Array, half: Array | float, passages: Mapping[str, Passage]) -> Chunk:
-        """Solve the earlier steps at driver angles with this uncertainty [rad]."""
-        error = AngleError(np.broadcast_to(half, theta.shape), 0.0, 0.0)
-        chunk = Chunk.begin(self.scene, theta, 1.0, STEADY, error, stretch=True, passages=passages)
-        for step in self.steps:
-            step.advance(chunk)
-        return chunk
-
-
 class AssurStep(FollowedStep):
     """Central link of a group on its legs, followed from its assembly at time 0."""
 
     def __init__(self, mounting: Mounting, before: Sequence[Step]) -> None:
         self.mounting, self.key = mounting, mounting.group.branch_key
-        self.scene = mounting.placed.scene
-        self.before = Before(self.scene, before)
+        self.scene, self.steps_before = mounting.placed.scene, tuple(before)
         self._tracks: dict[frozenset[str], AssemblyTrack] = {}
         self._pieces: dict[tuple[AssemblyTrack, int], CrossingPiece | None] = {}
 
+    def before(self, theta: Array, half: Array | float, passages: Mapping[str, Passage]) -> Chunk:
+        """Solve the earlier steps at driver angles with this uncertainty [rad]."""
+        return uncertain_chunk(self.scene, self.steps_before, theta, half, passages)
+
     def advance(self, chunk: Chunk) -> None:
-        """Add the group's bodies and sliders. Raises OpenError."""
         track = self.track(chunk.passages)
         theta = track.home(chunk.theta)
         solved = self._solved(chunk, *track.guess(theta))
@@ -111,7 +97,6 @@ class AssurStep(FollowedStep):
         return replace(solved, body=body), closes
 
     def _piece(self, track: AssemblyTrack, k: int) -> CrossingPiece | None:
-        """Return the motion through a change point, computed once."""
         if (track, k) not in self._pieces:
 
             def solved(theta: Array) -> BodyKinematics:
@@ -127,7 +112,6 @@ class AssurStep(FollowedStep):
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
-        """Return the group's change points that a driver passes between two angles, each once."""
         track = self.track(passages)
         period = track.period
         found = set()
@@ -150,7 +134,7 @@ class AssurStep(FollowedStep):
         ReachError
             The group has no assembly at the start, or none of that number.
         """
-        own = frozenset(passages) & {step.key for step in self.before.steps}
+        own = frozenset(passages) & {step.key for step in self.steps_before}
         if own not in self._tracks:
             self._tracks[own] = self._follow({key: passages[key] for key in own})
         return self._tracks[own]
@@ -161,7 +145,7 @@ class AssurStep(FollowedStep):
         chosen = self._chosen(start, passages)
 
         def rows(theta: Array, half: Array) -> list[SampledRow]:
-            return self.mounting.rows(self.before.chunk(theta, half, passages))
+            return self.mounting.rows(self.before(theta, half, passages))
 
         pose = pose_at(rows, start, *_pose(chosen), self.mounting.size_m)
         if pose is None:
@@ -169,35 +153,26 @@ class AssurStep(FollowedStep):
                 f"{scene.name}: at {scene.driver.joint} {told(scene, start)}, where it starts, the "
                 f"group about {self.key} is singular to within rounding; start elsewhere"
             )
-        slides = scene.driver.slider is not None
-        periods = [math.tau]
-        periods += [one.period for key, one in passages.items()]  # type: ignore[attr-defined]
-        periods += [
-            one.track(passages).period or math.tau
-            for one in self.before.steps
-            if isinstance(one, AssurStep)
-        ]
-        repeats = None if slides else max(periods)
+        repeats = None
+        if scene.driver.slider is None:
+            periods = [one.period for one in passages.values()]  # type: ignore[attr-defined]
+            followed = (one for one in self.steps_before if isinstance(one, AssurStep))
+            periods += [one.period(passages) or math.tau for one in followed]
+            repeats = max(periods, default=math.tau)
         return AssemblyTrack(rows, pose, self.mounting.size_m, repeats)
 
     def period(self, passages: Mapping[str, Passage]) -> float | None:
-        """Return the driver angle after which the assembly comes back [rad]; None where it ends."""
         return self.track(passages).period
 
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
-        """Return the text of the end beside a driver angle [rad]."""
         track = self.track(passages)
         at = float(track.home(np.array([theta]))[0])
-        ends = [end for end in (track.low, track.high) if end is not None]
+        ends = [end for end in track.ends if end is not None]
         end = min(ends, key=lambda one: abs(one.theta - at), default=None)
         if end is None:
             return f"the group about {self.key} cannot close"
         place = told(self.scene, end.theta)
         return f"the group about {self.key} ends in a {end.kind} at {place}"
-
-    def rows_at(self, theta: float, passages: Mapping[str, Passage]) -> list[SampledRow]:
-        """Return the rows at one driver angle."""
-        return self.mounting.rows(self.before.chunk(np.array([theta]), 0.0, passages))
 
     def assemblies(
         self, theta: float, passages: Mapping[str, Passage]
@@ -205,14 +180,15 @@ class AssurStep(FollowedStep):
         """Return all assemblies at one driver angle, in the order of their numbers."""
         from analytic.assur.assemblies import assemblies  # with python-flint, for these alone
 
-        one, two, three = (row.at(0) for row in self.rows_at(theta, passages))
+        before = self.before(np.array([theta]), 0.0, passages)
+        one, two, three = (row.at(0) for row in self.mounting.rows(before))
         return assemblies((one, two, three))
 
     def _side(self, start: float, one: TriadAssembly, passages: Mapping[str, Passage]) -> float:
         """Return a value that orders the two assemblies of a dyad: the larger one is side +1."""
         group = self.mounting.group
         assert isinstance(group, Group)
-        chunk = self.before.chunk(np.array([start]), 0.0, passages)
+        chunk = self.before(np.array([start]), 0.0, passages)
         self.mounting.place(chunk, self._solved(chunk, *_pose(one)).body)
         if group.kind != "RRR":
             return float(chunk.sliders[group.branch_key].s[0])
@@ -254,7 +230,6 @@ class AssurStep(FollowedStep):
 
 
 def _pose(one: TriadAssembly) -> tuple[Vec, Vec]:
-    """Return an assembly as one sample."""
     place = Vec(np.array([one.place[0]]), np.array([one.place[1]]))
     turn = Vec(np.array([math.cos(one.angle_rad)]), np.array([math.sin(one.angle_rad)]))
     return place, turn

@@ -65,7 +65,7 @@ class AssemblyTrack:
     def _is_start(self, pose: CentralPose) -> bool:
         """True if a pose is that of the start, but for whole turns: different ones are as far apart
         as the boxes of cells are wide, and rounding is much less."""
-        off = math.hypot(pose.place[0] - self.start.place[0], pose.place[1] - self.start.place[1])
+        off = math.dist(pose.place, self.start.place)
         turned = math.remainder(pose.angle - self.start.angle, math.tau)
         slack = 1e-13 * (1.0 + abs(pose.theta)) / max(min(abs(self.start.det), 1.0), 1e-6)
         scale = self.size_m + math.hypot(*self.start.place) + math.hypot(*self.start.rate)
@@ -92,16 +92,6 @@ class AssemblyTrack:
     def ends(self) -> tuple[TrackEnd | None, TrackEnd | None]:
         """Lower and upper end, None where there is none."""
         return self._down.end, self._up[0].end
-
-    @property
-    def low(self) -> TrackEnd | None:
-        """End at the lowest driver angle."""
-        return self.ends[0]
-
-    @property
-    def high(self) -> TrackEnd | None:
-        """End at the highest driver angle."""
-        return self.ends[1]
 
     @property
     def range(self) -> tuple[float, float]:
@@ -191,7 +181,7 @@ class AssemblyTrack:
     def _far(self, end: TrackEnd, theta: Array, x: Array, y: Array) -> tuple[Array, Array]:
         """Return the place between the last pose and infinity: distance as 1 over the way."""
         nodes = self._nodes
-        k = 0 if end is self.low else -1
+        k = 0 if end is self.ends[0] else -1
         left, way = end.theta - theta, end.theta - nodes[0, k]
         with np.errstate(divide="ignore", invalid="ignore"):
             growth = np.where((left / way > 0.0) & (left / way < 1.0), way / left, 1.0)

@@ -10,13 +10,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.dyads.chunk import Chunk, told
+from analytic.dyads.chunk import Chunk, DrivenCoordinate, told
 from analytic.dyads.parts import Dyad, First, OpenError, Second, SlideError, Sliding, Turning
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real, Vec
 from analytic.dyads.steps import Step
@@ -117,26 +118,33 @@ class Rates:
 
 
 @dataclass(frozen=True)
-class SignPiece:
-    """Two unknowns of a dyad around a change point.
+class SmoothPiece:
+    """Motion around a change point.
 
     ``half`` is half the range of the nodes; ``doubt`` is the largest bound of a derivative by the
-    driver's angle over that derivative, or over 1 and the longest length of the scene.
-
-    On that branch the unknowns are analytic functions of the driver's angle, also where the
-    formulas of the dyad give 0/0. Source of the interpolation and of its stability: J.-P. Berrut
-    and L. N. Trefethen, Barycentric Lagrange interpolation, SIAM Review 46 (2004), section 5 and 7.
+    driver's angle over that derivative, or over 1 and the length that weighs places.
     """
 
     half: float
-    first: Interpolant
-    second: Interpolant
     doubt: float
 
     @property
     def window(self) -> float:
         """Distance from the change point up to which it is used [rad]."""
         return self.half * WINDOW
+
+
+@dataclass(frozen=True)
+class SignPiece(SmoothPiece):
+    """Two unknowns of a dyad around a change point.
+
+    On that branch the unknowns are analytic functions of the driver's angle, also where the
+    formulas of the dyad give 0/0. Source of the interpolation and of its stability: J.-P. Berrut
+    and L. N. Trefethen, Barycentric Lagrange interpolation, SIAM Review 46 (2004), section 5 and 7.
+    """
+
+    first: Interpolant
+    second: Interpolant
 
     @staticmethod
     def of(solved: Solved, centre: float, half: float, longest_m: float) -> SignPiece:
@@ -152,15 +160,14 @@ class SignPiece:
             sizes = np.abs(found.values).max(axis=1) + (1.0 if turning else longest_m)
             doubt = max(doubt, float((found.worst() / sizes)[1:].max()))
             series.append(found)
-        return SignPiece(half, series[0], series[1], doubt)
+        return SignPiece(half, doubt, series[0], series[1])
 
 
 def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
     """Return values and bounds of an unknown at the nodes, each (3, n); angles without jumps."""
     assert found.error is not None
     if isinstance(found, Sliding):
-        e = found.error
-        rows = [found.s, found.speed, found.acceleration, e.displacement, e.speed, e.acceleration]
+        rows = [found.s, found.speed, found.acceleration, *found.error]
     else:
         angle = np.arctan2(found.turn.y, found.turn.x)
         # Whole turns beyond the rate at both ends of a step are jumps.
@@ -172,28 +179,32 @@ def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
     return table[:3], table[3:]
 
 
-def put(
-    unknown: First, shape: tuple[int, ...], index: Index, values: Series, bounds: Series
-) -> First:
-    """Return an unknown over all samples, with new values and bounds at those of ``index``."""
+def into(shape: tuple[int, ...], index: Index) -> Callable[[Real, Array], Array]:
+    """Return the function that puts new values of a series at the samples ``index``."""
 
-    def into(old: Real, new: Array) -> Array:
+    def put_in(old: Real, new: Array) -> Array:
         array = np.array(np.broadcast_to(old, shape))
         array[index] = new
         return array
 
+    return put_in
+
+
+def put(
+    unknown: First, shape: tuple[int, ...], index: Index, values: Series, bounds: Series
+) -> First:
+    """Return an unknown over all samples, with new values and bounds at those of ``index``."""
+    new = into(shape, index)
     if isinstance(unknown, Sliding):
-        s, speed, acceleration = map(into, (unknown.s, unknown.speed, unknown.acceleration), values)
+        s, speed, acceleration = map(new, (unknown.s, unknown.speed, unknown.acceleration), values)
         e = unknown.error
-        if e is not None:
-            e = SlideError(*map(into, (e.displacement, e.speed, e.acceleration), bounds))
+        e = None if e is None else SlideError(*map(new, e, bounds))
         return Sliding(s, speed, acceleration, e)
     angle, length, error = values[0], unknown.length, unknown.error
-    x = into(unknown.turn.x, length * np.cos(angle))
-    y = into(unknown.turn.y, length * np.sin(angle))
-    omega, alpha = map(into, (unknown.omega, unknown.alpha), values[1:])
-    if error is not None:
-        error = AngleError(*map(into, (error.theta, error.omega, error.alpha), bounds))
+    x = new(unknown.turn.x, length * np.cos(angle))
+    y = new(unknown.turn.y, length * np.sin(angle))
+    omega, alpha = map(new, (unknown.omega, unknown.alpha), values[1:])
+    error = None if error is None else AngleError(*map(new, error, bounds))
     return Turning(Vec(x, y), omega, alpha, error, length)
 
 
@@ -205,6 +216,26 @@ HALVES = tuple(2.0 ** (-0.5 * k) for k in range(21))
 """Half-widths [rad] tried for the interpolation through a change point."""
 LEAST_CERTAIN = 1e-3
 """Largest bound of a derivative, over its size, of a motion that counts as continued."""
+
+
+Piece = TypeVar("Piece", bound=SmoothPiece)
+
+
+@np.errstate(all="ignore")
+def widest(halves: Iterable[float], made: Callable[[float], Piece]) -> Piece | None:
+    """Return the widest piece that is about as certain as any, as narrower ones lose digits; None
+    where the motion is not certainly smooth. Half-widths [rad] out of reach are left out."""
+    best, least = None, math.inf
+    for half in halves:
+        try:
+            piece = made(half)
+        except OpenError:
+            continue
+        if piece.doubt < least:
+            best, least = piece, piece.doubt
+        elif piece.doubt > 4.0 * least and least < LEAST_CERTAIN:
+            break
+    return best if least < LEAST_CERTAIN else None
 
 
 @dataclass
@@ -241,7 +272,7 @@ class ChangePoints:
                 self._refuse(chunk, x)
                 continue
             index = np.flatnonzero(np.abs(x) < piece.window)
-            speed = _rates(chunk, index)
+            speed = rates_at(chunk.driver, index)
             first = put(first, theta.shape, index, *piece.first.at(x[index] / piece.half, speed))
             second = put(second, theta.shape, index, *piece.second.at(x[index] / piece.half, speed))
             short[index] = np.minimum(short[index], 0.0)
@@ -263,44 +294,26 @@ class ChangePoints:
         return np.asarray(np.remainder(theta - centre + half, self.period) - half)
 
     def _refuse(self, chunk: Chunk, x: Array) -> None:
-        """Refuse samples, at ``x`` from it, in a change point without a smooth motion through it.
-
-        Raises
-        ------
-        CrankcheckError
-            Scene, driver angle and dyad; not for a stretched chunk.
-        """
+        """Refuse samples, at ``x`` from it, in a change point without a smooth motion through it,
+        by a CrankcheckError; let those of a stretched chunk pass."""
         inside = np.abs(x) < SIDE
         if not chunk.stretch and inside.any():
             angle = whole_turns_off(float(chunk.theta[inside][0]))
             raise CrankcheckError(
                 f"{self.scene.name}: at {self.scene.driver.joint} {told(self.scene, angle)} the "
-                "dyad of "
-                f"{self.key} is in a change point with no smooth motion through it that can be "
-                "told from others to within rounding; another singular position is too near: "
-                "change a length, or keep the driver's range away from there"
+                f"dyad of {self.key} is in a change point with no smooth motion through it that "
+                "can be told from others to within rounding; another singular position is too "
+                "near: change a length, or keep the driver's range away from there"
             )
 
     def piece(self, i: int) -> SignPiece | None:
         """Return the motion through change point ``i``, computed once; None if not smooth."""
         if i not in self.pieces:
-            self.pieces[i] = self._piece(float(self.angles[i]))
+            centre, size_m = float(self.angles[i]), self.scene.longest_m
+            self.pieces[i] = widest(
+                HALVES, lambda half: SignPiece.of(self._solved, centre, half, size_m)
+            )
         return self.pieces[i]
-
-    @np.errstate(all="ignore")
-    def _piece(self, centre: float) -> SignPiece | None:
-        """Return the widest piece that is about as certain as any; narrower ones lose digits."""
-        best, least = None, math.inf
-        for half in HALVES:
-            try:
-                piece = SignPiece.of(self._solved, centre, half, self.scene.longest_m)
-            except OpenError:
-                continue
-            if piece.doubt < least:
-                best, least = piece, piece.doubt
-            elif piece.doubt > 4.0 * least and least < LEAST_CERTAIN:
-                break
-        return best if least < LEAST_CERTAIN else None
 
     @property
     def key(self) -> str:
@@ -333,10 +346,9 @@ class _Own:
         return dyad
 
 
-def _rates(chunk: Chunk, index: Index) -> Rates:
-    """Return the driver's rates at the samples ``index``; exact for a chunk without bounds."""
-    theta, error = chunk.theta, chunk.driver.error or EXACT_ANGLE
-    each = (chunk.driver.omega, chunk.driver.alpha, error.theta, error.omega, error.alpha)
+def rates_at(driver: DrivenCoordinate, index: Index) -> Rates:
+    """Return the driver's rates at the samples ``index``; exact for a driver without bounds."""
+    theta, each = driver.theta, (driver.omega, driver.alpha, *(driver.error or EXACT_ANGLE))
     omega, alpha, *bounds = (np.broadcast_to(one, theta.shape)[index] for one in each)
     # The distance from the change point is rounded as the angles are.
     bounds[0] = bounds[0] + 4 * EPS * (np.abs(theta[index]) + math.tau)

@@ -15,9 +15,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.dyads.chunk import Chunk, Passage
-from analytic.dyads.plane import EPS, STEADY, AngleError
-from analytic.dyads.steps import Step
+from analytic.dyads.chunk import Passage
+from analytic.dyads.plane import EPS
+from analytic.dyads.steps import Step, uncertain_chunk
 from models.array import Array, Mask
 from models.scene import Scene
 
@@ -206,13 +206,8 @@ class CellSolver:
     def at(self, middle: Array, half: Array | float = 0.0) -> Cells:
         """Return the cells about driver angles [rad], (n,), of half-widths [rad]."""
         half = np.broadcast_to(half, middle.shape)
-        error = AngleError(half * (1.0 + 1e-6) + 8 * EPS * np.abs(middle), 0.0, 0.0)
-        chunk = Chunk.begin(
-            self.scene, middle, 1.0, STEADY, error, stretch=True, passages=self.passages
-        )
-        with np.errstate(all="ignore"):
-            for step in self.steps:
-                step.advance(chunk)
+        wide = half * (1.0 + 1e-6) + 8 * EPS * np.abs(middle)
+        chunk = uncertain_chunk(self.scene, self.steps, middle, wide, self.passages)
         angles: dict[str, Array] = {}
         spread, is_open = np.zeros(middle.shape), np.zeros(middle.shape, dtype=bool)
         for name in self.scene.links:

@@ -3,28 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
 
-from analytic.dyads.parts import Closure, Dyad, First, Second, SlideError, Sliding
-from analytic.dyads.plane import (
-    EPS,
-    EXACT_ANGLE,
-    STEADY,
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Real,
-    Vec,
-    direction,
-    fixed_body,
-    fixed_point,
-    rounding_of_angles,
-)
+from analytic.dyads import plane
+from analytic.dyads.parts import Closure, Dyad, First, MovingLine, Second, SlideError, Sliding
+from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from models.array import Array
 from models.scene import GROUND, Point, Scene, span
 from models.scene.joints import local_point, sliding_angle
@@ -35,11 +22,9 @@ class Passage(Protocol):
 
     def sign(self, theta: Array) -> Array:
         """Return the factor of the scene's branch at driver angles [rad], (T,)."""
-        ...
 
     def mend(self, chunk: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
         """Restore the lost values of a dyad in and beside its change points. Raises OpenError."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +35,13 @@ class DrivenCoordinate:
     theta: Array
     omega: Real
     alpha: Real
-    error: AngleError | None
+    error: plane.AngleError | None
 
     def sliding(self, scale_m: float) -> Sliding:
         """Return the displacement of a driven slider."""
-        e, error = self.error, None
-        if e is not None:
-            error = SlideError(e.theta * scale_m, e.omega * scale_m, e.alpha * scale_m)
+        error = None
+        if self.error is not None:
+            error = SlideError(*(bound * scale_m for bound in self.error))
         return Sliding(self.theta * scale_m, self.omega * scale_m, self.alpha * scale_m, error)
 
 
@@ -84,7 +69,7 @@ class Chunk:
         theta: Array,
         omega: Real,
         alpha: Real,
-        error: AngleError | None = None,
+        error: plane.AngleError | None = None,
         *,
         stretch: bool = False,
         passages: Mapping[str, Passage] | None = None,
@@ -94,9 +79,9 @@ class Chunk:
         is given."""
         certified = error is not None
         if error is not None and scene.driver.slider is None:
-            error = replace(error, theta=error.theta + SINES)
+            error = error._replace(theta=error.theta + SINES)
         driver = DrivenCoordinate(theta, omega, alpha, error)
-        bodies = {GROUND: fixed_body(certified=certified)}
+        bodies = {GROUND: plane.fixed_body(certified=certified)}
         chunk = Chunk(scene, certified, stretch, bodies, driver, passages or {}, roots=roots or {})
         chunk._place_driver()
         return chunk
@@ -112,10 +97,12 @@ class Chunk:
             self.bodies[link] = sliding_driver(self.scene, found)
             return
         pivot = self.scene.driver_pivot
-        self.bodies[link] = turning_driver(
-            self.scene, pivot, own.theta, own.omega, own.alpha, own.error
+        self.points[pivot] = anchor = plane.fixed_point(self.scene.ground[pivot])
+        local, theta = self.scene.links[link].points[pivot], own.theta
+        turn = plane.Vec(np.cos(theta), np.sin(theta))
+        self.bodies[link] = BodyKinematics(
+            local, anchor, turn, own.omega, own.alpha, own.error, theta
         )
-        self.points[pivot] = self.bodies[link].anchor
 
     @property
     def theta(self) -> Array:
@@ -127,19 +114,28 @@ class Chunk:
         if name not in self.points:
             local = local_point(self.scene, body, name)
             self.points[name] = (
-                fixed_point(local) if body == GROUND else self.bodies[body].point(local)
+                plane.fixed_point(local) if body == GROUND else self.bodies[body].point(local)
             )
         return self.points[name]
 
-    def assembly(self, key: str) -> tuple[Real, bool]:
-        """Return the branch of a dyad at every sample, and True if stretched where open.
+    def closed(
+        self,
+        key: str,
+        solve: Callable[..., Dyad[First, Second]],
+        *geometry: PointKinematics | MovingLine | float,
+        side: int = 1,
+    ) -> Dyad[First, Second]:
+        """Return a dyad of two assemblies on the scene's branch, times ``side``.
 
         In a change point it may be open by rounding, which `keep` mends.
         """
-        branch, passage = self.scene.branch.get(key, 1), self.passages.get(key)
-        if passage is None:
-            return branch, self.stretch
-        return branch * passage.sign(self.theta), True
+        branch: Real = self.scene.branch.get(key, 1) * side
+        stretch = self.stretch
+        if key in self.passages:
+            branch, stretch = branch * self.passages[key].sign(self.theta), True
+        root = self.roots.get(key)
+        free = solve(*geometry, branch, certified=self.certified, stretch=stretch, root=root)
+        return self.keep(key, free)
 
     def keep(self, key: str, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
         """Return the solved dyad, mended in its change points, and note its conditioning."""
@@ -182,24 +178,14 @@ def told(scene: Scene, theta: float) -> str:
     return f"{math.degrees(theta):.6g} deg"
 
 
-def turning_driver(
-    scene: Scene, pivot: str, theta: Array, omega: Real, alpha: Real, error: AngleError | None
-) -> BodyKinematics:
-    """Return a link at an angle about its pin to the ground."""
-    turn = Vec(np.cos(theta), np.sin(theta))
-    anchor = fixed_point(scene.ground[pivot])
-    local = scene.links[scene.driver.link].points[pivot]
-    return BodyKinematics(local, anchor, turn, omega, alpha, error, theta)
-
-
 def sliding_driver(scene: Scene, found: Sliding) -> BodyKinematics:
     """Return a body at a displacement along a line of the ground."""
     driver = scene.driver
     assert driver.slider is not None
     slider = scene.sliders[driver.slider]
-    along = direction(slider.direction_rad)
+    along = plane.direction(slider.direction_rad)
     anchor = PointKinematics(
-        along * found.s + Vec(*slider.through_m),
+        along * found.s + plane.Vec(*slider.through_m),
         along * found.speed,
         along * found.acceleration,
         None,
@@ -207,18 +193,20 @@ def sliding_driver(scene: Scene, found: Sliding) -> BodyKinematics:
     angle = sliding_angle(slider)
     own = None
     if found.error is not None:
-        leaning = rounding_of_angles(slider.direction_rad) + 2 * EPS
+        leaning = plane.rounding_of_angles(slider.direction_rad) + 2 * EPS
         anchor = replace(anchor, error=_along_line(slider.through_m, found, leaning))
-        own = replace(EXACT_ANGLE, theta=rounding_of_angles(slider.direction_rad, slider.angle_rad))
-    local: Point = local_point(scene, driver.link, slider.point)
-    return BodyKinematics(local, anchor, direction(angle), 0.0, STEADY, own, angle)
+        own = plane.EXACT_ANGLE._replace(
+            theta=plane.rounding_of_angles(slider.direction_rad, slider.angle_rad)
+        )
+    local = local_point(scene, driver.link, slider.point)
+    return BodyKinematics(local, anchor, plane.direction(angle), 0.0, plane.STEADY, own, angle)
 
 
-def _along_line(base: Point, found: Sliding, leaning: float) -> PointError:
+def _along_line(base: Point, found: Sliding, leaning: float) -> plane.PointError:
     """Return bounds of a point on a ground line with a direction error of ``leaning``."""
     assert found.error is not None
     e, way = found.error, np.abs(found.s)
-    return PointError(
+    return plane.PointError(
         e.displacement + leaning * way + EPS * (way + math.hypot(*base)),
         e.speed + (leaning + EPS) * np.abs(found.speed),
         e.acceleration + (leaning + EPS) * np.abs(found.acceleration),

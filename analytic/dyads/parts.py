@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -35,8 +35,7 @@ class Turning:
     length: float = 1.0
 
 
-@dataclass(frozen=True, slots=True)
-class SlideError:
+class SlideError(NamedTuple):
     """Bounds on a slider's displacement [m], speed [m/s], acceleration [m/s^2]."""
 
     displacement: Real
@@ -223,30 +222,15 @@ class Jacobian:
 
 
 @dataclass(frozen=True, slots=True)
-class Curvature:
-    """Bounds on the second derivatives of f: q1 q1, q1 q2, q2 q2."""
-
-    m11: Real
-    m12: Real
-    m22: Real
-
-    def remainder(self, e1: Real, e2: Real) -> Real:
-        """Return the largest second-order term over a box of half-widths e1, e2."""
-        return 0.5 * self.m11 * e1 * e1 + self.m12 * e1 * e2 + 0.5 * self.m22 * e2 * e2
-
-
-@dataclass(frozen=True, slots=True)
 class Certificate:
-    """Error bounds of a dyad's unknowns at position level, and the method for those above it.
+    """Error bounds of a dyad at position level, for those of its rates.
 
-    ``e1``, ``e2`` bound the unknowns; ``d1``, ``d2`` bound the columns of the Jacobian. ``skew`` is
-    the rounding between the determinant that rates are divided by and that of the columns, where it
-    is more than `ROUNDING` of their lengths.
+    ``d1``, ``d2`` bound the columns of the Jacobian. ``skew`` is the rounding between the
+    determinant that rates are divided by and that of the columns, where it is more than `ROUNDING`
+    of their lengths.
     """
 
     jacobian: Jacobian
-    e1: Real
-    e2: Real
     d1: Real
     d2: Real
     skew: Real = 0.0
@@ -274,7 +258,7 @@ class Certificate:
 def certify(
     jacobian: Jacobian,
     residual: Real,
-    curvature: Curvature,
+    curvature: tuple[Real, Real, Real],
     folds: Callable[[], tuple[Real, Real]],
     lost: Real = 0.0,
 ) -> tuple[Real, Real]:
@@ -294,8 +278,8 @@ def certify(
         At the computed position.
     residual : Array or float
         Bound on |f| at the computed position and the exact inputs [m].
-    curvature : Curvature
-        Bounds on the second derivatives of f nearby.
+    curvature : tuple
+        Bounds on the second derivatives of f nearby: q1 q1, q1 q2, q2 q2.
     folds : Callable
         Largest errors of the unknowns beside the toggle, where the first order fails; called only
         where it matters.
@@ -305,7 +289,8 @@ def certify(
     n1, n2 = jacobian.c1.norm(), jacobian.c2.norm()
     inverse = 1.0 / np.maximum(np.abs(jacobian.det) - lost, 0.0)
     e1, e2 = n2 * residual * inverse, n1 * residual * inverse
-    share = 4.0 * curvature.remainder(e1, e2) / residual
+    m11, m12, m22 = curvature
+    share = 4.0 * (0.5 * m11 * e1 * e1 + m12 * e1 * e2 + 0.5 * m22 * e2 * e2) / residual
     valid = share <= 1.0
     # The error is at most x times the first order, where x = 1 + (share / 4) x^2.
     grown = 1.01 + share

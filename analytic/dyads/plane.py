@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -114,8 +114,7 @@ def direction(angle_rad: float) -> Vec:
     return Vec(math.cos(angle_rad), math.sin(angle_rad))
 
 
-@dataclass(frozen=True, slots=True)
-class PointError:
+class PointError(NamedTuple):
     """Bounds on the error of a point: position [m], velocity [m/s], acceleration [m/s^2]."""
 
     position: Real
@@ -123,8 +122,7 @@ class PointError:
     acceleration: Real
 
 
-@dataclass(frozen=True, slots=True)
-class AngleError:
+class AngleError(NamedTuple):
     """Bounds on the error of a body's angle [rad], rate [rad/s], acceleration [rad/s^2]."""
 
     theta: Real
@@ -217,6 +215,27 @@ def fixed_body(*, certified: bool) -> BodyKinematics:
     """Return the ground."""
     error = EXACT_ANGLE if certified else None
     return BodyKinematics((0.0, 0.0), fixed_point((0.0, 0.0)), UNTURNED, 0.0, STEADY, error, 0.0)
+
+
+def sample(values: Real, index: int) -> float:
+    """Return one sample of a series, or of a constant."""
+    return float(np.ravel(values)[index if np.size(values) > 1 else 0])
+
+
+Three = tuple[Real, Real, Real]
+
+
+def cross_three(a: Three, b: Three) -> Three:
+    """Return the cross product of two vectors of three numbers."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def dot_three(a: Three, b: Three) -> Real:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def rounding_of_angles(*angles: float) -> float:

@@ -11,27 +11,13 @@ One assembly only; singular where the lines are parallel.
 
 import numpy as np
 
-from analytic.dyads.parts import (
-    Certificate,
-    Closure,
-    Curvature,
-    Dyad,
-    Jacobian,
-    MovingLine,
-    OpenError,
-    SlideError,
-    Sliding,
-    certify,
-)
+from analytic.dyads import parts
+from analytic.dyads.parts import Dyad, MovingLine, SlideError, Sliding
 from analytic.dyads.plane import EPS
 
 
 def solve(
-    line1: MovingLine,
-    line2: MovingLine,
-    *,
-    certified: bool = False,
-    stretch: bool = False,
+    line1: MovingLine, line2: MovingLine, *, certified: bool = False, stretch: bool = False
 ) -> Dyad[Sliding, Sliding]:
     """Solve a PRP dyad: the point where two moving lines cross.
 
@@ -60,25 +46,24 @@ def solve(
     """
     # s1 e1 - s2 e2 = G2 - G1, and so for the rates of both sides.
     det = -line1.along.cross(line2.along)
-    jacobian = Jacobian(line1.along, -line2.along, det)
+    jacobian = parts.Jacobian(line1.along, -line2.along, det)
     if not stretch and np.min(np.abs(det)) == 0.0:
         gap = np.abs((line2.point.p - line1.point.p).cross(line1.along))
-        raise OpenError(np.where(det == 0.0, gap, -gap))
+        raise parts.OpenError(np.where(det == 0.0, gap, -gap))
     with np.errstate(divide="ignore", invalid="ignore"):
         s1, s2 = jacobian.solve(line2.point.p - line1.point.p)
         v1, v2 = jacobian.solve(line2.velocity(s2) - line1.velocity(s1))
         a1, a2 = jacobian.solve(line2.acceleration(s2, v2) - line1.acceleration(s1, v1))
     # Parallel lines at one angle cross on both sides of it.
-    closure = Closure(None, -np.abs(det) if stretch else None)
+    closure = parts.Closure(None, -np.abs(det) if stretch else None)
     dyad = Dyad(Sliding(s1, v1, a1), Sliding(s2, v2, a2), np.abs(det), closure)
     return dyad.bounded(*_errors(line1, line2, jacobian, dyad)) if certified else dyad
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _errors(
-    line1: MovingLine, line2: MovingLine, jacobian: Jacobian, dyad: Dyad[Sliding, Sliding]
+    line1: MovingLine, line2: MovingLine, jacobian: parts.Jacobian, dyad: Dyad[Sliding, Sliding]
 ) -> tuple[SlideError, SlideError]:
-    """Return bounds of the two displacements with their derivatives."""
     assert line1.error is not None
     assert line2.error is not None
     first, second = dyad.first, dyad.second
@@ -90,10 +75,10 @@ def _errors(
     # The loop is linear in s1, s2, but its lines turn with the errors of their bodies; that share
     # is in the residual, and in the columns below.
     turn1, turn2 = line1.error.theta + 2 * EPS, line2.error.theta + 2 * EPS
-    e1, e2 = certify(
-        jacobian, residual, Curvature(0.0, 0.0, 0.0), lambda: (np.inf, np.inf), turn1 + turn2
+    e1, e2 = parts.certify(
+        jacobian, residual, (0.0, 0.0, 0.0), lambda: (np.inf, np.inf), turn1 + turn2
     )
-    certificate = Certificate(jacobian, e1, e2, turn1, turn2)
+    certificate = parts.Certificate(jacobian, turn1, turn2)
     drift = line1.errors(s1, v1, e1, 0.0)[1] + line2.errors(s2, v2, e2, 0.0)[1]
     r1, r2 = certificate.above(v1, v2, drift, sizes1[1] + sizes2[1])
     shove = line1.errors(s1, v1, e1, r1)[2] + line2.errors(s2, v2, e2, r2)[2]

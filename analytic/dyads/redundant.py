@@ -20,10 +20,9 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Turning
-from analytic.dyads.plane import EPS, AngleError, BodyKinematics, PointKinematics, Real, Vec
+from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, sample
 from analytic.dyads.riding import Bar, PlacedBodies
 from analytic.structure.groups import Bridge
-from models.array import Array
 from models.errors import StructureError
 
 FIT = 1e-9
@@ -55,8 +54,11 @@ class BridgeStep:
         """Add the link to the chunk. Raises StructureError where it does not fit."""
         at = {pin: chunk.point(hold, pin) for pin, hold in self.holds.items()}
         p1, p2 = at.pop(self.pin1), at.pop(self.pin2)
-        body = self._placed(p1, p2)
         d, v, a = p2.p - p1.p, p2.v - p1.v, p2.a - p1.a
+        square = d.square()
+        omega, alpha = d.cross(v) / square, d.cross(a) / square
+        error = _error(p1, p2, self.length, (omega, alpha))
+        body = self.bar.body(Turning(d, omega, alpha, error, self.length), p1)
         off = (
             np.abs(d.norm() - self.length),
             np.abs(d.dot(v)) / self.length,
@@ -84,16 +86,8 @@ class BridgeStep:
             over = np.broadcast_to(off[level] - room[level], chunk.theta.shape)
             if np.any(over > 0.0):
                 index = int(np.nanargmax(over))
-                misfit = float(np.broadcast_to(off[level], over.shape)[index])
+                misfit = sample(off[level], index)
                 raise StructureError(self._misfit(chunk, pin, level, misfit, index))
-
-    def _placed(self, p1: PointKinematics, p2: PointKinematics) -> BodyKinematics:
-        """Return the link from the motion of its two pins."""
-        d, v, a = p2.p - p1.p, p2.v - p1.v, p2.a - p1.a
-        square = d.square()
-        omega, alpha = d.cross(v) / square, d.cross(a) / square
-        error = _error(p1, p2, d, self.length, (omega, alpha))
-        return self.bar.body(Turning(d, omega, alpha, error, self.length), p1)
 
     def _rooms(
         self, chunk: Chunk, one: PointKinematics, other: PointKinematics
@@ -113,16 +107,15 @@ class BridgeStep:
             ev = (ROUNDING + e0 / self.length) * fast / s
             ea = (ROUNDING + e0 / self.length) * push / s**2
         else:
-            e0 = one.error.position + other.error.position + ROUNDING * size
-            ev = one.error.velocity + other.error.velocity + ROUNDING * fast
-            ea = one.error.acceleration + other.error.acceleration + ROUNDING * push
+            levels = zip(one.error, other.error, (size, fast, push), strict=True)
+            e0, ev, ea = (e + more + ROUNDING * most for e, more, most in levels)
         return e0, ev, ea, e0 + FIT * self.length, ev + FIT * fast, ea + FIT * push
 
     def _misfit(self, chunk: Chunk, pin: str, level: int, off: float, index: int) -> str:
-        """Return the text of a misfit: its size, its place, and a cure."""
         how = f"has {pin} {off:.3g} m away from where {self.holds[pin]} has it"
         if pin == self.pin2:
-            apart = np.hypot(*(places[index] for places in self._apart(chunk)))
+            p1, p2 = (chunk.point(self.holds[pin], pin).p for pin in (self.pin1, self.pin2))
+            apart = np.hypot(sample((p2 - p1).x, index), sample((p2 - p1).y, index))
             how = (
                 f"is {self.length:.12g} m long from {self.pin1} to {pin}, which stand "
                 f"{apart:.12g} m apart, {off:.3g} m off,"
@@ -139,12 +132,6 @@ class BridgeStep:
             "remove it"
         )
 
-    def _apart(self, chunk: Chunk) -> tuple[Array, Array]:
-        """Return the vector from the first pin to the second [m], (T,) each."""
-        p1, p2 = (chunk.point(self.holds[pin], pin).p for pin in (self.pin1, self.pin2))
-        x, y = (np.broadcast_to(one, chunk.theta.shape) for one in ((p2 - p1).x, (p2 - p1).y))
-        return x, y
-
 
 def _smallest(chunk: Chunk) -> Real:
     """Return the smallest sine of the dyads so far at every sample, rounding at least (0/0)."""
@@ -155,7 +142,7 @@ def _smallest(chunk: Chunk) -> Real:
 
 
 def _error(
-    p1: PointKinematics, p2: PointKinematics, d: Vec, length: float, rates: tuple[Real, Real]
+    p1: PointKinematics, p2: PointKinematics, length: float, rates: tuple[Real, Real]
 ) -> AngleError | None:
     """Return bounds of the angle, the rate and the acceleration, if the pins carry theirs.
 
@@ -165,7 +152,7 @@ def _error(
     if p1.error is None or p2.error is None:
         return None
     omega, alpha = rates
-    apart = d.norm()
+    apart = (p2.p - p1.p).norm()
     off, least = np.abs(apart - length), np.minimum(apart, length)
     place = p1.error.position + p2.error.position + off
     place = place + ROUNDING * (p1.p.norm() + p2.p.norm() + length)

@@ -12,17 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analytic.dyads import plane
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import MovingLine, Sliding, Turning
-from analytic.dyads.plane import (
-    EPS,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Vec,
-    direction,
-    rounding_of_angles,
-)
+from analytic.dyads.plane import EPS, BodyKinematics, PointError, PointKinematics, Vec
 from analytic.structure.mobility import Structure
 from models.scene import Point, Scene
 from models.scene.joints import less, local_point, sliding_body, turned
@@ -38,7 +31,7 @@ def rounding_of(angles: tuple[float, ...], *vectors: Point, onto: Point = (0.0, 
     ``onto`` is the vector that they were added to; 0 where there was nothing to add.
     """
     length = sum(math.hypot(*v) for v in vectors)
-    turning = rounding_of_angles(*angles) + 2 * EPS
+    turning = plane.rounding_of_angles(*angles) + 2 * EPS
     return turning * length + EPS * math.hypot(*onto) if length else 0.0
 
 
@@ -97,7 +90,7 @@ def turning_body(
     turn = found.turn if aligned else found.turn.turned(Vec(back.x, -back.y))
     error = found.error
     if error is not None and rounding:
-        error = replace(error, theta=error.theta + rounding)
+        error = error._replace(theta=error.theta + rounding)
     return BodyKinematics(local, anchor, turn, found.omega, found.alpha, error, None, found.length)
 
 
@@ -108,9 +101,9 @@ def following_body(
     theta = None if known.theta is None else known.theta + by
     error = known.error
     if error is not None:
-        error = replace(error, theta=error.theta + rounding)
-    turn = known.turn.turned(direction(by))
-    return BodyKinematics(local, anchor, turn, known.omega, known.alpha, error, theta, known.length)
+        error = error._replace(theta=error.theta + rounding)
+    turn = known.turn.turned(plane.direction(by))
+    return replace(known, local=local, anchor=anchor, turn=turn, error=error, theta=theta)
 
 
 @dataclass(frozen=True)
@@ -156,7 +149,12 @@ class RidingLine:
     @property
     def rounding(self) -> float:
         """Rounding of the angle that the unknown body keeps [rad]."""
-        return rounding_of_angles(*self.angles)
+        return plane.rounding_of_angles(*self.angles)
+
+    def follower(self, chunk: Chunk, local: Point, anchor: PointKinematics) -> BodyKinematics:
+        """Return the unknown body, from the motion of its point ``local`` [m]."""
+        known = chunk.bodies[self.known]
+        return following_body(known, self.follow, self.rounding, local, anchor)
 
     def line(self, chunk: Chunk) -> MovingLine:
         """Return the line in motion."""
@@ -164,8 +162,8 @@ class RidingLine:
         along = body.unit(self.angle)
         error = body.error
         if error is not None:
-            rounding = rounding_of_angles(self.angle) + EPS  # that of its length
-            error = replace(error, theta=error.theta + rounding)
+            rounding = plane.rounding_of_angles(self.angle) + EPS  # that of its length
+            error = error._replace(theta=error.theta + rounding)
         point = body.point(self.base)
         if self.slack and error is not None and point.error is not None:
             point = replace(point, error=_loosened(point.error, self.slack, body))
@@ -184,7 +182,7 @@ def without_lead(found: Sliding, lead: float, slack: float) -> Sliding:
     error = found.error
     if error is not None and slack:
         rounding = EPS * (abs(lead) + np.abs(found.s)) + slack
-        error = replace(error, displacement=error.displacement + rounding)
+        error = error._replace(displacement=error.displacement + rounding)
     return replace(found, s=found.s - lead, error=error)
 
 

@@ -57,7 +57,7 @@ def solve(
     """
     error = line.error
     if error is not None:
-        error = replace(error, theta=error.theta + rounding)
+        error = error._replace(theta=error.theta + rounding)
     across = MovingLine(p1, line.along.turned(inner), line.omega, line.alpha, error)
     crossing = prp.solve(line, across, certified=certified, stretch=stretch)
     # The crossing lies at s2 from P1 along k; the block lies at -s2 from the crossing.

@@ -12,18 +12,8 @@ Singular where s = 0: the line is tangent to the circle about P2 of radius h.
 
 import numpy as np
 
-from analytic.dyads.parts import (
-    Certificate,
-    Curvature,
-    Dyad,
-    Jacobian,
-    SlideError,
-    Sliding,
-    Turning,
-    certify,
-    closing_root,
-    uncertain,
-)
+from analytic.dyads import parts
+from analytic.dyads.parts import Dyad, Sliding, Turning
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
 
@@ -74,15 +64,15 @@ def solve(
     def shortage() -> tuple[Real, Real, Real]:
         apart = np.sqrt(d2)
         scale = abs(offset) + apart + p1.p.norm() + p2.p.norm()
-        return abs(offset) - apart, scale, uncertain(p1, p2)
+        return abs(offset) - apart, scale, parts.uncertain(p1, p2)
 
-    root, closure = closing_root(square, shortage, stretch, root)
+    root, closure = parts.closing_root(square, shortage, stretch, root)
     s = branch * root
     with np.errstate(divide="ignore", invalid="ignore"):
         # d = s e + h e', solved for e.
         along = (d * s - d.perp() * offset) * (1.0 / d2)
         across = along.perp()
-        jacobian = Jacobian(across * s - along * offset, along, -s)
+        jacobian = parts.Jacobian(across * s - along * offset, along, -s)
         w, speed = jacobian.solve(p1.v - p2.v)
         # The centripetal part of d goes over to the right side, and so does Coriolis'.
         inertia = d * (w * w) - across * (2.0 * w * speed)
@@ -97,10 +87,9 @@ def _errors(
     p1: PointKinematics,
     p2: PointKinematics,
     offset: float,
-    jacobian: Jacobian,
+    jacobian: parts.Jacobian,
     dyad: Dyad[Turning, Sliding],
-) -> tuple[AngleError, SlideError]:
-    """Return bounds of the angle and the displacement with their derivatives."""
+) -> tuple[AngleError, parts.SlideError]:
     assert p1.error is not None
     assert p2.error is not None
     turning, sliding = dyad.first, dyad.second
@@ -117,8 +106,8 @@ def _errors(
         turn = np.where(arm > 2.0 * residual, np.fmin(np.pi, 2.0 * fold / arm), np.pi)
         return turn, fold + residual
 
-    t, es = certify(jacobian, residual, Curvature(arm, 1.0, 0.0), folds)
-    certificate = Certificate(jacobian, t, es, arm * t + es, t)
+    t, es = parts.certify(jacobian, residual, (arm, 1.0, 0.0), folds)
+    certificate = parts.Certificate(jacobian, arm * t + es, t)
     r, ev = certificate.above(
         w, v, p1.error.velocity + p2.error.velocity, p1.v.norm() + p2.v.norm()
     )
@@ -130,4 +119,4 @@ def _errors(
         p1.error.acceleration + p2.error.acceleration + swing + coriolis,
         p1.a.norm() + p2.a.norm() + w * w * arm + 2.0 * w * v,
     )
-    return AngleError(t + 6 * EPS, r, g), SlideError(es, ev, ea)
+    return AngleError(t + 6 * EPS, r, g), parts.SlideError(es, ev, ea)

@@ -12,25 +12,14 @@ Singular where the link stands across the line.
 
 import numpy as np
 
-from analytic.dyads.parts import (
-    Certificate,
-    Curvature,
-    Dyad,
-    Jacobian,
-    MovingLine,
-    SlideError,
-    Sliding,
-    Turning,
-    certify,
-    closing_root,
-    uncertain,
-)
+from analytic.dyads import parts
+from analytic.dyads.parts import Dyad, Sliding, Turning
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
 
 def solve(
     p1: PointKinematics,
-    line: MovingLine,
+    line: parts.MovingLine,
     length: float,
     branch: Real,
     *,
@@ -75,15 +64,15 @@ def solve(
     def shortage() -> tuple[Real, Real, Real]:
         scale = np.abs(height) + length + p1.p.norm() + line.point.p.norm()
         turn = 0.0 if line.error is None else line.error.theta * away.norm()
-        return np.abs(height) - length, scale, uncertain(p1, line.point) + turn
+        return np.abs(height) - length, scale, parts.uncertain(p1, line.point) + turn
 
-    root, closure = closing_root(square, shortage, stretch, root)
+    root, closure = parts.closing_root(square, shortage, stretch, root)
     reach = branch * root
     if stretch:
         height = np.clip(height, -length, length)
     s = reach - line.along.dot(away)  # from the foot of P1 to the pin, less that from it to G
     u = (line.along * reach + line.along.perp() * height) * (1.0 / length)
-    jacobian = Jacobian(u.perp() * length, -line.along, reach)
+    jacobian = parts.Jacobian(u.perp() * length, -line.along, reach)
     with np.errstate(divide="ignore", invalid="ignore"):
         w, speed = jacobian.solve(line.velocity(s) - p1.v)
         pull = jacobian.c1.perp() * (w * w)  # -omega^2 l u, the centripetal part
@@ -96,12 +85,11 @@ def solve(
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _errors(
     p1: PointKinematics,
-    line: MovingLine,
+    line: parts.MovingLine,
     length: float,
-    jacobian: Jacobian,
+    jacobian: parts.Jacobian,
     dyad: Dyad[Turning, Sliding],
-) -> tuple[AngleError, SlideError]:
-    """Return bounds of the angle and the displacement with their derivatives."""
+) -> tuple[AngleError, parts.SlideError]:
     assert p1.error is not None
     assert line.error is not None
     turning, sliding = dyad.first, dyad.second
@@ -119,8 +107,8 @@ def _errors(
         fold = 2.0 * np.abs(jacobian.det) + 2.5 * np.sqrt(slack * length)
         return np.minimum(fold / length + turn, np.pi), fold + slack + turn * length
 
-    t, es = certify(jacobian, residual, Curvature(length, 0.0, 0.0), folds, turn * length)
-    certificate = Certificate(jacobian, t, es, length * t, turn)
+    t, es = parts.certify(jacobian, residual, (length, 0.0, 0.0), folds, turn * length)
+    certificate = parts.Certificate(jacobian, length * t, turn)
     _, drift, _ = line.errors(s, speed, es, 0.0)
     r, ev = certificate.above(
         w, speed, p1.error.velocity + drift, p1.v.norm() + line.sizes(s, speed)[1]
@@ -133,4 +121,4 @@ def _errors(
         p1.error.acceleration + shove + pull,
         p1.a.norm() + length * w * w + line.sizes(s, speed)[2],
     )
-    return AngleError(t + 6 * EPS, r, g), SlideError(es, ev, ea)
+    return AngleError(t + 6 * EPS, r, g), parts.SlideError(es, ev, ea)

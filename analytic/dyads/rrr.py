@@ -13,16 +13,8 @@ where C lies on the line P1 P2 (toggle).
 
 import numpy as np
 
-from analytic.dyads.parts import (
-    Certificate,
-    Curvature,
-    Dyad,
-    Jacobian,
-    Turning,
-    certify,
-    closing_root,
-    uncertain,
-)
+from analytic.dyads import parts
+from analytic.dyads.parts import Dyad, Jacobian, Turning
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, Vec
 
 
@@ -80,9 +72,9 @@ def solve(
         apart = np.sqrt(d2)
         scale = apart + l1 + l2 + p1.p.norm() + p2.p.norm()
         short = np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart)
-        return short, scale, uncertain(p1, p2)
+        return short, scale, parts.uncertain(p1, p2)
 
-    root, closure = closing_root(square, shortage, stretch, root)
+    root, closure = parts.closing_root(square, shortage, stretch, root)
     with np.errstate(divide="ignore", invalid="ignore"):
         # The foot of C on d by the law of cosines, (d^2 + l1^2 - l2^2) / (2 d^2), and its height
         # 2 area / d^2, both over d: r1 is d turned and stretched by them.
@@ -122,7 +114,6 @@ def _errors(
     dyad: Dyad[Turning, Turning],
     apart: Real,
 ) -> tuple[AngleError, AngleError]:
-    """Return bounds of the two angles, rates and accelerations."""
     assert p1.error is not None
     assert p2.error is not None
     first, second = dyad.first, dyad.second
@@ -133,11 +124,10 @@ def _errors(
     residual = off1 + off2 + p1.error.position + p2.error.position + 4 * EPS * (l1 + l2)
     # The determinant comes from Heron's area, the columns from a vector that is d turned.
     skew = 2 * EPS * l1 * apart
-    curvature = Curvature(l1, 0.0, l2)
-    t1, t2 = certify(
-        jacobian, residual, curvature, lambda: _folds(jacobian, residual, apart, dyad), skew
+    t1, t2 = parts.certify(
+        jacobian, residual, (l1, 0.0, l2), lambda: _folds(jacobian, residual, apart, dyad), skew
     )
-    certificate = Certificate(jacobian, t1, t2, l1 * t1, l2 * t2, skew)
+    certificate = parts.Certificate(jacobian, l1 * t1, l2 * t2, skew)
     w1, w2 = np.abs(first.omega), np.abs(second.omega)
     r1, r2 = certificate.above(
         w1, w2, p1.error.velocity + p2.error.velocity, p1.v.norm() + p2.v.norm()

@@ -7,20 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from analytic.dyads import prp, rpp, rpr, rrp, rrr
+from analytic.dyads import prp, riding, rpp, rpr, rrp, rrr
 from analytic.dyads.chunk import Chunk, Passage
-from analytic.dyads.plane import direction, rounding_of_angles
-from analytic.dyads.riding import (
-    Bar,
-    PlacedBodies,
-    RidingLine,
-    following_body,
-    riding_point,
-    rounding_of,
-    total,
-    turning_body,
-    without_lead,
-)
+from analytic.dyads.plane import STEADY, AngleError, direction, rounding_of_angles
+from analytic.dyads.riding import Bar, PlacedBodies, RidingLine, riding_point
 from analytic.structure.groups import Group
 from models.array import Array
 from models.motion import Crossing
@@ -36,7 +26,6 @@ class Step(Protocol):
 
     def advance(self, chunk: Chunk) -> None:
         """Add the group's bodies and sliders to the chunk. Raises OpenError."""
-        ...
 
 
 class FollowedStep(ABC):
@@ -50,26 +39,20 @@ class FollowedStep(ABC):
     @abstractmethod
     def period(self, passages: Mapping[str, Passage]) -> float | None:
         """Return the driver angle after which the assembly comes back [rad]; None where it ends."""
-        ...
 
     @abstractmethod
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
         """Return the group's change points that a driver passes between two angles, each once."""
-        ...
 
     @abstractmethod
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
         """Return the text of the end beside a driver angle [rad]."""
-        ...
 
 
 def stretched(
-    scene: Scene,
-    steps: Sequence[Step],
-    theta: Array,
-    passages: Mapping[str, Passage] | None = None,
+    scene: Scene, steps: Sequence[Step], theta: Array, passages: Mapping[str, Passage] | None = None
 ) -> Chunk:
     """Return the mechanism at driver angles that may be out of reach, with open dyads in line."""
     zero = np.zeros_like(theta)
@@ -77,6 +60,23 @@ def stretched(
     with np.errstate(all="ignore"):  # parallel lines cross at infinity
         for step in steps:
             step.advance(chunk)
+    return chunk
+
+
+@np.errstate(all="ignore")
+def uncertain_chunk(
+    scene: Scene,
+    steps: Sequence[Step],
+    theta: Array,
+    half: Array | float,
+    passages: Mapping[str, Passage],
+) -> Chunk:
+    """Return the mechanism, stretched, at driver angles with this uncertainty [rad], the driver at
+    1 rad/s and steady."""
+    error = AngleError(np.broadcast_to(half, theta.shape), 0.0, 0.0)
+    chunk = Chunk.begin(scene, theta, 1.0, STEADY, error, stretch=True, passages=passages)
+    for step in steps:
+        step.advance(chunk)
     return chunk
 
 
@@ -91,13 +91,7 @@ class RRRStep:
     def advance(self, chunk: Chunk) -> None:
         one, other = self.bar1, self.bar2
         p1, p2 = one.anchor(chunk), other.anchor(chunk)
-        branch, stretch = chunk.assembly(self.key)
-        root = chunk.roots.get(self.key)
-        free = rrr.solve(
-            p1, p2, one.length, other.length, branch,
-            certified=chunk.certified, stretch=stretch, root=root,
-        )  # fmt: skip
-        dyad = chunk.keep(self.key, free)
+        dyad = chunk.closed(self.key, rrr.solve, p1, p2, one.length, other.length)
         chunk.bodies[one.link] = one.body(dyad.first, p1)
         chunk.bodies[other.link] = other.body(dyad.second, p2)
 
@@ -113,20 +107,12 @@ class RRPStep:
         self.through, self.lead = self.riding.through(self.rider)
 
     def advance(self, chunk: Chunk) -> None:
-        g, length = self.group, self.bar.length
+        g, length, side = self.group, self.bar.length, self.riding.sign
         p1, line = self.bar.anchor(chunk), self.through.line(chunk)
-        branch, stretch = chunk.assembly(self.key)
-        branch = branch * self.riding.sign
-        root = chunk.roots.get(self.key)
-        free = rrp.solve(
-            p1, line, length, branch, certified=chunk.certified, stretch=stretch, root=root
-        )
-        dyad = chunk.keep(self.key, free)
+        dyad = chunk.closed(self.key, rrp.solve, p1, line, length, side=side)
         chunk.bodies[g.first] = self.bar.body(dyad.first, p1)
         pin = riding_point(line, dyad.second)
-        known = chunk.bodies[self.riding.known]
-        follow, rounding = self.riding.follow, self.riding.rounding
-        chunk.bodies[g.second] = following_body(known, follow, rounding, self.rider, pin)
+        chunk.bodies[g.second] = self.riding.follower(chunk, self.rider, pin)
         chunk.sliders[g.outer2] = self.through.displacement(dyad.second, self.lead)
 
 
@@ -148,7 +134,7 @@ class RPRStep:
         reach = turned(less(tip, self.local1), slider.angle_rad)
         self.lead, self.offset = foot[0] - reach[0], foot[1] - reach[1]
         line, angle = slider.direction_rad, slider.angle_rad
-        self.slack = rounding_of((line, angle), foot, reach)
+        self.slack = riding.rounding_of((line, angle), foot, reach)
         self.back1, self.back2 = direction(-angle), direction(line)
         self.rounding1, self.rounding2 = rounding_of_angles(angle), rounding_of_angles(line)
 
@@ -156,18 +142,17 @@ class RPRStep:
         p1, p2 = chunk.point(self.hold1, self.pin1), chunk.point(self.hold2, self.pin2)
         block = p1
         if p1.error is not None and self.slack:
-            error = replace(p1.error, position=p1.error.position + self.slack)
+            error = p1.error._replace(position=p1.error.position + self.slack)
             block = replace(p1, error=error)
-        branch, stretch = chunk.assembly(self.key)
-        root = chunk.roots.get(self.key)
-        free = rpr.solve(
-            block, p2, self.offset, branch, certified=chunk.certified, stretch=stretch, root=root
-        )
-        dyad = chunk.keep(self.key, free)
+        dyad = chunk.closed(self.key, rpr.solve, block, p2, self.offset)
         found = dyad.first
-        chunk.bodies[self.body] = turning_body(found, self.back1, self.local1, p1, self.rounding1)
-        chunk.bodies[self.guide] = turning_body(found, self.back2, self.local2, p2, self.rounding2)
-        chunk.sliders[self.slider] = without_lead(dyad.second, self.lead, self.slack)
+        chunk.bodies[self.body] = riding.turning_body(
+            found, self.back1, self.local1, p1, self.rounding1
+        )
+        chunk.bodies[self.guide] = riding.turning_body(
+            found, self.back2, self.local2, p2, self.rounding2
+        )
+        chunk.sliders[self.slider] = riding.without_lead(dyad.second, self.lead, self.slack)
 
 
 class PRPStep:
@@ -186,11 +171,8 @@ class PRPStep:
         dyad = prp.solve(*lines, certified=chunk.certified, stretch=chunk.stretch)
         ends = ((g.first, g.outer1, dyad.first), (g.second, g.outer2, dyad.second))
         for i, (body, slider, sliding) in enumerate(ends):
-            riding, pin = self.ridings[i], riding_point(lines[i], sliding)
-            known = chunk.bodies[riding.known]
-            chunk.bodies[body] = following_body(
-                known, riding.follow, riding.rounding, self.locals[i], pin
-            )
+            pin = riding_point(lines[i], sliding)
+            chunk.bodies[body] = self.ridings[i].follower(chunk, self.locals[i], pin)
             line, lead = self.through[i]
             chunk.sliders[slider] = line.displacement(sliding, lead)
         chunk.keep(self.key, dyad)
@@ -209,8 +191,8 @@ class RPPStep:
         self.follow, self.rounding = self.outer.follow + inner.follow, rounding_of_angles(*angles)
         offset = turned(less(inner.base, self.outer.rider), self.outer.follow)
         arm = turned(less(self.local, inner.rider), self.follow)
-        base = total(self.outer.base, offset, arm)
-        slack = rounding_of(angles, offset, arm, onto=base)
+        base = riding.total(self.outer.base, offset, arm)
+        slack = riding.rounding_of(angles, offset, arm, onto=base)
         self.through = replace(self.outer, base=base, slack=slack)
         self.inner = inner
         self.between = direction(self.outer.follow + inner.angle - self.outer.angle)
@@ -225,10 +207,10 @@ class RPPStep:
         )
         known, outer = chunk.bodies[self.outer.known], self.outer
         rider = riding_point(outer.line(chunk), dyad.first)
-        chunk.bodies[g.second] = following_body(
-            known, outer.follow, outer.rounding, outer.rider, rider
+        chunk.bodies[g.second] = outer.follower(chunk, outer.rider, rider)
+        chunk.bodies[g.first] = riding.following_body(
+            known, self.follow, self.rounding, self.local, p1
         )
-        chunk.bodies[g.first] = following_body(known, self.follow, self.rounding, self.local, p1)
         chunk.sliders[g.outer2] = self.outer.displacement(dyad.first, 0.0)
         chunk.sliders[g.inner] = self.inner.displacement(dyad.second, 0.0)
         chunk.keep(self.key, dyad)

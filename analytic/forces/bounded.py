@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.plane import EPS, ZERO, Real, Vec
+from analytic.dyads.plane import EPS, ZERO, Real, Vec, cross_three, dot_three
 
 
 class Bounded:
@@ -148,18 +148,7 @@ Three = tuple[Bounded, Bounded, Bounded]
 def solved_three(columns: tuple[Three, Three, Three], given: Three) -> Three:
     """Return the x with columns x = -given, by Cramer's rule."""
     a, b, c = columns
-    bc, ca, ab = _cross(b, c), _cross(c, a), _cross(a, b)
-    inverse = -_dot(a, bc).inverse()
-    return (_dot(given, bc) * inverse, _dot(given, ca) * inverse, _dot(given, ab) * inverse)
-
-
-def _cross(a: Three, b: Three) -> Three:
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
-
-
-def _dot(a: Three, b: Three) -> Bounded:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    bc, ca, ab = cross_three(b, c), cross_three(c, a), cross_three(a, b)
+    inverse = -dot_three(a, bc).inverse()
+    x, y, z = (dot_three(given, one) * inverse for one in (bc, ca, ab))
+    return x, y, z

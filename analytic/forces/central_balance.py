@@ -8,9 +8,9 @@ Letters: e along a line, n = e turned by +90 deg; K a known force and x the unkn
 wrench u on the central link; M about its point O of reference.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 from analytic.dyads.plane import Vec
 from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec, Three, solved_three
@@ -20,6 +20,7 @@ from models.scene import Point
 from models.scene.joints import local_point
 
 ONE = Bounded(1.0)
+AXES = BoundedVec(Vec(1.0, 0.0), 1.0, 0.0), BoundedVec(Vec(0.0, 1.0), 1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -60,8 +61,19 @@ class Central:
         assert compound.slider is not None
         return own.vector(own.centre, place) - self.on.pair(compound.slider).arms[body]
 
-    def to_point(self, body: str, point: str) -> BoundedVec:
-        return self.way(body, local_point(self.on.scene, body, point))
+    def to_pin(self, joint: JointKey) -> BoundedVec:
+        """Return the vector from O to one of its pins."""
+        body = self.part(joint)
+        return self.way(body, local_point(self.on.scene, body, joint[1]))
+
+    def to_slider(self, joint: JointKey) -> BoundedVec:
+        """Return the vector from O to the point of one of its sliders."""
+        body = self.part(joint)
+        return self.way(body, self.on.free[body].centre) + self.on.pair(joint[1]).arms[body]
+
+    def in_pin(self, joint: JointKey, force: BoundedVec) -> Wrench:
+        """Return the wrench of a force in one of its pins."""
+        return Wrench(force, self.to_pin(joint).cross(force))
 
     def given(self) -> Wrench:
         """Return the sum of all forces on it except those of its joints."""
@@ -73,133 +85,114 @@ class Central:
         return Wrench(force, moment)
 
 
-class Hold(Protocol):
+@dataclass(frozen=True)
+class Hold(ABC):
     """Leg, or joint to a known body: its wrench on the central link, with one unknown or two."""
+
+    central: Central
 
     def known(self) -> Wrench:
         """Return the wrench that is independent of the unknowns."""
-        ...
+        return Wrench(NOWHERE, NOUGHT)
 
+    @abstractmethod
     def unknown(self) -> list[Wrench]:
         """Return the wrench of each unknown of 1."""
-        ...
 
+    @abstractmethod
     def settle(self, found: Iterator[Bounded]) -> None:
         """Store the forces on its own bodies and joints."""
-        ...
 
 
 @dataclass(frozen=True)
-class BarHold:
-    """RR, r from the outer pin to the inner one: F = -x r - r' M / r^2 on the leg's end."""
+class LegHold(Hold):
+    """Hold by a leg."""
 
-    central: Central
     leg: Leg
+
+    def through_pin(self, body: str, force: BoundedVec) -> None:
+        """Let a body of the leg exert a force on the central link in their pin."""
+        on, pin, part = self.central.on, self.leg.inner[1], self.central.part(self.leg.inner)
+        on.on_pin(pin, part, force)
+        on.on_pin(pin, body, -force)
+        on.push(part, pin, force)
+
+
+@dataclass(frozen=True)
+class BarHold(LegHold):
+    """RR, r from the outer pin to the inner one: F = -x r - r' M / r^2 on the leg's end."""
 
     def _r(self) -> BoundedVec:
         return self.central.on.span(self.leg.body, self.leg.outer[1], self.leg.inner[1])
 
-    def _at(self, force: BoundedVec) -> Wrench:
-        part = self.central.part(self.leg.inner)
-        return Wrench(force, self.central.to_point(part, self.leg.inner[1]).cross(force))
+    def _turning(self) -> Bounded:
+        """Return the moment of the given forces about the outer pin."""
+        return self.central.on.moment(self.leg.body, self.leg.outer[1])
 
     def known(self) -> Wrench:
-        r, turning = self._r(), self.central.on.moment(self.leg.body, self.leg.outer[1])
-        return self._at(r.perp() * (turning * r.dot(r).inverse()))
+        r = self._r()
+        force = r.perp() * (self._turning() * r.dot(r).inverse())
+        return self.central.in_pin(self.leg.inner, force)
 
     def unknown(self) -> list[Wrench]:
-        return [self._at(self._r())]
+        return [self.central.in_pin(self.leg.inner, self._r())]
 
     def settle(self, found: Iterator[Bounded]) -> None:
         on, leg = self.central.on, self.leg
         force = self.known().force + self._r() * next(found)
         own = on.free[leg.body].force
-        _through_pin(self.central, leg, force)
+        self.through_pin(leg.body, force)
         on.hold(leg.outer[1], leg.body, force - own)
 
 
 @dataclass(frozen=True)
-class DrivenBarHold:
+class DrivenBarHold(BarHold):
     """RR of two bodies, which the driver keeps apart with any force: as `BarHold`."""
 
-    central: Central
-    leg: Leg
     own: Central
 
-    def _end(self, joint: JointKey) -> BoundedVec:
-        return self.own.to_point(self.own.part(joint), joint[1])
-
     def _r(self) -> BoundedVec:
-        return self._end(self.leg.inner) - self._end(self.leg.outer)
+        return self.own.to_pin(self.leg.inner) - self.own.to_pin(self.leg.outer)
 
-    def _at(self, force: BoundedVec) -> Wrench:
-        part = self.central.part(self.leg.inner)
-        return Wrench(force, self.central.to_point(part, self.leg.inner[1]).cross(force))
-
-    def known(self) -> Wrench:
-        r, given = self._r(), self.own.given()
-        turning = given.moment - self._end(self.leg.outer).cross(given.force)
-        return self._at(r.perp() * (turning * r.dot(r).inverse()))
-
-    def unknown(self) -> list[Wrench]:
-        return [self._at(self._r())]
+    def _turning(self) -> Bounded:
+        given = self.own.given()
+        return given.moment - self.own.to_pin(self.leg.outer).cross(given.force)
 
     def settle(self, found: Iterator[Bounded]) -> None:
         on, leg = self.central.on, self.leg
         force, given = self.known().force + self._r() * next(found), self.own.given().force
         near, far = self.own.part(leg.outer), self.own.part(leg.inner)
-        pin, part = leg.inner[1], self.central.part(leg.inner)
-        on.on_pin(pin, part, force)
-        on.on_pin(pin, far, -force)
-        on.push(part, pin, force)
-        on.push(far, pin, -force)
+        self.through_pin(far, force)
+        on.push(far, leg.inner[1], -force)
         on.hold(leg.outer[1], near, force - given)
         on.push(near, leg.outer[1], force - given)
 
 
 @dataclass(frozen=True)
-class SlidingHold:
+class SlidingHold(LegHold):
     """PR: along the known line the leg hands on its own force; across it, x n."""
-
-    central: Central
-    leg: Leg
 
     def _line(self) -> PrismaticPair:
         return self.central.on.pair(self.leg.outer[1])
 
-    def _at(self, force: BoundedVec) -> Wrench:
-        part = self.central.part(self.leg.inner)
-        return Wrench(force, self.central.to_point(part, self.leg.inner[1]).cross(force))
-
     def known(self) -> Wrench:
-        along = self._line().along
-        return self._at(along * along.dot(self.central.on.free[self.leg.body].force))
+        along, own = self._line().along, self.central.on.free[self.leg.body].force
+        return self.central.in_pin(self.leg.inner, along * along.dot(own))
 
     def unknown(self) -> list[Wrench]:
-        return [self._at(self._line().across)]
+        return [self.central.in_pin(self.leg.inner, self._line().across)]
 
     def settle(self, found: Iterator[Bounded]) -> None:
         on, leg = self.central.on, self.leg
         force = self.known().force + self._line().across * next(found)
-        _through_pin(self.central, leg, force)
+        self.through_pin(leg.body, force)
         on.push(leg.body, leg.inner[1], -force)
         on.rest(leg.outer[1], leg.body)
 
 
-def _through_pin(central: Central, leg: Leg, force: BoundedVec) -> None:
-    """Let the leg exert a force on the central link in their pin."""
-    on, pin, part = central.on, leg.inner[1], central.part(leg.inner)
-    on.on_pin(pin, part, force)
-    on.on_pin(pin, leg.body, -force)
-    on.push(part, pin, force)
-
-
 @dataclass(frozen=True)
-class GuidedHold:
+class GuidedHold(LegHold):
     """RP: x n on the leg, in a line of action that balances it about its outer pin."""
-
-    central: Central
-    leg: Leg
 
     def _line(self) -> PrismaticPair:
         return self.central.on.pair(self.leg.inner[1])
@@ -213,10 +206,8 @@ class GuidedHold:
         return Wrench(NOWHERE, self.central.on.moment(self.leg.body, self.leg.outer[1]))
 
     def unknown(self) -> list[Wrench]:
-        line, part = self._line(), self.central.part(self.leg.inner)
-        centre = self.central.on.free[part].centre
-        pin = self.central.way(part, centre) + line.arms[part] - self._near()
-        force = -line.across
+        pin = self.central.to_slider(self.leg.inner) - self._near()
+        force = -self._line().across
         return [Wrench(force, pin.cross(force))]
 
     def settle(self, found: Iterator[Bounded]) -> None:
@@ -229,11 +220,8 @@ class GuidedHold:
 
 
 @dataclass(frozen=True)
-class CoupleHold:
+class CoupleHold(LegHold):
     """PP: the normal force of the inner line carries the leg along the outer one; x is a couple."""
-
-    central: Central
-    leg: Leg
 
     def _normal(self) -> Bounded:
         """Return the normal force of the inner line, on the leg."""
@@ -243,10 +231,8 @@ class CoupleHold:
         return -(along * inner.across.dot(outer.along).inverse())
 
     def known(self) -> Wrench:
-        inner, part = self.central.on.pair(self.leg.inner[1]), self.central.part(self.leg.inner)
-        force = -(inner.across * self._normal())
-        way = self.central.way(part, self.central.on.free[part].centre) + inner.arms[part]
-        return Wrench(force, way.cross(force))
+        force = -(self.central.on.pair(self.leg.inner[1]).across * self._normal())
+        return Wrench(force, self.central.to_slider(self.leg.inner).cross(force))
 
     def unknown(self) -> list[Wrench]:
         return [Wrench(NOWHERE, ONE)]
@@ -261,40 +247,31 @@ class CoupleHold:
 
 
 @dataclass(frozen=True)
-class PinHold:
+class PinHold(Hold):
     """R: a pin to a known body."""
 
-    central: Central
     joint: JointKey
 
-    def known(self) -> Wrench:
-        return Wrench(NOWHERE, NOUGHT)
-
     def unknown(self) -> list[Wrench]:
-        way = self.central.to_point(self.central.part(self.joint), self.joint[1])
-        return [Wrench(axis, way.cross(axis)) for axis in _axes()]
+        return [self.central.in_pin(self.joint, axis) for axis in AXES]
 
     def settle(self, found: Iterator[Bounded]) -> None:
-        x, y = _axes()
+        x, y = AXES
         force, part = x * next(found) + y * next(found), self.central.part(self.joint)
         self.central.on.hold(self.joint[1], part, force)
         self.central.on.push(part, self.joint[1], force)
 
 
 @dataclass(frozen=True)
-class SliderHold:
+class SliderHold(Hold):
     """P: the line of a known body, or on one."""
 
-    central: Central
     joint: JointKey
 
-    def known(self) -> Wrench:
-        return Wrench(NOWHERE, NOUGHT)
-
     def unknown(self) -> list[Wrench]:
-        line, part = self.central.on.pair(self.joint[1]), self.central.part(self.joint)
-        way = self.central.way(part, self.central.on.free[part].centre) + line.arms[part]
-        return [Wrench(line.across, way.cross(line.across)), Wrench(NOWHERE, ONE)]
+        across = self.central.on.pair(self.joint[1]).across
+        way = self.central.to_slider(self.joint)
+        return [Wrench(across, way.cross(across)), Wrench(NOWHERE, ONE)]
 
     def settle(self, found: Iterator[Bounded]) -> None:
         on, part = self.central.on, self.central.part(self.joint)
@@ -317,9 +294,9 @@ def balance_central(on: Balance, part: Triad | Group) -> None:
     """Solve a group about its central link, and its legs."""
     central_name, legs, joint = as_triad(part, on.structure.compound)
     compound = on.structure.compound
-    own = compound is not None and compound.name == central_name
-    bodies = (compound.base, compound.link) if own and compound is not None else (central_name,)
-    central = Central(on, bodies)
+    central = Central(on, (central_name,))
+    if compound is not None and compound.name == central_name:
+        central = Central(on, (compound.base, compound.link))
     holds: list[Hold] = []
     for leg in legs:
         if compound is not None and leg.body == compound.name:
@@ -337,7 +314,3 @@ def balance_central(on: Balance, part: Triad | Group) -> None:
     found = iter(solved_three((columns[0], columns[1], columns[2]), given))
     for hold in holds:
         hold.settle(found)
-
-
-def _axes() -> tuple[BoundedVec, BoundedVec]:
-    return BoundedVec(Vec(1.0, 0.0), 1.0, 0.0), BoundedVec(Vec(0.0, 1.0), 1.0, 0.0)

@@ -123,9 +123,6 @@ def looks(scene: Scene, count: int) -> Array:
     return np.asarray((np.arange(count) + 0.5) * (cycle_s(scene) / count))
 
 
-SAMPLES = 720
-
-
 @dataclass(frozen=True)
 class Efficiency:
     """Powers over a cycle, (T,) each: the driver's angle ``theta`` [rad], the ``power`` of the
@@ -173,7 +170,7 @@ def power_flow(scene: Scene, motion: Motion, found: Forces) -> PowerFlow:
     return PowerFlow(put_in, lost, part)
 
 
-def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
+def efficiency(scene: Scene, count: int = LOOKS) -> Efficiency:
     """Return the efficiency of a machine at ``count`` instants of a cycle.
 
     Masses take power and give it back: it is zero over a cycle, and counts at an instant as power

@@ -22,14 +22,7 @@ from models.array import Array
 from models.errors import CrankcheckError, few
 from models.scene import GROUND, KEPT, Same, Scene
 from models.scene.joints import block_name, local_point, whole_turns
-from models.scene.loads import (
-    ConstantFriction,
-    Friction,
-    LineSpring,
-    PinSpring,
-    SlideSpring,
-    Spring,
-)
+from models.scene.loads import ConstantFriction, Friction, LineSpring, PinSpring, Spring
 
 Stretch = tuple[Bounded, Bounded]
 """Deflection q of a spring [m or rad] and its rate q' [m/s or rad/s]."""
@@ -51,7 +44,7 @@ def spring_lengths(
             rate = Bounded(second.omega - first.omega, None)
             q = _pin_stretch(chunk, spring)[0] if counted else _within_half_a_turn(chunk, spring)
         else:
-            q, rate = _slide_stretch(chunk, spring)
+            q, rate = slide_stretch(chunk, spring.slider)
         yield spring, like + q.value, like + rate.value
 
 
@@ -66,7 +59,7 @@ def apply_springs(scene: Scene, chunk: Chunk, free: Mapping[str, FreeBody]) -> N
                 if body != GROUND:
                     free[body].moment = free[body].moment + own
         else:
-            q, rate = _slide_stretch(chunk, spring)
+            q, rate = slide_stretch(chunk, spring.slider)
             pair = PrismaticPair(scene.sliders[spring.slider], scene, free, q)
             force = pair.along * _pull(spring, q, rate)
             for body, push in ((pair.body, -force), (pair.guide, force)):
@@ -77,7 +70,6 @@ def apply_springs(scene: Scene, chunk: Chunk, free: Mapping[str, FreeBody]) -> N
 def _pull_points(
     scene: Scene, chunk: Chunk, spring: LineSpring, free: Mapping[str, FreeBody]
 ) -> None:
-    """Put the force of a spring between two points on the bodies of both."""
     way, drift = _way(scene, chunk, spring)
     force = way * Bounded(spring.rate)
     slack_m = spring.free
@@ -115,7 +107,6 @@ def _difference(v: Vec, error: Real) -> BoundedVec:
 
 
 def _line_stretch(way: BoundedVec, drift: BoundedVec) -> Stretch:
-    """Return the length of a way, and its rate."""
     size = way.v.norm()
     length = Bounded(size, None if way.error is None else way.error + 2 * EPS * size)
     return length, way.dot(drift) * length.inverse()
@@ -157,13 +148,11 @@ def _turns_at_start(same: Same, spring: PinSpring) -> float:
     return whole_turns(spring, float((other - one)[0]))
 
 
-def _slide_stretch(chunk: Chunk, spring: SlideSpring) -> Stretch:
+def slide_stretch(chunk: Chunk, slider: str) -> Stretch:
     """Return the displacement of a slider, and its speed."""
-    sliding = chunk.sliders[spring.slider]
-    error = sliding.error
-    if error is None:
-        return Bounded(sliding.s, None), Bounded(sliding.speed, None)
-    return Bounded(sliding.s, error.displacement), Bounded(sliding.speed, error.speed)
+    sliding = chunk.sliders[slider]
+    displacement, speed, _ = sliding.error or (None, None, None)
+    return Bounded(sliding.s, displacement), Bounded(sliding.speed, speed)
 
 
 def _holder(scene: Scene, point: str) -> str:
@@ -232,20 +221,17 @@ def rubbing_joints(
     or one in which more than two bodies meet."""
     for joint, law in scene.friction.items():
         if joint in scene.sliders:
-            slider, sliding = scene.sliders[joint], chunk.sliders[joint]
-            pair = PrismaticPair(slider, scene, free, displaced[joint])
-            error = None if sliding.error is None else sliding.error.speed
-            against = _against(chunk, sliding.speed, error, scene.longest_m)
-            yield Rubbing(law, slider.on, pair.body, against, pair)
+            pair = PrismaticPair(scene.sliders[joint], scene, free, displaced[joint])
+            against = _against(chunk, slide_stretch(chunk, joint)[1], scene.longest_m)
+            yield Rubbing(law, pair.guide, pair.body, against, pair)
             continue
         first, second = _bodies_of_pin(scene, structure, joint)
         one, other = chunk.bodies[first], chunk.bodies[second]
         error = None
         if one.error is not None and other.error is not None:
             error = one.error.omega + other.error.omega
-        yield Rubbing(
-            law, first, second, _against(chunk, other.omega - one.omega, error, 1.0), None
-        )
+        against = _against(chunk, Bounded(other.omega - one.omega, error), 1.0)
+        yield Rubbing(law, first, second, against, None)
 
 
 def put_constant_friction(
@@ -273,12 +259,12 @@ def _bodies_of_pin(scene: Scene, structure: Structure, joint: str) -> tuple[str,
     return bodies[0], bodies[1]
 
 
-def _against(chunk: Chunk, rate: Real, error: Real | None, length_m: float) -> Bounded:
+def _against(chunk: Chunk, moving: Bounded, length_m: float) -> Bounded:
     """Return the opposite direction of a rate; none for a rate that is 0 but for rounding."""
     least = STILL * length_m * np.abs(chunk.driver.omega)
-    rate = np.broadcast_to(np.asarray(rate, dtype=np.float64), chunk.theta.shape)
+    rate = np.broadcast_to(np.asarray(moving.value, dtype=np.float64), chunk.theta.shape)
     sign = np.where(np.abs(rate) > least, -np.sign(rate), 0.0)
-    if error is None:
+    if moving.error is None:
         return Bounded(sign, None)
-    open_ = np.abs(rate) <= np.maximum(least, error)
+    open_ = np.abs(rate) <= np.maximum(least, moving.error)
     return Bounded(sign, np.where(open_, 1.0 + np.abs(sign), 0.0))

@@ -13,17 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from analytic.dyads import plane
 from analytic.dyads.chunk import Chunk, driver_scale
-from analytic.dyads.plane import (
-    EPS,
-    STEADY,
-    UNTURNED,
-    ZERO,
-    BodyKinematics,
-    PointKinematics,
-    Vec,
-    rounding_of_angles,
-)
+from analytic.dyads.plane import EPS, Vec
 from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec
 from analytic.structure.groups import Group
 from analytic.structure.mobility import Structure
@@ -40,7 +32,7 @@ ROUGH = 4 * EPS
 class FreeBody:
     """Body cut free, over a chunk: the force on it [N] and the moment about its centre [N m]."""
 
-    def __init__(self, body: BodyKinematics, centre: Point) -> None:
+    def __init__(self, body: plane.BodyKinematics, centre: Point) -> None:
         self.body, self.centre = body, centre
         self.force: BoundedVec = NOWHERE
         self.moment: Bounded = NOUGHT
@@ -51,7 +43,7 @@ class FreeBody:
         if x == 0.0 and y == 0.0:
             return NOWHERE
         turn, length = self.body.turn, self.body.length
-        if turn is UNTURNED:
+        if turn is plane.UNTURNED:
             v = Vec(x, y)
         elif y == 0.0:
             v = turn if x == length else turn * (x / length)
@@ -108,19 +100,18 @@ def _nearest(scene: Scene, points: Mapping[str, Point], centre: Point) -> str:
 
 
 def _weigh(
-    scene: Scene, body: FreeBody, centre: PointKinematics, masses: tuple[float, float]
+    scene: Scene, body: FreeBody, centre: plane.PointKinematics, masses: tuple[float, float]
 ) -> None:
-    """Put its weight and inertia on a body with this motion of its centre."""
     mass, inertia = masses
-    g = Vec(*scene.gravity_m_s2) if any(scene.gravity_m_s2) else ZERO
-    force = centre.a * -mass if g is ZERO else (g - centre.a) * mass
+    g = Vec(*scene.gravity_m_s2) if any(scene.gravity_m_s2) else plane.ZERO
+    force = centre.a * -mass if g is plane.ZERO else (g - centre.a) * mass
     if centre.error is None:
         body.force = BoundedVec(force, 0.0, None)
     else:
         size = mass * (centre.a.norm() + math.hypot(*scene.gravity_m_s2))
         body.force = BoundedVec(force, size, mass * centre.error.acceleration + 2 * EPS * size)
     alpha = body.body.alpha
-    if alpha is STEADY or inertia == 0.0:
+    if alpha is plane.STEADY or inertia == 0.0:
         return
     error = body.body.error
     lost = None if error is None else inertia * (error.alpha + EPS * np.abs(alpha))
@@ -140,7 +131,7 @@ def apply_loads(scene: Scene, chunk: Chunk, time_s: Array, free: Mapping[str, Fr
             body.moment = body.moment + magnitude
             continue
         frame = body if load.frame == "body" else free[GROUND]
-        along = frame.unit(load.direction_rad, rounding_of_angles(load.direction_rad))
+        along = frame.unit(load.direction_rad, plane.rounding_of_angles(load.direction_rad))
         place = local_point(scene, load.body, load.point)
         body.push(body.vector(body.centre, place), along * magnitude)
 
@@ -166,7 +157,6 @@ def _check_there(scene: Scene, load: Load, free: Mapping[str, FreeBody]) -> None
 
 
 def _magnitude(load: Load, chunk: Chunk, time_s: Array) -> Bounded:
-    """Return the force or torque at every sample of a chunk."""
     x, by, speed, speed_by = time_s, 0.0, None, 0.0
     sliding = None if load.slider is None else chunk.sliders[load.slider]
     error = chunk.driver.error
@@ -206,7 +196,7 @@ class PrismaticPair:
         self.name, self.body, self.guide = slider.name, sliding_body(slider), slider.on
         guide, body = free[self.guide], free[self.body]
         angle = slider.direction_rad
-        self.along = guide.unit(angle, rounding_of_angles(angle))
+        self.along = guide.unit(angle, plane.rounding_of_angles(angle))
         self.across = self.along.perp()
         tip = local_point(scene, self.body, slider.point)
         self.arms = {

@@ -1,25 +1,18 @@
 """Chunks of a given motion, for the computation of forces."""
 
+import operator
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
+from analytic.dyads import plane
 from analytic.dyads.chunk import SINES, Chunk, DrivenCoordinate, driver_scale
 from analytic.dyads.parts import SlideError, Sliding
-from analytic.dyads.plane import (
-    AngleError,
-    BodyKinematics,
-    PointError,
-    PointKinematics,
-    Vec,
-    direction,
-    fixed_body,
-    rounding_of_angles,
-)
-from analytic.prepared import CHUNK
+from analytic.dyads.plane import AngleError, BodyKinematics, PointKinematics
+from analytic.prepared import spans
+from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Motion
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_course
 from models.scene.joints import block_name
@@ -34,8 +27,7 @@ def chunks_of(scene: Scene, motion: Motion, *, bound: bool) -> Iterator[tuple[sl
         A link, point or slider that the motion lacks, or missing accelerations or bounds.
     """
     _check_whole(scene, motion, bound=bound)
-    for first in range(0, len(motion.time_s), CHUNK):
-        span = slice(first, first + CHUNK)
+    for span in spans(len(motion.time_s)):
         yield span, _Span(scene, motion, span, certified=bound).chunk()
 
 
@@ -66,15 +58,13 @@ def _check_whole(scene: Scene, motion: Motion, *, bound: bool) -> None:
 
 
 class _Span:
-    """Span of a motion's samples."""
-
     def __init__(self, scene: Scene, motion: Motion, span: slice, *, certified: bool) -> None:
         self.scene, self.motion, self.span = scene, motion, span
         self.bound = motion.bound if certified else None
 
     def chunk(self) -> Chunk:
         certified = self.bound is not None
-        bodies = {GROUND: fixed_body(certified=certified)}
+        bodies = {GROUND: plane.fixed_body(certified=certified)}
         bodies |= {name: self._link(name) for name in self.scene.links}
         for slider in self.scene.sliders.values():
             if slider.link is None:
@@ -85,64 +75,54 @@ class _Span:
         chunk.sliders.update({name: self._sliding(name) for name in self.scene.sliders})
         return chunk
 
+    def _levels(self, track: LinkMotion | PointMotion | SliderMotion) -> list[Array]:
+        """Return the span of a quantity and of its first two derivatives, or of their bounds."""
+        return [level[self.span] for level in vars(track).values()]
+
     def _driver(self) -> DrivenCoordinate:
-        """Return the driven joint from the motion."""
         scale, span, driver = driver_scale(self.scene), self.span, self.scene.driver
         theta, omega, alpha = (one[span] / scale for one in driver_course(self.scene, self.motion))
-        if self.bound is None:
-            return DrivenCoordinate(theta, omega, alpha, None)
-        if driver.slider is not None:
-            off = self.bound.sliders[driver.slider]
-            each = (off.displacement, off.speed, off.acceleration)
-            error = AngleError(*(one[span] / scale for one in each))
-            return DrivenCoordinate(theta, omega, alpha, error)
-        error = AngleError(SINES, 0.0, 0.0)
-        for name in (driver.link, driver.base):
-            if name != GROUND:
-                own = self.bound.links[name]
-                error = AngleError(
-                    error.theta + own.theta[span],
-                    error.omega + own.omega[span],
-                    error.alpha + own.alpha[span],
-                )
+        error = None
+        if self.bound is not None and driver.slider is not None:
+            off = self._levels(self.bound.sliders[driver.slider])
+            error = AngleError(*(one / scale for one in off))
+        elif self.bound is not None:
+            error = AngleError(SINES, 0.0, 0.0)
+            for name in (driver.link, driver.base):
+                if name != GROUND:
+                    own = self._levels(self.bound.links[name])
+                    error = AngleError(*map(operator.add, error, own))
         return DrivenCoordinate(theta, omega, alpha, error)
 
     def _link(self, name: str) -> BodyKinematics:
-        one, span = self.motion.links[name], self.span
+        theta, omega, alpha = self._levels(self.motion.links[name])
         point, local = next(iter(self.scene.links[name].points.items()))
-        theta = one.theta[span]
         error = None
         if self.bound is not None:
-            own = self.bound.links[name]
-            error = AngleError(own.theta[span] + SINES, own.omega[span], own.alpha[span])
-        turn = Vec(np.cos(theta), np.sin(theta))
-        omega, alpha = one.omega[span], one.alpha[span]
+            error = AngleError(*self._levels(self.bound.links[name]))
+            error = error._replace(theta=error.theta + SINES)
+        turn = plane.Vec(np.cos(theta), np.sin(theta))
         return BodyKinematics(local, self._point(point), turn, omega, alpha, error, theta)
 
     def _block(self, slider: Slider, guide: BodyKinematics) -> BodyKinematics:
         """Return a block, which has the direction of its line."""
         angle, error = slider.direction_rad, guide.error
         if error is not None:
-            error = replace(error, theta=error.theta + rounding_of_angles(angle))
-        turn, at = guide.turn.turned(direction(angle)), self._point(slider.point)
+            error = error._replace(theta=error.theta + plane.rounding_of_angles(angle))
+        turn, at = guide.turn.turned(plane.direction(angle)), self._point(slider.point)
         return BodyKinematics((0.0, 0.0), at, turn, guide.omega, guide.alpha, error)
 
     def _point(self, name: str) -> PointKinematics:
-        one, span = self.motion.points[name], self.span
-        p, v, a = (
-            Vec(series[span, 0], series[span, 1])
-            for series in (one.position, one.velocity, one.acceleration)
-        )
-        if self.bound is None:
-            return PointKinematics(p, v, a, None)
-        own = self.bound.points[name]
-        error = PointError(own.position[span], own.velocity[span], own.acceleration[span])
+        levels = self._levels(self.motion.points[name])
+        p, v, a = (plane.Vec(level[:, 0], level[:, 1]) for level in levels)
+        error = None
+        if self.bound is not None:
+            error = plane.PointError(*self._levels(self.bound.points[name]))
         return PointKinematics(p, v, a, error)
 
     def _sliding(self, name: str) -> Sliding:
-        one, span = self.motion.sliders[name], self.span
+        s, speed, acceleration = self._levels(self.motion.sliders[name])
         error = None
         if self.bound is not None:
-            own = self.bound.sliders[name]
-            error = SlideError(own.displacement[span], own.speed[span], own.acceleration[span])
-        return Sliding(one.displacement[span], one.speed[span], one.acceleration[span], error)
+            error = SlideError(*self._levels(self.bound.sliders[name]))
+        return Sliding(s, speed, acceleration, error)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.dyads.chunk import Chunk, told
-from analytic.dyads.plane import Real
+from analytic.dyads.plane import sample
 from analytic.forces.bounded import Bounded, BoundedVec
 from analytic.forces.dyad_balance import torque_of
 from analytic.forces.force_elements import (
@@ -21,12 +21,14 @@ from analytic.forces.force_elements import (
     apply_springs,
     put_constant_friction,
     rubbing_joints,
+    slide_stretch,
 )
 from analytic.forces.free_body import Balance, apply_loads, free_bodies
 from analytic.forces.friction import CoulombSolution, LoadedBodies, coulomb_friction
 from analytic.forces.given_motion import chunks_of
 from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import chunks, unit_chunk
+from analytic.result import put_bound
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array, Mask, samples
 from models.errors import CrankcheckError, few
@@ -36,11 +38,7 @@ from models.scene.loads import ConstantFriction, CoulombFriction, Friction
 
 
 def forces(
-    scene: Scene,
-    when: ArrayLike | Motion,
-    *,
-    bound: bool = True,
-    skip_dead_points: bool = False,
+    scene: Scene, when: ArrayLike | Motion, *, bound: bool = True, skip_dead_points: bool = False
 ) -> Forces:
     """Return the driving torque, and the reaction in every pin and slider.
 
@@ -105,16 +103,12 @@ def forces(
 def _write(
     result: ForceArrays, span: slice, scene: Scene, structure: Structure, chunk: Chunk
 ) -> None:
-    """Write the forces of a chunk."""
     free = free_bodies(scene, chunk)
     if scene.loads:
         apply_loads(scene, chunk, result.time_s[span], free)
     if scene.springs:
         apply_springs(scene, chunk, free)
-    displaced = {
-        name: Bounded(one.s, None if one.error is None else one.error.displacement)
-        for name, one in chunk.sliders.items()
-    }
+    displaced = {name: slide_stretch(chunk, name)[0] for name in chunk.sliders}
     joints: list[Rubbing] = []
     if scene.friction:
         joints = list(rubbing_joints(scene, structure, chunk, free, displaced))
@@ -138,7 +132,6 @@ def _write(
 
 
 def _undetermined(structure: Structure) -> str:
-    """Return the reason for missing reactions."""
     if not structure.redundant:
         return ""
     return (
@@ -148,7 +141,6 @@ def _undetermined(structure: Structure) -> str:
 
 
 def _check_loaded(scene: Scene) -> None:
-    """Refuse a scene without any force."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     rubs = any(isinstance(one, ConstantFriction) for one in scene.friction.values())
@@ -170,17 +162,16 @@ def _check_friction(scene: Scene, structure: Structure) -> None:
 
 
 def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
-    """Return the text of a dead point: its place, its dyad, and a cure."""
-    place = told(scene, _at(chunk.theta, index))
+    place = told(scene, sample(chunk.theta, index))
     where = f"{scene.driver.joint} at {place} (t = {time_s[index]:.6g} s)"
-    if all(abs(_at(sine, index)) > 0.0 for sine in chunk.sines.values()):
+    if all(abs(sample(sine, index)) > 0.0 for sine in chunk.sines.values()):
         return (
             f"{scene.name}: {where}: forces are larger than numbers go; take smaller loads, masses "
             "or lengths"
         )
     worst = min(
         chunk.sines,
-        key=lambda key: np.nan_to_num(abs(_at(chunk.sines[key], index)), nan=0.0),
+        key=lambda key: np.nan_to_num(abs(sample(chunk.sines[key], index)), nan=0.0),
         default="",
     )
     dyad = f"the dyad at {worst} is singular there" if worst else "a dyad is singular there"
@@ -191,18 +182,13 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
 
 
 def _locked(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
-    """Return the text of a position that friction locks against any torque, and a cure."""
-    place = told(scene, _at(chunk.theta, index))
+    place = told(scene, sample(chunk.theta, index))
     return (
         f"{scene.name}: {scene.driver.joint} at {place} (t = {time_s[index]:.6g} s) locks "
         f"itself: friction in {few(scene.coulomb_joints, 6)} grows by more than what overcomes it, "
         "so no finite torque keeps it moving; leave that instant out, lessen mu, or drive another "
         "link"
     )
-
-
-def _at(values: Real, index: int) -> float:
-    return float(np.ravel(values)[index if np.size(values) > 1 else 0])
 
 
 class ForceArrays:
@@ -256,15 +242,15 @@ class ForceArrays:
             one.normal[span], one.moment[span] = (each.value for each in sliders[name])
         if not self.certified:
             return
-        _put(self.bound.torque[span], torque.error)
+        put_bound(self.bound.torque[span], torque.error)
         for point, limits in self.bound.pins.items():
             for body, limit in limits.items():
-                _put(limit[span], pins[point][body].error)
+                put_bound(limit[span], pins[point][body].error)
         for name, most in self.bound.sliders.items():
             for array, each in zip((most.normal, most.moment), sliders[name], strict=True):
-                _put(array[span], each.error)
+                put_bound(array[span], each.error)
         for joint, limit in self.bound.friction.items():
-            _put(limit[span], friction[joint].error)
+            put_bound(limit[span], friction[joint].error)
 
     def write_solution(self, span: slice, found: CoulombSolution) -> None:
         """Store the solution of a chunk's friction."""
@@ -323,9 +309,3 @@ def _arrays(of: ForceArrays | ForceBound) -> Iterator[Array]:
     for one in of.sliders.values():
         yield from (one.normal, one.moment)
     yield from of.friction.values()
-
-
-def _put(into: Array, error: Real) -> None:
-    """Store bounds, infinite where they are undefined (0 times infinity)."""
-    into[:] = error
-    into[np.isnan(into)] = np.inf

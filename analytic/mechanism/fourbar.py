@@ -150,12 +150,6 @@ class FourBar:
         return _angle(c, d, b - a), _angle(c, d, b + a)
 
     @property
-    def rocker_swing_rad(self) -> float:
-        """Angle between the rocker's limits [rad]."""
-        low, high = self.rocker_limits_rad
-        return high - low
-
-    @property
     def time_ratio(self) -> float:
         """Time of the slower stroke of the rocker over that of the quicker, at constant speed."""
         self._require_crank()
@@ -192,11 +186,6 @@ class GrashofType:
     margin_m: float
     driver_turns: bool
     follower_turns: bool
-
-    @property
-    def is_grashof(self) -> bool:
-        """True if some link turns fully; a change point counts."""
-        return self.margin_m >= 0.0
 
 
 def four_bar_type(bar: FourBar) -> GrashofType:

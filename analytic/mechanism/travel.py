@@ -84,7 +84,6 @@ def travels(scene: Scene, outputs: Sequence[Output]) -> dict[Output, Travel | Cr
 
 
 def _endless(scene: Scene, output: Output) -> CrankcheckError:
-    """Return the error of an output without limit positions."""
     name = output if isinstance(output, str) else output.point
     return CrankcheckError(f"{scene.name}: {name} never turns back: it has no limit positions")
 

@@ -180,7 +180,6 @@ def _dyads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -
 
 
 def _dyad(a: str, b: str, outer1: JointKey, inner: JointKey, outer2: JointKey) -> Group | None:
-    """Return the class II group of two bodies with these pairs, if it is one."""
     (ka, na), (ki, ni), (kb, nb) = outer1, inner, outer2
     kind = ka + ki + kb
     if kind == "PPP":

@@ -109,7 +109,7 @@ def analyse(scene: Scene) -> Structure:
         units = compound.units(bodies)
         order, left = decompose(units, frozenset({GROUND}), compound.pairs(pins, prismatics))
     structure = Structure(bodies, pins, prismatics, order, compound)
-    _check_driver(scene, pins, prismatics)
+    _check_driver(scene, structure)
     if left or structure.mobility != 1:
         raise StructureError(f"{scene.name}: {_fault(structure, left)}")
     _check_held(scene, structure.groups)
@@ -127,9 +127,7 @@ def _fault(structure: Structure, left: list[str]) -> str:
     """Return the text of the fault, where ``left`` could not be placed."""
     mobility = structure.mobility
     if mobility == 1:
-        return unsolved(
-            structure.compound, structure.pins, structure.prismatics, structure.bodies, left
-        )
+        return unsolved(structure, left)
     n, p5 = len(structure.bodies), structure.pairs
     count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {structure.count}"
     if structure.redundant:
@@ -140,12 +138,11 @@ def _fault(structure: Structure, left: list[str]) -> str:
     return f"{count}; one driver needs mobility 1. {cure}"
 
 
-def _check_driver(
-    scene: Scene, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
-) -> None:
+def _check_driver(scene: Scene, structure: Structure) -> None:
     """Refuse a driven pair whose bodies another pair joins as well."""
     driver, own = scene.driver, {scene.driver.base, scene.driver.link}
-    joined = [name for name, ends in {**pins, **prismatics}.items() if own <= {*ends}]
+    pairs = {**structure.pins, **structure.prismatics}
+    joined = [name for name, ends in pairs.items() if own <= {*ends}]
     others = [name for name in joined if name != (driver.slider or scene.driver_pivot)]
     if others:
         raise StructureError(
@@ -200,14 +197,10 @@ SHOWN = 8
 SOLVED = "dyads (RRR, RRP, RPR, PRP, RPP) and triads (class III, order 3) have a solution"
 
 
-def unsolved(
-    compound: Compound | None,
-    pins: Mapping[str, tuple[str, ...]],
-    prismatics: Mapping[str, tuple[str, str]],
-    bodies: tuple[str, ...],
-    left: list[str],
-) -> str:
+def unsolved(structure: Structure, left: list[str]) -> str:
     """Return the text on the unplaced links in the way, and the reason; two driven ones are one."""
+    pins, prismatics, bodies = structure.pins, structure.prismatics, structure.bodies
+    compound = structure.compound
     if compound is not None:
         pins, prismatics = compound.joined(pins), compound.sliding(prismatics)
         bodies = compound.units(bodies)

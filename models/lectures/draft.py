@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import cast
 
 from models.files.assemble import Table, toml_text
 from models.files.reading import parse_scene
@@ -62,3 +63,12 @@ def bar(first: str, second: str, length_m: float) -> Table:
 def plate(points: Mapping[str, complex]) -> Table:
     """Table of a link of points in its own frame [m]."""
     return {"points": {name: (place.real, place.imag) for name, place in points.items()}}
+
+
+def points_of(link: Table) -> dict[str, complex]:
+    """Return the points of a link's table in its own frame [m]."""
+    if "bar" in link:
+        (one, other), length = cast(Sequence[str], link["bar"]), cast(float, link["length_m"])
+        return {one: 0j, other: complex(length)}
+    points = cast(Mapping[str, tuple[float, float]], link["points"])
+    return {name: complex(*place) for name, place in points.items()}

@@ -1,6 +1,5 @@
 """Advice on the terminal: a row for each choice, remarks, and the snippets."""
 
-import json
 import math
 from collections.abc import Iterator, Mapping
 
@@ -12,8 +11,9 @@ from models.errors import few, harmless
 from reports.advise.advice import Advice, Offer
 from reports.advise.demand import Demand
 from reports.advise.search import WORDS, SearchResult, Worst
-from reports.output.console import hanging, plain_table, say_whole
-from reports.output.numbers import count, finite, short
+from reports.output.console import grid, hanging, say_whole
+from reports.output.formats import json_text
+from reports.output.numbers import count, short
 from reports.plan.steps import LEAST_STEPS_PER_TURN
 from sim.registry import engine
 
@@ -102,15 +102,10 @@ def _nothing(advice: Advice) -> str:
 def _table(advice: Advice, width: int) -> Table:
     """Return a row for each choice, cheapest first."""
     wide = width >= WIDE
-    table = plain_table(gap=2 if width >= WIDEST else 1)
-    table.add_column("settings", overflow="fold", min_width=14)
-    table.add_column("at the\nframe", justify="right", no_wrap=True)
-    table.add_column("", overflow="fold", min_width=6)
-    for head in ("sub-\nsteps", "their\nerror", "ms per\nsecond"):
-        table.add_column(head, justify="right", no_wrap=True)
-    if wide:
-        table.add_column("of real\ntime", justify="right", no_wrap=True)
-    table.add_column("times\nbest", justify="right", no_wrap=True)
+    heads = ("settings", "at the\nframe:", "", "sub-\nsteps:", "their\nerror:", "ms per\nsecond:")
+    last = (*["of real\ntime:"] * wide, "times\nbest:")
+    gap = 2 if width >= WIDEST else 1
+    table = grid((*heads, *last), gap=gap, least={"settings": 14, "": 6})
     for offer in advice.offers:
         row = _row(advice, offer)
         table.add_row(*(row if wide else (*row[:-2], row[-1])))
@@ -270,7 +265,7 @@ def document(advice: Advice) -> str:
         "best": [offer.reached.choice.label for offer in advice.best],
         "settings": [_offer(advice, offer) for offer in advice.offers],
     }
-    return json.dumps(finite(content), indent=1) + "\n"
+    return json_text(content)
 
 
 def _offer(advice: Advice, offer: Offer) -> Mapping[str, object]:

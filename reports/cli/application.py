@@ -19,13 +19,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from models.errors import CrankcheckError, harmless
 from reports.cli.commands import COMMANDS
-from reports.output.console import (
-    UNWRITABLE,
-    forget_odd_sizes,
-    give_up_output,
-    readable_everywhere,
-    terminal,
-)
+from reports.output import console
 from reports.requests.options import named, note_of
 from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
 
@@ -110,8 +104,8 @@ def main() -> None:
                     raise CrankcheckError(
                         "standard output is closed; send it to a file, or to /dev/null"
                     )
-                forget_odd_sizes()
-                readable_everywhere()
+                console.forget_odd_sizes()
+                console.readable_everywhere()
                 try:
                     app()
                 finally:
@@ -134,11 +128,15 @@ def guarded() -> Iterator[None]:
     except KeyboardInterrupt:
         _end(INTERRUPTED, "interrupted")
     except BrokenPipeError:
-        give_up_output()
+        console.give_up_output()
         raise SystemExit(BROKEN_PIPE) from None
     except Exception as error:
-        if isinstance(error, OSError) and error.errno in UNWRITABLE and error.filename is None:
-            give_up_output()
+        if (
+            isinstance(error, OSError)
+            and error.errno in console.UNWRITABLE
+            and error.filename is None
+        ):
+            console.give_up_output()
             _end(
                 BAD_INPUT, f"standard output can not be written: {error.strerror}; free some space"
             )
@@ -181,9 +179,8 @@ def _typed(request: type[Request]) -> Callable[..., None]:
 
 
 def _end_with(request: Request) -> NoReturn:
-    """Answer a request, and end with its exit code."""
     with guarded():
-        code = request.run(terminal(), terminal(stderr=True))
+        code = request.run(console.terminal(), console.terminal(stderr=True))
     raise typer.Exit(code)
 
 

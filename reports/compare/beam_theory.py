@@ -46,8 +46,7 @@ def shape_of(scene: Scene) -> Shape:
 
 @dataclass(frozen=True)
 class BeamTheory:
-    """The links of a scene as beams with foreshortening, from time 0 to ``until_s`` [s]; a periodic
-    motion has no end."""
+    """Links as beams with foreshortening, until ``until_s`` [s]; without end if periodic."""
 
     others: ClassVar[Polynomials] = FEWER
     """Polynomials of another description of the beam."""
@@ -143,8 +142,7 @@ class BeamTheory:
 
 
 class FreeBeamTheory(BeamTheory):
-    """As `BeamTheory`, for free motion: small differences grow there, and with them the uncertainty
-    of the whole beam."""
+    """As `BeamTheory`, for free motion, in which the uncertainty of the whole beam grows."""
 
     others: ClassVar[Polynomials] = REFERENCE.finer
     looked_by: ClassVar[Polynomials] = FEWER  # at half the time

@@ -28,8 +28,7 @@ SETS = 2
 
 @lru_cache(maxsize=1)
 def truth_of(same: Same) -> Truth:
-    """Return the reference of the scene requested last: its cells follow one another, and most are
-    logged at the same instants."""
+    """Return the reference of the scene requested last: its cells follow one another."""
     return Truth(same.scene)
 
 
@@ -47,7 +46,11 @@ class Truth:
 
     def beside(self, run: Run) -> Beside | None:
         """Return a run beside this reference; None where it logged nothing."""
-        return Beside.of(self, run)
+        motion = run.motion
+        return self._beside(run, motion) if motion is not None and motion.time_s.size else None
+
+    def _beside(self, run: Run, motion: Motion) -> Beside:
+        return Beside(self, run, motion)
 
     @property
     def given(self) -> Scene:
@@ -65,36 +68,34 @@ class Truth:
 
     def at(self, time_s: Array) -> Motion:
         """Return the reference at instants (T,). Raises CrankcheckError where there is none."""
-        instants = time_s.tobytes()
-        motion = self._motions.get(instants)
-        if motion is None:
-            motion = self._solved(time_s)
-            _keep(self._motions, instants, motion)
-        return motion
+        return kept(self._motions, time_s, self._solved)
 
     def _solved(self, time_s: Array) -> Motion:
         return solve(self.scene, time_s, links=self.links, points=self.points, bound=self.bound)
 
     def with_forces_at(self, time_s: Array) -> Motion:
         """Return `at` with the forces; there are none (NaN) in dead points."""
-        instants = time_s.tobytes()
-        motion = self._loaded.get(instants)
-        if motion is None:
-            whole = self
-            if self.links is not None or self.points is not None:
-                whole = replace(self, links=None, points=None, _motions={}, _loaded={})
-            motion = whole.at(time_s)
-            load = forces(self.scene, motion, bound=self.bound, skip_dead_points=True)
-            motion = replace(motion, forces=load)
-            _keep(self._loaded, instants, motion)
-        return motion
+        return kept(self._loaded, time_s, self._solved_with_forces)
+
+    def _solved_with_forces(self, time_s: Array) -> Motion:
+        whole = self
+        if self.links is not None or self.points is not None:
+            whole = replace(self, links=None, points=None, _motions={}, _loaded={})
+        motion = whole.at(time_s)
+        load = forces(self.scene, motion, bound=self.bound, skip_dead_points=True)
+        return replace(motion, forces=load)
 
 
-def _keep(motions: dict[bytes, Motion], instants: bytes, motion: Motion) -> None:
-    """Keep a motion in the place of the oldest."""
-    for oldest in list(motions)[: 1 - SETS]:
-        motions.pop(oldest, None)  # another thread may have done so
-    motions[instants] = motion
+def kept(motions: dict[bytes, Motion], time_s: Array, solved: Callable[[Array], Motion]) -> Motion:
+    """Return the motion at instants (T,), solved once, and then kept in the place of the oldest."""
+    instants = time_s.tobytes()
+    motion = motions.get(instants)
+    if motion is None:
+        motion = solved(time_s)
+        for oldest in list(motions)[: 1 - SETS]:
+            motions.pop(oldest, None)  # another thread may have done so
+        motions[instants] = motion
+    return motion
 
 
 @dataclass(frozen=True)
@@ -140,14 +141,12 @@ class Beside:
 
     @cached_property
     def crank(self) -> Array:
-        """The logged coordinate of the driver [rad, or m of a slider], (T,); NaN where there is
-        none."""
+        """The logged coordinate of the driver [rad, or m of a slider], (T,); NaN without one."""
         return fitting(driver_place(self.scene, self.motion), self.motion.time_s)
 
     @cached_property
     def drive(self) -> Array:
-        """Distance of the driver from its commanded place [rad], (T,); for a slider over the
-        longest length."""
+        """Error of the driver's place [rad], (T,); for a slider over the longest length."""
         if self.scene.driver.slider is not None:
             return np.asarray((self.crank - self.driver_rad) / self.scene.driver_arm_m)
         return angle_error(self.crank, self.driver_rad)
@@ -244,8 +243,7 @@ def incomplete(run: Run) -> str:
 
 
 def first_samples(run: Run, number: int) -> Run:
-    """Return the run with its first samples alone, in all its series; itself where these are
-    all."""
+    """Return the run with its first samples alone in all its series; itself if these are all."""
     motion = run.motion
     if motion is None or number >= motion.time_s.size:
         return run

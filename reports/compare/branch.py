@@ -137,8 +137,7 @@ def free_departure(beside: FreeBeside) -> Departure | None:
 
 
 def _free_elsewhere(beside: FreeBeside, far: Mask) -> bool:
-    """True if the run is in one of the scene's assemblies at one of the samples ``far``, at its own
-    driver angle."""
+    """True if the run is in any assembly of its own driver angle at one of the samples ``far``."""
     scene = beside.scene
     keys = [group.branch_key for group in analyse(scene).groups if group.assemblies == 2]
     index = np.flatnonzero(far)[:: max(int(np.sum(far)) // 200, 1)]

@@ -25,11 +25,9 @@ class Comparing(Protocol):
 
     def compared(self, beside: Beside, errors: Errors | None) -> Errors:
         """Return the errors of a run, added to the errors of the modules before."""
-        ...
 
     def places(self, beside: Beside) -> list[Error]:
         """Return drive or phase errors, total errors of position and gaps alone."""
-        ...
 
 
 def compare(beside: Beside | None) -> Errors | None:
@@ -53,7 +51,6 @@ def places(beside: Beside | None) -> list[Error]:
 
 
 def _modules(beside: Beside | None) -> Iterator[Comparing]:
-    """Yield the modules that compare a run."""
     for name in beside.compared_by if beside else ():
         yield cast(Comparing, import_module(name, __package__))
 

@@ -26,7 +26,7 @@ from models.scene import Scene, as_bytes
 from models.scene.cut_links import CutScene
 from models.scene.cut_scenes import BeamedScene, SegmentedScene
 from reports.compare.beam_theory import LEAST, BeamTheory, ExactChain, shape_of
-from reports.compare.beside import Beside, Truth
+from reports.compare.beside import Beside, Truth, kept
 from sim.engine import Run
 
 
@@ -71,8 +71,7 @@ def _truth(pickled: bytes, count: int, springs: str, until_s: float) -> ElasticT
 
 
 def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
-    """Return an engine's scene with the pieces of elastic links. Raises EngineError where they are
-    impossible."""
+    """Return a scene with its elastic links in pieces. Raises EngineError if impossible."""
     try:
         pieces = cut(scene, count, springs)
         assert pieces.given  # made now, to be refused now
@@ -83,8 +82,7 @@ def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
 
 @lru_cache(maxsize=2)
 def kept_theory(pickled: bytes, until_s: float, kind: type[BeamTheory] = BeamTheory) -> BeamTheory:
-    """Return the beam of a scene, which may come from another process: one for every number of
-    segments."""
+    """Return the beam of a scene, maybe of another process, for any number of segments."""
     return kind(pickle.loads(pickled), until_s)
 
 
@@ -161,19 +159,13 @@ class ElasticTruth(Truth):
         """Return a run of the engine's scene as one of the scene."""
         return folded_run(self.cut, run)
 
-    def beside(self, run: Run) -> Beside | None:
-        """Return the run, with its elastic links as such, beside the beam; None for an empty
-        log."""
-        motion = run.motion
-        if motion is None or not motion.time_s.size:
-            return None
+    def _beside(self, run: Run, motion: Motion) -> Beside:
         return ElasticBeside(self, run, motion, elastic=self)
 
 
 @dataclass(frozen=True)
 class ChainTruth(ElasticTruth):
-    """As `ElasticTruth`, for an engine with chains of segments, whose exact motion is known as
-    well."""
+    """As `ElasticTruth`, for an engine with chains of segments: their exact motion is known too."""
 
     _chains: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
@@ -194,8 +186,7 @@ class ChainTruth(ElasticTruth):
 
     @property
     def is_exact(self) -> bool:
-        """True if the motion is periodic, or the segments few: an integration of many takes
-        minutes."""
+        """True if the motion is periodic, or the segments few: to integrate many takes minutes."""
         return self.theory.is_periodic or self.chain.count <= LEAST
 
     def apart(self, by_name: Callable[[Motion, Motion], Apart]) -> Apart:
@@ -226,13 +217,8 @@ class ChainTruth(ElasticTruth):
         return fastest_rad_s(self.theory.scene, Segments(self.chain.count, self.chain.corrected))
 
     def exact_at(self, time_s: Array) -> Motion:
-        """Return the exact chain at times (T,) [s]; the last set of instants is kept."""
-        instants = time_s.tobytes()
-        if instants not in self._chains:
-            motion = self.exact.at(time_s)
-            self._chains.clear()
-            self._chains[instants] = motion
-        return self._chains[instants]
+        """Return the exact chain at times (T,) [s]."""
+        return kept(self._chains, time_s, self.exact.at)
 
     def logged(self, run: Run) -> Run:
         """Return the run as one of the scene; if it came apart, its reason names a stable step."""
@@ -256,8 +242,7 @@ class ChainTruth(ElasticTruth):
 
 @dataclass(frozen=True)
 class ElasticBeside(Beside):
-    """As `Beside`. Where links bend, the angle of the driver determines no other: there are no
-    errors at the logged angle."""
+    """As `Beside`, without errors at the logged angle: it determines no other of bent links."""
 
     compared_by: ClassVar[tuple[str, ...]] = (*Beside.compared_by, ".elastic_errors")
     elastic: ElasticTruth = field(kw_only=True)

@@ -16,7 +16,7 @@ import numpy as np
 
 from models.array import Array, Mask
 from models.motion import Motion
-from reports.compare.beside import Beside
+from reports.compare.beside import EPSILON, Beside
 from reports.compare.errors import Error, ErrorKind
 from reports.compare.hardness import WINDOW_RAD, near
 from reports.compare.tracks import Track, length, rate, second_rate, size
@@ -65,11 +65,9 @@ def instants_of(beside: Beside, time_s: Array, reference: Motion) -> Instants:
     return Instants(time_s, driver_rad, passed, beside.settling, beside.scene.driver.unit)
 
 
-def whole_row(
-    track: Track, at: Instants, source: Source = "reported", kind: ErrorKind = "total"
-) -> Error:
-    """Return a track as numbers."""
-    return _numbers(track, length(track.error), track.bound, at, source, kind)
+def whole_row(track: Track, at: Instants, kind: ErrorKind = "total") -> Error:
+    """Return a reported track as numbers."""
+    return _numbers(track, length(track.error), track.bound, at, "reported", kind)
 
 
 def _numbers(
@@ -101,9 +99,6 @@ def rate_rows(track: Track, at: Instants, source: Source) -> Iterable[Error]:
     error = length(track.error)
     for kind, part, instants in at.parts:
         yield _numbers(track, error[part], track.bound[part], instants, source, kind)
-
-
-EPSILON = float(np.finfo(np.float64).eps)
 
 
 def whole_rows(beside: Beside, at: Instants, role: Role) -> list[Error]:

@@ -108,8 +108,7 @@ class MotionFacts:
         return explained
 
     def compared_with(self, moved: str) -> str:
-        """Return the reference of the errors, and the letters of their shares; ``moved`` names a
-        change of the closed form."""
+        """Return reference and shares of the errors; ``moved`` is a change of the closed form."""
         return (
             f"Largest errors against the closed form{moved}; L longest link, w driver's peak speed."
         )

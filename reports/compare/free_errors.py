@@ -81,8 +81,7 @@ def _phase_and_places(beside: FreeBeside, tracks: Iterable[Track], at: Instants)
 
 
 def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
-    """Return errors against the reference at the run's own coordinate, or a note with the reason
-    for none."""
+    """Return errors at the run's own coordinate, or a note with the reason for none."""
     if beside.no_geometry:
         return [], (beside.no_geometry,)
     try:
@@ -90,20 +89,6 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
     except CrankcheckError as error:
         return [], (f"no geometry: the run left the range of its own coordinate ({error})",)
     return [whole_row(track, at) for track in tracks], ()
-
-
-def _travel(beside: FreeBeside) -> float:
-    """Return the angle that the driver turns through, weighed as `MotionFacts.travel_rad`."""
-    speed = np.abs(beside.driver_speed)
-    peak = beside.scene.pace_rad_s
-    return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
-
-
-def _drifted(beside: FreeBeside) -> float:
-    """Return the largest turned angle of the driver over the sensitivity at that time [rad]."""
-    speed, time_s = np.abs(beside.driver_speed), beside.motion.time_s
-    turned = np.cumsum(np.diff(time_s, prepend=time_s[0]) * speed)
-    return float(np.max(turned / beside.growth))
 
 
 def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
@@ -115,10 +100,12 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
     kept = np.unique(np.linspace(0, worst.size - 1, COURSE).round().astype(np.intp))
     raw, judged = np.maximum.accumulate(worst), np.maximum.accumulate(worst / beside.growth)
     time_s, scene = beside.motion.time_s, beside.scene
+    speed, peak = np.abs(beside.driver_speed), scene.pace_rad_s
+    turned = np.cumsum(np.diff(time_s, prepend=time_s[0]) * speed)
     while_s = window_s(scene, float(np.ptp(beside.reference.time_s)))
     return FreeFacts(
-        travel_rad=_travel(beside),
-        drifted_rad=_drifted(beside),
+        travel_rad=float(np.trapezoid(peak * (speed / peak) ** 3, time_s)),
+        drifted_rad=float(np.max(turned / beside.growth)),
         late=late_impulses(scene, beside.reference, beside.run.dt_s, while_s),
         sensitivity=beside.pure_growth,
         until_s=float(time_s[-1]),
@@ -131,7 +118,6 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
 
 
 def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
-    """Yield notes on the reference."""
     if facts.left_out:
         yield (
             f"the truth ends at t = {facts.until_s:.4g} s, where it is no longer known to a "

@@ -113,18 +113,25 @@ def energy_rows(beside: FreeBeside) -> list[Error]:
     time_s = run.velocity_time_s
     known = beside.free.energy(np.clip(time_s, 0.0, beside.free.until_s))
     largest = float(np.max(known.kinetic))
+    worked = float(np.ptp(known.work)) > WORKED * largest
+    divisor = beside.pure_growth if worked else 1.0
+    return _drift_rows(beside, ENERGY, run.energy.total_j - known.work, time_s, largest, divisor)
+
+
+def _drift_rows(
+    beside: FreeBeside,
+    quantity: Quantity,
+    series: Array,
+    time_s: Array,
+    largest: float,
+    divisor: float = 1.0,
+) -> list[Error]:
+    """Return the drift of a quantity of a whole mechanism, over its largest value; none for 0."""
     if not largest > 0.0:
         return []
-    off = run.energy.total_j - known.work
-    change = drift(off, time_s, window_s(beside.scene, float(time_s[-1] - time_s[0])))
-    worked = float(np.ptp(known.work)) > WORKED * largest
-    size = abs(change) / (beside.pure_growth if worked else 1.0)
-    return [drift_row(beside, ENERGY, size, largest)]
-
-
-def drift_row(beside: FreeBeside, quantity: Quantity, size: float, largest: float) -> Error:
-    """Return the drift of a conserved quantity of a whole mechanism, over its largest value."""
-    return Error(
+    over_s = window_s(beside.scene, float(time_s[-1] - time_s[0]))
+    size = abs(drift(series, time_s, over_s)) / divisor
+    row = Error(
         quantity=quantity.name,
         body_kind="mechanism",
         body=beside.scene.name,
@@ -140,6 +147,7 @@ def drift_row(beside: FreeBeside, quantity: Quantity, size: float, largest: floa
         bound=0.0,
         samples=int(beside.motion.time_s.size),
     )
+    return [row]
 
 
 def window_s(scene: Scene, lasts_s: float) -> float:
@@ -177,11 +185,7 @@ def momentum_rows(beside: FreeBeside) -> list[Error]:
         return []
     time_s = run.velocity_time_s
     spin = momentum(scene, beside.motion, time_s, pivot)
-    largest = float(np.max(np.abs(spin)))
-    if not largest > 0.0:
-        return []
-    change = drift(spin, time_s, window_s(scene, float(time_s[-1] - time_s[0])))
-    return [drift_row(beside, MOMENTUM, abs(change), largest)]
+    return _drift_rows(beside, MOMENTUM, spin, time_s, float(np.max(np.abs(spin))))
 
 
 def kept_about(scene: Scene) -> str | None:

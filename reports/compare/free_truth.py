@@ -31,16 +31,16 @@ LEAST_KNOWN = 0.25
 def free_truth(
     scene: Scene, steps: int, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """Return the reference of a free scene, for ``steps`` steps of ``dt_s``. Raises CrankcheckError
-    as `analytic.free.release`."""
+    """Return the reference of a free scene for ``steps`` of ``dt_s`` [s], as `free_truth_until`."""
     return free_truth_until(scene, steps * dt_s, dt_s, tolerance)
 
 
 def free_truth_until(
     scene: Scene, lasts_s: float, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """Return `free_truth` for a duration [s]; ``dt_s`` is 0 where no step is known, and the limit
-    of the phase is then its cap, unless one is given."""
+    """Return the reference of a free scene for a duration [s]; ``dt_s`` is 0 if none is known, and
+    the limit of the phase is then its cap, unless one is given. Raises CrankcheckError as
+    `analytic.free.release`."""
     motion = kept_motion(scene, lasts_s)
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
     law = Released(
@@ -89,11 +89,8 @@ class FreeTruth(Truth):
         lost = np.flatnonzero(~(unsure <= self.known_rad))
         return int(lost[0]) if lost.size else time_s.size
 
-    def beside(self, run: Run) -> Beside | None:
-        """Return the run beside the reference as far as that is known; None for an empty log."""
-        motion = run.motion
-        if motion is None or not motion.time_s.size:
-            return None
+    def _beside(self, run: Run, motion: Motion) -> Beside:
+        """Return the run beside the reference as far as that is known."""
         known = first_samples(run, max(self.known(motion.time_s), 1))
         assert known.motion is not None
         return FreeBeside(self, known, known.motion, whole_run=run, free=self.free)
@@ -157,11 +154,8 @@ class FreeBeside(Beside):
     @property
     def no_geometry(self) -> str:
         """Reason why the position of the run is undefined, "" where it is defined."""
-        return (
-            ""
-            if np.all(np.isfinite(self.crank))
-            else ("no geometry: the logged angle of the driver is not finite")
-        )
+        lost = not np.all(np.isfinite(self.crank))
+        return "no geometry: the logged angle of the driver is not finite" if lost else ""
 
     @property
     def tells_momentum(self) -> bool:
@@ -207,8 +201,7 @@ LOOK = 1e-3
 
 
 def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
-    """Return the motion of a free scene, for at least so long [s]. Raises CrankcheckError as
-    `analytic.free.release`."""
+    """Return the motion of a free scene for at least so long [s]. Raises CrankcheckError."""
     return _released(as_bytes(scene), long_enough_s(scene, lasts_s))
 
 

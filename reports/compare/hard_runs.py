@@ -121,7 +121,6 @@ def compared(chain: WindowChain, done: Run) -> ChainErrors:
 
 
 def _start_j(turning: ChainMotion) -> float:
-    """Return the energy of the start [J]."""
     theta, omega, _ = turning.at(np.array([0.0]))
     return float(turning.energy(theta, omega)[0])
 

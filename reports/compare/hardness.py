@@ -48,8 +48,7 @@ def loading(scene: Scene, motion: Motion) -> float:
 
 
 def inertia_share(scene: Scene, force_n: float) -> float:
-    """Return the force of inertia of all masses at the driver's speed on the longest link, as a
-    share of a force, at most 1."""
+    """Return the inertia of all masses at the longest link, as a share of a force, at most 1."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     push = sum(masses) * scene.longest_m * scene.pace_rad_s**2

@@ -26,16 +26,10 @@ from models.motion import Motion
 from models.scene import Scene, as_bytes
 from models.scene.cut_links import with_rigid_links
 from models.scene.cut_scenes import SegmentedScene
-from reports.compare import elastic_truth
+from reports.compare import elastic_truth, free_truth
 from reports.compare.beam_theory import FreeBeamTheory
 from reports.compare.beside import Beside, first_samples
-from reports.compare.free_truth import (
-    LEAST_KNOWN,
-    FreeBeside,
-    FreeTruth,
-    free_truth,
-    long_enough_s,
-)
+from reports.compare.free_truth import FreeBeside, FreeTruth
 from reports.quantities.free_and_elastic import PHASE
 from sim.engine import Run
 
@@ -57,7 +51,7 @@ def released_elastic_truth(
     in ``count`` segments. Raises EngineError as `elastic_truth`, and CrankcheckError for a scene
     without free motion."""
     limit = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
-    known_rad = LEAST_KNOWN * (limit or PHASE.criteria[0].tolerance.cap)
+    known_rad = free_truth.LEAST_KNOWN * (limit or PHASE.criteria[0].tolerance.cap)
     return _truth(as_bytes(scene), count, springs, steps, dt_s, known_rad)
 
 
@@ -66,14 +60,15 @@ def _truth(
     pickled: bytes, count: int, springs: str, steps: int, dt_s: float, known_rad: float
 ) -> ReleasedElasticTruth:
     scene: Scene = pickle.loads(pickled)
-    theory = elastic_truth.kept_theory(pickled, long_enough_s(scene, dt_s * steps), FreeBeamTheory)
+    until_s = free_truth.long_enough_s(scene, dt_s * steps)
+    theory = elastic_truth.kept_theory(pickled, until_s, FreeBeamTheory)
     chain = elastic_truth.cut_scene(scene, count, springs)
     if not isinstance(chain, SegmentedScene):
         raise EngineError(
             f"{scene.name}: it is let go, and what engines make of it with beams of their own is "
             "not held to anything yet; leave --springs beam out"
         )
-    rigid = free_truth(with_rigid_links(scene), steps, dt_s)
+    rigid = free_truth.free_truth(with_rigid_links(scene), steps, dt_s)
     paced = replace(scene, driver=rigid.scene.driver)
     return ReleasedElasticTruth(paced, cut=chain, theory=theory, rigid=rigid, known_rad=known_rad)
 
@@ -121,16 +116,12 @@ class ReleasedElasticTruth(elastic_truth.ChainTruth):
 
     @property
     def _works(self) -> ReleasedElasticMotion:
-        """The motion with the reference energies: that of the engine's own chain, if it is
-        known."""
+        """The motion with the reference energies: that of the engine's own chain, if known."""
         motion = self.exact.motion if self.is_exact else self.beam
         assert isinstance(motion, ReleasedElasticMotion)
         return motion
 
-    def beside(self, run: Run) -> Beside | None:
-        motion = run.motion
-        if motion is None or not motion.time_s.size:
-            return None
+    def _beside(self, run: Run, motion: Motion) -> Beside:
         known = int(np.searchsorted(motion.time_s, self.known_s))
         judged = first_samples(run, max(known, 1))
         assert judged.motion is not None
@@ -145,8 +136,7 @@ class ReleasedElasticTruth(elastic_truth.ChainTruth):
 
 
 def at_any(motion: ReleasedElasticMotion, time_s: Array) -> Motion:
-    """Return a motion at times in ascending order [s], (T,), some of which may be within a step of
-    its start or its end."""
+    """Return a motion at ascending times [s], (T,), up to a step before its start and its end."""
     early, late = time_s < 0.0, time_s > motion.until_s
     if not (early.any() or late.any()):
         return sampled(motion, time_s)
@@ -187,10 +177,7 @@ class BentReference:
 class ReleasedElasticBeside(elastic_truth.ElasticBeside, FreeBeside):
     """As `FreeBeside`, without a geometry at the driver's own angle."""
 
-    compared_by: ClassVar[tuple[str, ...]] = (
-        *FreeBeside.compared_by,
-        ".elastic_errors",
-    )
+    compared_by: ClassVar[tuple[str, ...]] = (*FreeBeside.compared_by, ".elastic_errors")
 
     @property
     def no_geometry(self) -> str:

@@ -1,7 +1,7 @@
 """Error series: the engine's log less the reference, and their sizes."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,13 +83,11 @@ def fitting(series: Array | None, like: Array) -> Array:
 
 def lacking(motion: Motion, reference: Motion) -> list[str]:
     """Return the links, sliders and points of the reference that the engine's motion lacks."""
-    pairs: tuple[tuple[str, Mapping[str, object], Mapping[str, object]], ...] = (
-        ("link", motion.links, reference.links),
-        ("slider", motion.sliders, reference.sliders),
-        ("point", motion.points, reference.points),
-    )
     return [
-        f"{kind} {name}" for kind, moved, wanted in pairs for name in wanted if name not in moved
+        f"{kind} {name}"
+        for kind in ("link", "slider", "point")
+        for name in getattr(reference, f"{kind}s")
+        if name not in getattr(motion, f"{kind}s")
     ]
 
 

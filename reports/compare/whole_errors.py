@@ -117,8 +117,7 @@ def off_stamps(run: Run) -> str:
 
 
 def unbalanced(run: Run, largest_n: float) -> errors.Unbalanced | None:
-    """Return the pin with the largest sum of forces, over the largest reaction; values that are not
-    finite are reported elsewhere."""
+    """Return the pin with the largest finite sum of forces, over the largest reaction."""
     forces = acting(run)
     sums = dict[str, float]()
     for point, bodies in (forces.pins if forces else {}).items():

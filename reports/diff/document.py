@@ -1,14 +1,13 @@
 """A diff on the terminal, as Markdown short enough for a pull request comment, and as JUnit XML."""
 
 from collections.abc import Iterable, Sequence
-from typing import Literal
 from xml.etree.ElementTree import Element
 
 from rich.console import Console
 from rich.text import Text
 
 from reports.diff import words
-from reports.output.console import hanging, plain_table, say
+from reports.output.console import grid, hanging, say
 from reports.output.formats import case_of, counted, folded, plain, remark, suite_of, table
 from reports.results.changes import CellPair, Diff
 from reports.results.runs import CellName, StoredCell
@@ -41,22 +40,14 @@ def _grid(console: Console, word: str, rows: Sequence[words.PrintedRow]) -> None
         return
     wide = console.width >= NARROW
     shown = rows[: MOST[word]]
-    table = plain_table(word, STYLES[word])
-    for head in words.HEADS:
-        number = head in ("old", "new", "ratio")
-        if wide or not number or head == "ratio":
-            side: Literal["left", "right"] = "right" if number else "left"
-            table.add_column(head, overflow="fold", justify=side, no_wrap=number)
-    for line in shown:
-        middle = (line.old, line.new) if wide else ()
-        table.add_row(
-            *map(Text, (line.scene, line.engine, line.steps, line.quantity, *middle, line.ratio))
-        )
-    console.print(table)
+    kept = [head for head in words.HEADS if wide or head not in ("old:", "new:")]
+    cells = ([Text(line.cells[head]) for head in kept] for line in shown)
+    console.print(grid(kept, cells, word, gap=1, style=STYLES[word]))
     if len(rows) > len(shown):
         more = f"and {len(rows) - len(shown)} more rows; --junit FILE names every cell"
         say(console, more, "dim")
-    for text in dict.fromkeys(f"{line.engine}: {line.reason}" for line in shown if line.reason):
+    reasons = (f"{line.cells['engine']}: {line.reason}" for line in shown if line.reason)
+    for text in dict.fromkeys(reasons):
         hanging(console, "  ", text)
     console.print()
 
@@ -76,8 +67,6 @@ def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
 
 BUDGETS = {"worse": 30_000, "better": 8_000, "new": 4_000, "missing": 4_000}
 """Bytes of each part: all of them with the heads stay below the 65,536 of a comment on GitHub."""
-NUMBERS = 3
-"""Columns of numbers, which are the last."""
 HEAD = 6_000
 """Bytes for the remarks, and for the footer."""
 
@@ -103,15 +92,11 @@ def markdown(diff: Diff, strict: bool = False) -> str:
 
 
 def _rows(rows: Sequence[words.PrintedRow], room: int) -> str:
-    """Return rows as a table; the compared values are numbers."""
-    heads = [head.replace("\n", " ") for head in words.HEADS]
-    heads[-NUMBERS:] = [f"{head}:" for head in heads[-NUMBERS:]]
-    return table(heads, map(_cells, rows), room, "rows")
-
-
-def _cells(line: words.PrintedRow) -> tuple[str, ...]:
-    quantity = f"{line.quantity}: {line.reason}" if line.reason else line.quantity
-    return line.scene, line.engine, line.steps, quantity, line.old, line.new, line.ratio
+    cells = []
+    for line in rows:
+        quantity = line.cells["quantity"] + f": {line.reason}" * bool(line.reason)
+        cells.append([*{**line.cells, "quantity": quantity}.values()])
+    return table(words.HEADS, cells, room, "rows")
 
 
 def _fitted(texts: Iterable[str], room: int) -> str:

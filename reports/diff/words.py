@@ -2,7 +2,7 @@
 
 import math
 import statistics
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.output.numbers import count
@@ -18,17 +18,11 @@ REASON = 120
 class PrintedRow:
     """Cells that differ in step only, as one row: the worst of them, and the other steps."""
 
-    scene: str
-    engine: str
-    steps: str
-    quantity: str
-    old: str
-    new: str
-    ratio: str
+    cells: Mapping[str, str]
     reason: str = ""
 
 
-HEADS = ("scene", "engine", "steps\na turn", "quantity", "old", "new", "ratio")
+HEADS = ("scene", "engine", "steps\na turn", "quantity", "old:", "new:", "ratio:")
 
 
 def headline(diff: Diff) -> str:
@@ -150,9 +144,12 @@ def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -
         failed = first.old if first.new.ok else first.new
         was, now = first.old.status, first.new.status
         reason = failed.reason[:REASON]
-        return PrintedRow(first.name.scene, engine, steps, "status", was, now, "-", reason)
-    numbers = (size(change.old), size(change.new), ratio(change))
-    return PrintedRow(first.name.scene, engine, steps, change.quantity, *numbers)
+        seen = ("status", was, now, "-")
+    else:
+        reason = ""
+        seen = (change.quantity, size(change.old), size(change.new), ratio(change))
+    cells = zip(HEADS, (first.name.scene, engine, steps, *seen), strict=True)
+    return PrintedRow(dict(cells), reason)
 
 
 def _steps(changed: Sequence[float], compared: Sequence[float], unit: str) -> str:

@@ -60,8 +60,7 @@ def draw(report: Report, scene: str) -> Figure:
 
 
 def draw_all(report: Report) -> Figure:
-    """Draw the plots of all scenes side by side, over steps per turn; over time for free
-    motions."""
+    """Draw the plots of all scenes side by side, over steps per turn, or time of free motions."""
     lines, scenes, mark_of = report.lines, list(report.scenes), marks(report.lines)
     entries: list[tuple[Artist, str]] = [
         (Line2D([], [], **mark.style), report.looks[name].name) for name, mark in mark_of.items()
@@ -84,7 +83,6 @@ def draw_all(report: Report) -> Figure:
 
 
 def _over(lines: Sequence[Line]) -> Over:
-    """Return the axis of the steps."""
     return OVER[common_clock(line.drive for line in lines)]
 
 
@@ -128,7 +126,6 @@ def _failed(
 
 
 def _strip(lines: Sequence[Line]) -> float:
-    """Return the share of a panel's height for failed runs, where there are any."""
     failed = Counter(line.scene for line in lines if ends(line))
     return min(0.075 * max(failed.values(), default=0), 0.3)
 
@@ -149,7 +146,6 @@ def _limits(axes: Sequence[Axes], lines: Sequence[Line], unit_s: float) -> None:
 
 
 def _upper(axes: Axes, lines: Sequence[Line]) -> None:
-    """Draw steps per turn along the top."""
     upper = axes.twiny()
     upper.set_xscale("log")
     upper.set_xlim(axes.get_xlim())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -14,25 +15,15 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from models.array import Array
-from models.motion import Motion
+from models.scene import Scene
 from models.scene.cut_links import line_of
 from models.scene.driver import Controlled
 from models.scene.laws import ConstantSpeed
 from reports.describe.elastic_course import Apart, ElasticCourse
 from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
-from reports.figures.sheet import ONE, SIDES, Panels, sheet
-from reports.figures.style import (
-    COLUMN_IN,
-    INK,
-    PAGE_IN,
-    QUIET,
-    SMALL,
-    FigureSet,
-    Look,
-    note,
-    shorten,
-)
+from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
+from reports.figures.style import INK, PAGE_IN, QUIET, SMALL, FigureSet, Look, note, shorten
 from reports.output.numbers import readable
 from reports.way.length import SECONDS, TURNS
 from reports.way.way import way_of
@@ -58,6 +49,7 @@ GHOST: Look = {"color": "#a9b3bd", "linewidth": 1.0, "zorder": 1}
 class CourseAxis:
     """Values (T,) with their label; ``step`` is between its numbers, 0 for any."""
 
+    scene: Scene
     values: Array
     label: str
     step: float = 0.0
@@ -68,10 +60,14 @@ class CourseAxis:
         law = scene.driver.law
         if isinstance(law, ConstantSpeed) and time_s[-1] <= TURN * law.period_s:
             degrees = np.degrees(course.motion.links[scene.driver.link].theta)
-            return CourseAxis(degrees, f"angle of {scene.driver.link} [deg]", 60.0)
+            return CourseAxis(scene, degrees, f"angle of {scene.driver.link} [deg]", 60.0)
         if isinstance(law, ConstantSpeed):
-            return CourseAxis(time_s / law.period_s, f"turns of {scene.driver.link}")
-        return CourseAxis(time_s, "time [s]")
+            return CourseAxis(scene, time_s / law.period_s, f"turns of {scene.driver.link}")
+        return CourseAxis(scene, time_s, "time [s]")
+
+    def plot(self, axes: Axes, series: Array, **look: Any) -> None:
+        """Draw a series of the course (T,)."""
+        axes.plot(self.values, series, **look)
 
     def mark(self, axes: Axes, *, labelled: bool = True) -> None:
         """Set limits and label of the axis, short numbers on the other, and a line at 0."""
@@ -82,19 +78,12 @@ class CourseAxis:
         if low <= 0.0 <= high:
             axes.axhline(0.0, color=QUIET, linewidth=0.5)
         shorten(axes)
-        if labelled:
-            axes.set_xlabel(self.label)
-        else:
-            axes.tick_params(labelbottom=False)
+        axes.set_xlabel(self.label if labelled else "")
+        axes.tick_params(labelbottom=labelled)
 
 
 def _notes(course: ElasticCourse) -> list[str]:
-    """Return the notes under each figure."""
     return [note(course.scene, course.words, course.scene.driver.link)]
-
-
-def _beside_rigid() -> list[tuple[Artist, str]]:
-    return [(Line2D([], [], **ELASTIC), "elastic links"), (Line2D([], [], **RIGID), "rigid links")]
 
 
 def _deflection(course: ElasticCourse) -> Figure | None:
@@ -120,38 +109,26 @@ def _extension(course: ElasticCourse) -> Figure | None:
 
 def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, label: str) -> Figure:
     """Draw one panel with a curve for each elastic link, by its text in the legend."""
-    looks: list[Look] = [
-        {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k % len(DASHES)]}
-        for k in range(len(curves))
+    named = [
+        (name, series, {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k % len(DASHES)]})
+        for k, (name, series) in enumerate(curves.items())
     ]
-    entries = [(Line2D([], [], **look), each) for each, look in zip(curves, looks, strict=True)]
-    axis, title = CourseAxis.of(course), f"{title}: {course.scene.name}"
-    figure, (axes,) = sheet(COLUMN_IN, ONE, title, entries, _notes(course))
-    for series, look in zip(curves.values(), looks, strict=True):
-        axes.plot(axis.values, series, **look)
-    axes.set_ylabel(label)
-    axis.mark(axes)
-    return figure
+    panel = LinePanel(label, named)
+    return line_figure(CourseAxis.of(course), title, [panel], _notes(course))[0]
 
 
 def _torque(course: ElasticCourse) -> Figure | None:
-    """Draw the driving torque with elastic links and with rigid ones, and their difference; None
-    without a drive."""
+    """Draw the torque of the drive with elastic links and with rigid ones, and their difference."""
     if course.torques is None:
         return None
     elastic, rigid = course.torques
+    curves = [("elastic links", elastic, ELASTIC), ("rigid links", rigid, RIGID)]
+    panels = [
+        LinePanel("torque [N m]", curves),
+        LinePanel("elastic less rigid [N m]", [("", elastic - rigid, ELASTIC)]),
+    ]
     axis = CourseAxis.of(course)
-    title = f"Driving torque: {course.scene.name}"
-    panels = Panels(2, 1, 1.25, *SIDES, 0.15, between=(0.15, 0.2))
-    figure, (upper, lower) = sheet(COLUMN_IN, panels, title, _beside_rigid(), _notes(course))
-    upper.plot(axis.values, elastic, **ELASTIC)
-    upper.plot(axis.values, rigid, **RIGID)
-    upper.set_ylabel("torque [N m]")
-    lower.plot(axis.values, elastic - rigid, **ELASTIC)
-    lower.set_ylabel("elastic less rigid [N m]")
-    axis.mark(upper, labelled=False)
-    axis.mark(lower)
-    return figure
+    return line_figure(axis, "Driving torque", panels, _notes(course), height=1.25)[0]
 
 
 def _angles(course: ElasticCourse) -> Figure | None:
@@ -164,13 +141,17 @@ def _angles(course: ElasticCourse) -> Figure | None:
     height = 1.5 if len(each) == 1 else 1.15
     panels = Panels(len(each), 2, height, *SIDES, 0.15, between=(0.65, 0.2))
     title = f"Elastic beside rigid links: {course.scene.name}"
-    figure, panes = sheet(PAGE_IN, panels, title, _beside_rigid(), _notes(course))
+    entries = [
+        (Line2D([], [], **ELASTIC), "elastic links"),
+        (Line2D([], [], **RIGID), "rigid links"),
+    ]
+    figure, panes = sheet(PAGE_IN, panels, title, entries, _notes(course))
     for one, left, right in zip(each, panes[::2], panes[1::2], strict=True):
         scale, unit = (np.degrees(1.0), "deg") if one.unit == "rad" else (1.0, "m")
-        left.plot(axis.values, scale * one.elastic, **ELASTIC)
-        left.plot(axis.values, scale * one.rigid, **RIGID)
+        axis.plot(left, scale * one.elastic, **ELASTIC)
+        axis.plot(left, scale * one.rigid, **RIGID)
         left.set_ylabel(f"{one.name} [{unit}]")
-        right.plot(axis.values, one.difference, **ELASTIC)
+        axis.plot(right, one.difference, **ELASTIC)
         right.set_ylabel(f"elastic less rigid [{one.unit}]")
         for pane in (left, right):
             axis.mark(pane, labelled=one is each[-1])
@@ -228,7 +209,6 @@ def _positions(course: ElasticCourse) -> Figure | None:
 
 
 def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -> None:
-    """Draw links, sliders and pins at a sample, the rigid mechanism behind them."""
     for name, link in own.scene.links.items():
         ghost = np.array([own.rigid.points[p].position[index] for p in link.points])
         outline = own.outline(name, index)
@@ -258,31 +238,25 @@ def _control(course: ElasticCourse) -> Figure | None:
         (Line2D([], [], **ELASTIC), f"controlled, {gains}"),
         (Line2D([], [], **WITHOUT), "not controlled: the torque of rigid links alone"),
     ]
-    title = f"With and without control: {course.scene.name}"
-    panels = Panels(3, 1, 1.15, *SIDES, 0.15, between=(0.15, 0.2))
-    figure, panes = sheet(COLUMN_IN, panels, title, entries, _notes(course))
-    for motion, look in ((course.uncontrolled, WITHOUT), (course.motion, ELASTIC)):
-        _controlled(panes, course, motion, look)
     driver = course.scene.driver.link
-    panes[1].axhline(law.speed_rad_s, color=QUIET, linewidth=0.5)
-    panes[0].set_ylabel("deflection [mm]")
-    panes[1].set_ylabel(f"speed of {driver} [rad/s]")
-    panes[2].set_ylabel(f"{driver} ahead by [deg]")
-    axis = CourseAxis(course.time_s, "time [s]")
-    for pane in panes:
-        axis.mark(pane, labelled=pane is panes[-1])
-    return figure
-
-
-def _controlled(panes: list[Axes], course: ElasticCourse, motion: Motion, look: Look) -> None:
-    """Draw one of the two motions in all panels; several elastic links differ in their dashes."""
-    driver, time_s = course.scene.driver, course.time_s
+    both = ((course.uncontrolled, WITHOUT), (course.motion, ELASTIC))
     bending = [name for name, own in course.scene.elastic.items() if own.bends]
-    for name, dash in zip(bending, DASHES * len(bending), strict=False):
-        panes[0].plot(time_s, 1e3 * motion.elastic[name].middle, **look | {"linestyle": dash})
-    own = motion.links[driver.link]
-    panes[1].plot(time_s, own.omega, **look)
-    panes[2].plot(time_s, np.degrees(own.theta - driver.law.at(time_s)[0]), **look)
+    bent = [
+        ("", 1e3 * motion.elastic[name].middle, look | {"linestyle": dash})
+        for motion, look in both
+        for name, dash in zip(bending, DASHES * len(bending), strict=False)
+    ]
+    driven = [(motion.links[driver], look) for motion, look in both]
+    wanted = law.at(course.time_s)[0]
+    ahead = [("", np.degrees(own.theta - wanted), look) for own, look in driven]
+    speeds = [("", own.omega, look) for own, look in driven]
+    panels = [
+        LinePanel("deflection [mm]", bent),
+        LinePanel(f"speed of {driver} [rad/s]", speeds, level=law.speed_rad_s),
+        LinePanel(f"{driver} ahead by [deg]", ahead),
+    ]
+    axis, title = CourseAxis(course.scene, course.time_s, "time [s]"), "With and without control"
+    return line_figure(axis, title, panels, _notes(course), entries, height=1.15)[0]
 
 
 ELASTIC_FIGURES: FigureSet[ElasticCourse] = FigureSet(

@@ -17,8 +17,8 @@ from reports.describe.motion_tables import acted_on
 from reports.drawing.shape import colours_of
 from reports.figures.drawing import DASHES
 from reports.figures.force_turn import ForceTurn, hodographs, loaded
-from reports.figures.sheet import ONE, SIDES, Panels, sheet
-from reports.figures.style import COLUMN_IN, FRONT, INK, QUIET, FigureSet, Look
+from reports.figures.sheet import Curve, LinePanel, line_figure
+from reports.figures.style import FRONT, INK, QUIET, FigureSet, Look
 from reports.output.numbers import readable
 
 TORQUE: Look = {"color": "#1f5f9e", "linewidth": 1.4}
@@ -29,7 +29,6 @@ LOADS: Look = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5,
 CURVE: Look = {"color": "#1f5f9e", "linewidth": 1.2}
 LOCKED: Look = {"color": FRONT, "linewidth": 0.0}
 JAMS: Look = {"facecolor": "none", "edgecolor": FRONT, "hatch": "////", "linewidth": 0.0}
-Curve = tuple[str, Array, Look]
 
 
 def _torque(turn: ForceTurn) -> Figure | None:
@@ -54,8 +53,9 @@ def _torque(turn: ForceTurn) -> Figure | None:
         entries.append((Line2D([], [], **LOADS), "weights and loads"))
     if rubbing is not None:
         entries.append((Line2D([], [], **FRICTION), "friction"))
-    title = f"Driving {drive.effort}: {turn.scene.name}"
-    figure, (axes,) = sheet(COLUMN_IN, ONE, title, entries, turn.notes)
+    label = f"{drive.effort} on {drive.joint} [{drive.effort_unit}]"
+    title, panel = f"Driving {drive.effort}", LinePanel(label, [])
+    figure, (axes,) = line_figure(turn, title, [panel], turn.notes, entries)
     axes.axhline(0.0, color=QUIET, linewidth=0.5)
     if rubbing is not None:
         turn.plot(axes, rubbing, **FRICTION)
@@ -65,9 +65,6 @@ def _torque(turn: ForceTurn) -> Figure | None:
     turn.plot(axes, torque, **TORQUE)
     if math.isfinite(mean):
         axes.axhline(mean, **MEAN)
-    turn.mark_axis(axes)
-    axes.set_xlabel(turn.label)
-    axes.set_ylabel(f"{drive.effort} on {drive.joint} [{drive.effort_unit}]")
     return figure
 
 
@@ -106,8 +103,9 @@ def _reactions(turn: ForceTurn) -> Figure | None:
     ]
     if not forces:
         return None
-    groups = [("force [N]", _dashed(forces))] + [("moment [N m]", _dashed(moments))] * bool(moments)
-    return _stacked(turn, "Reactions", groups, turn.notes, top=0.2)[0]
+    panels = [LinePanel("force [N]", _dashed(forces))]
+    panels += [LinePanel("moment [N m]", _dashed(moments))] * bool(moments)
+    return _stacked(turn, "Reactions", panels, turn.notes, top=0.2)[0]
 
 
 def _dashed(rows: Sequence[tuple[str, Array, str]]) -> list[Curve]:
@@ -120,26 +118,10 @@ def _dashed(rows: Sequence[tuple[str, Array, str]]) -> list[Curve]:
 
 
 def _stacked(
-    turn: ForceTurn,
-    title: str,
-    groups: Sequence[tuple[str, Sequence[Curve]]],
-    notes: Sequence[str],
-    top: float = 0.15,
+    turn: ForceTurn, title: str, panels: Sequence[LinePanel], notes: Sequence[str], top: float
 ) -> tuple[Figure, list[Axes]]:
-    """Draw panels below each other, each with its label and curves, named ones in the legend."""
-    height = 2.1 if len(groups) == 1 else 1.6
-    panels = Panels(len(groups), 1, height, *SIDES, top, between=(0, 0.22))
-    curves = [curve for _, own in groups for curve in own]
-    entries = [(Line2D([], [], **look), name) for name, _, look in curves if name]
-    figure, axes = sheet(COLUMN_IN, panels, f"{title}: {turn.scene.name}", entries, notes)
-    for one, (label, own) in zip(axes, groups, strict=True):
-        for _, series, look in own:
-            turn.plot(one, series, **look)
-        turn.mark_axis(one)
-        one.set_ylabel(label)
-        one.tick_params(labelbottom=one is axes[-1])
-    axes[-1].set_xlabel(turn.label)
-    return figure, axes
+    height = 2.1 if len(panels) == 1 else 1.6
+    return line_figure(turn, title, panels, notes, height=height, top=top, down=0.22)
 
 
 def _efficiency(turn: ForceTurn) -> Figure | None:
@@ -160,31 +142,28 @@ def _efficiency(turn: ForceTurn) -> Figure | None:
             bands.append((samples, look))
             entries.append((Patch(**look), words))
     notes = [*cycle_words(turn.scene, cycle), "No curve where no power goes on.", *turn.notes]
-    title = f"Efficiency: {turn.scene.name}"
-    figure, (axes,) = sheet(COLUMN_IN, ONE, title, entries, notes)
+    panel = LinePanel("efficiency", [])
+    figure, (axes,) = line_figure(turn, "Efficiency", [panel], notes, entries)
     for samples, look in bands:
         axes.fill_between(turn.x, 0.0, 1.05, where=samples[turn.order], **look)
     if math.isfinite(over):
         axes.axhline(over, **MEAN)
     turn.plot(axes, flow.efficiency, **CURVE)
-    turn.mark_axis(axes)
     axes.set_ylim(0.0, 1.05)
-    axes.set_xlabel(turn.label)
-    axes.set_ylabel("efficiency")
     return figure
 
 
 def _reduced(turn: ForceTurn) -> Figure:
-    """Draw the machine reduced to its driver: inertia, and below it torque if weights or loads
-    act."""
+    """Draw the machine reduced to its driver: inertia, and torque if weights or loads act."""
     reduced, notes, drive = turn.reduced, turn.notes, turn.scene.driver
     mass = "moment of inertia [kg m²]" if drive.slider is None else "mass [kg]"
-    groups = [(mass, [("", reduced.inertia, CURVE)])]
+    panels = [LinePanel(mass, [("", reduced.inertia, CURVE)])]
     if np.nanmax(np.abs(reduced.torque), initial=0.0) > 0.0:
-        groups.append((f"{drive.effort} [{drive.effort_unit}]", [("", reduced.torque, CURVE)]))
+        effort = f"{drive.effort} [{drive.effort_unit}]"
+        panels.append(LinePanel(effort, [("", reduced.torque, CURVE)]))
     else:
         notes = [f"No weight or load acts, so the reduced {drive.effort} is 0.", *notes]
-    figure, axes = _stacked(turn, f"Reduced to {drive.joint}", groups, notes)
+    figure, axes = _stacked(turn, f"Reduced to {drive.joint}", panels, notes, top=0.15)
     axes[0].set_ylim(bottom=0.0)
     if len(axes) > 1:
         axes[1].axhline(0.0, color=QUIET, linewidth=0.5)

@@ -24,21 +24,10 @@ from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import goes_round
 from reports.drawing.shape import PATH_SAMPLES, Label, clear_of_locking, colours_of, place, turn_of
+from reports.figures import style
 from reports.figures.mechanism import mechanism_at
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import (
-    INK,
-    PAGE_IN,
-    POINTS,
-    QUIET,
-    SMALL,
-    TINY,
-    cut,
-    loads_told,
-    note,
-    shorten,
-    width_in,
-)
+from reports.figures.style import INK, TINY
 from reports.output.numbers import readable
 
 
@@ -62,10 +51,12 @@ class ForceTurn:
         """Draw a series of the turn (T,)."""
         axes.plot(self.x, series[self.order], **look)
 
-    def mark_axis(self, axes: Axes) -> None:
-        """Set limits and ticks of the horizontal axis; short numbers on the other."""
+    def mark(self, axes: Axes, *, labelled: bool = True) -> None:
+        """Set limits, ticks and label of the horizontal axis; short numbers on the other."""
         axes.set_xlim(*self.ends)
-        shorten(axes)
+        axes.set_xlabel(self.label if labelled else "")
+        axes.tick_params(labelbottom=labelled)
+        style.shorten(axes)
         if self.label.endswith("[deg]"):
             axes.xaxis.set_major_locator(MultipleLocator(60.0))
 
@@ -78,7 +69,7 @@ class ForceTurn:
     def notes(self) -> list[str]:
         """Notes under each figure."""
         scene = self.scene
-        notes = [note(scene, "closed form", "driver", loads_told(scene))]
+        notes = [style.note(scene, "closed form", "driver", style.loads_told(scene))]
         notes += force_notes(scene, self.motion)
         if self.acting.has_equilibria(0).any():
             left = "" if self.has_forces else ", which is all of the turn"
@@ -141,7 +132,7 @@ def hodographs(turn: ForceTurn) -> Figure | None:
     columns = 2 if len(pins) == 4 else min(COLUMNS, len(pins))
     rows = math.ceil(len(pins) / columns)
     left, right, across = 0.5, 0.1, 0.55
-    side = (PAGE_IN - left - right - across * (COLUMNS - 1)) / COLUMNS
+    side = (style.PAGE_IN - left - right - across * (COLUMNS - 1)) / COLUMNS
     width = left + right + side * columns + across * (columns - 1)
     panels = Panels(rows, columns, side, left, right, 0.2, 0.36, (across, 0.52))
     title = f"Reactions of the pins: {turn.scene.name}"
@@ -154,7 +145,7 @@ def hodographs(turn: ForceTurn) -> Figure | None:
     colours = colours_of(turn.scene)
     for (point, body, source, force), one in zip(pins, axes, strict=False):
         words = f"{point}, of {source} on {body}" if source != "pin" else f"{point} on {body}"
-        one.set_title(cut(words, side, SMALL))
+        one.set_title(style.cut(words, side))
         _panel(one, turn, force, colours.get(body, INK), side)
     for one in axes[len(pins) :]:
         one.remove()
@@ -191,9 +182,11 @@ def _numbers(
         (k, deg) for k, deg in dots.items() if deg % NAMED_DEG == 0 and np.isfinite(force[k]).all()
     ]
     curve = (force[np.isfinite(force).all(axis=1)] - low) * per_n
-    height = 0.8 * TINY / POINTS
+    height = 0.8 * TINY / style.POINTS
     labels = [
-        Label(str(deg), (width_in(str(deg), TINY), height), (force[k] - low)[None] * per_n, 0.02)
+        Label(
+            str(deg), (style.width_in(str(deg), TINY), height), (force[k] - low)[None] * per_n, 0.02
+        )
         for k, deg in named
     ]
     if not labels:
@@ -203,7 +196,7 @@ def _numbers(
     centres = place(labels, np.vstack([heavy, cross]), curve[:0], (side, side))
     for label, (x, y) in zip(labels, centres, strict=True):
         right, up = (float(each) for each in low + np.array([x, y]) / per_n)
-        look: dict[str, Any] = {"size": TINY, "color": QUIET, "ha": "center", "va": "center"}
+        look: dict[str, Any] = {"size": TINY, "color": style.QUIET, "ha": "center", "va": "center"}
         axes.text(right, up, label.text, zorder=5, **look)
 
 
@@ -221,8 +214,7 @@ def _dots(turn: ForceTurn) -> dict[int, int]:
 
 
 def loaded(turn: ForceTurn) -> Figure | None:
-    """Draw the mechanism where its reactions are largest, with the forces as arrows to one scale;
-    None without reactions."""
+    """Draw the mechanism with its largest reactions as arrows to one scale; None without these."""
     if not turn.has_forces or not (turn.acting.pins or turn.acting.sliders):
         return None
     scene = turn.scene

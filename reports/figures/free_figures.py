@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from analytic.free.free_motion import FreeMotion
@@ -14,7 +14,7 @@ from models.array import Array
 from models.motion import LinkMotion
 from models.scene import Scene
 from reports.figures import style
-from reports.figures.sheet import ONE, SIDES, Panels, sheet
+from reports.figures.sheet import ONE, LinePanel, line_figure, sheet
 from reports.output.numbers import error_text
 
 LEAST, MOST, IN_A_TURN = 2401, 7201, 180
@@ -44,9 +44,15 @@ class FreeCourse:
     def scene(self) -> Scene:
         return self.free.scene
 
-    def mark_time(self, axes: Axes) -> None:
+    def plot(self, axes: Axes, series: Array, **look: Any) -> None:
+        """Draw a series over time (T,)."""
+        axes.plot(self.time_s, series, **look)
+
+    def mark(self, axes: Axes, *, labelled: bool = True) -> None:
         """Set limits of a time axis, short numbers on the other, and draw the limit positions."""
         axes.set_xlim(float(self.time_s[0]), float(self.time_s[-1]))
+        axes.set_xlabel("time [s]" if labelled else "")
+        axes.tick_params(labelbottom=labelled)
         style.shorten(axes)
         for one in self.free.passages:
             axes.axvline(one.time_s, color=style.QUIET, linewidth=0.5, linestyle=(0, (1.0, 2.0)))
@@ -78,22 +84,16 @@ def free_course(free: FreeMotion) -> FreeCourse:
 
 def _over_time(course: FreeCourse) -> Figure:
     """Draw the driver's angle and angular velocity over time, in two panels."""
-    driver, name = course.driver, course.scene.driver.link
-    panels = Panels(2, 1, 1.25, *SIDES, 0.15, between=(0.15, 0.12))
-    title = f"Free motion: {course.scene.name}"
-    figure, (upper, lower) = sheet(style.COLUMN_IN, panels, title, [], course.notes_over_time)
+    driver = course.driver
     turns = float(np.ptp(driver.theta)) > 4 * math.tau
     unit, per = ("turns", math.tau) if turns else ("deg", math.radians(1.0))
-    upper.plot(course.time_s, driver.theta / per, **DRIVER)
-    upper.set_ylabel(f"angle of {name} [{unit}]")
-    upper.tick_params(labelbottom=False)
-    style.mark_zero(lower, driver.omega)
-    lower.plot(course.time_s, driver.omega, **DRIVER)
-    lower.set_ylabel("angular velocity [rad/s]")
-    lower.set_xlabel("time [s]")
-    for axes in (upper, lower):
-        course.mark_time(axes)
-    return figure
+    angle = f"angle of {course.scene.driver.link} [{unit}]"
+    panels = [
+        LinePanel(angle, [("", driver.theta / per, DRIVER)]),
+        LinePanel("angular velocity [rad/s]", [("", driver.omega, DRIVER)], marks_zero=True),
+    ]
+    notes = course.notes_over_time
+    return line_figure(course, "Free motion", panels, notes, height=1.25, down=0.12)[0]
 
 
 def _energy(course: FreeCourse) -> Figure:
@@ -101,22 +101,14 @@ def _energy(course: FreeCourse) -> Figure:
     and the work done on them; energies that stay at 0 are left out."""
     potential = course.potential - np.min(course.potential)
     largest = float(max(np.max(course.kinetic), np.max(potential)))
-    lines = [("kinetic", course.kinetic, KINETIC)]
+    curves = [("kinetic", course.kinetic, KINETIC)]
     if np.max(potential) > ROUNDING * largest:
-        lines.append(("potential (weights, springs)", potential, DRIVER))
-        lines.append(("total", course.kinetic + potential, TOTAL))
+        curves.append(("potential (weights, springs)", potential, DRIVER))
+        curves.append(("total", course.kinetic + potential, TOTAL))
     if np.max(np.abs(course.work)) > ROUNDING * largest:
-        lines.append(("work of loads, dampers, friction", course.work, WORK))
-    entries = [(Line2D([], [], **look), label) for label, _, look in lines]
-    title = f"Energy: {course.scene.name}"
-    figure, (axes,) = sheet(style.COLUMN_IN, ONE, title, entries, course.notes_over_time)
-    style.mark_zero(axes, *(series for _, series, _ in lines))
-    for _, series, look in lines:
-        axes.plot(course.time_s, series, **look)
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("energy [J]")
-    course.mark_time(axes)
-    return figure
+        curves.append(("work of loads, dampers, friction", course.work, WORK))
+    panel = LinePanel("energy [J]", curves, marks_zero=True)
+    return line_figure(course, "Energy", [panel], course.notes_over_time)[0]
 
 
 def _phase(course: FreeCourse) -> Figure:
@@ -127,10 +119,8 @@ def _phase(course: FreeCourse) -> Figure:
     if turning:
         degrees, omega = _over_one_turn(degrees, omega)
         label = "angle within a turn of"
-    title = f"Phase diagram: {course.scene.name}"
-    figure, (axes,) = sheet(
-        style.COLUMN_IN, ONE, title, [], [*course.notes, "The dot is the start."]
-    )
+    title, notes = f"Phase diagram: {course.scene.name}", [*course.notes, "The dot is the start."]
+    figure, (axes,) = sheet(style.COLUMN_IN, ONE, title, [], notes)
     style.mark_zero(axes, course.driver.omega)
     axes.plot(degrees, omega, **DRIVER | {"linewidth": 0.8})
     axes.plot(degrees[:1], omega[:1], **START)

@@ -54,8 +54,7 @@ class FreeRun:
 
     @property
     def energy(self) -> Array | None:
-        """Change of energy since the start, over the largest kinetic energy; None without
-        energy."""
+        """Change of energy, over the largest kinetic energy; None without energy."""
         if "energy" not in self.trace:
             return None
         largest = float(np.max(self.trace["kinetic"]))
@@ -73,16 +72,10 @@ class FreeRun:
         speeds = (v + share * (2.0 * c + share * 3.0 * d)) / h
         return np.append(places, angle[-1]), np.append(speeds, omega[-1])
 
-    def energy_means(self, scene: Scene) -> Array:
-        """Return the energy as means over the windows of its drift, NaN at both ends."""
-        assert self.energy is not None
-        return window_means(scene, self.time_s, self.energy)
-
 
 @dataclass(frozen=True)
 class FreeRuns:
-    """The runs of a scene beside the reference; its driver has ``angle`` [rad], ``omega`` at
-    ``time_s``."""
+    """The runs of a scene beside the reference, whose driver has ``angle`` and ``omega`` (T,)."""
 
     scene: Scene
     runs: tuple[FreeRun, ...]
@@ -186,8 +179,8 @@ def energy_change(report: Report, name: str) -> Figure | None:
     titles = [run.name for run in runs]
     figure, axes = grid(titles, title, labels, entries, shown.notes, apart=True)
     for run, panel in zip(runs, axes, strict=True):
-        means = run.energy_means(shown.scene)
         assert run.energy is not None
+        means = window_means(shown.scene, run.time_s, run.energy)  # NaN at both ends
         scale = tenfold(float(np.nanmax(np.abs(run.energy))))
         panel.plot(run.time_s, run.energy / scale, color=run.mark.colour, **RAW)
         panel.plot(run.time_s, means / scale, color=run.mark.colour, **MEANS)

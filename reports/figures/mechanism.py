@@ -19,9 +19,9 @@ from models.scene.driver import driver_stands
 from reports.describe.facts import describe_law
 from reports.drawing.force_arrows import ForceArrows
 from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
-from reports.drawing.shape import PATH_SAMPLES, Name, Sheet, box_of, clearest, names, turn_of
+from reports.drawing.shape import PATH_SAMPLES, Sheet, box_of, clearest, names, turn_of
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
+from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, Look, width_in
 from reports.results.overview import Report, facts_of
 from reports.way.length import SECONDS, TURNS
 from reports.way.way import way_of
@@ -40,10 +40,14 @@ def draw(report: Report, name: str) -> Figure | None:
     scene = report.scenes[name]
     if scene is None:
         return None
-    path = turn_of(scene, OF_CLOCK[way_of(scene).clock][1])
+    truth, samples = OF_CLOCK[way_of(scene).clock]
+    path = turn_of(scene, samples)
     at = clearest(path)
     title = f"{name}, {driver_stands(scene, path, at)}"
-    under = [f"{scene.source}. {scene.note}", _origin(report, scene)]
+    own = facts_of(report).get("crankcheck", "")
+    longest = f"longest link L = {scene.longest_m:g} m"
+    origin = f"crankcheck {own}, {truth}; driver {describe_law(scene)}; {longest}."
+    under = [f"{scene.source}. {scene.note}", origin]
     return mechanism_at(scene, path, at, box_of(path), title, under)
 
 
@@ -72,7 +76,9 @@ def mechanism_at(
         taken = [each.shaft for each in arrows.at(path, at)]
     paper = Sheet(low, tuple((high - low) * per_m), per_m, 0.1 * scene.longest_m)
     for each in names(scene, path, at, paper, _name_size, taken):
-        _write_name(axes, each)
+        size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
+        look: Look = {"size": size, "style": style, "ha": "center", "va": "center"}
+        axes.text(each.x, each.y, each.text, zorder=8, **look)
     return figure
 
 
@@ -86,21 +92,7 @@ def _frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
     )
 
 
-def _write_name(axes: Axes, each: Name) -> None:
-    """Write a letter or a name in its place."""
-    size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
-    axes.text(each.x, each.y, each.text, size=size, style=style, ha="center", va="center", zorder=8)
-
-
 def _name_size(text: str, is_point: bool) -> tuple[float, float]:
     """Return width and height of a text [inch]."""
     points = SIZE if is_point else SMALL
     return width_in(text, points), 0.75 * points / POINTS
-
-
-def _origin(report: Report, scene: Scene) -> str:
-    """Return the origin of the drawing: the closed form, and no engine."""
-    own = facts_of(report).get("crankcheck", "")
-    longest = f"longest link L = {scene.longest_m:g} m"
-    truth, _ = OF_CLOCK[way_of(scene).clock]
-    return f"crankcheck {own}, {truth}; driver {describe_law(scene)}; {longest}."

@@ -14,24 +14,17 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from reports.figures.style import (
-    LARGE,
-    PAGE_IN,
-    POINTS,
-    QUIET,
-    SIZE,
-    SMALL,
-    TINY,
-    Look,
-    cut,
-    width_in,
-)
+from models.array import Array
+from models.scene import Scene
+from reports.figures import style
+from reports.figures.style import SMALL, TINY, Look, cut, width_in
 
 EDGE = 0.04
 """Room at the edges of the sheet [inch]."""
@@ -61,27 +54,30 @@ class Panels:
 SIDES = (0.58, 0.1)
 """Room on the left and on the right of a panel over an axis [inch]."""
 ONE = Panels(1, 1, 2.1, *SIDES, 0.15)
+Entries = Sequence[tuple[Artist, str]]
+"""Samples and labels of a legend."""
 
 
 def sheet(
     width: float,
     panels: Panels,
     title: str,
-    entries: Sequence[tuple[Artist, str]],
+    entries: Entries,
     notes: Sequence[str],
     columns: int = 0,
 ) -> tuple[Figure, list[Axes]]:
     """Return an empty figure with its panels, row by row, its legend and its notes.
 
-    ``entries`` are samples and labels of the legend, in ``columns`` (0: as many as have room).
+    The legend has ``entries`` in ``columns`` (0: as many as have room).
     """
     room = width - 2 * EDGE
-    number = columns or _columns([text for _, text in entries], room)
+    widest = max((width_in(text) for _, text in entries), default=0.0) + HANDLE + GAP
+    number = columns or max(1, min(int((room + GAP) / widest), len(entries) or 1))
     in_rows = math.ceil(len(entries) / number)
-    legend = in_rows * SMALL * 1.38 / POINTS + (0.05 if entries else 0.0)
+    legend = in_rows * SMALL * 1.38 / style.POINTS + (0.05 if entries else 0.0)
     lines = [line for note in notes for line in folded(note, room)]
-    foot = len(lines) * TINY * 1.25 / POINTS
-    head = LARGE * 1.5 / POINTS if title else 0.0
+    foot = len(lines) * TINY * 1.25 / style.POINTS
+    head = style.LARGE * 1.5 / style.POINTS if title else 0.0
     across, down = panels.between
     inner = (width - panels.left - panels.right - across * (panels.columns - 1)) / panels.columns
     grid = panels.rows * panels.height + (panels.rows - 1) * down
@@ -94,27 +90,24 @@ def sheet(
         figure.add_axes((left / width, bottom / height, inner / width, panels.height / height))
     edge = EDGE / width
     if title:
-        figure.text(edge, 1 - EDGE / height, cut(title, room, LARGE), size=LARGE, va="top")
+        figure.text(
+            edge, 1 - EDGE / height, cut(title, room, style.LARGE), size=style.LARGE, va="top"
+        )
     if entries:
         _legend(figure, entries, number, (edge, (EDGE + foot + legend) / height), room)
     if lines:
-        look: dict[str, Any] = {"size": TINY, "color": QUIET, "va": "bottom", "linespacing": 1.25}
+        look: dict[str, Any] = {
+            "size": TINY,
+            "color": style.QUIET,
+            "va": "bottom",
+            "linespacing": 1.25,
+        }
         figure.text(edge, EDGE / height, "\n".join(lines), **look)
     return figure, figure.axes
 
 
-def _columns(labels: Sequence[str], room: float) -> int:
-    """Return how many columns of the widest label have room."""
-    widest = max((width_in(text) for text in labels), default=0.0) + HANDLE + GAP
-    return max(1, min(int((room + GAP) / widest), len(labels) or 1))
-
-
 def _legend(
-    figure: Figure,
-    entries: Sequence[tuple[Artist, str]],
-    columns: int,
-    corner: tuple[float, float],
-    room: float,
+    figure: Figure, entries: Entries, columns: int, corner: tuple[float, float], room: float
 ) -> None:
     """Draw the legend with its upper left corner at ``corner`` (shares of the figure)."""
     each = (room + GAP) / columns - GAP - HANDLE
@@ -127,9 +120,9 @@ def _legend(
         frameon=False,
         borderaxespad=0.0,
         borderpad=0.0,
-        handlelength=(HANDLE - 0.05) * POINTS / SMALL,
-        handletextpad=0.05 * POINTS / SMALL,
-        columnspacing=GAP * POINTS / SMALL,
+        handlelength=(HANDLE - 0.05) * style.POINTS / SMALL,
+        handletextpad=0.05 * style.POINTS / SMALL,
+        columnspacing=GAP * style.POINTS / SMALL,
         labelspacing=0.35,
         numpoints=1,
     )
@@ -155,7 +148,7 @@ def grid(
     names: Sequence[str],
     title: str,
     labels: tuple[str, str],
-    entries: Sequence[tuple[Artist, str]],
+    entries: Entries,
     notes: Sequence[str],
     apart: bool = False,
     height: float = 1.35,
@@ -168,13 +161,13 @@ def grid(
     rows = math.ceil(len(names) / columns)
     height *= 1.0 if columns > 2 else 1.5
     across, down = 0.28 if apart else 0.12, 0.2
-    upright = folded(labels[1], rows * height + (rows - 1) * down, SIZE)
+    upright = folded(labels[1], rows * height + (rows - 1) * down, style.SIZE)
     left = 0.35 + 0.115 * len(upright)
     panels = Panels(rows, columns, height, left, 0.1, 0.16, 0.31, (across, down))
-    figure, axes = sheet(PAGE_IN, panels, title, entries, notes)
+    figure, axes = sheet(style.PAGE_IN, panels, title, entries, notes)
     box = axes[0].get_position()
     for at, (name, one) in enumerate(zip(names, axes, strict=False)):
-        one.set_title(cut(name, box.width * PAGE_IN, SMALL))
+        one.set_title(cut(name, box.width * style.PAGE_IN, SMALL))
         one.tick_params(
             labelbottom=at + columns >= len(names), labelleft=apart or at % columns == 0
         )
@@ -183,10 +176,71 @@ def grid(
     figure.text((box.x0 + right) / 2, under, labels[0], ha="center", va="top")
     middle = (low + box.y1) / 2
     words: Look = {"rotation": 90, "va": "center", "multialignment": "center"}
-    figure.text(EDGE / PAGE_IN, middle, "\n".join(upright), **words)
+    figure.text(EDGE / style.PAGE_IN, middle, "\n".join(upright), **words)
     for one in axes[len(names) :]:
         one.remove()
     return figure, axes[: len(names)]
+
+
+class Abscissa(Protocol):
+    """The horizontal axis of the figures of a scene."""
+
+    @property
+    def scene(self) -> Scene: ...
+
+    def plot(self, axes: Axes, series: Array, **look: Any) -> None:
+        """Draw a series (T,)."""
+
+    def mark(self, axes: Axes, *, labelled: bool = True) -> None:
+        """Set limits, ticks and label of the axis, and short numbers on the other."""
+
+
+Curve = tuple[str, Array, Look]
+"""Name in the legend ("" for none), series and look."""
+
+
+@dataclass(frozen=True)
+class LinePanel:
+    """A panel of curves, over a line at 0 if it is marked and near, and under one at a level."""
+
+    label: str
+    curves: Sequence[Curve]
+    marks_zero: bool = False
+    level: float | None = None
+
+
+def line_figure(
+    axis: Abscissa,
+    title: str,
+    panels: Sequence[LinePanel],
+    notes: Sequence[str],
+    entries: Entries | None = None,
+    *,
+    height: float = 2.1,
+    top: float = 0.15,
+    down: float = 0.2,
+) -> tuple[Figure, list[Axes]]:
+    """Draw panels below each other over one axis.
+
+    The legend has the named curves, where no ``entries`` are given; ``height`` is that of a panel,
+    ``top`` and ``down`` the room above the first and between two [inch].
+    """
+    shape = Panels(len(panels), 1, height, *SIDES, top, between=(0.0, down))
+    every = [curve for panel in panels for curve in panel.curves]
+    if entries is None:
+        entries = [(Line2D([], [], **look), name) for name, _, look in every if name]
+    title = f"{title}: {axis.scene.name}"
+    figure, axes = sheet(style.COLUMN_IN, shape, title, entries, notes)
+    for one, panel in zip(axes, panels, strict=True):
+        if panel.marks_zero:
+            style.mark_zero(one, *(series for _, series, _ in panel.curves))
+        for _, series, look in panel.curves:
+            axis.plot(one, series, **look)
+        if panel.level is not None:
+            one.axhline(panel.level, color=style.QUIET, linewidth=0.5)
+        one.set_ylabel(panel.label)
+        axis.mark(one, labelled=one is axes[-1])
+    return figure, axes
 
 
 def tenfold(largest: float) -> float:

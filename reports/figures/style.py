@@ -192,7 +192,6 @@ def saved(figure: Figure, kind: str, title: str) -> bytes:
 
 
 def _with_fonts(svg: str) -> str:
-    """Return the drawing with the letters of its texts as fonts in a style sheet."""
     texts = TEXT.findall(svg)
     letters = "".join(sorted(LETTERS.union(unescape("".join(texts))) - {"\n"}))
     rules = "".join(_rule(style, letters) for style, sign in FACES.items() if sign in svg)
@@ -237,8 +236,8 @@ Of = TypeVar("Of", bound=Solved)
 
 @dataclass(frozen=True)
 class FigureSet(Generic[Of]):
-    """Figures by the name of their file, and ``of``, their subject in words. Each gives None where
-    there is nothing to draw. To add one, add a function and its line."""
+    """Figures by the name of their file, and ``of``, their subject in words, if they have one. Each
+    gives None where there is nothing to draw. To add one, add a function and its line."""
 
     of: str
     draws: Mapping[str, Callable[[Of], Figure | None]]
@@ -253,16 +252,15 @@ class FigureSet(Generic[Of]):
         return {name: self._saved(solved, name, each) for name, each in self._drawn(solved)}
 
     def written(self, solved: Of, folder: Path) -> str:
-        """Write all figures; returns a line on the written files. Raises CrankcheckError where the
-        system refuses."""
+        """Write all figures; returns a line on their files. Raises CrankcheckError if refused."""
         names = []
         for name, figure in self._drawn(solved):
             names.append(name)
             for kind in FORMATS:
                 write(folder / f"{name}.{kind}", self._saved(solved, name, figure, kind))
         kinds = " and ".join(f".{kind}" for kind in FORMATS)
-        figures = count(len(names), "figure")
-        return f"{folder}: {figures} of {self.of}, each as {kinds}: {', '.join(names)}"
+        figures = count(len(names), "figure") + f" of {self.of}" * bool(self.of)
+        return f"{folder}: {figures}, each as {kinds}: {', '.join(names)}"
 
     def _drawn(self, solved: Of) -> Iterator[tuple[str, Figure]]:
         for name, draw in self.draws.items():

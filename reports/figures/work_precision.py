@@ -34,7 +34,7 @@ def draw(report: Report, scene: str) -> Figure | None:
     own, mark_of = report.lines_of(scene), marks(report.lines)
     if not _points(own):
         return None
-    entries = [*_entries(own, mark_of), _front_entry()]
+    entries = _entries(own, mark_of)
     title, under = f"Work and precision: {scene}", notes(report, own, timed=True)
     figure, (axes,) = sheet(COLUMN_IN, Panels(top=0.05), title, entries, under)
     _limits([axes], _points(own))
@@ -51,7 +51,7 @@ def draw_all(report: Report) -> Figure | None:
         return None
     mark_of = marks(lines)
     names = [ALL, *scenes]
-    entries = [*_entries(lines, mark_of), _front_entry()]
+    entries = _entries(lines, mark_of)
     title, under = "Work and precision", notes(report, lines, timed=True)
     figure, axes = grid(names, title, (COST, lines[0].kind.axis), entries, under)
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
@@ -65,7 +65,6 @@ def draw_all(report: Report) -> Figure | None:
 def _panel(
     axes: Axes, report: Report, lines: Sequence[Line], mark_of: Mapping[Named, Mark]
 ) -> None:
-    """Draw the curves of one scene over its front."""
     cells = pd.concat([line.cells for line in lines])
     best = cells.set_index("key").loc[front(cells, report.noise)]
     _stair(axes, zip(best["s_per_turn"], best["place_pure"], strict=True))
@@ -113,14 +112,14 @@ def _points(lines: Sequence[Line]) -> list[CostAndError]:
 
 
 def _limits(axes: Sequence[Axes], points: Sequence[CostAndError]) -> None:
-    """Set the same limits for all panels."""
     for one in axes:
         logarithmic(one, "x", *around(time_s for time_s, _ in points))
         logarithmic(one, "y", *around(error for _, error in points))
 
 
 def _entries(lines: Sequence[Line], mark_of: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
-    """Return the legend of variants; for one scene, with the endings of runs without a point."""
+    """Return the legend of variants, for one scene with the endings of runs without a point, and of
+    the front."""
     single = len({line.scene for line in lines}) == 1
     entries: dict[Named, tuple[Artist, str]] = {}
     for line in lines:
@@ -128,11 +127,7 @@ def _entries(lines: Sequence[Line], mark_of: Mapping[Named, Mark]) -> list[tuple
         fate = ends(line) if single else ""
         words = label(name) + (f" ({fate})" if fate else "")
         entries.setdefault(name, (Line2D([], [], **mark_of[name].style), words))
-    return list(entries.values())
-
-
-def _front_entry() -> tuple[Artist, str]:
-    return Line2D([], [], color=FRONT, linewidth=4.0), "Pareto front"
+    return [*entries.values(), (Line2D([], [], color=FRONT, linewidth=4.0), "Pareto front")]
 
 
 FACTOR = "time over that of the fastest [-]"

@@ -17,7 +17,7 @@ from reports.history.version_changes import (
     steps,
     times,
 )
-from reports.output.console import hanging, plain_table
+from reports.output.console import grid, hanging
 from reports.output.formats import plain, table
 from reports.quantities import QUANTITIES, named
 from reports.results.runs import CellName, StoredCell
@@ -47,9 +47,7 @@ def show(console: Console, results: Sequence[VersionResult], footer: str) -> Non
 def _versions(console: Console, results: Sequence[VersionResult]) -> None:
     """Print one row per version; one that could not be measured shows why."""
     heads, rows = overview(results)
-    table = plain_table()
-    for head in heads:
-        table.add_column(head, overflow="fold", no_wrap=head == "version")
+    table = grid(heads, gap=1, whole=("version",))
     for result, row in zip(results, rows, strict=True):
         table.add_row(*row, style="" if result.cells else "red")
     console.print(table, "")
@@ -83,13 +81,10 @@ def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) 
     ranked = ranking(list(dict.fromkeys(name for _, name in cells)), changed)
     shown = ranked[: max(1, LINES // max(1, len(measured)))]
     heads = tuple(COLUMNS) if console.width >= WIDE else NARROW
-    table = plain_table()
     console.print(Text(f"profile {profile}: {_part(shown, ranked, changed)}", "bold"))
-    table.add_column("scene", overflow="fold", min_width=16)
-    table.add_column("version", no_wrap=True)
-    for head in heads:
-        table.add_column(head, justify="right", no_wrap=True)
-    table.add_column("against the\nversion before", overflow="fold", min_width=14)
+    last = "against the\nversion before"
+    named = ("scene", "version", *(f"{head}:" for head in heads), last)
+    table = grid(named, gap=1, whole=("version",), least={"scene": 16, last: 14})
     for name in shown:
         for number, result in enumerate(measured):
             key = (result.version, name)
@@ -214,7 +209,7 @@ def page(results: Sequence[VersionResult], footer: str) -> str:
     """Return history.md: versions, headlines, and the errors of every scene."""
     heads, rows = overview(results)
     parts = [f"# {results[0].asked.engine} {', '.join(result.version for result in results)}", ""]
-    parts.append(table([" ".join(head.split()) for head in heads], rows))
+    parts.append(table(heads, rows))
     for step in steps(results):
         parts += ["", f"## {step.after.version} against {step.before.version}", ""]
         parts += [f"- {plain(line.text)}" for line in headlines(step)]

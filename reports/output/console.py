@@ -5,11 +5,11 @@ import errno
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from pathlib import Path
 
 import typer
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -69,6 +69,12 @@ def say(console: Console, text: str, style: str = "") -> None:
     console.print(text, style=style, highlight=False, markup=False)
 
 
+def say_each(console: Console, texts: Iterable[str], style: str = "dim") -> None:
+    """Print texts as `say`, each a paragraph."""
+    for text in texts:
+        say(console, text, style)
+
+
 def say_whole(console: Console, *texts: str) -> None:
     """Print each text that is not empty as `say`, its lines as long as they are, and nothing in it
     that acts on a terminal."""
@@ -90,6 +96,34 @@ def plain_table(title: str | None = None, style: str = "bold", gap: int = 1) -> 
     """Return a table without lines, ``gap`` spaces after every column; its title on the left."""
     padding = (0, gap, 0, 0)
     return Table(title=title, title_justify="left", title_style=style, box=None, padding=padding)
+
+
+def grid(
+    heads: Iterable[str],
+    rows: Iterable[Sequence[RenderableType]] = (),
+    title: str | None = None,
+    *,
+    style: str = "bold",
+    gap: int = 2,
+    whole: Container[str] = (),
+    least: Mapping[str, int] | None = None,
+) -> Table:
+    """Return a `plain_table` of rows. A head that ends in a colon is over numbers, on the right and
+    never wrapped, as is text below a head in ``whole``; ``least`` has widths of columns by head.
+    `reports.output.formats.table` writes the same heads and rows in Markdown."""
+    shown = plain_table(title, style, gap)
+    for head in heads:
+        number = head.endswith(":")
+        shown.add_column(
+            head.removesuffix(":"),
+            justify="right" if number else "left",
+            no_wrap=number or head in whole,
+            overflow="fold",
+            min_width=(least or {}).get(head),
+        )
+    for row in rows:
+        shown.add_row(*row)
+    return shown
 
 
 def hanging(console: Console, head: str, text: str, style: str = "") -> None:

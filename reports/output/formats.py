@@ -4,6 +4,7 @@ comment."""
 from __future__ import annotations
 
 import io
+import json
 import math
 import re
 from collections import Counter
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as Xml
 
+from reports.output.numbers import finite
 from reports.output.write import clean, crankcheck_version, write
 
 if TYPE_CHECKING:
@@ -89,7 +91,7 @@ def table(
     A head that ends in a colon is over numbers, on the right. ``what`` names the counted rows.
     """
     rules = ["--:" if head.endswith(":") else "---" for head in heads]
-    lines = [_row(head.removesuffix(":") for head in heads), _row(rules)]
+    lines = [_row(head.removesuffix(":").replace("\n", " ") for head in heads), _row(rules)]
     body = (_row(plain(cell) for cell in row) for row in rows)
     return "\n".join([*lines, *counted(body, room - 200, what)])
 
@@ -130,7 +132,6 @@ def _row(cells: Iterable[str]) -> str:
 
 
 def _inside_html(text: str) -> str:
-    """Return a text on one line of HTML."""
     return escape(" ".join(text.split()), quote=False).replace("@", f"@{JOINER}")
 
 
@@ -159,6 +160,11 @@ def write_frame(
         write(path, parquet(frame))
     else:
         write(path, workbook(frame, sheet, origin, more))
+
+
+def json_text(content: Mapping[str, object]) -> str:
+    """Return the text of a JSON file; numbers that are not finite are null."""
+    return json.dumps(finite(content), indent=1) + "\n"
 
 
 def csv(frame: pd.DataFrame) -> str:

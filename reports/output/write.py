@@ -13,7 +13,7 @@ import platform
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -29,20 +29,11 @@ NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def check_file(
-    path: Path,
-    option: str,
-    endings: tuple[str, ...] = (),
-    *,
-    inputs: Iterable[Path | None] = (),
+    path: Path, option: str, endings: tuple[str, ...] = (), *, inputs: Iterable[Path | None] = ()
 ) -> None:
-    """Refuse a file that could not be written, before anything is run.
-
-    Raises
-    ------
-    CrankcheckError
-        An ending that is not one of ``endings``, a link, a folder in its place, no folder to hold
-        it, no right to write there, or that it is read (``inputs``).
-    """
+    """Refuse a file that could not be written, before anything is run. Raises CrankcheckError for
+    an ending that is not one of ``endings``, a link, a folder in its place, no folder to hold it,
+    no right to write there, or that it is read (``inputs``)."""
     if endings and path.suffix.lower() not in endings:
         ending = repr(path.suffix) if path.suffix else "no ending"
         raise CrankcheckError(f"{option} {path}: found {ending}; use {', '.join(endings)}")
@@ -112,11 +103,7 @@ def _write_into(stream: Path, raw: bytes) -> None:
 
 
 def check_folder(
-    path: Path,
-    option: str,
-    files: Iterable[str] = (),
-    *,
-    inputs: Iterable[Path | None] = (),
+    path: Path, option: str, files: Iterable[str] = (), *, inputs: Iterable[Path | None] = ()
 ) -> None:
     """Refuse a folder that could be neither written nor created, or whose ``files`` could not be
     replaced or are read (``inputs``). Raises CrankcheckError."""
@@ -138,35 +125,6 @@ def check_folder(
         _refuse_input(path / name, option, read)
 
 
-def check_outputs(
-    files: Mapping[str, Path | None],
-    folder: Path | None = None,
-    names: Sequence[str] = (),
-    *,
-    inputs: Iterable[Path | None] = (),
-) -> None:
-    """Refuse files, by their options, and ``names`` in the folder of -o, that could not be written,
-    two of all these that are one file, and one that is read (``inputs``). Raises
-    CrankcheckError."""
-    outputs = [(option, path) for option, path in files.items() if path is not None]
-    read = list(inputs)
-    for option, path in outputs:
-        check_file(path, option, inputs=read)
-    if folder is not None:
-        check_folder(folder, "-o", names, inputs=read)
-        outputs += [("-o", folder / name) for name in names]
-    taken: dict[Path, str] = {}
-    for option, path in outputs:
-        with _looking_at(path, option):
-            real = path.parent.resolve() / path.name
-            several = _is_stream(path)  # /dev/stdout takes them one after the other
-        if real in taken and not several:
-            raise CrankcheckError(
-                f"{taken[real]} and {option}: both name {path}; give each a file of its own"
-            )
-        taken[real] = option
-
-
 @dataclass(frozen=True)
 class Outputs:
     """Files that a request names, each None where it names none, by their options, and a folder for
@@ -177,30 +135,42 @@ class Outputs:
     names: Mapping[str, str] = field(default_factory=dict)
 
     def check(self, inputs: Iterable[Path | None] = ()) -> None:
-        """Refuse as `check_outputs`. Raises CrankcheckError."""
-        check_outputs(self.files, self.folder, tuple(self.names), inputs=inputs)
-
-    def write(self, contents: Mapping[str, Callable[[], bytes | str]]) -> None:
-        """Write the requested contents, by name, or by option; each whole or not at all. Raises
-        CrankcheckError."""
-        for name, content in contents.items():
-            inside = self.folder / name if self.folder and name in self.names else None
-            places = [*filter(None, (self.files.get(self.names.get(name, name)), inside))]
-            made = content() if places else ""
-            for place in places:
-                write(place, made)
+        """Refuse files, and ``names`` in the folder, that could not be written, two of all these
+        that are one file, and one that is read (``inputs``). Raises CrankcheckError."""
+        outputs = [(option, path) for option, path in self.files.items() if path is not None]
+        read = list(inputs)
+        for option, path in outputs:
+            check_file(path, option, inputs=read)
+        if self.folder is not None:
+            check_folder(self.folder, "-o", self.names, inputs=read)
+            outputs += [("-o", self.folder / name) for name in self.names]
+        taken: dict[Path, str] = {}
+        for option, path in outputs:
+            with _looking_at(path, option):
+                real = path.parent.resolve() / path.name
+                several = _is_stream(path)  # /dev/stdout takes them one after the other
+            if real in taken and not several:
+                raise CrankcheckError(
+                    f"{taken[real]} and {option}: both name {path}; give each a file of its own"
+                )
+            taken[real] = option
 
     @contextlib.contextmanager
     def written(self, contents: Mapping[str, Callable[[], bytes | str]]) -> Iterator[None]:
-        """Write, and show in the block; a full disk costs the file, and not the shown text."""
+        """Write the requested contents, by name, or by option, each whole or not at all, and show
+        in the block; a full disk costs the file, and not the shown text. Raises CrankcheckError."""
         try:
-            self.write(contents)
+            for name, content in contents.items():
+                inside = self.folder / name if self.folder and name in self.names else None
+                places = [*filter(None, (self.files.get(self.names.get(name, name)), inside))]
+                made = content() if places else ""
+                for place in places:
+                    write(place, made)
         finally:
             yield
 
 
 def _refuse_input(path: Path, option: str, inputs: Iterable[Path | None]) -> None:
-    """Refuse to write over a file that is read. Raises CrankcheckError."""
     for read in inputs:
         try:
             same = read is not None and read.samefile(path)
@@ -223,13 +193,8 @@ def _looking_at(path: Path, option: str) -> Iterator[None]:
 
 
 def write(path: Path, content: bytes | str) -> None:
-    """Write a file whole: aside first, then renamed over the old one, or over a link.
-
-    Raises
-    ------
-    CrankcheckError
-        The system refused (disk full, rights taken away since the check).
-    """
+    """Write a file whole: aside first, then renamed over the old one, or over a link. Raises
+    CrankcheckError where the system refuses (disk full, rights taken away since the check)."""
     raw = content.encode() if isinstance(content, str) else content
     try:
         if _is_stream(path):

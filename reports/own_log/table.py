@@ -13,7 +13,7 @@ from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
-from reports.output.console import hanging, plain_table
+from reports.output.console import grid, hanging
 from reports.output.formats import case_of, folded, plain, remark, suite_of, table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
@@ -109,16 +109,8 @@ def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
 
 def _table(rows: Sequence[LogRow], width: int) -> Table:
     """Return one row an error, those out of tolerance first."""
-    table = plain_table()
-    table.add_column("")
-    table.add_column("columns", overflow="fold", min_width=12)
-    table.add_column("read as", overflow="fold", min_width=16)
-    table.add_column("largest\nerror", justify="right", no_wrap=True)
-    table.add_column("of its\nscale", justify="right", no_wrap=True)
-    table.add_column("limit", justify="right", no_wrap=True)
-    table.add_column("taken", justify="right", no_wrap=True)
-    if width >= WIDE:
-        table.add_column("at t\ns", justify="right", no_wrap=True)
+    heads = (*HEADS, *["at t\ns:"] * (width >= WIDE))
+    table = grid(heads, gap=1, least={"columns": 12, "read as": 16})
     for row in sorted(rows, key=lambda row: row.verdict == "within"):
         mark = Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red")
         names, what, *numbers = _texts(row)
@@ -254,7 +246,7 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
 
 
 COMMENT_ROOM = 20_000
-HEADS = ("", "columns", "read as", "largest error:", "of its scale:", "limit:", "taken:")
+HEADS = ("", "columns", "read as", "largest\nerror:", "of its\nscale:", "limit:", "taken:")
 
 
 def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:

@@ -1,6 +1,5 @@
 """An own model on the terminal and as JSON: its reading, its lines, and the recommended changes."""
 
-import json
 import math
 from collections.abc import Mapping
 
@@ -14,12 +13,13 @@ from models.files.assemble import scene_text
 from reports.judge.halving import worst_place
 from reports.judge.rows import cell_row, error_row
 from reports.judge.rules import RULES
-from reports.output.console import hanging, plain_table
-from reports.output.numbers import finite, short
+from reports.output.console import grid, hanging
+from reports.output.formats import json_text
+from reports.output.numbers import short
 from reports.own_model import sentences
 from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, errors_of
-from reports.verify.table import MARKS, halved, mark
+from reports.verify.table import HALVED, MARKS, halved, mark
 
 WIDE, NARROW = 76, 52
 """Columns of a terminal that show the gap and the body of the largest error; and those below which
@@ -71,16 +71,12 @@ def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
 def _table(judged: JudgedModel, width: int) -> Table:
     """Return the three lines, each with its gain, and the others worth reporting."""
     wide = width >= WIDE
-    table = plain_table(f"largest error of place {sentences.steps_text(judged)}")
-    table.add_column("")
-    table.add_column("line", no_wrap=True)
-    for head in sentences.step_heads(judged):
-        table.add_column(head, justify="right", no_wrap=True)
-    if wide:
-        table.add_column("gap\n/ L", justify="right", no_wrap=True)
-        table.add_column("largest of", overflow="fold", min_width=12)
+    heads = ["", "line", *(f"{head}:" for head in sentences.step_heads(judged))]
+    heads += ["gap\n/ L:", "largest of"] * wide
     if width >= NARROW or any(one.errors is None for one in judged.lines):
-        table.add_column("when dt\nis halved", overflow="fold", min_width=10)
+        heads.append(HALVED)
+    title = f"largest error of place {sentences.steps_text(judged)}"
+    table = grid(heads, (), title, gap=1, whole=("line",), least={"largest of": 12, HALVED: 10})
     for one in (*judged.three, *judged.others):
         _add(table, judged, one, wide=wide)
     return table
@@ -161,7 +157,7 @@ def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:
         ],
         "cells": [_cell(judged, one) for one in judged.lines],
     }
-    return json.dumps(finite(content), indent=1) + "\n"
+    return json_text(content)
 
 
 def _cell(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:

@@ -46,41 +46,29 @@ class Head:
 def page(stored: Stored, matrix: Matrix | None = None) -> str:
     """Return the report of a store as one HTML file, with the hard cases that were run beside it.
 
-    Raises
-    ------
-    CrankcheckError
-        A store that can not be read, part by part.
+    Raises CrankcheckError for a store that can not be read, part by part.
     """
     report = PageReport(stored, matrix)
     sections = {name: build(report) for name, build in SECTIONS.items()}
     text = render(report, sections.values())
-    over = len(text.encode()) - MOST_BYTES
-    for name, own in OF_WAYS.items():
-        if over > 0 and sections[name] is not None and own.lighter is not None:
-            sections[name] = own.lighter(report, max(BUDGET - over, 0))
-            text = render(report, sections.values())
-            over = len(text.encode()) - MOST_BYTES
-    if over > 0 and report.driven is not None and sections["motion"] is not None:
-        sections["motion"] = motion(report.driven, BUDGET - over)
-        text = render(report, sections.values())
-    over = len(text.encode()) - MOST_BYTES
-    if over > 0 and matrix is not None and sections["hard"] is not None:
-        sections["hard"] = lighter(matrix, sections["hard"], over)
+    for name in (*OF_WAYS, "motion", "hard"):
+        over, section = len(text.encode()) - MOST_BYTES, sections[name]
+        if over <= 0 or section is None:
+            continue
+        if name == "hard" and matrix is not None:
+            sections[name] = lighter(matrix, section, over)
+        elif name == "motion" and report.driven is not None:
+            sections[name] = motion(report.driven, BUDGET - over)
+        elif name in OF_WAYS and (own := OF_WAYS[name].lighter):
+            sections[name] = own(report, max(BUDGET - over, 0))
         text = render(report, sections.values())
     return text
 
 
 def stability_page(matrix: Matrix) -> str:
     """Return a page of the hard cases alone as one HTML file."""
-    head, section = _stability_head(matrix), hard(matrix, ALONE)
-    text = assembled(head, [section])
-    over = len(text.encode()) - MOST_BYTES
-    return text if over <= 0 else assembled(head, [lighter(matrix, section, over)])
-
-
-def _stability_head(matrix: Matrix) -> Head:
     engines = dict.fromkeys(run.engine for run in matrix.runs)
-    return Head(
+    head = Head(
         title="crankcheck: hard cases",
         facts=(
             *(f"{engine} {matrix.facts.get(engine, '')}".strip() for engine in engines),
@@ -90,6 +78,10 @@ def _stability_head(matrix: Matrix) -> Head:
         made=str(matrix.facts.get("made", "")),
         first="map",
     )
+    section = hard(matrix, ALONE)
+    text = assembled(head, [section])
+    over = len(text.encode()) - MOST_BYTES
+    return text if over <= 0 else assembled(head, [lighter(matrix, section, over)])
 
 
 def render(report: Report, sections: Iterable[Section | None]) -> str:
@@ -144,7 +136,6 @@ def _template(environment: Environment, template: str | Path) -> Template:
 
 @cache
 def _environment() -> Environment:
-    """Return an environment that escapes everything and refuses undefined names."""
     environment = Environment(
         loader=FileSystemLoader(HERE / "templates"),
         autoescape=True,
@@ -171,7 +162,6 @@ def _script(name: str) -> str:
 
 @cache
 def _plotly() -> str:
-    """Return the script of the installed Plotly."""
     from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]  # ships no stubs
 
     return str(get_plotlyjs()).replace("</script", "<\\/script")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,13 +39,6 @@ class Samples:
     error: Array
     worst: int
     is_thinned: bool
-
-
-class Both(TypedDict):
-    """Both pictures of a channel."""
-
-    whole: Samples
-    near: Samples | None
 
 
 @dataclass(frozen=True)
@@ -147,6 +139,7 @@ class _Drawing:
         logged = reading.values / of_one - channel.offset
         own = tuple(row for row in self.table if channel.column in row.columns)
         total = next((row for row in own if row.error.kind == "total"), None)
+        whole, near = self._samples(truth, logged, error / of_one)
         return DrawnChannel(
             column=channel.column,
             name=channel.name,
@@ -157,7 +150,8 @@ class _Drawing:
             turn=abs(math.tau / of_one) if channel.wrapped and channel.kind.turns else None,
             turns=0 if channel.wrapped else round(ahead / math.tau),
             total=error.size,
-            **self._samples(truth, logged, error / of_one),
+            whole=whole,
+            near=near,
         )
 
     def of_gaps(self) -> Iterator[DrawnChannel]:
@@ -166,6 +160,7 @@ class _Drawing:
             if (row.error.quantity, row.error.kind) != ("gap", "total"):
                 continue
             gap = self.judged.beside.run.gaps[row.error.body]
+            whole, near = self._samples(self.judged.beside.reference, gap, gap)
             yield DrawnChannel(
                 column=f"gap of {row.error.body}",
                 name=f"gap of {row.error.body}",
@@ -176,25 +171,25 @@ class _Drawing:
                 turn=None,
                 turns=0,
                 total=gap.size,
-                **self._samples(self.judged.beside.reference, gap, gap),
+                whole=whole,
+                near=near,
             )
 
-    def _samples(self, truth: Motion, logged: Array, error: Array) -> Both:
+    def _samples(
+        self, truth: Motion, logged: Array, error: Array
+    ) -> tuple[Samples, Samples | None]:
         """Return the drawn rows of the whole, and near the largest error if that is thinned."""
         rows = extreme_rows((logged, error), self.most)
         whole = self._at(truth, logged, error, rows, rows.size < error.size)
         if not whole.is_thinned:
-            return {"whole": whole, "near": None}
+            return whole, None
         middle = whole.time_s[whole.worst]
         ends = (middle - self.turn_s / 2.0, middle + self.turn_s / 2.0)
         first, last = np.searchsorted(truth.time_s, ends)
         part = slice(int(first), int(last) + 1)
         some = extreme_rows((logged[part], error[part]), max(round(NEAR * self.most), LEAST))
         thinned = some.size < error[part].size
-        return {
-            "whole": whole,
-            "near": self._at(truth, logged, error, some + part.start, thinned),
-        }
+        return whole, self._at(truth, logged, error, some + part.start, thinned)
 
     def _at(
         self, truth: Motion, logged: Array, error: Array, rows: Rows, is_thinned: bool
@@ -213,7 +208,6 @@ class _Drawing:
 
 
 def _limit(row: LogRow, unit: float) -> float | None:
-    """Return the limit of an error in a unit; None where there is no limit."""
     limit = row.limit.number * row.error.scale / unit
     return limit if math.isfinite(limit) else None
 

@@ -44,7 +44,9 @@ def log_motion(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | No
     """Return the section; None where the log has no place of a body. Raises CrankcheckError."""
     if not has_places(judged):
         return None
-    shown = [(each, _instants(each)) for each in stretches(judged, drawn)]
+    shown = [
+        (each, np.linspace(each.start_s, each.end_s, INSTANTS)) for each in stretches(judged, drawn)
+    ]
     truth = truth_of_all(judged)
     bodies = [logged_bodies(judged, truth, time_s) for _, time_s in shown]
     return Section(
@@ -68,7 +70,7 @@ def log_motion(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | No
                     "pieces": body.embedded(time_s.size),
                 }
                 for (stretch, time_s), body in zip(shown, bodies, strict=True)
-            ],
+            ]
         },
         scripts=("mechanism.js", "stage.js", "log_motion.js"),
         styles=("log.css",),
@@ -93,10 +95,6 @@ def _drawing(truth: Motion, bodies: LoggedBodies) -> dict[str, object]:
 def has_places(judged: JudgedLog) -> bool:
     """True if the log has a place or an angle of any body."""
     return any(reading.channel.kind.order == 0 for reading in judged.log.readings)
-
-
-def _instants(stretch: Stretch) -> Array:
-    return np.linspace(stretch.start_s, stretch.end_s, INSTANTS)
 
 
 def stretches(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> list[Stretch]:
@@ -175,8 +173,7 @@ def truth_of_all(judged: JudgedLog) -> Truth:
 
 
 def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBodies:
-    """Return the logged bodies at instants (T,), beside a reference of every point. Raises
-    CrankcheckError."""
+    """Return the logged bodies at instants (T,), beside a reference of every point."""
     scene, truth = judged.beside.scene, truth_of.at(time_s)
     errors = [
         (reading, _error_at(truth_of, reading, time_s))
@@ -191,7 +188,6 @@ def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBo
 
 
 def _angles_out(judged: JudgedLog) -> frozenset[str]:
-    """Return the links with an angle out of tolerance."""
     angles = [row for row in log_rows(judged) if row.error.quantity in ("angle", "drive")]
     return frozenset(row.error.body for row in angles if row.verdict == "out")
 
@@ -210,8 +206,7 @@ def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
 
 
 def _turned(errors: Sequence[tuple[Reading, Array]], samples: int) -> dict[str, Array]:
-    """Return the angle errors of links; a relative angle has the error of the other link as
-    well."""
+    """Return the angle errors of links; a relative angle has that of the other link as well."""
     own = {e.channel.of: (e.channel.relative_to, off) for e, off in errors if e.channel.kind.turns}
     found: dict[str, Array] = {}
     for link in own:

@@ -26,10 +26,7 @@ ROOM = 2_000_000
 def log_page(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     """Return the page of a judged log; ``facts`` are versions and the like.
 
-    Raises
-    ------
-    CrankcheckError
-        A motion without a reference between the instants of the log.
+    Raises CrankcheckError for a motion without a reference between the instants of the log.
     """
     drawn = curves(judged, ROOM)
     sections = [
@@ -65,7 +62,9 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
     to their curves, by their numbers among those ``drawn``."""
     numbers = {curve.column: number for number, curve in enumerate(drawn)}
     rows = sorted(table.shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
-    unused = judged.log.unused
+    unused, unexplained = judged.log.unused, ""
+    if judged.failures and not judged.scene.is_free:  # where causes are not searched
+        unexplained = sentence_text(few(table.unexplained(judged), 6))
     return Section(
         anchor="verdict",
         title="Verdict",
@@ -78,7 +77,7 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
                 for each in judged.failures
             ],
             "causes": [(sentence_text(each.text), map_lines(each)) for each in judged.causes],
-            "unexplained": _unexplained(judged),
+            "unexplained": unexplained,
             "fit": table.fit_text(judged) if judged.fit else "",
             "notes": [sentence_text(note) for note in judged.notes],
             "rows": [_row(row, numbers) for row in rows],
@@ -90,12 +89,6 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
         scripts=("copying.js",),
         styles=("log.css",),
     )
-
-
-def _unexplained(judged: JudgedLog) -> str:
-    """Return the columns that no cause explains; causes of a free motion are not searched."""
-    is_explained = judged.scene.is_free or not judged.failures
-    return "" if is_explained else sentence_text(few(table.unexplained(judged), 6))
 
 
 def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
@@ -179,7 +172,6 @@ def standing(curve: DrawnChannel) -> str:
 
 
 def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> dict[str, object]:
-    """Return a channel as the script reads it."""
     near = None if curve.near is None else _samples(curve.near, axes)
     return {
         "label": name_text(curve.column, TITLE),
@@ -245,7 +237,6 @@ MOST_CHANNELS = 400
 
 
 def _made(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
-    """Return the settings of reading and judging: columns, drive, limits, versions."""
     log = judged.log
     channels = [(each.channel, "") for each in log.readings]
     channels += [(each.channel, "a further copy, for the gap") for each in log.copies]
@@ -263,7 +254,6 @@ def _made(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
 
 
 def _settings(judged: JudgedLog) -> dict[str, str]:
-    """Return the settings that the log was judged with."""
     log = judged.log
     time_s = log.time_s
     stamp = f"{name_text(log.stamp[0])}, in {log.stamp[1]}"
@@ -286,7 +276,6 @@ def _settings(judged: JudgedLog) -> dict[str, str]:
 
 
 def _channel_row(channel: Channel, note: str) -> dict[str, str]:
-    """Return a column with its corrections; empty where there are none."""
     told = [
         f"sign {channel.sign}" if channel.sign != 1 else "",
         f"offset {channel.offset:g}" if channel.offset else "",

@@ -124,7 +124,6 @@ class Placing:
         return True
 
     def _take_hanging(self, link: Link) -> bool:
-        """Place a link at its angle about a known point."""
         placed = self._placed(link)
         by = {**dict.fromkeys(self.guided, "guide"), **dict.fromkeys(self.turned, "angle")}
         if not placed or link.name not in by:

@@ -16,8 +16,8 @@ from reports.own_model.account import CheckedLine
 from reports.own_model.judged import PARTS, JointGap, JudgedModel, errors_of
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words
-from reports.page.sections.section import Section, name_text, sentence_text
-from reports.results.lines import DASHES, Look, value_text
+from reports.page.sections.section import Section, name_text, sentence_text, setting_rows
+from reports.results.lines import DASHES, Look
 
 
 def model_page(judged: JudgedModel, facts: Mapping[str, str]) -> str:
@@ -99,7 +99,6 @@ def _verdict(judged: JudgedModel) -> Section:
 
 
 def _row(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
-    """Return a line of the table: its error and its gain at each step."""
     worst = worst_place(one.errors) if one.errors else None
     steps = len(sentences.step_heads(judged))
     first = math.nan if worst is None else worst.pure
@@ -154,7 +153,6 @@ def _lines(judged: JudgedModel) -> Section | None:
 
 
 def _line(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
-    """Return a line as the script reads it."""
     dt_s, course = judged.account.dt_s, one.course
     return {
         "look": line_looks(judged)[one.cell.profile].number,
@@ -255,7 +253,6 @@ def _disturbing(judged: JudgedModel) -> Section | None:
 
 
 def _recommended(judged: JudgedModel) -> Section:
-    """Return the recommended settings, to be copied into the file."""
     last = judged.lines[-1]
     gain = judged.gains(last)[0]
     return Section(
@@ -276,9 +273,9 @@ def _recommended(judged: JudgedModel) -> Section:
 
 
 def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
-    """Return how the model was read, driven and run: settings of every line, versions."""
     account = judged.account
     told = {"file": str(account.request.path), **sentences.reading(account)}
+    rows = setting_rows([one.settings for one in judged.lines], judged.own.settings)
     return Section(
         anchor="made",
         title="How it was read and run",
@@ -286,20 +283,12 @@ def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
         words={
             "told": {head: sentence_text(text) for head, text in told.items()},
             "lines": [one.cell.profile for one in judged.lines],
-            "settings": _settings(judged),
+            "settings": [
+                (name, [(name_text(value), differs) for value, differs in values])
+                for name, values in rows
+            ],
             "facts": {name_text(k): name_text(str(v)) for k, v in facts.items() if k != "made"},
             "means": [sentence_text(text) for text in sentences.footer(judged)],
         },
         styles=("log.css",),
     )
-
-
-def _settings(judged: JudgedModel) -> list[tuple[str, list[tuple[str, bool]]]]:
-    """Return each setting with its value in every line, and whether it differs from as written."""
-    names = dict.fromkeys(name for one in judged.lines for name in one.settings)
-    rows = []
-    for name in names:
-        own = value_text(judged.own.settings.get(name))
-        values = [value_text(one.settings.get(name)) for one in judged.lines]
-        rows.append((name, [(name_text(value), value != own) for value in values]))
-    return rows

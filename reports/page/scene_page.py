@@ -15,22 +15,11 @@ from models.scene import Scene
 from models.scene.cut_links import line_of
 from models.scene.driver import driver_unit
 from models.scene.laws import ConstantSpeed
-from reports.describe.elastic_course import (
-    ElasticCourse,
-    elastic_course,
-    extremes,
-    largest_deflections,
-    start_of,
-)
+from reports.describe import elastic_course, with_forces
+from reports.describe.elastic_course import ElasticCourse
 from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
 from reports.describe.force_tables import friction_words, largest_of
 from reports.describe.free_motion import free_notes, instants
-from reports.describe.with_forces import (
-    cleaned_forces,
-    force_certainty,
-    force_notes,
-    turn_with_forces,
-)
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points, packed
 from reports.drawing.shape import size_of_motion, turn_of
@@ -48,7 +37,7 @@ def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
 
     Raises CrankcheckError where the driver goes through no turn, or there are no forces.
     """
-    sections = [_motion(scene, with_forces=figures is not None)]
+    sections = [_motion(scene, acting=figures is not None)]
     if figures is not None:
         sections.append(_forces(scene, figures))
     return assembled(_head(scene, "the closed form"), sections)
@@ -91,32 +80,40 @@ def _pictures(
     ]
 
 
-def _motion(scene: Scene, *, with_forces: bool) -> Section:
+def _moving(name: str, words: Mapping[str, object], embedded: Mapping[str, object]) -> Section:
+    """Return the section of a moving scene; ``name`` is that of its template and of its script."""
+    return Section(
+        anchor="motion",
+        title="In motion",
+        template=f"{name}.html",
+        words=words,
+        embedded=embedded,
+        scripts=("arrows.js", "mechanism.js", "stage.js", f"{name}.js"),
+        styles=("forces.css",),
+    )
+
+
+def _motion(scene: Scene, *, acting: bool) -> Section:
     """Return a scene in motion by the closed form, with its forces if requested. Raises
     CrankcheckError where the driver goes through no turn."""
-    turn = turn_of(scene, INSTANTS, with_forces=with_forces)
+    turn = turn_of(scene, INSTANTS, with_forces=acting)
     drawn = drawing(scene, turn.time_s, turn)
     if turn.forces is not None:
         arrows = force_arrows(scene, turn)
         low, high = arrows.box(turn)
         drawn |= {"forces": arrows.embedded(turn), "box": [*low, *high]}
-    return Section(
-        anchor="motion",
-        title="In motion",
-        template="scene_motion.html",
-        words={
+    return _moving(
+        "scene_motion",
+        {
             "scene": scene_words(scene),
             "has_arrows": "forces" in drawn and bool(drawn["forces"]["arrows"]),  # type: ignore[index]  # as embedded
-            "with_forces": with_forces,
+            "with_forces": acting,
         },
-        embedded={"drawing": drawn, "effort": _effort(scene, turn)},
-        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_motion.js"),
-        styles=("forces.css",),
+        {"drawing": drawn, "effort": _effort(scene, turn)},
     )
 
 
 def _effort(scene: Scene, turn: Motion) -> dict[str, object] | None:
-    """Return the driving torque or force at the instants of the drawing."""
     if turn.forces is None:
         return None
     series = packed(np.atleast_2d(turn.forces.torque))
@@ -134,8 +131,7 @@ FORCE_CAPTIONS: Mapping[str, str] = {
 
 
 def _forces(scene: Scene, figures: Mapping[str, bytes]) -> Section:
-    """Return reactions and driving torque: the largest of a turn in a table, and the figures."""
-    turn = turn_with_forces(scene)
+    turn = with_forces.turn_with_forces(scene)
     assert turn.forces is not None
     return Section(
         anchor="forces",
@@ -145,11 +141,11 @@ def _forces(scene: Scene, figures: Mapping[str, bytes]) -> Section:
             "driver": scene.driver.joint,
             "effort": scene.driver.effort,
             "degrees": "\N{DEGREE SIGN}" if driver_unit(scene) == "deg" else " m",
-            "rows": largest_of(scene, turn, cleaned_forces(turn.forces)),
+            "rows": largest_of(scene, turn, with_forces.cleaned_forces(turn.forces)),
             "notes": [
                 *friction_words(scene),
-                *force_notes(scene, turn),
-                force_certainty(scene, turn.forces),
+                *with_forces.force_notes(scene, turn),
+                with_forces.force_certainty(scene, turn.forces),
             ],
             "figures": _pictures(figures, FORCE_CAPTIONS),
         },
@@ -167,25 +163,20 @@ SHORTEST_MS, LONGEST_MS = 4000, 12000
 
 
 def _free(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
-    """Return a scene in free motion, and the figures of this motion."""
     time_s = np.linspace(0.0, free.until_s, instants(free))
     motion = free.at(time_s, bound=False)
     drawn = drawing(free.scene, time_s, motion)
     lasts_ms = float(np.clip(1000.0 * free.until_s, SHORTEST_MS, LONGEST_MS))
-    return Section(
-        anchor="motion",
-        title="In motion",
-        template="scene_free.html",
-        words={
+    return _moving(
+        "scene_free",
+        {
             "scene": scene_words(free.scene),
             "notes": [
                 *filter(None, (*free_notes(free, free.until_s), continued_note(free.scene, motion)))
             ],
             "figures": _pictures(figures, FREE_CAPTIONS),
         },
-        embedded={"drawing": drawn | {"until_s": free.until_s}, "lasts_ms": lasts_ms},
-        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_free.js"),
-        styles=("forces.css",),
+        {"drawing": drawn | {"until_s": free.until_s}, "lasts_ms": lasts_ms},
     )
 
 
@@ -210,36 +201,32 @@ def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, 
     scene = motion.scene
     turns = motion.until_s / scene.driver.law.period_s
     count = int(np.clip(round((INSTANTS - 1) * turns), INSTANTS - 1, MOST - 1)) + 1
-    course = elastic_course(motion, np.linspace(0.0, motion.until_s, count))
+    course = elastic_course.elastic_course(motion, np.linspace(0.0, motion.until_s, count))
     factor = magnification(course.motion, course.base, course.bent, size_of_motion(course.base))
     drawn = drawing(scene, course.time_s, course.base)
     if not isinstance(scene.driver.law, ConstantSpeed) or turns > 1.0 + 1e-9:
         drawn |= {"until_s": motion.until_s}
-    notes = [start_words(scene, start_of(motion)), *certainty(motion)]
-    return Section(
-        anchor="motion",
-        title="In motion",
-        template="scene_elastic.html",
-        words={
+    notes = [start_words(scene, elastic_course.start_of(motion)), *certainty(motion)]
+    return _moving(
+        "scene_elastic",
+        {
             "scene": scene_words(scene),
             "elastic": elastic_facts(scene, motion.by, stiffened=motion.stiffened),
             "along": "Time" if "until_s" in drawn else "Crank angle",
             "factors": factors(factor),
             "factor": f"{factor:g}",
-            "rows": extremes(fine),
+            "rows": elastic_course.extremes(fine),
             "driver": scene.driver.link,
             "free": scene.is_free,
-            "notes": [*notes, *elastic_warnings(scene, largest_deflections(fine))],
+            "notes": [*notes, *elastic_warnings(scene, elastic_course.largest_deflections(fine))],
             "figures": _pictures(figures, ELASTIC_CAPTIONS),
         },
-        embedded={
+        {
             "drawing": drawn,
             "moved": packed(_moved(course)),
             "bent": _bent(course),
             "lasts_ms": 5000 * min(max(1.0, turns), 6.0),
         },
-        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_elastic.js"),
-        styles=("forces.css",),
     )
 
 

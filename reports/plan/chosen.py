@@ -24,11 +24,8 @@ def chosen_scenes(
 
     ``check`` raises for a scene that can not be run, by default `refuse_unfollowed`.
 
-    Raises
-    ------
-    CrankcheckError
-        An unknown name, a faulty file, two different scenes of one name; a StructureError or
-        ReachError of the reference, which names group or range.
+    Raises CrankcheckError for an unknown name, a faulty file, two different scenes of one name; a
+    StructureError or ReachError of the reference names group or range.
     """
     scenes: dict[str, Scene] = {}
     for name in reading.names_of_scenes(names) or reading.shipped():
@@ -71,13 +68,8 @@ def _left_out(
 
 def refuse_unfollowed(scene: Scene) -> None:
     """Refuse a scene without a closed form, or that can not follow its driver through a period.
-
-    Raises
-    ------
-    CrankcheckError
-        Also a tolerance for an unknown quantity; a StructureError or ReachError of the reference,
-        which names group or range.
-    """
+    Raises CrankcheckError, also for a tolerance of an unknown quantity; a StructureError or
+    ReachError of the reference names group or range."""
     check_names(scene)
     if scene.is_free:
         raise CrankcheckError(
@@ -99,12 +91,8 @@ def chosen_engines(names: str | Sequence[str]) -> list[str]:
 
 def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
     """Return profiles with whether they are gated: named ones are; by default `tuned` alone is.
-
-    Raises
-    ------
-    CrankcheckError
-        A profile that one of the engines lacks; the message suggests the near ones.
-    """
+    Raises CrankcheckError for a profile that one of the engines lacks; the message suggests the
+    near ones."""
     names = names_in(names, "profiles")
     for name in names:
         for each in engines:

@@ -96,7 +96,7 @@ def grid(study: Study) -> Grid:
                 turns = cell.turns if study.free else study.turns
                 acting = _acting(cell, settings)
                 line = line_key(cell, turns, name, version, acting)
-                key = cell_key(line, cell)
+                key = _hash([line, cell.dt_s.hex(), cell.steps])
                 tasks.setdefault(
                     key, Task(cell, key, line, variant.name + bent.words, version, name, acting)
                 )
@@ -144,14 +144,8 @@ def _acting(cell: Cell, settings: Mapping[str, SettingValue]) -> dict[str, Setti
 
 
 def _complete(variant: Variant) -> dict[str, SettingValue]:
-    """Return all settings of a variant.
-
-    Raises
-    ------
-    CrankcheckError
-        A setting that the engine lacks, a value that it does not take, or a name that readers would
-        take for another profile.
-    """
+    """Return all settings of a variant. Raises CrankcheckError for a setting that the engine lacks,
+    a value that it does not take, or a name that readers would take for another profile."""
     chosen = engine(variant.engine)
     settings = resolved(profile_of(chosen, variant.profile), variant.chosen)
     chosen.check(settings)
@@ -221,11 +215,6 @@ def line_key(
             *cell.way.key(cell.given_as),
         ]
     )
-
-
-def cell_key(line: str, cell: Cell) -> str:
-    """Return the key of a cell on its line."""
-    return _hash([line, cell.dt_s.hex(), cell.steps])
 
 
 def _hash(value: object) -> str:

@@ -15,13 +15,9 @@ from models.scene import Scene
 from models.scene.cut_links import with_rigid_links
 from models.scene.driver import Controlled
 from reports.judge.tolerance import check_names
+from reports.output.numbers import listed
 from reports.plan.chosen import chosen_scenes, refuse_unfollowed
-from reports.plan.steps import (
-    FREE_STEP_S,
-    STEPS_PER_TURN,
-    counted_free,
-    positive,
-)
+from reports.plan.steps import FREE_STEP_S, STEPS_PER_TURN, counted_free, positive
 from reports.way.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
 from reports.way.way import StudyLinks, way_of
 
@@ -83,14 +79,9 @@ def refuse_giving_way(scene: Scene, instead: str) -> None:
 
 
 def refuse_unreleased(scene: Scene, duration_s: float) -> None:
-    """Refuse a scene that can not move freely, or not for so long.
-
-    Raises
-    ------
-    CrankcheckError
-        Friction that grows with the reaction of a joint, a load over time whose table ends before,
-        no mass that moves, a start that can not be assembled or contradicts itself.
-    """
+    """Refuse a scene that can not move freely, or not for so long. Raises CrankcheckError for
+    friction that grows with the reaction of a joint, a load over time whose table ends before, no
+    mass that moves, a start that can not be assembled or contradicts itself."""
     from analytic.free.release import release  # slow to import, for free motion alone
 
     check_names(scene)
@@ -126,12 +117,10 @@ PART = 360
 """Divisor of the steps of a turn, or of a whole free run."""
 
 
-def chosen_springs(text: str, option: str = "--springs") -> Springs:
+def chosen_springs(text: str) -> Springs:
     """Return the springs of that name. Raises CrankcheckError for any other."""
     if text not in SPRINGS:
-        *most, last = SPRINGS
-        words = f"{', '.join(most)} or {last}"
-        raise CrankcheckError(f"{option} {shown(text)}: unknown; use {words}")
+        raise CrankcheckError(f"--springs {shown(text)}: unknown; use {listed(SPRINGS, 'or')}")
     return text
 
 
@@ -213,14 +202,9 @@ def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> Non
 def refuse_unelastic(
     truth_of: Callable[[Scene, GivenAs], ElasticTruth], scene: Scene, given: GivenAs
 ) -> None:
-    """Refuse elastic links whose motion is not known, by their start.
-
-    Raises
-    ------
-    CrankcheckError
-        A link that stretches, which segments do not; a resonance, next to which no periodic motion
-        is found.
-    """
+    """Refuse elastic links whose motion is not known, by their start. Raises CrankcheckError for a
+    link that stretches, which segments do not; a resonance, next to which no periodic motion is
+    found."""
     try:
         truth = truth_of(scene, given)
     except EngineError:

@@ -35,10 +35,8 @@ def refuse_singular(scene: Scene, duration_s: float) -> None:
     The sine of a dyad falls and rises like the letter V there, mostly between two samples: its
     smallest values over the driver's range are looked for, and refined.
 
-    Raises
-    ------
-    CrankcheckError
-        Scene, driver angle and dyad. Also a ReachError, for an angle that cannot be reached.
+    Raises CrankcheckError that names scene, driver angle and dyad, and ReachError for an angle that
+    cannot be reached.
     """
     low, high = _range(scene, duration_s)
     theta = np.linspace(low, high, 1 + (GRID - 1) * max(1, round((high - low) / math.tau)))
@@ -117,7 +115,6 @@ def _is_passed(crossings: Iterable[Crossing], key: str, theta: Array) -> Mask:
 
 
 def _places(scene: Scene, crossings: Iterable[Crossing]) -> str:
-    """Return change points by dyad, in words."""
     angles: dict[str, list[str]] = {}
     unit = driver_unit(scene)
     by = 1.0 if unit == "m" else math.degrees(1.0)
@@ -137,17 +134,13 @@ def _valleys(sine: Array) -> Mask:
     return np.asarray((sine <= before) & (sine <= after) & ((sine < before) | (sine < after)))
 
 
-LOOKS = 721
-"""Positions looked at in a period."""
-
-
 def refuse_short_tables(scene: Scene, duration_s: float) -> None:
     """Refuse a run in which a load has no magnitude, over the displacements of a whole period and
     the times of the run. Raises CrankcheckError that names the load and the range that it needs."""
     loads = [load for load in scene.loads.values() if load.over != "angle"]
     if not loads:
         return
-    turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+    turn = np.linspace(0.0, scene.driver.law.period_s, GRID)
     sliders = [load.slider for load in loads if load.slider is not None]
     motion = solve(scene, turn, links=(), points=(), sliders=sliders, bound=False)
     for load in loads:
@@ -158,13 +151,9 @@ def refuse_short_tables(scene: Scene, duration_s: float) -> None:
 
 
 def refuse_forceless(scene: Scene, duration_s: float) -> None:
-    """Refuse a scene whose forces are not known at the start and the end of a run.
-
-    Raises
-    ------
-    CrankcheckError
-        Nothing has a mass and nothing loads it; a table of a load does not reach so far.
-    """
+    """Refuse a scene whose forces are not known at the start and the end of a run. Raises
+    CrankcheckError where nothing has a mass and nothing loads it, or a table of a load does not
+    reach so far."""
     forces(scene, np.array([0.0, duration_s]), bound=False, skip_dead_points=True)
 
 

@@ -49,11 +49,8 @@ def counted(
 
     Every ``every``-th step is logged; there are at least ``least``.
 
-    Raises
-    ------
-    CrankcheckError
-        Both ways to set the step, a number that is not above 0, too few steps in a turn, too many
-        or too few in all.
+    Raises CrankcheckError for both ways to set the step, a number that is not above 0, too few
+    steps in a turn, too many or too few in all.
     """
     if dt_s is not None and steps_per_turn is not None:
         raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
@@ -102,10 +99,7 @@ def counted_free(
 
     Every ``every``-th step is logged; there are at least ``least``.
 
-    Raises
-    ------
-    CrankcheckError
-        A number that is not above 0, too many or too few steps.
+    Raises CrankcheckError for a number that is not above 0, too many or too few steps.
     """
     period_s = lasts_s = scene.driver.law.period_s
     if dt_s is None:

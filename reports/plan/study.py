@@ -116,13 +116,9 @@ class Study(BaseModel):
 
 
 def load_study(path: Path | None) -> Study:
-    """Return the study of a file, by its ending, or the shipped one for None.
-
-    Raises
-    ------
-    CrankcheckError
-        Not to be read, neither TOML nor YAML, or with keys and values that a study has not.
-    """
+    """Return the study of a file, by its ending, or the shipped one for None. Raises
+    CrankcheckError for a file that can not be read, is neither TOML nor YAML, or has other keys and
+    values than a study."""
     path = path or DEFAULT
     kind = path.suffix.lower()
     if kind not in (".toml", ".yaml", ".yml"):
@@ -174,7 +170,6 @@ def _fault(fault: ErrorDetails) -> str:
 
 
 def _short(value: object) -> str:
-    """Return a value as short text."""
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 

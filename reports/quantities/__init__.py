@@ -5,34 +5,18 @@ A new quantity is an entry here. Its columns, rows, limit, rule and diagrams fol
 
 from collections.abc import Collection
 
-from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
-from reports.quantities.free_and_elastic import (
-    DEFLECTION,
-    ENERGY,
-    EXTENSION,
-    GEOMETRY,
-    MOMENTUM,
-    PHASE,
-    SEGMENTS,
-)
-from reports.quantities.places import (
-    ACCELERATION,
-    ANGLE,
-    DISPLACEMENT,
-    DRIVE,
-    GAP,
-    POSITION,
-    VELOCITY,
-)
+from reports.quantities import forces, free_and_elastic, places
 from reports.quantities.quantity import Quantity, Role
 
 QUANTITIES: dict[str, Quantity] = {
     entry.name: entry
     for entry in (
-        *(DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION),
-        *(REACTION, NORMAL, MOMENT, TORQUE),
-        *(PHASE, GEOMETRY, ENERGY, MOMENTUM),
-        *(DEFLECTION, SEGMENTS, EXTENSION),
+        *(places.DRIVE, places.ANGLE, places.DISPLACEMENT, places.POSITION, places.GAP),
+        *(places.VELOCITY, places.ACCELERATION),
+        *(forces.REACTION, forces.NORMAL, forces.MOMENT, forces.TORQUE),
+        *(free_and_elastic.PHASE, free_and_elastic.GEOMETRY),
+        *(free_and_elastic.ENERGY, free_and_elastic.MOMENTUM, free_and_elastic.DEFLECTION),
+        *(free_and_elastic.SEGMENTS, free_and_elastic.EXTENSION),
     )
 }
 

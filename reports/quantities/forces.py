@@ -137,18 +137,6 @@ def _pins(_: Scene, forces: Forces | ForceBound) -> Series:
     return found
 
 
-def _normal(_: Scene, forces: Forces | ForceBound) -> Series:
-    return {name: slider.normal for name, slider in forces.sliders.items()}
-
-
-def _moment(_: Scene, forces: Forces | ForceBound) -> Series:
-    return {name: slider.moment for name, slider in forces.sliders.items()}
-
-
-def _torque(scene: Scene, forces: Forces | ForceBound) -> Series:
-    return {scene.driver.name: forces.torque}
-
-
 def _force(
     name: str,
     kind: BodyKind,
@@ -158,8 +146,6 @@ def _force(
     scale: Callable[[Scene, Motion], float],
     criterion: Criterion,
 ) -> Quantity:
-    """Return a quantity of forces of one kind of bodies."""
-
     def seen(scene: Scene, forces: Forces | ForceBound | None) -> Series:
         return {} if forces is None else read(scene, forces)
 
@@ -204,7 +190,7 @@ REACTION = _force(
 NORMAL = _force(
     "normal",
     "slider",
-    _normal,
+    lambda _, forces: {name: slider.normal for name, slider in forces.sliders.items()},
     "N",
     "F",
     largest_reaction,
@@ -221,7 +207,7 @@ NORMAL = _force(
 MOMENT = _force(
     "moment",
     "slider",
-    _moment,
+    lambda _, forces: {name: slider.moment for name, slider in forces.sliders.items()},
     "N m",
     "F L",
     largest_moment,
@@ -238,7 +224,7 @@ MOMENT = _force(
 TORQUE = _force(
     "torque",
     "driver",
-    _torque,
+    lambda scene, forces: {scene.driver.name: forces.torque},
     "N m",
     "M",
     largest_torque,

@@ -11,14 +11,9 @@ import numpy as np
 
 from models.motion import Motion
 from models.scene import GROUND, Scene
-from models.scene.driver import driver_place
+from reports.quantities.places import driver_series
 from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance, every_place
 from sim.engine import Run
-
-
-def _driver(motion: Motion | None, scene: Scene) -> Series:
-    place = driver_place(scene, motion) if motion else None
-    return {} if place is None else {scene.driver.name: place / scene.driver_arm_m}
 
 
 def _driver_bound(scene: Scene, reference: Motion) -> Series:
@@ -45,8 +40,8 @@ PHASE = Quantity(
             unit="rad",
             share="rad",
             scale=lambda scene, reference: 1.0,
-            truth=lambda scene, reference: _driver(reference, scene),
-            logged=lambda scene, run: _driver(run.motion, scene),
+            truth=driver_series,
+            logged=lambda scene, run: driver_series(scene, run.motion),
             bound=_driver_bound,
         ),
     ),
@@ -221,70 +216,65 @@ CURE = (
     "Shorten the step (--steps-per-turn); look at the rates of the springs between segments, and "
     "at what else bends or damps."
 )
-DEFLECTION = Quantity(
-    name="deflection",
-    role="elastic",
-    head="beam\n/ D",
-    measures=(_middle("deflection_error_m"),),
-    criteria=(
-        Criterion(
-            "CC131",
-            "deflection",
-            "How far the middle of each elastic link is from the line between its pins, against "
-            "the beam with foreshortening, at the commanded time.",
-            f"{CURE} More segments (--segments) come nearer to the beam, as 1/n^2.",
-            short="bend",
-            diagram="deflection of elastic links",
-            tolerance=BENT,
-        ),
+
+
+def _elastic(name: str, measure: Measure, head: str, criterion: Criterion) -> Quantity:
+    return Quantity(name, "elastic", (measure,), (criterion,), head)
+
+
+DEFLECTION = _elastic(
+    "deflection",
+    _middle("deflection_error_m"),
+    "beam\n/ D",
+    Criterion(
+        "CC131",
+        "deflection",
+        "How far the middle of each elastic link is from the line between its pins, against "
+        "the beam with foreshortening, at the commanded time.",
+        f"{CURE} More segments (--segments) come nearer to the beam, as 1/n^2.",
+        short="bend",
+        diagram="deflection of elastic links",
+        tolerance=BENT,
     ),
 )
-SEGMENTS = Quantity(
-    name="segments",
-    role="elastic",
-    head="engine\n/ D",
-    measures=(_middle("segments_error_m"),),
-    criteria=(
-        Criterion(
-            "CC132",
-            "deflection of segments",
-            "The same against the exact chain of as many segments, a multibody without an engine: "
-            "what the engine itself is off by.",
-            CURE,
-            short="chain",
-            diagram="deflection of segments",
-            tolerance=BENT,
-        ),
+SEGMENTS = _elastic(
+    "segments",
+    _middle("segments_error_m"),
+    "engine\n/ D",
+    Criterion(
+        "CC132",
+        "deflection of segments",
+        "The same against the exact chain of as many segments, a multibody without an engine: "
+        "what the engine itself is off by.",
+        CURE,
+        short="chain",
+        diagram="deflection of segments",
+        tolerance=BENT,
     ),
 )
-EXTENSION = Quantity(
-    name="extension",
-    role="elastic",
-    head="extens.\n/ L",
-    measures=(
-        replace(
-            _middle("extension_error_m"),
-            share="L",
-            scale=lambda scene, reference: scene.longest_m,
-            truth=lambda scene, reference: _extensions(reference),
-            logged=lambda scene, run: _extensions(run.motion),
-        ),
+EXTENSION = _elastic(
+    "extension",
+    replace(
+        _middle("extension_error_m"),
+        share="L",
+        scale=lambda scene, reference: scene.longest_m,
+        truth=lambda scene, reference: _extensions(reference),
+        logged=lambda scene, run: _extensions(run.motion),
     ),
-    criteria=(
-        Criterion(
-            "CC133",
-            "extension",
-            "By how much the pins of each elastic link are further apart, or nearer, than at rest: "
-            "a bent link is shorter.",
-            CURE,
-            short="ext",
-            tolerance=Tolerance(
-                "Of places: the pins are off by step^2 at the curvature, each.",
-                cap=2e-2,
-                coefficient=2.0,
-                power=1.0,
-                conditioned=True,
-            ),
+    "extens.\n/ L",
+    Criterion(
+        "CC133",
+        "extension",
+        "By how much the pins of each elastic link are further apart, or nearer, than at rest: "
+        "a bent link is shorter.",
+        CURE,
+        short="ext",
+        tolerance=Tolerance(
+            "Of places: the pins are off by step^2 at the curvature, each.",
+            cap=2e-2,
+            coefficient=2.0,
+            power=1.0,
+            conditioned=True,
         ),
     ),
 )

@@ -18,7 +18,6 @@ from reports.quantities.quantity import (
     Tolerance,
     moving,
 )
-from sim.engine import Run
 
 EPSILON = float(np.finfo(np.float64).eps)
 WITHIN_A_STEP = Tolerance(
@@ -51,8 +50,9 @@ def _commanded(scene: Scene, reference: Motion) -> Series:
     return {scene.driver.name: commanded / scene.driver_arm_m}
 
 
-def _crank(scene: Scene, run: Run) -> Series:
-    course = driver_place(scene, run.motion) if run.motion else None
+def driver_series(scene: Scene, motion: Motion | None) -> Series:
+    """Return the coordinate of the driver, that of a slider over the longest length."""
+    course = driver_place(scene, motion) if motion else None
     return {} if course is None else {scene.driver.name: course / scene.driver_arm_m}
 
 
@@ -67,7 +67,7 @@ DRIVE = Quantity(
             share="rad",
             scale=lambda scene, reference: 1.0,
             truth=_commanded,
-            logged=_crank,
+            logged=lambda scene, run: driver_series(scene, run.motion),
             bound=lambda scene, reference: {
                 n: 2 * EPSILON * np.abs(each) for n, each in _commanded(scene, reference).items()
             },

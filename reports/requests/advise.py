@@ -57,7 +57,10 @@ class AdviseRequest:
         read = [*find_scenes(self.scenes), *stored_files(self.study)]
         outputs = Outputs({"--json": self.json})
         outputs.check(read)
-        stored = _study(self)
+        stored = None
+        if self.study is not None:
+            stored = read_store(self.study)
+            tell(stored.notice)
         scenes, texts = _scenes(self, stored)
         demand = demanded(scenes, self.speed, self.dt_s, self.target, self.turns)
         if note := left_out_note(self.scenes):
@@ -77,15 +80,6 @@ class AdviseRequest:
         with outputs.written({"--json": lambda: document(advice)}):
             show(console, advice)
         return 0 if advice.promises else 1
-
-
-def _study(request: AdviseRequest) -> Stored | None:
-    """The given study. Raises CrankcheckError for a folder without one."""
-    if request.study is None:
-        return None
-    stored = read_store(request.study)
-    tell(stored.notice)
-    return stored
 
 
 def _scenes(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -15,7 +16,7 @@ from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.kinds import KINDS, OWN, Kind, plural, si
 from reports.logs.map_file import ChannelTable, Map, TimeTable, map_of, read_map
-from reports.requests.arguments import kind_of, path_of
+from reports.requests.arguments import is_true, one_of, path_of, wrong_kind
 from reports.requests.run import Simulation
 from reports.requests.solution import Solution
 from reports.way.way import way_of
@@ -29,6 +30,21 @@ LogLike: TypeAlias = "str | PathLike[str] | pd.DataFrame | Mapping[str, Sequence
 """A log: a file, a frame, columns by name, or a motion."""
 MapLike = str | PathLike[str] | Mapping[str, Any] | None
 """Meaning of columns: a file, or a mapping with its content."""
+LOG_DRIVES = ("scene", "fitted", "logged")
+
+
+@dataclass(frozen=True)
+class LogOptions:
+    """Options of `compare` and `judge` on a log; a run knows all but ``forces`` itself."""
+
+    step_s: float | None = None
+    drive: str = "scene"
+    map: MapLike = None
+    require: str | Iterable[str] = ()
+    forces: bool = False
+    free: bool = False
+    segments: int | None = None
+    springs: str | None = None
 
 
 def _told(map_: MapLike) -> Map:
@@ -38,10 +54,8 @@ def _told(map_: MapLike) -> Map:
     if isinstance(map_, Mapping):
         return map_of(map_, "--map")
     if not isinstance(map_, str | PathLike):
-        raise CrankcheckError(
-            f"--map: found {kind_of(map_)}; give the path of a TOML file, or a dict of what would "
-            "stand in it"
-        )
+        cure = "give the path of a TOML file, or a dict of what would stand in it"
+        raise wrong_kind("--map", map_, cure)
     return read_map(path_of(map_, "--map"))
 
 
@@ -49,9 +63,12 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     """Read a log of any kind, with its ``forces`` where requested. Raises CrankcheckError."""
     told = _told(map_)
     if isinstance(log, Motion):
-        _refuse_map(map_, "a motion")
-        _refuse_other(scene, log)
-
+        if map_ is not None:
+            raise CrankcheckError("--map: a motion has no columns to be told of; leave it out")
+        if isinstance(log, Solution) and log.scene != scene:
+            raise CrankcheckError(
+                f"the motion is of {log.scene.name}, not of {scene.name}; give the scene of both"
+            )
         return log_of_motion(scene, log)
     from reports.logs.columns import columns_of, read_columns
     from reports.logs.meanings import understood, wanted
@@ -64,8 +81,32 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     return understood(columns_of(frame, source), scene, told, forces=forces)
 
 
-def refuse_other_scene(scene: Scene, run: Run) -> None:
-    """Refuse a run that is not of the scene. Raises CrankcheckError."""
+def refuse_run(scene: Scene, run: Run, options: LogOptions) -> None:
+    """Refuse options of logs alone, a run that is not of the scene, and forces that it did not log.
+    Raises CrankcheckError."""
+    known = f"it is of logs, and this is a run in {run.engine}"
+    of_logs = {
+        "--step": options.step_s is not None,
+        "--drive": one_of(options.drive, "--drive", LOG_DRIVES) != "scene",
+        "--map": options.map is not None,
+        "--require": bool(options.require),
+    }
+    for option in [name for name, is_given in of_logs.items() if is_given]:
+        raise CrankcheckError(
+            f"{option}: {known}, which says itself what it is; leave it out, or give frame() of "
+            "the run"
+        )
+    for option, given in (("--segments", options.segments), ("--springs", options.springs)):
+        if given is not None:
+            raise CrankcheckError(f"{option}: {known}; leave it out")
+    _refuse_other_scene(scene, run)
+    if is_true(options.forces, "forces") and not run.with_forces:
+        raise CrankcheckError(
+            f"forces: the run in {run.engine} was not asked for them; run it with forces=True"
+        )
+
+
+def _refuse_other_scene(scene: Scene, run: Run) -> None:
     mechanism = run.mechanism if isinstance(run, Simulation) else None
     if run.scene != scene.name or mechanism not in (None, scene_of_run(scene, run)):
         other = f"another {run.scene}" if run.scene == scene.name else run.scene
@@ -83,21 +124,7 @@ def scene_of_run(scene: Scene, run: Run) -> Scene:
     return way_of(scene, run.drive).released(scene)
 
 
-def _refuse_other(scene: Scene, motion: Motion) -> None:
-    """Refuse the solution of another scene. Raises CrankcheckError."""
-    if isinstance(motion, Solution) and motion.scene != scene:
-        raise CrankcheckError(
-            f"the motion is of {motion.scene.name}, not of {scene.name}; give the scene of both"
-        )
-
-
-def _refuse_map(map_: MapLike, what: str) -> None:
-    if map_ is not None:
-        raise CrankcheckError(f"--map: {what} has no columns to be told of; leave it out")
-
-
 def _refuse_empty(columns: Collection[object], source: str) -> None:
-    """Refuse a table without columns. Raises CrankcheckError."""
     if not len(columns):
         raise CrankcheckError(
             f"{source}: found no columns; give times and readings, such as time_s and rocker_rad"
@@ -119,17 +146,14 @@ def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
     if isinstance(log, Mapping):
         _refuse_empty(log, "the log")
         try:
-            return pd.DataFrame(
-                {str(name): list(column) for name, column in log.items()}
-            ), "the log"
+            columns = {str(name): list(column) for name, column in log.items()}
+            return pd.DataFrame(columns), "the log"
         except (TypeError, ValueError) as error:
             raise CrankcheckError(
                 f"the log: found columns that make no table ({error}); give each as many numbers"
             ) from None
-    raise CrankcheckError(
-        f"log: found {kind_of(log)}; give the path of a file, a pandas frame, a dict of columns, a "
-        "motion or a run"
-    )
+    cure = "give the path of a file, a pandas frame, a dict of columns, a motion or a run"
+    raise wrong_kind("log", log, cure)
 
 
 TIME = "time_s"

@@ -41,10 +41,8 @@ def scene_of(scene: SceneLike) -> Scene:
     if isinstance(scene, str) and scene in every_shipped():
         return _shipped(scene)
     if not isinstance(scene, str | PathLike):
-        raise CrankcheckError(
-            f"scene: found {kind_of(scene)}; give a shipped name, the path of a scene file, or a "
-            "Scene"
-        )
+        cure = "give a shipped name, the path of a scene file, or a Scene"
+        raise wrong_kind("scene", scene, cure)
     return load_scene(scene)
 
 
@@ -62,11 +60,16 @@ def kind_of(value: object) -> str:
     return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
 
 
+def wrong_kind(name: str, value: object, cure: str) -> CrankcheckError:
+    """The error of an argument, or of an option, that has a value of another kind."""
+    return CrankcheckError(f"{name}: found {kind_of(value)}; {cure}")
+
+
 def text_of(value: object, name: str, such_as: str) -> str:
     """A text. Raises CrankcheckError for anything else."""
     if isinstance(value, str):
         return value
-    raise CrankcheckError(f"{name}: found {kind_of(value)}; give a name, such as {such_as!r}")
+    raise wrong_kind(name, value, f"give a name, such as {such_as!r}")
 
 
 def one_of(value: object, name: str, choices: Iterable[str]) -> str:
@@ -81,14 +84,14 @@ def whole_of(value: object, name: str, least: int = 1) -> int:
     """A whole number. Raises CrankcheckError for another, or one below ``least``."""
     if isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= least:
         return int(value)
-    raise CrankcheckError(f"{name}: found {kind_of(value)}; give a whole number, at least {least}")
+    raise wrong_kind(name, value, f"give a whole number, at least {least}")
 
 
 def is_true(value: object, name: str) -> bool:
     """True or False. Raises CrankcheckError for anything else."""
     if isinstance(value, bool | np.bool_):
         return bool(value)
-    raise CrankcheckError(f"{name}: found {kind_of(value)}; give True or False")
+    raise wrong_kind(name, value, "give True or False")
 
 
 def path_of(value: object, name: str) -> Path:
@@ -99,17 +102,14 @@ def path_of(value: object, name: str) -> Path:
         text = None
     if isinstance(text, str) and text and "\0" not in text:
         return Path(text)
-    raise CrankcheckError(f"{name}: found {kind_of(value)}; give a path")
+    raise wrong_kind(name, value, "give a path")
 
 
 def engine_of(name: object, profile: object, settings: object) -> tuple[str, str]:
     """Engine and profile, with its settings overridden, once all of them are known to exist.
 
-    Raises
-    ------
-    EngineError
-        An engine that is unknown or not installed, a profile or setting that it has not, a value
-        that it does not take.
+    Raises EngineError for an engine that is unknown or not installed, a profile or setting that it
+    has not, a value that it does not take.
     """
     chosen = engine(text_of(name, "engine", FIRST))
     chosen.version()
@@ -123,10 +123,8 @@ def settings_of(settings: object) -> dict[str, SettingValue]:
     if settings is None:
         return {}
     if not isinstance(settings, Mapping):
-        raise CrankcheckError(
-            f"settings: found {kind_of(settings)}; give a dict of names and values, such as "
-            "{'iterations': 100}"
-        )
+        cure = "give a dict of names and values, such as {'iterations': 100}"
+        raise wrong_kind("settings", settings, cure)
     return {
         text_of(name, "settings", "iterations"): setting_of(name, value)
         for name, value in settings.items()
@@ -135,29 +133,24 @@ def settings_of(settings: object) -> dict[str, SettingValue]:
 
 def setting_of(name: object, value: object) -> SettingValue:
     """A setting's value, as a plain one. Raises CrankcheckError for neither number nor text."""
-    if isinstance(value, str) and not isinstance(value, bool):
+    if isinstance(value, str):
         return str(value)
     if isinstance(value, Real) and not isinstance(value, bool):
         return int(value) if isinstance(value, Integral) else float(value)
-    raise CrankcheckError(f"setting {name}: found {kind_of(value)}; it takes a number or a text")
+    raise wrong_kind(f"setting {name}", value, "it takes a number or a text")
 
 
 def tolerances_of(tolerance: object, option: str) -> dict[str, float]:
     """Tolerances by quantity, as pure numbers.
 
-    Raises
-    ------
-    CrankcheckError
-        No mapping, an unknown quantity (the message suggests near ones), a number that is not above
-        0.
+    Raises CrankcheckError for no mapping, an unknown quantity (the message suggests near ones), a
+    number that is not above 0.
     """
     if tolerance is None:
         return {}
     if not isinstance(tolerance, Mapping):
-        raise CrankcheckError(
-            f"{option}: found {kind_of(tolerance)}; give a dict of quantities and numbers, such as "
-            "{'angle': 1e-4}"
-        )
+        cure = "give a dict of quantities and numbers, such as {'angle': 1e-4}"
+        raise wrong_kind(option, tolerance, cure)
     found: dict[str, float] = {}
     for name, number in tolerance.items():
         if name not in EVERY:
@@ -178,7 +171,11 @@ def each_of(values: object) -> list[Any]:
 
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
-RENAMED = {
+SAME = (
+    "steps-per-turn turns every drive target map modes axial-modes elements shape linear require "
+    "jobs limit-s memory-gb delta key branch engine profile"
+)
+ARGUMENTS = {
     "--dt": "dt_s",
     "--duration": "duration_s",
     "--tol": "tolerance",
@@ -190,24 +187,22 @@ RENAMED = {
     "--speed": "speed_rad_s",
     "--start": "start_rad",
     "-o": "output",
+    **{f"--{name}": name.replace("-", "_") for name in SAME.split()},
 }
-SAME = (
-    "steps-per-turn turns every drive target map modes axial-modes elements shape linear require "
-    "jobs limit-s memory-gb delta key branch engine profile"
-)
-ARGUMENTS = RENAMED | {f"--{name}": name.replace("-", "_") for name in SAME.split()}
 """Arguments of the Python functions, by the option of the command."""
 OTHERS: Mapping[str, str] = {"engine": "engines", "profile": "profiles", "output": "folder"}
 """Names of the arguments in functions that have none of the first name."""
 OPTION = re.compile(rf"(?<![\w./-])({'|'.join(sorted(ARGUMENTS, key=len, reverse=True))})(?![\w-])")
 
 
-def told_at_the_call(
-    function: Callable[Parameters, Result],
-) -> Callable[Parameters, Result]:
+def told_at_the_call(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
     """Wrap a function so that its CrankcheckErrors name arguments in place of options, and have a
     traceback that ends here: deeper frames are none of the caller's business."""
-    arguments = _arguments_of(function)
+    own = inspect.signature(function).parameters
+    arguments = {
+        option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name
+        for option, name in ARGUMENTS.items()
+    }
 
     @functools.wraps(function)
     def called(*args: Parameters.args, **options: Parameters.kwargs) -> Result:
@@ -221,15 +216,6 @@ def told_at_the_call(
             raise error.with_traceback(None) from None
 
     return called
-
-
-def _arguments_of(function: Callable[..., object]) -> Mapping[str, str]:
-    """The arguments of this function, by option."""
-    own = inspect.signature(function).parameters
-    return {
-        option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name
-        for option, name in ARGUMENTS.items()
-    }
 
 
 def in_python(text: str, arguments: Mapping[str, str] = ARGUMENTS) -> str:

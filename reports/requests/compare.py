@@ -16,12 +16,13 @@ from reports.compare import compare as comparing
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.judge.tolerance import check_names
-from reports.output.console import plain_table, say
+from reports.output.console import grid, say
 from reports.output.numbers import short
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
-from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
+from reports.requests import any_log
+from reports.requests.any_log import LogLike, LogOptions, MapLike
 from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, told_at_the_call
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
@@ -31,9 +32,6 @@ from sim.engine import Run
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-LOG_DRIVES = ("scene", "fitted", "logged")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,7 +62,6 @@ class Comparison(Shown):
         return pd.DataFrame([error_row(error) for error in self.errors.rows])
 
     def show(self, console: Console) -> None:
-
         show_errors(console, self.scene, self.source, self.errors)
 
     def _drawn(self) -> str:
@@ -111,10 +108,8 @@ def compare(
     scene = scene_of(scene)
     check_names(scene)
     if isinstance(what, Run):
-        refuse_options(what, step_s=step_s, drive=drive, map=map)
-        refuse_segments(what, segments, springs)
-        refuse_other_scene(scene, what)
-        refuse_without_forces(what, forces=is_true(forces, "forces"))
+        options = LogOptions(step_s, drive, map, forces=forces, segments=segments, springs=springs)
+        any_log.refuse_run(scene, what, options)
         errors = comparing.compare(_truth_of_run(scene, what).beside(what))
         if errors is None:
             raise CrankcheckError(
@@ -126,9 +121,9 @@ def compare(
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone
     from reports.own_log.log_limits import LogRequest, log_kind
 
-    chosen = chosen_drive(one_of(drive, "--drive", LOG_DRIVES))
+    chosen = chosen_drive(one_of(drive, "--drive", any_log.LOG_DRIVES))
     refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))
-    log = log_of(scene, what, map, forces=forces)
+    log = any_log.log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
     given = given_of([scene], segments, springs)
     asked = LogRequest({}, step, chosen, (), given.segments, given.springs)
@@ -139,52 +134,11 @@ def compare(
 
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:
-    """The reference of a scene for a run. Raises CrankcheckError."""
-    scene = scene_of_run(scene, run)
+    scene = any_log.scene_of_run(scene, run)
     given = GivenAs(getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain"))
     way, planned = way_of(scene, run.drive), Planned(scene, run.dt_s, run.steps, given)
     way.refuse_made(planned)
     return way.truth(planned)
-
-
-def refuse_without_forces(run: Run, *, forces: bool) -> None:
-    """Refuse forces of a run that did not log them. Raises CrankcheckError."""
-    if forces and not run.with_forces:
-        raise CrankcheckError(
-            f"forces: the run in {run.engine} was not asked for them; run it with forces=True"
-        )
-
-
-def refuse_segments(run: Run, segments: int | None, springs: str | None) -> None:
-    """Refuse options of elastic links that a run knows itself. Raises CrankcheckError."""
-    for option, given in (("--segments", segments), ("--springs", springs)):
-        if given is not None:
-            raise CrankcheckError(
-                f"{option}: it is of logs, and this is a run in {run.engine}; leave it out"
-            )
-
-
-def refuse_options(
-    run: Run,
-    *,
-    step_s: float | None,
-    drive: str,
-    map: MapLike,
-    require: tuple[str, ...] = (),
-) -> None:
-    """Refuse options of logs alone. Raises CrankcheckError."""
-    given = {
-        "--step": step_s is not None,
-        "--drive": one_of(drive, "--drive", LOG_DRIVES) != "scene",
-        "--map": map is not None,
-        "--require": bool(require),
-    }
-    for option, is_given in given.items():
-        if is_given:
-            raise CrankcheckError(
-                f"{option}: it is of logs, and this is a run in {run.engine}, which says itself "
-                "what it is; leave it out, or give frame() of the run"
-            )
 
 
 PARTS: Mapping[ErrorKind, str] = {
@@ -197,13 +151,10 @@ PARTS: Mapping[ErrorKind, str] = {
 
 def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> None:
     """Print the worst body of each quantity, source and kind."""
-    table = plain_table(f"{scene.name}: {source}")
-    for head in ("quantity", "", "worst body"):
-        table.add_column(head, no_wrap=True)
-    for head in ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver_unit(scene)}"):
-        table.add_column(head, justify="right", no_wrap=True)
-    for worst in worst_rows(errors):
-        table.add_row(
+    names = ("quantity", "", "worst body")
+    numbers = ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver_unit(scene)}")
+    rows = (
+        (
             worst.tolerance,
             PARTS.get(worst.kind, ""),
             f"{worst.body_kind} {worst.body}",
@@ -212,7 +163,10 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             f"{worst.time_of_maximum_s:.4g}",
             _driver(worst),
         )
-    console.print(table, "")
+        for worst in worst_rows(errors)
+    )
+    heads = (*names, *(f"{head}:" for head in numbers))
+    console.print(grid(heads, rows, f"{scene.name}: {source}", gap=1, whole=names), "")
     say(console, errors.compared_with(), "dim")
     for note in errors.notes:
         say(console, note, "yellow")

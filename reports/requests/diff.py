@@ -62,11 +62,8 @@ class DiffRequest:
         Without it these are reported and are no fault: a run that failed is a row with its status,
         so a cell is missing only where it was not requested. Step times are shown and never count.
 
-        Raises
-        ------
-        CrankcheckError
-            A folder that holds no run, two runs with nothing in common, an option that makes no
-            sense; a damaged run that may have lost a cell of the other.
+        Raises CrankcheckError for a folder that holds no run, two runs with nothing in common, an
+        option that makes no sense; a damaged run that may have lost a cell of the other.
         """
         if self.format not in FORMATS:
             raise CrankcheckError(f"--format {self.format!r}: unknown; use {' or '.join(FORMATS)}")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.console import Console
@@ -18,32 +17,22 @@ from models.array import Array, samples
 from models.errors import CrankcheckError, StructureError
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.elastic_course import (
-    ElasticCourse,
-    closely_sampled,
-    drawn_course,
-    elastic_course,
-    elastic_tables,
-    energy_columns,
-    extremes,
-    extremes_table,
-    largest_deflections,
-    rigid_columns,
-    start_of,
-)
+from reports.describe import elastic_course
 from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
 from reports.describe.facts import describe_law
 from reports.describe.force_tables import motion_force_tables
 from reports.describe.motion_tables import cleaned
 from reports.output.console import say
 from reports.requests.arguments import is_true
-from reports.requests.free_solution import LetGo
+from reports.requests.free_solution import LetGo, of_bodies
 from reports.requests.options import SolveOptions, given
 from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
 from reports.requests.solving import Asked, ElasticChoice, Solving, refuse_samples, refuse_times
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from reports.figures.style import FigureSet
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -70,29 +59,24 @@ class ElasticSolution(Solution):
     def frame(self) -> pd.DataFrame:
         """Table of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
         links, rigid angles, ``rocker_theta_rigid_rad``, and the energies of free motion."""
-
         rigid = self.rigid if self.forces is not None else replace(self.rigid, forces=None)
-        energy = energy_columns(self.vibration, self.time_s)
-        return super().frame().assign(**rigid_columns(rigid), **energy)
+        energy = elastic_course.energy_columns(self.vibration, self.time_s)
+        return super().frame().assign(**elastic_course.rigid_columns(rigid), **energy)
 
     def show(self, console: Console) -> None:
-        few = np.sort(thinned(self, ROWS).time_s)
-        self.show_at(console, few)
-        if few.size < self.time_s.size:
-            left = f"{few.size} of {self.time_s.size} samples; all of them: frame()"
+        few = thinned(self, ROWS)
+        self.show_at(console, np.sort(few.time_s))
+        if left := self._left_out(few):
             say(console, left, "dim")
 
     def show_at(self, console: Console, time_s: Array) -> None:
         """Print it at times [s], in ascending order."""
-        shown, fine = (
-            self._course(each)
-            for each in (time_s, closely_sampled(self.scene, self.vibration.until_s))
-        )
-        forces = self.forces is not None
+        fine = self._course(elastic_course.closely_sampled(self.scene, self.vibration.until_s))
+        shown, forces = self._course(time_s), self.forces is not None
         _show(console, self.vibration, shown, fine, self.certainty, forces=forces)
 
-    def _course(self, time_s: Array) -> ElasticCourse:
-        return elastic_course(self.vibration, time_s)
+    def _course(self, time_s: Array) -> elastic_course.ElasticCourse:
+        return elastic_course.elastic_course(self.vibration, time_s)
 
     def _drawn(self) -> str:
         return drawn(self.scene)
@@ -103,24 +87,19 @@ def elastic_solution(
 ) -> ElasticSolution:
     """The motion of a scene with elastic links at times [s] from 0 on; ``wanted`` bodies alone.
 
-    Raises
-    ------
-    CrankcheckError
-        Times before the start, choices that `ElasticChoice` refuses, motions that are not found.
+    Raises CrankcheckError for times before the start, choices that `ElasticChoice` refuses, motions
+    that are not found.
     """
     until_s = max(float(np.max(time_s)), 0.0) or scene.driver.law.period_s
     vibration = choice.motion(scene, until_s)
-    if float(np.min(time_s)) < 0.0 and start_of(vibration) != "periodic":
+    if float(np.min(time_s)) < 0.0 and elastic_course.start_of(vibration) != "periodic":
         raise CrankcheckError(
             f"time_s: t = {float(np.min(time_s)):g} s, and {scene.name} starts at 0, "
-            f"{start_of(vibration)}; give times from there on, or --shape periodic"
+            f"{elastic_course.start_of(vibration)}; give times from there on, or --shape periodic"
         )
     whole = sampled(vibration, time_s)
     motion = replace(
-        whole,
-        links={name: whole.links[name] for name in wanted.links},
-        points={name: whole.points[name] for name in wanted.points},
-        sliders={name: whole.sliders[name] for name in wanted.sliders},
+        of_bodies(whole, wanted),
         elastic={name: x for name, x in whole.elastic.items() if name in wanted.links},
         forces=whole.forces if forces else None,
     )
@@ -130,8 +109,8 @@ def elastic_solution(
 def _show(
     console: Console,
     motion: ElasticHistory,
-    shown: ElasticCourse,
-    fine: ElasticCourse,
+    shown: elastic_course.ElasticCourse,
+    fine: elastic_course.ElasticCourse,
     certainty: Sequence[str],
     *,
     forces: bool,
@@ -141,16 +120,16 @@ def _show(
     scene = motion.scene
     facts = elastic_facts(scene, motion.by, stiffened=motion.stiffened)
     say(console, _heading(scene) + "\n".join(facts) + "\n")
-    for table in elastic_tables(shown, console.width):
+    for table in elastic_course.elastic_tables(shown, console.width):
         console.print(table, "")
     if forces and shown.motion.forces is not None:
         acting = shown.motion.forces
         for table in motion_force_tables(scene, cleaned(shown.motion), acting, console.width):
             console.print(table, "")
-    console.print(extremes_table(scene, extremes(fine)), "")
-    for line in (start_words(scene, start_of(motion)), *certainty):
+    console.print(elastic_course.extremes_table(scene, elastic_course.extremes(fine)), "")
+    for line in (start_words(scene, elastic_course.start_of(motion)), *certainty):
         say(console, line)
-    for line in elastic_warnings(scene, largest_deflections(fine)):
+    for line in elastic_warnings(scene, elastic_course.largest_deflections(fine)):
         say(console, line, "yellow")
 
 
@@ -187,26 +166,23 @@ class ElasticSolving(Solving):
         more = "Points, and more digits: -o out.csv, .parquet or .xlsx; moving: -o out.html"
         say(console, more, "dim")
 
-    def figure_files(self) -> Sequence[str]:
+    def figures(self) -> FigureSet[Any]:
         from reports.figures.elastic_figures import ELASTIC_FIGURES
 
-        return ELASTIC_FIGURES.files
+        return ELASTIC_FIGURES
 
-    def drawn(self, solution: ElasticSolution, folder: Path) -> str:
-        from reports.figures.elastic_figures import ELASTIC_FIGURES
-
+    def course(self, solution: ElasticSolution) -> elastic_course.ElasticCourse:
         motion = solution.vibration
-        course = drawn_course(motion, closely_sampled(motion.scene, motion.until_s))
-        return ELASTIC_FIGURES.written(course, folder)
+        return elastic_course.drawn_course(
+            motion, elastic_course.closely_sampled(motion.scene, motion.until_s)
+        )
 
     def page(self, solution: ElasticSolution) -> tuple[str, str]:
-        from reports.figures.elastic_figures import ELASTIC_FIGURES
         from reports.page.scene_page import elastic_page
 
-        motion = solution.vibration
+        motion, course = solution.vibration, self.course(solution)
         words = f"{motion.scene.name}{self.of_links} over {motion.until_s:.6g} s"
-        course = drawn_course(motion, closely_sampled(motion.scene, motion.until_s))
-        return elastic_page(motion, course, ELASTIC_FIGURES.pictures(course)), words
+        return elastic_page(motion, course, self.figures().pictures(course)), words
 
 
 class ReleasedElasticSolving(LetGo, ElasticSolving):

@@ -1,6 +1,5 @@
-"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`;
-and `scenes`, the list of them.
-"""
+"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`; and
+`scenes`, the list of them."""
 
 import math
 import os
@@ -21,7 +20,7 @@ from models.mjcf.document import build
 from models.mjcf.options import exact
 from models.scene import Scene
 from reports.describe.facts import describe_law
-from reports.output.console import plain_table, put, say
+from reports.output.console import grid, put, say
 from reports.output.write import check_file, write
 from reports.plan.requirements import under_control
 from reports.plan.steps import MOST_STEPS
@@ -149,13 +148,10 @@ class ScenesRequest:
         """List the shipped scenes by kind: structure, driver and source."""
         for kind in kinds():
             console.print(Text(_heading(kind), "bold"))
-            table = plain_table(gap=2)
-            for head in ("scene", "groups", "driver", "source"):
-                table.add_column(head, overflow="fold", no_wrap=head == "scene")
-            for name in shipped(kind):
-                scene = load_scene(name)
-                table.add_row(name, _groups(scene), describe_law(scene), Text(scene.source))
-            console.print(table, highlight=False)
+            scenes = [load_scene(name) for name in shipped(kind)]
+            rows = ((s.name, _groups(s), describe_law(s), Text(s.source)) for s in scenes)
+            heads = ("scene", "groups", "driver", "source")
+            console.print(grid(heads, rows, whole=("scene",)), highlight=False)
         return 0
 
 
@@ -169,6 +165,5 @@ def _groups(scene: Scene) -> str:
 
 
 def _heading(kind: str) -> str:
-    """A kind of scenes, and the words that name all of them."""
     by_name = f"all of them by `{kind}`, as in `crankcheck verify {kind}`"
     return f"{kind}: {'all of them where no scene is named' if kind == KINEMATICS else by_name}"

@@ -48,10 +48,8 @@ class FiguresRequest:
         ``scene`` and ``only`` (names of figures) choose, all where they are empty. Figures over all
         scenes are drawn where no scene is chosen, and where there are several.
 
-        Raises
-        ------
-        CrankcheckError
-            No store there, no such scene or figure, or a folder that can not be written.
+        Raises CrankcheckError for no store there, no such scene or figure, or a folder that can not
+        be written.
         """
         names = _chosen(self.only, FIGURES, "--only", "figure")
         check_folder(self.output, "-o")

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from rich.console import Console
@@ -26,11 +24,14 @@ from reports.output.console import say
 from reports.plan.singular import continued_note
 from reports.requests.arguments import is_true
 from reports.requests.options import SolveOptions, given
-from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
+from reports.requests.solution import ROWS, Solution, heading, thinned
 from reports.requests.solving import ON_SCREEN, Asked, Solving, most_samples, refuse_samples
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from reports.figures.free_figures import FreeCourse
+    from reports.figures.style import FigureSet
 
 LONG_FILE = 1000
 """Samples in a file."""
@@ -63,31 +64,22 @@ class FreeSolution(Solution):
     def show(self, console: Console) -> None:
         few = thinned(self, ROWS)
         show_free(console, self.free, few)
-        if few.time_s.size < self.time_s.size:
-            left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
+        if left := self._left_out(few):
             say(console, left, "dim")
-
-    def _drawn(self) -> str:
-        return drawn(self.scene)
 
 
 def free_solution(scene: Scene, time_s: Array, wanted: Selection, *, bound: bool) -> FreeSolution:
-    """The free motion of a scene at times [s] from 0 on; the bodies of ``wanted`` alone.
-
-    Raises
-    ------
-    CrankcheckError
-        Times before the start, and the errors of `analytic.free.release.release`.
-    """
+    """The free motion of a scene at times [s] from 0 on; the bodies of ``wanted`` alone. Raises
+    CrankcheckError for times before the start, and as `analytic.free.release.release`."""
     law = scene.driver.law
     free = release(scene, float(np.max(time_s)) if np.max(time_s) > 0.0 else law.period_s)
-    motion = _chosen(free.at(time_s, bound=bound), wanted)
+    motion = of_bodies(free.at(time_s, bound=bound), wanted)
     if motion.bound is not None:
-        motion = replace(motion, bound=_chosen(motion.bound, wanted))
+        motion = replace(motion, bound=of_bodies(motion.bound, wanted))
     return FreeSolution(**vars(motion), scene=scene, free=free)
 
 
-def _chosen(of: Bodies, wanted: Selection) -> Bodies:
+def of_bodies(of: Bodies, wanted: Selection) -> Bodies:
     """The wanted links, points and sliders."""
     return replace(
         of,
@@ -100,8 +92,14 @@ def _chosen(of: Bodies, wanted: Selection) -> Bodies:
 def show_free(console: Console, whole: FreeMotion, motion: Motion) -> None:
     """Print the mechanism, every sample of its motion, and the notes."""
     scene = whole.scene
-    told = heading(scene, analyse(scene)) if whole.by_dyads else _without_dyads(whole)
-    say(console, told)
+    if whole.by_dyads:
+        say(console, heading(scene, analyse(scene)))
+    else:
+        say(
+            console,
+            f"{scene.name}: {scene.source}\nmobility {whole.freedoms}; driver {scene.driver.link}, "
+            f"{describe_law(scene)}; by the equations of motion of all bodies\n",
+        )
     shown = cleaned(motion)
     tables = motion_tables(scene, shown, console.width)
     if scene.driver.link in motion.links:
@@ -111,15 +109,6 @@ def show_free(console: Console, whole: FreeMotion, motion: Motion) -> None:
     notes = [*free_notes(whole, float(np.max(motion.time_s))), continued_note(scene, motion)]
     for note in filter(None, notes):
         say(console, note, "yellow")
-
-
-def _without_dyads(whole: FreeMotion) -> str:
-    """Heading of a mechanism with several freedoms, or with groups other than dyads."""
-    scene = whole.scene
-    return (
-        f"{scene.name}: {scene.source}\nmobility {whole.freedoms}; driver {scene.driver.link}, "
-        f"{describe_law(scene)}; by the equations of motion of all bodies\n"
-    )
 
 
 class LetGo(Solving):
@@ -170,20 +159,19 @@ class FreeSolving(LetGo):
         more = "Points, and more digits: -o out.csv, .parquet or .xlsx; figures: -o out.html"
         say(console, more, "dim")
 
-    def figure_files(self) -> Sequence[str]:
+    def figures(self) -> FigureSet[Any]:
         from reports.figures.free_figures import FREE_FIGURES
 
-        return FREE_FIGURES.files
+        return FREE_FIGURES
 
-    def drawn(self, solution: FreeSolution, folder: Path) -> str:
-        from reports.figures.free_figures import FREE_FIGURES, free_course
+    def course(self, solution: FreeSolution) -> FreeCourse:
+        from reports.figures.free_figures import free_course
 
-        return FREE_FIGURES.written(free_course(solution.free), folder)
+        return free_course(solution.free)
 
     def page(self, solution: FreeSolution) -> tuple[str, str]:
-        from reports.figures.free_figures import FREE_FIGURES, free_course
         from reports.page.scene_page import free_page
 
-        lasts_s = solution.time_s[-1]
-        words = f"the free motion of {solution.scene.name} over {lasts_s:g} s"
-        return free_page(solution.free, FREE_FIGURES.pictures(free_course(solution.free))), words
+        words = f"the free motion of {solution.scene.name} over {solution.time_s[-1]:g} s"
+        pictures = self.figures().pictures(self.course(solution))
+        return free_page(solution.free, pictures), words

@@ -10,23 +10,15 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes
+from reports.history import verification
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
 from reports.history.table import page, show, table_text
-from reports.history.verification import (
-    VersionResult,
-    alone,
-    cache_folder,
-    kept,
-    key_of,
-    measure,
-    place,
-    read_version,
-)
 from reports.judge.cell import Cell
 from reports.output.console import say_whole
 from reports.output.write import check_folder, provenance, refuse_link, write
 from reports.plan.chosen import left_out_note
-from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
+from reports.requests import options
+from reports.requests.options import argument, option
 from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.stored_runs import scene_digests
 from reports.way.length import clock_of
@@ -34,6 +26,7 @@ from reports.workers.signals import run_child
 from sim.registry import ENGINES, engine
 
 FILES = ("history.csv", "history.md")
+LENGTHS = ("turns", "duration_s", "dt_s", "steps_per_turn")
 
 
 @dataclass(frozen=True)
@@ -48,12 +41,12 @@ class HistoryRequest:
     profiles: Annotated[
         Sequence[str], option("Profile; default: tuned and as-shipped.", "--profile")
     ] = ()
-    dt_s: StepS = None
-    steps_per_turn: StepsPerTurn = None
+    dt_s: options.StepS = None
+    steps_per_turn: options.StepsPerTurn = None
     turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
     free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
-    duration_s: Duration = None
-    jobs: Jobs = 0
+    duration_s: options.Duration = None
+    jobs: options.Jobs = 0
     cache: Annotated[Path | None, option("Where environments and results are kept.", "DIR")] = None
     again: Annotated[bool, "Verify again; environments are kept."] = False
     folder: Annotated[
@@ -67,15 +60,15 @@ class HistoryRequest:
         versions = wanted(self.engine, self.versions)
         if not versions:
             raise CrankcheckError(f"history {self.engine}: name versions, such as 3.6.0 3.7.0")
-        verification = _verification(self)
-        cells, names = plan(verification), verification.names
-        cache = cache_folder(self.cache)
+        verified = _verification(self)
+        cells, names = plan(verified), verified.names
+        cache = verification.cache_folder(self.cache)
         _check_outputs(self, versions)
         uv = uv_here()
         if note := left_out_note(names):
             say_whole(progress, note)
         # The files of a result hold the digests of the scenes' texts, by which they are compared.
-        key, results = key_of([*cells, scene_digests(names)]), []
+        key, results = verification.key_of([*cells, scene_digests(names)]), []
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("", total=2 * len(versions))
             for asked in versions:
@@ -84,7 +77,9 @@ class HistoryRequest:
                     called = f"{asked.engine} {asked.version}"
                     bar.update(task, advance=steps, description=f"{called}: {what}")
 
-                results.append(_measured(self, asked, place(cache, asked, key), cache, uv, tell))
+                results.append(
+                    _measured(self, asked, verification.place(cache, asked, key), cache, uv, tell)
+                )
                 bar.update(task, completed=2 * len(results))
         footer = _footer(self, cells, results)
         try:
@@ -111,31 +106,18 @@ def _refuse_own(name: str) -> None:
 
 def _verification(request: HistoryRequest) -> VerifyRequest:
     """The verification that is run with each version."""
-    return VerifyRequest(
-        scenes=request.scenes,
-        engines=(request.engine,),
-        profiles=request.profiles,
-        dt_s=request.dt_s,
-        steps_per_turn=request.steps_per_turn,
-        turns=request.turns,
-        free=request.free,
-        duration_s=request.duration_s,
-        jobs=request.jobs,
-    )
+    same = ("scenes", "profiles", "free", "jobs", *LENGTHS)
+    fields = {name: getattr(request, name) for name in same}
+    return VerifyRequest(engines=(request.engine,), **fields)
 
 
 def _arguments(request: HistoryRequest) -> list[str]:
     """The same verification as arguments of the command line; the engine goes before them."""
-    options = [f"--jobs={request.jobs}", *["--free"] * request.free]
-    options += [f"--profile={name}" for name in request.profiles]
-    numbers = {
-        "--turns": request.turns,
-        "--duration": request.duration_s,
-        "--dt": request.dt_s,
-        "--steps-per-turn": request.steps_per_turn,
-    }
-    options += [f"{option}={value!r}" for option, value in numbers.items() if value is not None]
-    return [*options, "--", *request.scenes]
+    words = [f"--jobs={request.jobs}", *["--free"] * request.free]
+    words += [f"--profile={name}" for name in request.profiles]
+    numbers = {options.option_of(HistoryRequest, name): getattr(request, name) for name in LENGTHS}
+    words += [f"{option}={value!r}" for option, value in numbers.items() if value is not None]
+    return [*words, "--", *request.scenes]
 
 
 def _measured(
@@ -145,20 +127,22 @@ def _measured(
     cache: Path,
     uv: str | None,
     tell: Callable[..., None],
-) -> VersionResult:
+) -> verification.VersionResult:
     """The result of one version in ``folder``, kept or made now; or the reason for none."""
     lock = cache / "locks" / f"{asked.name}.lock"
     try:
-        with alone(lock, lambda: tell("waiting for another crankcheck")):
-            from_before = kept(folder) and not request.again
+        with verification.alone(lock, lambda: tell("waiting for another crankcheck")):
+            from_before = verification.kept(folder) and not request.again
             if not from_before:
                 tell("installing")
                 python = ready(cache, asked, uv, run_child)
                 tell("verifying", 1)
-                measure(folder, asked, python, _arguments(request))
-            return VersionResult(asked, read_version(folder), folder=folder, kept=from_before)
+                verification.measure(folder, asked, python, _arguments(request))
+            return verification.VersionResult(
+                asked, verification.read_version(folder), folder=folder, kept=from_before
+            )
     except NotMeasuredError as error:
-        return VersionResult(asked, reason=str(error))
+        return verification.VersionResult(asked, reason=str(error))
     except OSError as error:
         raise CrankcheckError(
             f"--cache {cache}: {error.strerror or error}; free some space there, or choose "
@@ -177,7 +161,9 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
         check_folder(request.folder / version.name, "-o", IN_FOLDER, inputs=read)
 
 
-def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:
+def _write(
+    request: HistoryRequest, results: Sequence[verification.VersionResult], footer: str
+) -> None:
     """Write the verification of each version into a folder of its own, and the history of all."""
     if request.folder is None:
         return
@@ -189,7 +175,7 @@ def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: st
 
 
 def _footer(
-    request: HistoryRequest, cells: Sequence[Cell], results: Sequence[VersionResult]
+    request: HistoryRequest, cells: Sequence[Cell], results: Sequence[verification.VersionResult]
 ) -> str:
     """Units, settings and versions; the result's place where no -o was given."""
     first = cells[0]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, overload
+from typing import TYPE_CHECKING, Annotated, overload
 
 from rich.console import Console
 
@@ -24,19 +24,11 @@ from reports.own_log.log_limits import EVERY, LogRequest
 from reports.own_log.table import markdown, show
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
-from reports.requests import arguments, compare
-from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
+from reports.requests import any_log, arguments, options
+from reports.requests.any_log import LogLike, MapLike
 from reports.requests.check import CellVerdict, verdict_of_run
 from reports.requests.judge_files import contents, write_log_map
-from reports.requests.options import (
-    SceneName,
-    SegmentCount,
-    SpringKind,
-    argument,
-    option,
-    output_option,
-    seconds,
-)
+from reports.requests.options import argument, option, output_option, seconds
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.way.way import way_of
@@ -154,59 +146,48 @@ def judge(
     CrankcheckError
         A log that can not be read, or has nothing of the scene; no target and no step.
     """
-    options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
-    options |= {
-        "forces": arguments.is_true(forces, "forces"),
-        "free": arguments.is_true(free, "free"),
-    }
-    options |= {"segments": segments, "springs": springs}
-    return judged(scene, log, target_of(target), **options)
+    with_forces, is_free = arguments.is_true(forces, "forces"), arguments.is_true(free, "free")
+    asked = any_log.LogOptions(step_s, drive, map, require, with_forces, is_free, segments, springs)
+    return judged(scene, log, target_of(target), asked)
 
 
 def judged(
     scene: arguments.SceneLike,
     log: Run | LogLike,
     limits: Mapping[str, float],
-    *,
-    step_s: float | None,
-    drive: str,
-    map: MapLike,
-    require: str | Iterable[str],
-    forces: bool = False,
-    free: bool = False,
-    segments: int | None = None,
-    springs: str | None = None,
+    asked: any_log.LogOptions,
 ) -> CellVerdict | LogVerdict:
     """Judge a log or a run within limits by quantity; `EVERY` has the limit of all others."""
     scene = arguments.scene_of(scene)
     tolerance.check_names(scene)
-    required = names_in(require, "--require")
+    required = names_in(asked.require, "--require")
     if isinstance(log, Run):
-        compare.refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
-        compare.refuse_segments(log, segments, springs)
-        refuse_other_scene(scene, log)
-        compare.refuse_without_forces(log, forces=forces)
+        any_log.refuse_run(scene, log, replace(asked, require=required))
         every = limits.get(EVERY)
-        scene = scene_of_run(scene, log)
+        scene = any_log.scene_of_run(scene, log)
         _refuse_other_targets(scene, limits)
-        _refuse_few_steps(scene, log)
-        every_name = way_of(scene).targets
-        named = limits if every is None else {name: limits.get(name, every) for name in every_name}
+        way = way_of(scene)
+        if log.steps < way.least_judged:  # its drift and order would be those of its start
+            raise CrankcheckError(
+                f"{scene.name}: the run has {log.steps} steps; free motion is judged from "
+                f"{way.least_judged} on: take shorter ones, or a longer time"
+            )
+        named = limits if every is None else {name: limits.get(name, every) for name in way.targets}
         return verdict_of_run(scene, log, named)
-    if free:
+    if asked.free:
         scene = loosened(scene)
     _refuse_other_targets(scene, limits)
-    given = given_of([scene], segments, springs)
+    given = given_of([scene], asked.segments, asked.springs)
     request = LogRequest(
         target=limits,
-        step_s=0.0 if step_s is None else positive("--step", step_s, "seconds"),
-        drive=chosen_drive(arguments.one_of(drive, "--drive", compare.LOG_DRIVES)),
+        step_s=0.0 if asked.step_s is None else positive("--step", asked.step_s, "seconds"),
+        drive=chosen_drive(arguments.one_of(asked.drive, "--drive", any_log.LOG_DRIVES)),
         require=required,
         segments=given.segments,
         springs=given.springs,
     )
-    refuse_geometry_alone(request.drive, forces=forces)
-    found = judge_log(log_of(scene, log, map, forces=forces), request)
+    refuse_geometry_alone(request.drive, forces=asked.forces)
+    found = judge_log(any_log.log_of(scene, log, asked.map, forces=asked.forces), request)
     notes = tuple(arguments.in_python(note) for note in found.notes)
     return LogVerdict(**arguments.parts_in_python(found) | {"notes": notes}, facts=provenance({}))
 
@@ -215,15 +196,6 @@ def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
     """Refuse targets of quantities that the scene has not. Raises CrankcheckError."""
     of_some = [*target.keys() - {EVERY}]
     tolerance.refuse_of_other_kinds("--target", of_some, [way_of(scene).limits])
-
-
-def _refuse_few_steps(scene: Scene, run: Run) -> None:
-    """Refuse a free run so short that its drift and order are those of its start."""
-    if run.steps < (least := way_of(scene).least_judged):
-        raise CrankcheckError(
-            f"{scene.name}: the run has {run.steps} steps; free motion is judged from "
-            f"{least} on: take shorter ones, or a longer time"
-        )
 
 
 def target_of(target: Target) -> dict[str, float]:
@@ -240,7 +212,7 @@ FORMATS = ("text", "md")
 class JudgeRequest:
     """Arguments of `judge`, as given."""
 
-    scene: SceneName
+    scene: options.SceneName
     log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
     map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None
     write_map: Annotated[
@@ -265,8 +237,8 @@ class JudgeRequest:
     output: Annotated[Path | None, output_option("Write a page, .html.")] = None
     free: Annotated[bool, "It is of the driven scene, let go at time 0."] = False
     forces: Annotated[bool, "Judge its columns of forces and torque as well."] = False
-    segments: SegmentCount = None
-    springs: SpringKind = None
+    segments: options.SegmentCount = None
+    springs: options.SpringKind = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
@@ -283,7 +255,8 @@ class JudgeRequest:
             told = write_log_map(self.write_map, self.log, scene, map_)
             say_whole(console, f"{self.write_map}: {told}")
             return 0
-        judged = judge_log(log_of(scene, self.log, self.map, forces=self.forces), asked)
+        log = any_log.log_of(scene, self.log, self.map, forces=self.forces)
+        judged = judge_log(log, asked)
         facts = provenance({})
         with outputs.written(contents(judged, facts)):
             if self.format == "md":

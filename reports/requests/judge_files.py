@@ -19,12 +19,8 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
 
     Raises CrankcheckError for a log that no map alone can mend.
     """
-    from reports.logs.columns import read_columns
-    from reports.logs.meanings import (
-        blank_map,  # pandas, which takes a third of a second
-        understood,
-        wanted,
-    )
+    from reports.logs.columns import read_columns  # pandas, which takes a third of a second
+    from reports.logs.meanings import blank_map, understood, wanted
 
     columns = read_columns(log, map_.layout, wanted(scene, map_))
     try:
@@ -42,18 +38,17 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
 
 def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[[], str]]:
     """The contents of the files, by option."""
+
+    def page() -> str:
+        from reports.page.log_page import log_page  # the drawings, which nothing else here needs
+
+        return log_page(judged, facts)
+
     return {
         "--json": lambda: _json(judged, facts),
         "--junit": lambda: junit(suite(judged, facts)),
-        "-o": lambda: _page(judged, facts),
+        "-o": page,
     }
-
-
-def _page(judged: JudgedLog, facts: Mapping[str, str]) -> str:
-    """The page of a verdict."""
-    from reports.page.log_page import log_page  # the drawings, which nothing else here needs
-
-    return log_page(judged, facts)
 
 
 def _json(judged: JudgedLog, facts: Mapping[str, str]) -> str:

@@ -239,6 +239,11 @@ class VerifyOptions:
     limit_s: Annotated[float, of_model("Time limit of each line.", "SECONDS")] = 60.0
     memory_gb: Annotated[float, of_model("Memory limit of each line.", "GB")] = 2.0
 
+    @property
+    def files(self) -> dict[str, Path | None]:
+        """The named files, by option."""
+        return {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
+
 
 OF_MODELS = ["speed_rad_s", "key", "start_deg", "branch", "write_scene", "limit_s", "memory_gb"]
 """Fields for a model of the user's own alone."""

@@ -102,10 +102,8 @@ class ReportRequest:
         Without ``output`` a page goes to ``report.html`` in the working folder, and text to the
         terminal. Damage to the store is reported beside its sound cells.
 
-        Raises
-        ------
-        CrankcheckError
-            No store there, a store without a readable cell, or a file that can not be written.
+        Raises CrankcheckError for no store there, a store without a readable cell, or a file that
+        can not be written.
         """
         output, format = self.output, format_of(self.format)
         if output is None and format == "html":

@@ -18,19 +18,7 @@ from reports.output.console import say, say_whole
 from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import check_file
 from reports.plan.requirements import given_of, under_control
-from reports.requests import arguments
-from reports.requests.options import (
-    Duration,
-    Forces,
-    SceneName,
-    SegmentCount,
-    SpringKind,
-    StepS,
-    StepsPerTurn,
-    given,
-    option,
-    output_option,
-)
+from reports.requests import arguments, options
 from reports.requests.shown import Shown
 from reports.requests.solution import ROWS, drawn, thinned
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned, Springs
@@ -71,7 +59,15 @@ class Simulation(Shown, Run):
     def show(self, console: Console) -> None:
         from reports.describe.motion_tables import motion_tables
 
-        say(console, self._heading())
+        way = way_of(self.mechanism)
+        per_turn = way.turn_s(self.mechanism) / self.dt_s
+        length = way.clock.long(self.dt_s, self.steps, per_turn)
+        logged = "" if self.every == 1 else f", logged every {self.every} steps"
+        say(
+            console,
+            f"{self.scene}: {self.engine} {self.version}, profile {self.profile}, drive "
+            f"{self.drive}\ndt {self.dt_s:.4g} s, {length}{logged}\n",
+        )
         if self.motion is not None:
             few = thinned(self.motion, ROWS)
             for table in motion_tables(self.mechanism, few, console.width):
@@ -82,20 +78,6 @@ class Simulation(Shown, Run):
         say(console, self.ending(), style)
         for warning in self.warnings:
             say(console, f"warning: {warning}", "yellow")
-
-    def _heading(self) -> str:
-        """Heading of the run: scene, engine, profile, drive and step."""
-        logged = "" if self.every == 1 else f", logged every {self.every} steps"
-        return (
-            f"{self.scene}: {self.engine} {self.version}, profile {self.profile}, drive "
-            f"{self.drive}\ndt {self.dt_s:.4g} s, {self._length()}{logged}\n"
-        )
-
-    def _length(self) -> str:
-        """Length of the run: in turns of its driver, or in time."""
-        way = way_of(self.mechanism)
-        per_turn = way.turn_s(self.mechanism) / self.dt_s
-        return way.clock.long(self.dt_s, self.steps, per_turn)
 
     def ending(self) -> str:
         """The ending of the run, in a line."""
@@ -113,23 +95,23 @@ class Simulation(Shown, Run):
 class RunRequest:
     """Arguments of `run`, as given; ``settings`` in Python alone."""
 
-    scene: SceneName
+    scene: options.SceneName
     engine: Annotated[str | None, "Engine; the first of `crankcheck engines` if none."] = None
     profile: Annotated[str, "Profile of the engine."] = "tuned"
-    dt_s: StepS = None
-    steps_per_turn: StepsPerTurn = None
+    dt_s: options.StepS = None
+    steps_per_turn: options.StepsPerTurn = None
     turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
-    duration_s: Duration = None
-    every: Annotated[int, option("Log every N-th step.", "N")] = 1
+    duration_s: options.Duration = None
+    every: Annotated[int, options.option("Log every N-th step.", "N")] = 1
     drive: Annotated[
         str | None,
         "prescribed, servo, or free (nothing drives it); default free for a scene that is "
         "let go, else prescribed.",
     ] = None
-    output: Annotated[Path | None, output_option("Write .csv, .parquet or .xlsx.")] = None
-    forces: Forces = False
-    segments: SegmentCount = None
-    springs: SpringKind = None
+    output: Annotated[Path | None, options.output_option("Write .csv, .parquet or .xlsx.")] = None
+    forces: options.Forces = False
+    segments: options.SegmentCount = None
+    springs: options.SpringKind = None
     settings: Mapping[str, SettingValue] | None = None
 
     def answer(self) -> Simulation:
@@ -144,7 +126,7 @@ class RunRequest:
         length = Length(self.dt_s, self.steps_per_turn, self.turns, self.duration_s, every, 1)
         chosen, driven = way_of(scene, drive), scene
         scene = chosen.released(scene)
-        if scene is not driven and [*given(self, "turns", "steps_per_turn")]:
+        if scene is not driven and [*options.given(self, "turns", "steps_per_turn")]:
             dt_s, steps = way("driven").counted(driven, length, bent)  # by the law that drove it
         else:
             dt_s, steps = chosen.counted(scene, length, bent)
@@ -188,7 +170,6 @@ class RunRequest:
 
 
 def _origin(done: Simulation) -> dict[str, str]:
-    """Origin of a log: scene, engine, settings and step."""
     facts = {"scene": done.scene, "source": done.mechanism.source, "engine": done.engine}
     facts |= {"version": done.version, "profile": done.profile, "drive": done.drive}
     facts |= {"dt_s": repr(done.dt_s), "steps": str(done.steps), "every": str(done.every)}
@@ -277,7 +258,7 @@ def run(
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
     """Refuse a length that does not apply to the run: turns of a scene without a law, a duration of
     a driven scene, or both. Raises CrankcheckError."""
-    for name in given(request, "turns", "steps_per_turn"):
+    for name in options.given(request, "turns", "steps_per_turn"):
         if name not in way_of(scene).lengths_by:
             raise CrankcheckError(
                 f"{name}: {scene.name} is let go, and has no turns; give --dt and --duration, in "

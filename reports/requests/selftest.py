@@ -77,8 +77,7 @@ class SelftestRequest:
 
 def _kind(request: SelftestRequest) -> RunKind:
     """Kind of runs to plant faults in, where none is named. Raises CrankcheckError."""
-    given = {"forces": request.forces, "free": request.free, "elastic": request.elastic}
-    asked = [kind for kind in KINDS_ASKED if given[kind]]
+    asked = [kind for kind in KINDS_ASKED if getattr(request, kind)]
     if len(asked) > 1:
         raise CrankcheckError(
             f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; ask for "

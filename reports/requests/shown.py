@@ -35,14 +35,12 @@ class Shown:
         return ""
 
     def __str__(self) -> str:
-
         return as_text(self.show)
 
     def __repr__(self) -> str:
         return str(self)
 
     def _repr_html_(self) -> str:
-
         return as_html(self._drawn(), self.show)
 
     __eq__ = object.__eq__
@@ -99,7 +97,6 @@ class Collector(Console):
 
 
 def _html(printed: object, style: Style | str, *, plain: bool) -> Iterable[str]:
-    """A printed object, as elements of a page."""
     if isinstance(printed, Group):
         for each in printed.renderables:
             yield from _html(each, style, plain=plain)
@@ -139,7 +136,6 @@ def _table(table: Table) -> str:
 
 
 def _row(tag: str, looks: Iterable[str], cells: Iterable[object]) -> str:
-    """A row of a table."""
     inside = "".join(
         f'<{tag} style="{look}">{_cell(cell)}</{tag}>'
         for look, cell in zip(looks, cells, strict=True)
@@ -154,7 +150,6 @@ def _cell(cell: object) -> str:
 
 
 def _spans(text: Text) -> str:
-    """A text with its colours and bold parts."""
     found = f"<span{_attribute(text.style)}>"
     ends = {0, len(text.plain), *(at for span in text.spans for at in (span.start, span.end))}
     places = sorted(ends)

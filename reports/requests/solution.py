@@ -75,10 +75,13 @@ class Solution(Shown, Motion):
     def show(self, console: Console) -> None:
         acting = self.forces and cleaned_forces(self.forces)
         few = thinned(replace(self, forces=acting), ROWS)
-        left = ""
-        if few.time_s.size < self.time_s.size:
-            left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
+        left = self._left_out(few)
         show_solution(console, self, few if self.time_s.size > 1 else None, left)
+
+    def _left_out(self, few: Motion) -> str:
+        """Words on the samples beside those that are printed; "" where all of them are."""
+        shown, size = few.time_s.size, self.time_s.size
+        return f"{shown} of {size} samples; all of them: frame()" if shown < size else ""
 
     def _drawn(self) -> str:
         return drawn(self.scene, with_forces=self.forces is not None)
@@ -177,7 +180,6 @@ def _show_position(console: Console, scene: Scene, motion: Motion) -> None:
 
 
 def _show_motion(console: Console, scene: Scene, motion: Motion) -> None:
-    """Print every sample of a motion."""
     for table in motion_tables(scene, cleaned(motion), console.width):
         console.print(table, "")
     if motion.forces is not None:

@@ -1,10 +1,10 @@
 """`solve`: the closed form alone, at one place of the driver or over time."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,22 +23,14 @@ from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
 from reports.output.formats import ENDINGS
 from reports.output.write import check_file
+from reports.requests import solving
 from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
 from reports.requests.options import FAMILY, LIVE_SHEET, SolveOptions, given, named
 from reports.requests.solution import Solution, show_solution
-from reports.requests.solving import (
-    FAMILY_ENDINGS,
-    PAGE,
-    Asked,
-    ElasticChoice,
-    Names,
-    Solving,
-    elastic_choice,
-    instants_of,
-    is_page,
-    refuse_times,
-    solving_of,
-)
+
+if TYPE_CHECKING:
+    from reports.figures.force_turn import ForceTurn
+    from reports.figures.style import FigureSet
 
 SAMPLES = 361
 """Instants of a period, both ends included, by default: as in a file of the command."""
@@ -49,9 +41,9 @@ def solve(
     scene: SceneLike,
     time_s: ArrayLike | None = None,
     *,
-    links: Names = None,
-    points: Names = None,
-    sliders: Names = None,
+    links: solving.Names = None,
+    points: solving.Names = None,
+    sliders: solving.Names = None,
     bound: bool = True,
     forces: bool = False,
     modes: int | None = None,
@@ -91,12 +83,11 @@ def solve(
         mass and load, or no instant outside of dead points.
     """
     scene = scene_of(scene)
-    choice = ElasticChoice(modes, axial_modes, elements, shape, linear)
-    solving = solving_of(scene)
+    choice = solving.ElasticChoice(modes, axial_modes, elements, shape, linear)
     if time_s is None:
         time_s = np.linspace(0.0, scene.driver.law.period_s, SAMPLES)
-    asked = Asked(time_s, (links, points, sliders), choice, bound, forces)
-    return solving.solution(scene, asked)
+    asked = solving.Asked(time_s, (links, points, sliders), choice, bound, forces)
+    return solving.solving_of(scene).solution(scene, asked)
 
 
 def _refuse_far(scene: Scene, motion: Motion) -> None:
@@ -119,9 +110,9 @@ def solve_driven(
     alpha: ArrayLike,
     time_s: ArrayLike | None = None,
     *,
-    links: Names = None,
-    points: Names = None,
-    sliders: Names = None,
+    links: solving.Names = None,
+    points: solving.Names = None,
+    sliders: solving.Names = None,
     bound: bool = True,
     forces: bool = False,
 ) -> Solution:
@@ -164,23 +155,22 @@ class SolveRequest(SolveOptions):
     def run(self, console: Console, progress: Console) -> int:
         """Show or write the reference. Raises CrankcheckError for a faulty request."""
         if self.output is not None:
-            endings = (*ENDINGS, PAGE) if self.family is None else FAMILY_ENDINGS
+            endings = (*ENDINGS, solving.PAGE) if self.family is None else solving.FAMILY_ENDINGS
             check_file(self.output, "-o", endings, inputs=[find_scene(self.scene)])
         scene = load_scene(self.scene)
         if self.family is not None:
             named(FAMILY)(scene, self, console)
         else:
-            solving_of(scene).run(scene, self, elastic_choice(self), console)
+            solving.solving_of(scene).run(scene, self, solving.elastic_choice(self), console)
         return 0
 
 
-class DrivenSolving(Solving):
+class DrivenSolving(solving.Solving):
     """Solving of driven scenes with rigid links: in closed form, also at one place."""
 
-    def solution(self, scene: Scene, asked: Asked) -> Solution:
+    def solution(self, scene: Scene, asked: solving.Asked) -> Solution:
         asked.choice.refuse_of_rigid(scene)
-        links, points, sliders = asked.wanted
-        names = {"links": links, "points": points, "sliders": sliders}
+        names = dict(zip(("links", "points", "sliders"), asked.wanted, strict=True))
         # Whatever the times are, they are looked at there.
         times, bound = cast(Array, asked.time_s), is_true(asked.bound, "bound")
         motion = kinematics.solve(scene, times, **names, bound=bound)
@@ -188,9 +178,9 @@ class DrivenSolving(Solving):
         return _with_forces(scene, motion, forces=asked.forces, bound=bound)
 
     def refuse(self, scene: Scene, request: SolveOptions) -> None:
-        elastic_choice(request).refuse_of_rigid(scene)
-        refuse_times(scene, request)
-        place = request.at_place
+        solving.elastic_choice(request).refuse_of_rigid(scene)
+        solving.refuse_times(scene, request)
+        place, is_drawn = request.at_place, request.figures is not None
         if place and (request.turns or request.steps_per_turn):
             raise CrankcheckError(
                 f"{place} with --turns or --steps-per-turn: one is a single "
@@ -198,30 +188,29 @@ class DrivenSolving(Solving):
             )
         if request.clockwise and not place:
             raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
-        if request.figures is not None and not request.forces:
+        if is_drawn and not request.forces:
             raise CrankcheckError("--figures: it draws forces; give --forces as well")
-        if request.figures is not None and place:
-            raise CrankcheckError(
-                f"--figures with {place}: they are of a turn; leave one of them out"
-            )
+        if is_drawn and place:
+            why = "they are of a turn; leave one of them out"
+            raise CrankcheckError(f"--figures with {place}: {why}")
         whole = [*given(request, "at_deg", "at_m", "turns", "steps_per_turn")]
-        if is_page(request) and whole:
+        if solving.is_page(request) and whole:
             raise CrankcheckError(
                 f"-o {request.output}: a page shows a turn; leave out --at-deg, --at-m, --turns "
                 "and --steps-per-turn"
             )
 
-    def answer(self, scene: Scene, request: SolveOptions, choice: ElasticChoice) -> Solution:
+    def answer(
+        self, scene: Scene, request: SolveOptions, choice: solving.ElasticChoice
+    ) -> Solution:
         for text in request.along:
             _along(scene, text)
         analyse(scene)  # which refuses whatever is no mechanism
-        if not request.at_place:
-            motion = kinematics.solve(scene, instants_of(scene, request))
+        if by_law := not request.at_place:
+            motion = kinematics.solve(scene, solving.instants_of(scene, request))
         else:  # moving as the law of the driver moves it there
-            at = request.at_deg, request.at_m
-            state = driver_at(scene, *at, clockwise=request.clockwise)
+            state = driver_at(scene, request.at_deg, request.at_m, clockwise=request.clockwise)
             motion = kinematics.solve_driven(scene, *(np.array([each]) for each in state))
-        by_law = not request.at_place
         return _with_forces(scene, motion, forces=request.forces, by_law=by_law)
 
     def show(self, console: Console, solution: Solution, request: SolveOptions) -> None:
@@ -230,34 +219,30 @@ class DrivenSolving(Solving):
         more = "" if request.at_place else "Points, and more digits: -o out.csv, .parquet or .xlsx"
         show_solution(console, solution, few, more=more, along=along, clockwise=request.clockwise)
 
-    def figure_files(self) -> Sequence[str]:
+    def figures(self) -> FigureSet[Any]:
         from reports.figures.force_figures import FORCE_FIGURES
 
-        return FORCE_FIGURES.files
+        return FORCE_FIGURES
 
-    def drawn(self, solution: Solution, folder: Path) -> str:
-        from reports.figures.force_figures import FORCE_FIGURES
+    def course(self, solution: Solution) -> ForceTurn:
         from reports.figures.force_turn import force_turn
 
-        return FORCE_FIGURES.written(force_turn(solution.scene), folder)
+        return force_turn(solution.scene)
 
     def page(self, solution: Solution) -> tuple[str, str]:
-        from reports.figures.force_figures import FORCE_FIGURES
-        from reports.figures.force_turn import force_turn
         from reports.page.scene_page import scene_page
 
-        scene = solution.scene
-        forces = solution.forces is not None
-        pictures = FORCE_FIGURES.pictures(force_turn(scene)) if forces else None
+        scene, acting = solution.scene, solution.forces is not None
+        pictures = self.figures().pictures(self.course(solution)) if acting else None
         return scene_page(scene, pictures), f"{scene.name} over one turn"
 
     def more(
         self, solution: Solution, columns: list[str], request: SolveOptions
-    ) -> tuple[str, Callable[[Any], None] | None]:
+    ) -> solving.WorkbookExtras:
         if request.at_place:
             return "", None
-        told, more = named(LIVE_SHEET)(solution.scene, solution.time_s, columns)
-        return told, more
+        extras: solving.WorkbookExtras = named(LIVE_SHEET)(solution.scene, solution.time_s, columns)
+        return extras
 
 
 def _with_forces(

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast, get_args
 
 import numpy as np
@@ -23,13 +22,14 @@ from reports.output.console import say_whole
 from reports.output.formats import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
 from reports.requests.arguments import is_true, one_of, whole_of
-from reports.requests.options import SolveOptions, given
+from reports.requests.options import SolveOptions, given, name_of
 from reports.requests.solution import Solution
 from reports.way.way import way_of
 
 if TYPE_CHECKING:
     from analytic.elastic.discretisation import Discretisation
     from analytic.elastic.elastic_motion import ElasticHistory
+    from reports.figures.style import FigureSet
 
 
 MOST_MODES, MOST_ELEMENTS = 20, 12
@@ -52,14 +52,8 @@ class ElasticChoice:
     @property
     def options(self) -> list[str]:
         """The given options."""
-        given = {
-            "--modes": self.modes,
-            "--axial-modes": self.axial_modes,
-            "--elements": self.elements,
-            "--shape": self.shape,
-            "--linear": self.linear or None,
-        }
-        return [name for name, value in given.items() if value is not None]
+        values = vars(self) | {"linear": self.linear or None}
+        return [name_of(field) for field, value in values.items() if value is not None]
 
     def refuse_of_rigid(self, scene: Scene) -> None:
         """Refuse options of elastic links for a scene without them. Raises CrankcheckError."""
@@ -129,7 +123,6 @@ class ElasticChoice:
 
 
 def _number(value: object, option: str, most: int) -> int:
-    """A whole number from 1 to ``most``. Raises CrankcheckError."""
     number = whole_of(value, option)
     if number > most:
         raise CrankcheckError(f"{option} {number}: at most {most}")
@@ -144,6 +137,8 @@ MOST_SAMPLES = 1_000_000
 ENDLESS = 10**15
 """Number of steps beyond which a float does not count them."""
 Names = str | Iterable[str] | None
+WorkbookExtras = tuple[str, Callable[[Any], None] | None]
+"""Extras of a workbook beside its table: their description, and a function that writes them."""
 
 
 @dataclass(frozen=True)
@@ -171,10 +166,6 @@ class Solving(ABC):
     def refuse(self, scene: Scene, request: SolveOptions) -> None:
         """Refuse a request that the scene does not allow. Raises CrankcheckError."""
 
-    @abstractmethod
-    def figure_files(self) -> Sequence[str]:
-        """The names of the figures."""
-
     def instants(self, scene: Scene, request: SolveOptions) -> Array:
         """The times of the command's samples [s]. Raises CrankcheckError."""
         return instants_of(scene, request)
@@ -189,17 +180,19 @@ class Solving(ABC):
         """Print an answer, and where to find more of it."""
 
     @abstractmethod
-    def drawn(self, solution: Any, folder: Path) -> str:
-        """Draw figures into a folder; return a line on them."""
+    def figures(self) -> FigureSet[Any]:
+        """The figures of an answer."""
+
+    @abstractmethod
+    def course(self, solution: Any) -> object:
+        """The motion that is drawn in the figures of an answer."""
 
     @abstractmethod
     def page(self, solution: Any) -> tuple[str, str]:
         """The page of an answer, and its description."""
 
-    def more(
-        self, solution: Solution, columns: list[str], request: SolveOptions
-    ) -> tuple[str, Callable[[Any], None] | None]:
-        """Extras of a workbook beside the table: description, and function that writes them."""
+    def more(self, solution: Solution, columns: list[str], request: SolveOptions) -> WorkbookExtras:
+        """Extras of a workbook beside the table with these columns."""
         return "", None
 
     def run(
@@ -208,7 +201,7 @@ class Solving(ABC):
         """Show or write the answer. Raises CrankcheckError for a faulty request."""
         self.refuse(scene, request)
         if request.figures is not None:
-            check_folder(request.figures, "--figures", self.figure_files())
+            check_folder(request.figures, "--figures", self.figures().files)
         solution = self.answer(scene, request, choice)
         if request.output is None and request.figures is None:
             self.show(console, solution, request)
@@ -219,7 +212,7 @@ class Solving(ABC):
         """Write the requested files; yield a line on each."""
         path, scene = request.output, solution.scene
         if request.figures is not None:
-            yield self.drawn(solution, request.figures)
+            yield self.figures().written(self.course(solution), request.figures)
         if path is not None and is_page(request):
             page, words = self.page(solution)
             write(path, page)

@@ -28,9 +28,6 @@ from reports.workers.isolated import Limits, checked_limits
 from reports.workers.progress import progress_bar
 from sim.registry import engine
 
-KINDS = {"free": "case of free motion", "elastic": "elastic link in it"}
-"""Kinds of hard cases that run only on request, each with the words on its absence."""
-
 
 @dataclass(frozen=True)
 class StabilityRequest:
@@ -49,14 +46,9 @@ class StabilityRequest:
     elastic: Annotated[bool, "Those of elastic links, which are not among all."] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Answer, and return the exit code: 0, or for one value 1 where it is not held.
-
-        Raises
-        ------
-        CrankcheckError
-            An unknown case, engine or profile, a value that has no reference, or a folder that can
-            not be written.
-        """
+        """Answer, and return the exit code: 0, or for one value 1 where it is not held. Raises
+        CrankcheckError for an unknown case, engine or profile, a value that has no reference, or a
+        folder that can not be written."""
         cases = _cases(self.cases, {"free": self.free, "elastic": self.elastic})
         engines = chosen_engines(self.engines)
         profiles = [name for name, _ in chosen_profiles(self.profiles or PROFILES, engines)]
@@ -147,13 +139,11 @@ def _single(
 
 
 def _table(matrix: Matrix) -> str:
-    """The runs of a matrix as CSV."""
     told = zip(run_rows(matrix), matrix.runs, strict=True)
     return csv(pd.DataFrame([row | {"command": command(run)} for row, run in told]))
 
 
 def _page(matrix: Matrix) -> str:
-    """The page of a matrix."""
     from reports.page.build import stability_page
 
     return stability_page(matrix)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 from rich.console import Console
 
@@ -16,27 +16,13 @@ from models.errors import CrankcheckError, shown
 from models.files.inputs import names_in
 from reports.output.console import say_whole
 from reports.plan.chosen import left_out_note
-from reports.plan.chosen_study import (
-    StudyChoice,
-    chosen_study,
-    refuse_other_engine,
-    study_engines,
-)
+from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
 from reports.plan.requirements import chosen_segments, chosen_springs
 from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
-from reports.requests import arguments, sweep_arguments
-from reports.requests.options import (
-    Duration,
-    Engines,
-    Forces,
-    Jobs,
-    SpringKind,
-    argument,
-    option,
-    output_option,
-)
+from reports.requests import arguments, options, sweep_arguments
+from reports.requests.options import argument, option, output_option
 from reports.requests.shown import Shown
 from reports.way.way import way_of
 from reports.workers.isolated import checked_limits
@@ -48,6 +34,7 @@ if TYPE_CHECKING:
 
 
 Values = float | int | str | Sequence[float | int | str]
+Number = TypeVar("Number", int, float)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -194,7 +181,7 @@ class SweepRequest:
         Sequence[str], argument("SCENE", "Shipped names or scene files; those of the study.")
     ] = ()
     study: Annotated[Path | None, "Study file (.toml, .yaml); the shipped one if none."] = None
-    engines: Engines = ()
+    engines: options.Engines = ()
     profiles: Annotated[
         Sequence[str], option("Profile, in place of the study's variants.", "--profile")
     ] = ()
@@ -205,19 +192,19 @@ class SweepRequest:
     ] = ()
     limit_s: Annotated[float, "Longest time for a cell, in seconds."] = 60.0
     memory_gb: Annotated[float, "Most memory for a cell, in GB."] = 2.0
-    jobs: Jobs = 0
+    jobs: options.Jobs = 0
     dask: Annotated[str | None, option("Run on the cluster of this scheduler.", "ADDRESS")] = None
     timing: Annotated[bool, "Time the cells after the error runs."] = True
     keep_trajectories: Annotated[bool, "Keep the whole motion of every cell."] = False
     again: Annotated[bool, "Run cells again that timed out or crashed."] = False
-    forces: Forces = False
+    forces: options.Forces = False
     free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
     dt_s: Annotated[str | None, option("Steps of free motion, seconds.", "--dt S,S,...")] = None
-    duration_s: Duration = None
+    duration_s: options.Duration = None
     segments: Annotated[
         str | None, option("Of each elastic link, with commas (default 16).", "N,N,...")
     ] = None
-    springs: SpringKind = None
+    springs: options.SpringKind = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Run the cells of the study that are not done yet; return the exit code, 0.
@@ -260,19 +247,15 @@ def asked(request: SweepRequest) -> Study:
         request.scenes,
         request.engines,
         request.profiles,
-        _steps("--steps-per-turn", request.steps_per_turn, "90,180,360"),
+        _numbers("--steps-per-turn", request.steps_per_turn, float, "numbers", "90,180,360"),
         request.turns,
         _overrides(request.settings, engines),
         request.forces,
         request.free,
-        _steps("--dt", request.dt_s, "2e-3,1e-3"),
+        _numbers("--dt", request.dt_s, float, "numbers", "2e-3,1e-3"),
         request.duration_s,
-        _segments(request.segments),
-        [
-            chosen_springs(text.strip())
-            for text in (request.springs or "").split(",")
-            if text.strip()
-        ],
+        _numbers("--segments", request.segments, _segments, "whole numbers", "4,8,16"),
+        [*map(chosen_springs, filter(None, map(str.strip, (request.springs or "").split(","))))],
     )
     return chosen_study(study, choice, is_shipped=request.study is None)
 
@@ -296,21 +279,17 @@ def _overrides(
     return overrides
 
 
-def _segments(text: str | None) -> list[int]:
-    """Parse `4,8,16` as whole numbers."""
-    try:
-        return [] if text is None else [chosen_segments(int(part)) for part in text.split(",")]
-    except ValueError:
-        raise CrankcheckError(
-            f"--segments {shown(text)}: write whole numbers with commas between, such as 4,8,16"
-        ) from None
+def _segments(text: str) -> int:
+    return chosen_segments(int(text))
 
 
-def _steps(option: str, text: str | None, such_as: str) -> list[float]:
-    """Parse `90,180,360` as numbers."""
+def _numbers(
+    option: str, text: str | None, kind: Callable[[str], Number], noun: str, such_as: str
+) -> list[Number]:
+    parts = [] if text is None else text.split(",")
     try:
-        return [] if text is None else [float(part) for part in text.split(",")]
+        return [kind(part) for part in parts]
     except ValueError:
         raise CrankcheckError(
-            f"{option} {shown(text)}: write numbers with commas between, such as {such_as}"
+            f"{option} {shown(text)}: write {noun} with commas between, such as {such_as}"
         ) from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Sized
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,15 +15,7 @@ from models.files.reading import every_shipped, load_scene
 from reports.plan import chosen_study
 from reports.plan.steps import positive
 from reports.plan.study import StudyValue
-from reports.requests.arguments import (
-    each_of,
-    is_true,
-    kind_of,
-    path_of,
-    scene_of,
-    setting_of,
-    whole_of,
-)
+from reports.requests import arguments
 from reports.workers.isolated import checked_limits
 
 if TYPE_CHECKING:
@@ -32,25 +24,18 @@ if TYPE_CHECKING:
 MOST_JOBS = 1024
 
 
-def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
-    """Refuse empty lists and the like: () alone keeps the values of the study.
-
-    Raises CrankcheckError that names the argument.
-    """
-    for name, value in arguments.items():
-        if _is_empty(value) and not isinstance(value, str | tuple):
-            raise CrankcheckError(
-                f"{name}: found nothing in it ({kind_of(value)}); give at least one, or () for "
-                "those of the study"
-            )
-
-
-def _is_empty(value: object) -> bool:
-    """True if a value has no elements; a number in an array of numpy is no list."""
-    try:
-        return isinstance(value, Sized) and len(value) == 0
-    except TypeError:
-        return False
+def refuse_empty_lists(values: Mapping[str, object]) -> None:
+    """Refuse empty lists and the like: () alone keeps the values of the study. Raises
+    CrankcheckError that names the argument."""
+    for name, value in values.items():
+        if isinstance(value, str | tuple) or not isinstance(value, Sized):
+            continue
+        with suppress(TypeError):  # of a number in an array of numpy, which has no length
+            if len(value) == 0:
+                found = f"found nothing in it ({arguments.kind_of(value)})"
+                raise CrankcheckError(
+                    f"{name}: {found}; give at least one, or () for those of the study"
+                )
 
 
 def manner_of(
@@ -66,7 +51,7 @@ def manner_of(
     limits = checked_limits(
         positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
     )
-    jobs = whole_of(jobs, "--jobs", 0)
+    jobs = arguments.whole_of(jobs, "--jobs", 0)
     if jobs > MOST_JOBS:
         raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
     from reports.sweep.running import Manner  # pandas, which takes a third of a second
@@ -74,23 +59,21 @@ def manner_of(
     return Manner(
         limits,
         jobs,
-        timing=is_true(timing, "timing"),
-        keep_runs=is_true(keep_trajectories, "keep_trajectories"),
-        again=is_true(again, "again"),
+        timing=arguments.is_true(timing, "timing"),
+        keep_runs=arguments.is_true(keep_trajectories, "keep_trajectories"),
+        again=arguments.is_true(again, "again"),
     )
 
 
 def scene_names(scenes: object, kept: ExitStack) -> list[str]:
-    """Names and paths of scenes; any other scene is written into a file, which is ``kept``.
-
-    Raises CrankcheckError for values that are no scene.
-    """
+    """Names and paths of scenes; any other scene is written into a file, which is ``kept``. Raises
+    CrankcheckError for values that are no scene."""
     names: list[str] = []
-    for each in each_of(scenes):
+    for each in arguments.each_of(scenes):
         if isinstance(each, str | PathLike):
-            names.append(str(path_of(each, "scenes")))
+            names.append(str(arguments.path_of(each, "scenes")))
             continue
-        scene = scene_of(each)
+        scene = arguments.scene_of(each)
         if scene.name in every_shipped() and load_scene(scene.name) == scene:
             names.append(scene.name)
             continue
@@ -104,7 +87,7 @@ def numbers_of(
     values: float | Iterable[float], option: str, unit: str = "steps, such as 720"
 ) -> list[float]:
     """One number or several, above 0, as a list. Raises CrankcheckError."""
-    return [positive(option, value, unit) for value in each_of(values)]
+    return [positive(option, value, unit) for value in arguments.each_of(values)]
 
 
 def overrides_of(settings: object, engines: Sequence[str]) -> chosen_study.Overrides:
@@ -113,14 +96,16 @@ def overrides_of(settings: object, engines: Sequence[str]) -> chosen_study.Overr
         return {}
     cure = "give a dict such as {'ENGINE.iterations': [2, 10]}"
     if not isinstance(settings, Mapping):
-        raise CrankcheckError(f"--set: found {kind_of(settings)}; {cure}")
+        raise arguments.wrong_kind("--set", settings, cure)
     found: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
     for name, values in settings.items():
         owner, dot, setting = str(name).partition(".")
         if not dot:
             raise CrankcheckError(f"--set {name!r}: no engine and setting; {cure}")
         chosen_study.refuse_other_engine(owner, engines, f"--set {name!r}")
-        plain: list[StudyValue] = [setting_of(name, value) for value in each_of(values)]
+        plain: list[StudyValue] = [
+            arguments.setting_of(name, value) for value in arguments.each_of(values)
+        ]
         if not plain:
             raise CrankcheckError(f"--set {name!r}: found no value; give one, or several")
         found.setdefault(owner, {})[setting] = plain

@@ -83,9 +83,8 @@ class TuneRequest:
         if best is None:
             console.print(Text(_unreached(goal, last), "bold red"))
         elif goal.engine in offering("snippet"):
-            period_s = goal.scenes[
-                0
-            ].driver.law.period_s  # to copy, at the speed of the first scene
+            # To copy, at the speed of the first scene.
+            period_s = goal.scenes[0].driver.law.period_s
             text = snippet(goal.engine, best.settings, float(best.tried), period_s)
             console.print()
             say_whole(console, text)
@@ -114,7 +113,6 @@ def _how(
 
 
 def _goal(request: TuneRequest) -> Goal:
-    """The goal of the search, checked. Raises CrankcheckError."""
     target, budget, seed = request.target, request.budget, request.seed
     if not AT_ROUNDING <= target < COARSEST:
         raise CrankcheckError(
@@ -203,7 +201,6 @@ def _rows(bench: Bench, of: Attempt) -> list[Row]:
 
 
 def _unreached(goal: Goal, nearest: Attempt) -> str:
-    """Words on the nearest attempt, where none reaches the target."""
     if nearest.reason:
         return f"NOTHING REACHES {goal.target:g}; {nearest.reason}"
     if math.isinf(nearest.error):

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, cast
-from xml.etree.ElementTree import Element
 
 from rich.console import Console
 from rich.progress import Progress
@@ -15,18 +12,12 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes
 from models.scene import Scene
+from reports.judge import tolerance
 from reports.judge.cell import Cell, Checked
 from reports.judge.rows import cell_frame, cell_row, error_frame
-from reports.judge.tolerance import (
-    check_names,
-    parse,
-    refuse_forces_unasked,
-    refuse_of_other_kinds,
-)
 from reports.output.console import say_whole, tell
-from reports.output.formats import csv, junit, parquet
-from reports.output.numbers import finite
-from reports.output.write import Outputs, check_outputs, provenance
+from reports.output.formats import csv, json_text, junit, parquet
+from reports.output.write import Outputs, provenance
 from reports.plan import chosen, requirements
 from reports.plan.singular import gives_forces, silent_note
 from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
@@ -60,11 +51,12 @@ class VerifyRequest(VerifyOptions):
             return verify_model(self, console, progress)
         refuse_of_models(self)
         cells = plan(self)
-        files = {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
-        outputs = Outputs(files, self.folder, IN_FOLDER)
+        outputs = Outputs(self.files, self.folder, IN_FOLDER)
         outputs.check(find_scenes(self.names))
-        if self.baseline is not None:
-            _spare_baseline(files, self.baseline)
+        if self.baseline is not None:  # which ``-o`` may go on from, and no other output write over
+            from reports.requests.diff import stored_files
+
+            Outputs(self.files).check(stored_files(self.baseline))
         digests = _digests(self)
         silent = silent_note(chosen.chosen_engines(())) if self.forces and not self.engines else ""
         for note in filter(None, (*passages(cells), silent, chosen.left_out_note(self.names))):
@@ -75,7 +67,12 @@ class VerifyRequest(VerifyOptions):
             checked = check_all(cells, self.jobs, lambda _: bar.advance(task))
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
-        diff = _changes(base, checked, facts, digests, self.factor) if base else None
+        diff = None
+        if base:
+            from reports.results.changes import compare
+            from reports.results.runs import run_of
+
+            diff = compare(base, run_of(checked, facts, digests), self.factor)
         with outputs.written(contents(checked, facts, digests, diff)):
             show(console, checked, facts)
             if diff:
@@ -101,19 +98,17 @@ def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> i
 def plan(request: VerifyOptions) -> list[Cell]:
     """The cells of the request; with forces, engines that report none run without them unless they
     are named. Raises CrankcheckError for cells that can not be run."""
-    tolerance = parse(request.tolerance)
+    limits = tolerance.parse(request.tolerance)
     if not request.forces:
-        refuse_forces_unasked("--tol", tolerance)
+        tolerance.refuse_forces_unasked("--tol", limits)
     scenes = _scenes(request)
     _refuse_options(request, scenes)
-    refuse_of_other_kinds("--tol", tolerance, (way_of(scene).limits for scene in scenes))
+    tolerance.refuse_of_other_kinds("--tol", limits, (way_of(scene).limits for scene in scenes))
     engines = chosen.chosen_engines(request.engines)
     profiles = chosen.chosen_profiles(request.profiles, engines)
     given = requirements.given_of(scenes, request.segments, request.springs)
     length = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
-    steps = {
-        scene.name: laid_out(scene, length, given, with_forces=request.forces) for scene in scenes
-    }
+    laid = [(each, *laid_out(each, length, given, with_forces=request.forces)) for each in scenes]
     return [
         Cell(
             scene=scene,
@@ -123,14 +118,13 @@ def plan(request: VerifyOptions) -> list[Cell]:
             steps=count,
             gated=gated,
             drive=driven_by(scene, cast(Drive, request.drive)),
-            tolerance=tolerance,
+            tolerance=limits,
             converge=request.converge,
             with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
             segments=given.segments,
             springs=given.springs,
         )
-        for scene in scenes
-        for dt_s, count in [steps[scene.name]]
+        for scene, dt_s, count in laid
         for profile, gated in profiles
         for name in engines
     ]
@@ -142,7 +136,7 @@ def _scenes(request: VerifyOptions) -> list[Scene]:
         return requirements.scenes_of(request.scenes, free=True)
 
     def check(scene: Scene) -> None:
-        check_names(scene)
+        tolerance.check_names(scene)
         if not scene.is_free:
             chosen.refuse_unfollowed(scene)
 
@@ -152,7 +146,6 @@ def _scenes(request: VerifyOptions) -> list[Scene]:
 
 
 def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
-    """Refuse options that do not apply to the scenes. Raises CrankcheckError."""
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(
             f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
@@ -165,9 +158,8 @@ def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
             "out, or the scene"
         )
     lengths = {"--duration": request.duration_s, "--turns": request.turns}
-    requirements.refuse_other_options(
-        scenes, lengths | {"--steps-per-turn": request.steps_per_turn}
-    )
+    lengths["--steps-per-turn"] = request.steps_per_turn
+    requirements.refuse_other_options(scenes, lengths)
 
 
 def passages(cells: Sequence[Cell]) -> list[str]:
@@ -196,14 +188,6 @@ def _baseline(
     return base.only(planned.cells)
 
 
-def _spare_baseline(files: Mapping[str, Path | None], baseline: Path) -> None:
-    """Refuse an output that is a file of the baseline, which ``-o`` may go on from. Raises
-    CrankcheckError."""
-    from reports.requests.diff import stored_files
-
-    check_outputs(files, inputs=stored_files(baseline))
-
-
 def _digests(request: VerifyRequest) -> dict[str, str]:
     """The digests of the texts of the scenes, where they are kept or compared."""
     if not (request.baseline or request.folder or request.json):
@@ -211,20 +195,6 @@ def _digests(request: VerifyRequest) -> dict[str, str]:
     from reports.results.stored_runs import scene_digests
 
     return scene_digests(request.names)
-
-
-def _changes(
-    base: StoredRun,
-    checked: Sequence[Checked],
-    facts: Mapping[str, str],
-    digests: Mapping[str, str],
-    factor: float,
-) -> Diff:
-    """The changes since the baseline."""
-    from reports.results.changes import compare
-    from reports.results.runs import run_of
-
-    return compare(base, run_of(checked, facts, digests), factor)
 
 
 IN_FOLDER = {
@@ -243,20 +213,20 @@ def contents(
 ) -> dict[str, Callable[[], bytes | str]]:
     """Contents of the files: cells, their origin, digests of the texts of their scenes, and changes
     since the baseline."""
+
+    def suites() -> str:
+        if diff is None:
+            return junit(suite(checked, facts))
+        from reports.diff.document import suite as diff_suite
+
+        return junit(suite(checked, facts), diff_suite(diff))
+
     return {
         "verify.csv": lambda: csv(cell_frame(checked)),
         "verify.json": lambda: _json(checked, facts, digests),
-        "verify.junit.xml": lambda: junit(suite(checked, facts), *_suites(diff)),
+        "verify.junit.xml": suites,
         "errors.parquet": lambda: parquet(error_frame(checked)),
     }
-
-
-def _suites(diff: Diff | None) -> Iterator[Element]:
-    """The suite of the changes, if they are known."""
-    if diff is not None:
-        from reports.diff.document import suite as diff_suite
-
-        yield diff_suite(diff)
 
 
 def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> str:
@@ -271,9 +241,4 @@ def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping
         }
         for one in checked
     ]
-    content = {
-        "provenance": dict(facts),
-        "scenes": dict(digests),
-        "cells": cells,
-    }
-    return json.dumps(finite(content), indent=1) + "\n"
+    return json_text({"provenance": facts, "scenes": digests, "cells": cells})

@@ -134,10 +134,9 @@ def check_model(
 
 
 def _number(value: object, name: str, unit: str) -> float:
-    """A number. Raises CrankcheckError that names its unit for anything else."""
     if isinstance(value, Real) and not isinstance(value, bool):
         return float(value)
-    raise CrankcheckError(f"{name}: found {arguments.kind_of(value)}; give a number, in {unit}")
+    raise arguments.wrong_kind(name, value, f"give a number, in {unit}")
 
 
 def _branch(branch: object) -> dict[str, int]:
@@ -145,10 +144,8 @@ def _branch(branch: object) -> dict[str, int]:
     if branch is None:
         return {}
     if not isinstance(branch, Mapping):
-        raise CrankcheckError(
-            f"--branch: found {arguments.kind_of(branch)}; give a dict of names and 1 or -1, "
-            "such as {'C': -1}"
-        )
+        cure = "give a dict of names and 1 or -1, such as {'C': -1}"
+        raise arguments.wrong_kind("--branch", branch, cure)
     return {arguments.text_of(name, "--branch", "C"): sign for name, sign in branch.items()}
 
 
@@ -163,15 +160,8 @@ IN_FOLDER = {
     "page.html": "",
 }
 NOT_OF_MODELS = [
-    "scenes",
-    "engines",
-    "profiles",
-    "jobs",
-    "baseline",
-    "factor",
-    "forces",
-    "free",
-    "duration_s",
+    *("scenes", "engines", "profiles", "jobs", "baseline"),
+    *("factor", "forces", "free", "duration_s"),
 ]
 """Fields that apply to scenes alone."""
 
@@ -184,8 +174,7 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
     limits = checked_limits(request.limit_s, request.memory_gb)
     if request.write_scene is not None:
         check_file(request.write_scene, "--write-scene", (".toml",))
-    files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
-    files["--write-scene"] = request.write_scene
+    files = request.files | {"--write-scene": request.write_scene}
     outputs = Outputs(files, request.folder, IN_FOLDER)
     outputs.check([asked.path])
     account = read(asked, limits)
@@ -238,7 +227,12 @@ def _branch_of(texts: Sequence[str]) -> dict[str, int]:
 def _contents(
     judged: JudgedModel, facts: Mapping[str, str]
 ) -> dict[str, Callable[[], bytes | str]]:
-    """The contents of the files, by name."""
+
+    def page() -> str:
+        from reports.page.model_page import model_page  # the drawings, which all else does without
+
+        return model_page(judged, facts)
+
     return {
         "verify.csv": lambda: csv(cell_frame(judged.lines)),
         "verify.json": lambda: document(judged, facts),
@@ -248,12 +242,5 @@ def _contents(
         # Empty where there is none: one of an earlier run must not stay.
         "recommended.diff": lambda: judged.patch if is_diff(judged.patch) else "",
         "recommended.txt": lambda: f"{recommended_head(judged)}\n{judged.patch}",
-        "page.html": lambda: _page(judged, facts),
+        "page.html": page,
     }
-
-
-def _page(judged: JudgedModel, facts: Mapping[str, str]) -> str:
-    """The page of a verdict."""
-    from reports.page.model_page import model_page  # the drawings, which nothing else here needs
-
-    return model_page(judged, facts)

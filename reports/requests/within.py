@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from numbers import Real
-from typing import Any
 
 from models.errors import CrankcheckError, shown, suggestion
 from reports.plan.steps import positive
 from reports.quantities.limits import DEFAULTS
-from reports.requests.any_log import LogLike, MapLike
+from reports.requests.any_log import LogLike, LogOptions, MapLike
 from reports.requests.arguments import SceneLike, is_true, told_at_the_call
 from reports.requests.check import CellVerdict
 from reports.requests.judge import LogVerdict, Target, judged, target_of
@@ -57,33 +56,23 @@ def assert_within(
         As in `judge`; a tolerance of an unknown quantity, whose message suggests near names.
     """
     __tracebackhide__ = True  # the line that asserts is the caller's
-    _refuse_number(drive)
-    named = {_quantity(name): _limit(name, number) for name, number in tolerances.items()}
+    if isinstance(drive, Real):
+        raise CrankcheckError(
+            f"drive: found {shown(drive)}; give scene, fitted or logged; the tolerance of quantity "
+            "drive is target={'drive': 1e-6}"
+        )
+    unit = "pure numbers: rad, lengths over that of the longest link"
+    named = {_quantity(name): positive(name, limit, unit) for name, limit in tolerances.items()}
     limits = target_of(target) | named
-    options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
-    found = judged(scene, log, limits, **options, forces=is_true(forces, "forces"))
+    options = LogOptions(step_s, drive, map, require, is_true(forces, "forces"))
+    found = judged(scene, log, limits, options)
     if found.verdict != "within":
         raise AssertionError(f"\n{found}")
     return found
 
 
 def _quantity(argument: str) -> str:
-    """The quantity of an argument. Raises CrankcheckError for an unknown one."""
     if argument in BY_ARGUMENT:
         return BY_ARGUMENT[argument]
     hint = suggestion(argument, BY_ARGUMENT, "use one of", 2, 0.6)
     raise CrankcheckError(f"{argument}: it is no quantity; {hint}")
-
-
-def _limit(argument: str, number: float) -> float:
-    """A tolerance, above 0. Raises CrankcheckError."""
-    return positive(argument, number, "pure numbers: rad, lengths over that of the longest link")
-
-
-def _refuse_number(drive: object) -> None:
-    """Refuse a tolerance in the place of the drive. Raises CrankcheckError."""
-    if isinstance(drive, Real):
-        raise CrankcheckError(
-            f"drive: found {shown(drive)}; give scene, fitted or logged; the tolerance of quantity "
-            "drive is target={'drive': 1e-6}"
-        )

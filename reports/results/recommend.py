@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.text import Text
 
 from models.errors import few
-from reports.output.console import plain_table
+from reports.output.console import grid
 from reports.output.numbers import short
 from reports.results.candidates import NOT_RUN, Candidate, candidates
 from reports.results.cost import SHARE, equal, noise, pairs, reached
@@ -205,6 +205,7 @@ def _time(one: Candidate) -> float:
 
 
 WIDE = 90
+WIDE_HEADS = ("on scene", "steps on\nthe fit:")
 """Columns of a terminal with room for a column of the scene of the worst error."""
 
 
@@ -230,16 +231,15 @@ def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableT
     wide = width >= WIDE
     best = recommendations[0].best if recommendations else None
     kind = best.kind if best else way(WAYS[-1]).results
-    table = plain_table(f"cheapest settings that keep every {kind.kept}")
     turn = clock_of(best.drive if best else "").name
-    table.add_column(kind.head, no_wrap=True, justify="right")
-    table.add_column("engine", no_wrap=True)
-    table.add_column("settings", overflow="fold", min_width=10)
-    for head in (f"steps\na {turn}", "us per\nstep", f"ms per\n{turn}", "worst\nerror"):
-        table.add_column(head, justify="right", no_wrap=True)
-    if wide:
-        table.add_column("on scene", overflow="fold")
-        table.add_column("steps on\nthe fit", justify="right", no_wrap=True)
+    numbers = (f"steps\na {turn}:", "us per\nstep:", f"ms per\n{turn}:", "worst\nerror:")
+    table = grid(
+        (f"{kind.head}:", "engine", "settings", *numbers, *WIDE_HEADS[: 2 * wide]),
+        title=f"cheapest settings that keep every {kind.kept}",
+        gap=1,
+        whole=("engine",),
+        least={"settings": 10},
+    )
     notes: list[str] = []
     for one in recommendations:
         mark = _mark(_note(one), notes)

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
-from reports.output.console import plain_table
+from reports.output.console import grid
 from reports.selftest.fault import PROFILE, Fault
 from reports.selftest.trial import GROUPS, RUNS, FaultTrial, Passed, Verdict, passes
 
@@ -87,15 +87,9 @@ def _told(console: Console, verdict: Verdict) -> None:
 def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> Table:
     """Return one row a fault, in groups."""
     wide = width >= WIDE
-    table = plain_table()
-    table.add_column("")
-    table.add_column("fault", no_wrap=True)
-    if wide:
-        table.add_column("what is wrong", overflow="fold")
-    table.add_column("planted size", overflow="fold")
-    table.add_column("caught\nby", no_wrap=True)
-    for engine in engines:
-        table.add_column(f"from on,\n{engine}", no_wrap=True, justify="right")
+    heads = ["", "fault", *["what is wrong"] * wide, "planted size", "caught\nby"]
+    heads += [f"from on,\n{engine}:" for engine in engines]
+    table = grid(heads, gap=1, whole=("fault", "caught\nby"))
     for group in dict.fromkeys(one.fault.group for one in verdicts):
         table.add_row("", Text(group, "bold"), *([Text(GROUPS[group], "bold")] if wide else []))
         for one in verdicts:
@@ -106,9 +100,7 @@ def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> T
 
 def _unseen(passed: Sequence[Passed]) -> Table:
     """Return the deviations that are not seen, and the reason."""
-    table = plain_table()
-    for head in ("", "planted", "why it need not be seen"):
-        table.add_column(head, overflow="fold")
+    table = grid(("", "planted", "why it need not be seen"), gap=1)
     for one in passed:
         failed = dict.fromkeys(rule for rules in one.failed.values() for rule in rules)
         reason = f"Seen all the same, by {', '.join(failed)}." if failed else one.unseen.reason

@@ -168,13 +168,8 @@ POLL_S = 0.01
 
 
 def locked(folder: Path) -> FileLock:
-    """Return the lock of a store, taken for a sweep into a folder that is there.
-
-    Raises
-    ------
-    CrankcheckError
-        Another sweep has it, or it is no file that can be locked.
-    """
+    """Return the lock of a store, taken for a sweep into a folder that is there. Raises
+    CrankcheckError where another sweep has it, or it is no file that can be locked."""
     lock = FileLock(folder / LOCK, timeout=SWEEP_S)
     try:
         lock.acquire(poll_interval=POLL_S)

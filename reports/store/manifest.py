@@ -27,38 +27,11 @@ TABLES = ("cells", "timings")
 """A row of ``cells`` is a whole cell; ``timings`` are taken later, and belong to it by key."""
 TRAJECTORIES, DAMAGED, LOCK = "trajectories", "damaged", ".lock"
 TEXT = {
-    "key",
-    "line",
-    "scene",
-    "scene_digest",
-    "engine",
-    "version",
-    "crankcheck",
-    "profile",
-    "variant",
-    "drive",
-    "verdict",
-    "status",
-    "reason",
-    "failed_rules",
-    "trend",
-    "force_trend",
-    "convergence_of",
-    "settings",
-    "asked",
-    "warnings",
-    "run_on",
-    "quantity",
-    "body_kind",
-    "body",
-    "source",
-    "kind",
-    "unit",
-    "series",
-    "processor",
-    "made",
-    "precision",
-    "springs",
+    *("key", "line", "scene", "scene_digest", "engine", "version", "crankcheck", "profile"),
+    *("variant", "drive", "verdict", "status", "reason", "failed_rules", "trend"),
+    *("force_trend", "convergence_of", "settings", "asked", "warnings", "run_on"),
+    *("quantity", "body_kind", "body", "source", "kind", "unit", "series", "processor"),
+    *("made", "precision", "springs"),
 }
 FLAGS = {"gated"}
 NESTED: Mapping[str, tuple[str, ...]] = {
@@ -237,15 +210,8 @@ class Manifest:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Return the manifest of a store.
-
-    Raises
-    ------
-    UnreadableError
-        Not to be read, not JSON, or not as it was written.
-    CrankcheckError
-        One of another format, which is left alone.
-    """
+    """Return the manifest of a store. Raises UnreadableError for one that can not be read, is not
+    JSON, or not as it was written; CrankcheckError for another format, which is left alone."""
     try:
         raw = json.loads(regular_bytes(folder / MANIFEST, MOST_BYTES).decode())
     except (ValueError, RecursionError) as error:

@@ -16,35 +16,14 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no stubs
 from models.array import Array
 from models.errors import CrankcheckError, few
 from models.files.inputs import UnreadableError
-from reports.store.folder import (
-    Folder,
-    TablePart,
-    being_written,
-    has_parts,
-    is_written,
-    open_folder,
-    paths_of,
-    rows_in,
-)
-from reports.store.manifest import (
-    BUSY,
-    DAMAGED,
-    LOCK,
-    MANIFEST,
-    TABLES,
-    TRAJECTORIES,
-    Damage,
-    Manifest,
-    command,
-    notice,
-    read_manifest,
-    unnested,
-)
+from reports.store import folder as files
+from reports.store import manifest as manifests
+from reports.store.manifest import MANIFEST, TABLES, Damage, Manifest
 from reports.workers.isolated import Limits
 
 HARD = ("stability.json", "stability.csv", "stability.html")
 """Files that `crankcheck stability` may have put beside a sweep."""
-OWN = {MANIFEST, LOCK, DAMAGED, TRAJECTORIES, *TABLES, *HARD}
+OWN = {MANIFEST, *TABLES, *HARD, manifests.LOCK, manifests.DAMAGED, manifests.TRAJECTORIES}
 STOPPED = "not all that its sweeps asked for; was one stopped?"
 REPEATED = "rows that another part has too; those written last count"
 UNASKED = f"cells that no sweep in {MANIFEST} asked for; left out, until one asks for them"
@@ -55,7 +34,7 @@ class ExaminedStore:
     """A store, looked through."""
 
     manifest: Manifest
-    folders: Mapping[str, Folder]
+    folders: Mapping[str, files.Folder]
     damage: tuple[Damage, ...] = ()
 
     def table(self, name: str, nested: str = "") -> pa.Table | None:
@@ -68,7 +47,7 @@ class ExaminedStore:
             tables.append(rows if all(counting) else rows.filter(pa.array(counting)))
         return pa.concat_tables(tables, promote_options="permissive") if tables else None
 
-    def _counting(self, table: str, part: TablePart) -> Sequence[bool]:
+    def _counting(self, table: str, part: files.TablePart) -> Sequence[bool]:
         """Return flags of the rows of a part that count: written last, of requested cells."""
         last, asked = self.folders[table].last[part.path.name], self.manifest.lines
         if table == "timings" or not asked:
@@ -78,20 +57,13 @@ class ExaminedStore:
 
 
 def examine(folder: Path) -> ExaminedStore:
-    """Look through a store.
-
-    Raises
-    ------
-    OSError
-        Its folder can not be looked at.
-    CrankcheckError
-        A store of another format.
-    """
+    """Look through a store. Raises OSError where its folder can not be looked at, CrankcheckError
+    for a store of another format."""
     # The request of a sweep is in the manifest before its first cell is in a part.
-    folders = {name: open_folder(folder / name, name) for name in TABLES}
+    folders = {name: files.open_folder(folder / name, name) for name in TABLES}
     damage = []
     try:
-        manifest = read_manifest(folder)
+        manifest = manifests.read_manifest(folder)
     except UnreadableError as error:
         manifest = Manifest()
         damage.append(Damage(MANIFEST, str(error), aside=os.path.lexists(folder / MANIFEST)))
@@ -110,8 +82,8 @@ def _cells(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
     """Yield lost parts of cells, and further cells that the manifest knows to be missing."""
     cells, lost = store.folders["cells"], 0
     for name, error in cells.faults.items():
-        lost += rows_in(name)
-        yield Damage(f"cells/{name}", str(error), lost=rows_in(name), aside=True)
+        lost += files.rows_in(name)
+        yield Damage(f"cells/{name}", str(error), lost=files.rows_in(name), aside=True)
     rows = store.table("cells")
     readable = Counter(rows.column("line").to_pylist() if rows else ())
     asked = _asked(store.manifest)
@@ -121,8 +93,7 @@ def _cells(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
         yield Damage("cells", cells.fault or STOPPED, lost=max(0, gone), aside=aside)
 
 
-def _timings(folder: Path, timings: Folder) -> Iterator[Damage]:
-    """Yield the lost timings."""
+def _timings(folder: Path, timings: files.Folder) -> Iterator[Damage]:
     for name, error in timings.faults.items():
         yield Damage(f"timings/{name}", f"{error}; its times are lost", aside=True)
     if timings.fault and os.path.lexists(folder / "timings"):
@@ -150,7 +121,7 @@ def _harmless(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
     if asked and unasked:  # a manifest made anew may know of less than was run: they are missed
         yield Damage(few(list(unasked), 3), UNASKED, "nothing", lost=sum(unasked.values()))
     top = sorted(path.name for path in folder.iterdir() if path.name not in OWN)
-    foreign = [name for name in top if not being_written(name)]
+    foreign = [name for name in top if not files.being_written(name)]
     foreign += [name for here in store.folders.values() for name in here.foreign]
     if foreign:
         yield Damage(few(foreign, 3), "not of the store; left alone", "nothing")
@@ -178,7 +149,7 @@ class Stored:
     @property
     def notice(self) -> list[str]:
         """Lines that name every damage; none where there is none."""
-        return notice(self.folder, self.damage, len(self.cells), self.manifest.runs)
+        return manifests.notice(self.folder, self.damage, len(self.cells), self.manifest.runs)
 
     @cached_property
     def errors(self) -> pd.DataFrame:
@@ -200,13 +171,8 @@ class Stored:
 
 
 def read_store(folder: Path) -> Stored:
-    """Return the store in a folder, as far as it can be read.
-
-    Raises
-    ------
-    CrankcheckError
-        No store, one of another format, or without a manifest or a cell that can be read.
-    """
+    """Return the store in a folder, as far as it can be read. Raises CrankcheckError for no store,
+    one of another format, or without a manifest or a cell that can be read."""
     try:
         _refuse_unknown(folder)
         store = _examined(folder)
@@ -216,7 +182,7 @@ def read_store(folder: Path) -> Stored:
         ) from None
     cells = _frame(store, "cells")
     if cells.empty:
-        lines = notice(folder, store.damage, 0, store.manifest.runs)
+        lines = manifests.notice(folder, store.damage, 0, store.manifest.runs)
         usual = f"{folder}: a store without cells; run its sweep again"
         raise CrankcheckError("\n".join(lines) or usual)
     timings = _frame(store, "timings")
@@ -234,24 +200,25 @@ def _examined(folder: Path) -> ExaminedStore:
     Cells that it is still to write are no damage, and still hinder a reader that must know all
     cells, as a comparison.
     """
-    busy = is_written(folder)
+    busy = files.is_written(folder)
     store = examine(folder)
     later = [each for each in store.damage if each.what == STOPPED]
-    if not later or not (busy or is_written(folder)):
+    if not later or not (busy or files.is_written(folder)):
         return store
-    waiting = Damage("cells", BUSY, "wait", sum(each.lost for each in later))
+    waiting = Damage("cells", manifests.BUSY, "wait", sum(each.lost for each in later))
     return replace(store, damage=(waiting, *(each for each in store.damage if each not in later)))
 
 
 def _refuse_unknown(folder: Path) -> None:
     """Raise CrankcheckError for a folder without a manifest that can be read."""
     try:
-        read_manifest(folder)
+        manifests.read_manifest(folder)
     except UnreadableError as error:
-        if has_parts(folder):
+        if files.has_parts(folder):
+            mends = manifests.command(folder, ())
             raise CrankcheckError(
-                f"{folder}: {MANIFEST}: {error}; what mends it: {command(folder, ())} (keeps every "
-                "cell that is whole)"
+                f"{folder}: {MANIFEST}: {error}; what mends it: {mends} (keeps every cell that is "
+                "whole)"
             ) from None
         raise CrankcheckError(
             f"{folder}: no store of a sweep there ({MANIFEST}: {error}); `crankcheck sweep -o` "
@@ -295,7 +262,7 @@ def stored_costs(folder: Path) -> dict[str, float]:
 
 def _rows(folder: Path, name: str, *columns: str) -> Iterator[tuple[Any, ...]]:
     """Yield some columns of a table that was mended, row by row."""
-    for path in paths_of(folder, name):
+    for path in files.paths_of(folder, name):
         part = pq.ParquetFile(path).read(columns, use_threads=False)
         yield from zip(*(part.column(column).to_pylist() for column in columns), strict=True)
 
@@ -304,5 +271,5 @@ def _frame(store: ExaminedStore | None, name: str, nested: str = "") -> pd.DataF
     """Return the readable part of a table, or of the rows that one of its columns holds."""
     rows = store.table(name, nested) if store else None
     if rows is not None and nested:
-        rows = unnested(rows, nested)
+        rows = manifests.unnested(rows, nested)
     return pd.DataFrame() if rows is None else rows.to_pandas()

@@ -14,18 +14,9 @@ from models.files.inputs import UnreadableError
 from reports.describe.motion_tables import run_frame
 from reports.output.formats import parquet
 from reports.output.write import check_folder, refuse_link, write
+from reports.store import manifest as manifests
 from reports.store.folder import has_parts, locked, open_part, paths_of, write_part
-from reports.store.manifest import (
-    DAMAGED,
-    LOCK,
-    MANIFEST,
-    TABLES,
-    TRAJECTORIES,
-    Manifest,
-    indented,
-    read_manifest,
-    table,
-)
+from reports.store.manifest import MANIFEST, TABLES, Manifest
 from reports.store.reader import STOPPED, ExaminedStore, examine
 from sim.engine import Run
 
@@ -39,16 +30,13 @@ class Writer:
 
     Damage in it is mended at once, as ``mended`` says.
 
-    Raises
-    ------
-    CrankcheckError
-        A folder that is no store, is not to be written, has links for folders, or that another
-        sweep writes to.
+    Raises CrankcheckError for a folder that is no store, is not to be written, has links for
+    folders, or that another sweep writes to.
     """
 
     def __init__(self, folder: Path, manifest: Manifest) -> None:
         check_folder(folder, "-o")
-        for name in (*TABLES, TRAJECTORIES, DAMAGED):
+        for name in (*TABLES, manifests.TRAJECTORIES, manifests.DAMAGED):
             if (folder / name).exists():  # a link to nothing is damaged, and moved away
                 refuse_link(folder / name, "-o")
         self.folder = folder
@@ -130,7 +118,7 @@ class Writer:
                 if self._manifest:  # it waited for the first thing to be kept
                     write(self.folder / MANIFEST, self._manifest)
                     self._manifest = ""
-                write_part(self.folder / name, name, table(rows), time.time_ns())
+                write_part(self.folder / name, name, manifests.table(rows), time.time_ns())
                 rows.clear()
 
     def _add(self, table: str, row: Row) -> None:
@@ -140,7 +128,6 @@ class Writer:
 
 
 def _is_new(folder: Path) -> bool:
-    """True if there is nothing of a store yet."""
     return not (os.path.lexists(folder / MANIFEST) or has_parts(folder))
 
 
@@ -149,7 +136,7 @@ def _refuse_other(folder: Path) -> None:
     if not folder.is_dir() or has_parts(folder):
         return
     try:
-        read_manifest(folder)
+        manifests.read_manifest(folder)
         return
     except UnreadableError as error:
         why = f"no {MANIFEST}" if _is_new(folder) else f"a {MANIFEST} that is no store's ({error})"
@@ -163,7 +150,9 @@ def _refuse_other(folder: Path) -> None:
 
 def _begun(path: Path) -> bool:
     """True for the first files of a sweep: a lock, and empty folders."""
-    return path.name == LOCK or (path.name in TABLES and path.is_dir() and not any(path.iterdir()))
+    return path.name == manifests.LOCK or (
+        path.name in TABLES and path.is_dir() and not any(path.iterdir())
+    )
 
 
 def _create(folder: Path, names: Iterable[str]) -> None:
@@ -192,15 +181,15 @@ def mend(folder: Path, store: ExaminedStore) -> list[str]:
     bad = [each for each in store.damage if each.cure == "sweep" and each.what != STOPPED]
     lines = [each.line for each in bad]
     if moved:
-        lines.append(f"moved to {folder / DAMAGED}: {', '.join(moved)}")
+        lines.append(f"moved to {folder / manifests.DAMAGED}: {', '.join(moved)}")
     if any(each.path == MANIFEST for each in bad):
         lines.append(f"{MANIFEST} is made again, and knows of this sweep alone")
-    return [f"{folder}: damaged", *indented(lines)] if lines else []
+    return [f"{folder}: damaged", *manifests.indented(lines)] if lines else []
 
 
 def _set_aside(folder: Path, path: str) -> str:
     """Move a file or a folder of the store; return its new name."""
-    place = folder / DAMAGED
+    place = folder / manifests.DAMAGED
     try:
         place.mkdir(exist_ok=True)
         name = next(name for name in _names(path) if not os.path.lexists(place / name))

@@ -143,13 +143,8 @@ _own = threading.local()
 
 
 def connected(address: str) -> Client:
-    """Return a cluster, at the address of its scheduler.
-
-    Raises
-    ------
-    CrankcheckError
-        No cluster at the address, one without workers, or no Dask here.
-    """
+    """Return a cluster, at the address of its scheduler. Raises CrankcheckError for no cluster at
+    the address, one without workers, or no Dask here."""
     try:
         from distributed import Client
     except ImportError:

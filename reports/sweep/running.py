@@ -1,6 +1,5 @@
-"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one;
-and print the result.
-"""
+"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one; and
+print the result."""
 
 from __future__ import annotations
 
@@ -9,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,18 +24,10 @@ from reports.plan.study import Study
 from reports.results.lines import lines
 from reports.results.recommend import noise_line, recommendation_table, recommendations
 from reports.store.manifest import Manifest
-from reports.store.reader import Stored, read_store, stored_costs, stored_endings, stored_keys
+from reports.store.reader import read_store, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
-from reports.sweep.measured import (
-    UNMEASURED,
-    MeasuredCell,
-    Repeats,
-    connected,
-    measured,
-    on_cluster,
-    timed_in_turns,
-    timing_row,
-)
+from reports.sweep import measured as measuring
+from reports.sweep.measured import MeasuredCell
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped
@@ -79,6 +69,10 @@ class Running:
 
         So many ``jobs`` at a time here (0: one per processor), or all on the cluster of ``client``.
         """
+
+        def in_child(child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
+            return child.call(measuring.measured, cell, keep_run)
+
         ended = stored_endings(self.writer.folder)
         asked = {task.key for task in self.tasks}  # others would not come back
         over = {key for key in asked & set(ended) if again or self._wider_than(ended[key])}
@@ -88,9 +82,9 @@ class Running:
         failed: dict[str, Counter[str]] = {}
         cells = [task.cell for task in missing]
         if client is None:
-            ends = as_they_end(partial(_measured, keep_run), cells, jobs, self.limits)
+            ends = as_they_end(in_child, cells, jobs, self.limits)
         else:
-            ends = on_cluster(client, cells, self.limits, keep_run)
+            ends = measuring.on_cluster(client, cells, self.limits, keep_run)
         with progress_bar(self.progress, "errors", len(missing)) as advance, closing(ends):
             for index, how in ends:
                 task = missing[index]
@@ -112,15 +106,15 @@ class Running:
         count = 0
         with (
             progress_bar(self.progress, "timings", ROUNDS * len(missing)) as advance,
-            closing(Isolated[Repeats](self.limits)) as isolated,
+            closing(Isolated[measuring.Repeats](self.limits)) as isolated,
         ):
             for at in range(0, len(missing), BLOCK):
                 block = missing[at : at + BLOCK]
                 cells = [(task.cell, guesses[task.key]) for task in block]
-                timings = timed_in_turns(isolated, cells, ROUNDS, advance)
+                timings = measuring.timed_in_turns(isolated, cells, ROUNDS, advance)
                 for task, timing in zip(block, timings, strict=True):
                     if timing is not None:
-                        row = timing_row(task.cell, *timing)
+                        row = measuring.timing_row(task.cell, *timing)
                         self.writer.timing({"key": task.key, **row, **where})
                         count += 1
                 self.writer.flush()
@@ -150,13 +144,9 @@ class Running:
         return ended.time_s < self.limits.time_s or ended.memory_gb < self.limits.memory_gb
 
     def _refuse_other_versions(self, task: Task, outcome: MeasuredCell) -> None:
-        """Refuse a worker elsewhere with other packages than the key of the cell says.
-
-        Raises
-        ------
-        CrankcheckError
-            An engine, or crankcheck itself, of another version there, or not installed.
-        """
+        """Refuse a worker elsewhere with other packages than the key of the cell says. Raises
+        CrankcheckError for an engine, or crankcheck itself, of another version there, or not
+        installed."""
         engine, row = task.cell.engine, outcome.row
         for name, found, here in (
             (engine, str(row["version"] or ""), task.version),
@@ -174,15 +164,10 @@ class Running:
             )
 
 
-def _measured(keep_run: bool, child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
-    """Run a cell in a child process."""
-    return child.call(measured, cell, keep_run)
-
-
 def _lost(task: Task, lost: Lost) -> MeasuredCell:
     """Return a cell that came to no end of its own, as a row with its reason."""
     row = cell_row(unfinished(task.cell, lost.status, lost.reason))
-    return MeasuredCell({**row, **UNMEASURED})
+    return MeasuredCell({**row, **measuring.UNMEASURED})
 
 
 @dataclass(frozen=True)
@@ -207,7 +192,7 @@ def swept(
     study, or of the folder, that are known before running.
     """
     laid = grid(study)
-    client = None if manner.dask is None else connected(manner.dask)
+    client = None if manner.dask is None else measuring.connected(manner.dask)
     facts = provenance({task.cell.engine: task.version for task in laid.tasks})
     run = {
         "command": list(command),
@@ -250,15 +235,11 @@ def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
         console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
         for reason, _ in reasons.most_common(2):
             say(console, f"    {reason}")
-    stored = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
-    console.print(harmless(stored), markup=False)
-    found = read_store(folder)
-    if not found.timings.empty:
-        _recommend(console, found)
-
-
-def _recommend(console: Console, stored: Stored) -> None:
-    """Print recommendations from all that the store holds."""
+    place = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
+    console.print(harmless(place), markup=False)
+    stored = read_store(folder)
+    if stored.timings.empty:
+        return
     console.print()
     older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
     if older:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.text import Text
 
-from reports.output.console import plain_table
+from reports.output.console import grid
 from reports.quantities import QUANTITIES, named
 from reports.results.lines import value_text
 from reports.tune.attempt import Attempt, Goal, Row, Taken
@@ -33,10 +33,7 @@ def show(console: Console, goal: Goal, space: SearchSpace, sides: Sequence[Side]
     """Print the table, and the ratio of the last side to the first."""
     names = ", ".join(scene.name for scene in goal.scenes)
     console.print(Text(f"{names}, {goal.engine}: error of place up to {goal.target:g}", "bold"))
-    table = plain_table(gap=2)
-    table.add_column("", overflow="fold")
-    for side in sides:
-        table.add_column(side.title, justify="right", no_wrap=True)
+    table = grid(["", *(f"{side.title}:" for side in sides)])
     for label, cells in _lines(goal, space, sides):
         changed = (
             len(cells) == 2 and label in {k.name for k in space.knobs} and cells[0] != cells[1]

@@ -20,7 +20,7 @@ from reports.judge.cell import Checked
 from reports.judge.rules import FORCES, RULES
 from reports.judge.rules.rule import Finding
 from reports.judge.three_steps import Convergence
-from reports.output.console import hanging, plain_table
+from reports.output.console import grid, hanging
 from reports.output.formats import case_of, remark, suite_of
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES, named
@@ -29,6 +29,9 @@ from reports.way.way import WAYS
 Texts = Callable[[Checked], Sequence[str]]
 Part = tuple[int, Callable[[Sequence[Checked]], Sequence[str]]]
 """A part of the text below the tables, its place among the others, and its lines for cells."""
+
+
+HALVED = "when dt\nis halved"
 
 
 def _none(one: Checked) -> Sequence[str]:
@@ -61,19 +64,16 @@ class CellTable:
         )
         apart = width >= self.apart
         role = "gated" if gated else "shown, not gated"
-        table = plain_table(f"{self.title}profile {profile} ({role})")
-        table.add_column("")
-        table.add_column(
-            "scene" if apart else "scene\nengine", overflow="fold", min_width=self.names
+        first = ("scene", "engine") if apart else ("scene\nengine",)
+        after = ("most of\na limit", *self.after_heads)
+        table = grid(
+            ("", *first, *(f"{head}:" for head in (*heads, *before)), *after, HALVED),
+            title=f"{self.title}profile {profile} ({role})",
+            gap=1,
+            whole=("engine", *after),
+            least={first[0]: self.names} | ({HALVED: 15} if apart else {}),
         )
-        if apart:
-            table.add_column("engine", no_wrap=True)
-        for head in (*heads, *before):
-            table.add_column(head, justify="right", no_wrap=True)
-        for head in ("most of\na limit", *self.after_heads):
-            table.add_column(head, no_wrap=True)
-        least, most = (15, None) if apart else (None, 14)
-        table.add_column("when dt\nis halved", overflow="fold", min_width=least, max_width=most)
+        table.columns[-1].max_width = None if apart else 14
         for one in sorted(chosen, key=lambda one: one.verdict == "within"):
             names = (one.cell.scene.name, one.cell.engine)
             *numbers, share, seen = row_cells(one, heads, self.numbers, forces=self.forces)

@@ -59,7 +59,6 @@ def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
 def _done(
     function: Callable[..., object], arguments: tuple[object, ...], memory_bytes: int
 ) -> Ending:
-    """Run one job, and return its ending."""
     try:
         return "done", function(*arguments), b""
     except MemoryError:

@@ -84,11 +84,8 @@ class Isolated(Generic[Result]):
     def _called(
         self, function: Callable[..., Result], arguments: tuple[object, ...]
     ) -> Result | Lost:
-        """Call as `call`, with the child for itself."""
-        if self.closed:
-            return Lost("crashed", "the sweep was ended")
-        child = self._child or self._started(function)
-        if self.closed:  # while it started
+        child = None if self.closed else self._child or self._started(function)
+        if child is None or self.closed:  # maybe while it started
             return Lost("crashed", "the sweep was ended")
         if isinstance(child, Lost):
             return child
@@ -195,7 +192,6 @@ def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
 
 
 def _ending(code: int) -> str:
-    """Return an exit code in words."""
     if code >= 0:
         return f"exit code {code}"
     try:
@@ -208,7 +204,6 @@ FEW = 4
 """Most items that are done in this process: a second process takes longer to start."""
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
-BOUNDLESS = Limits(MOST_S, MOST_GB)
 
 
 def run_all(
@@ -228,7 +223,7 @@ def run_all(
     which another process can import, are raised here. 0 ``jobs``: one per processor.
     """
     if apart and jobs == 1:
-        limits = BOUNDLESS
+        limits = Limits(MOST_S, MOST_GB)
     if not apart and ((jobs or processors()) == 1 or len(items) <= FEW):
         ends = ((index, work(item)) for index, item in enumerate(items))
     else:
@@ -289,7 +284,6 @@ def _one(
     child: Isolated[Result],
     item: Item,
 ) -> Result:
-    """Work on one item in a child process."""
     answer = child.call(work, item)
     if not isinstance(answer, Lost):
         return answer

@@ -21,8 +21,6 @@ LINE_S = 10.0
 
 
 class _StepRate(ProgressColumn):
-    """Cells in a second."""
-
     def render(self, task: Bar) -> Text:
         speed = task.finished_speed or task.speed
         return Text("" if speed is None else f"{speed:.1f}/s", "progress.data.speed")

@@ -4,6 +4,7 @@ The unknowns are the frames of all bodies. A float Jacobian only leads the itera
 brought to zero, at all three levels, are the exact constraints and their derivatives by time.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -21,8 +22,24 @@ from tests.analytic.oracle import Place
 from tests.second_opinions.constraints import Constraints
 
 DONE = mpf(10) ** -42
-Frame = tuple[Place, Jet, Place]
-"""Of a body: origin, angle and direction."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Frame of a body, in numbers of any kind."""
+
+    origin: Place
+    angle: Jet
+    along: Place
+
+    def at(self, local: Point) -> Place:
+        return self.origin + turned(self.along, local)
+
+
+def turned(along: Place, by: tuple[Number, Number]) -> Place:
+    """A direction times a constant vector, as complex numbers."""
+    x, y = by
+    return Place(along.x * x - along.y * y, along.y * x + along.x * y)
 
 
 def law_at(law: Law, time_s: float) -> Jet:
@@ -68,14 +85,50 @@ def held_points(scene: Scene) -> dict[str, list[tuple[str, Point]]]:
     return held
 
 
-class Chain:
-    """The constraints of a scene over jets."""
+class JetChain(ABC):
+    """The constraints of a scene over jets of numbers of any kind."""
 
     def __init__(self, scene: Scene) -> None:
-        self.scene = scene
+        self.scene, self.held = scene, held_points(scene)
+
+    @abstractmethod
+    def along(self, guide: Frame, slider: Slider) -> Place:
+        """The direction of a slider's line on its guide."""
+
+    def gaps(self, frames: Mapping[str, Frame]) -> list[Jet]:
+        """What the places of each pin on its bodies are apart, in x and y."""
+        rows: list[Jet] = []
+        for (first, at_first), *others in self.held.values():
+            for body, local in others:
+                gap = frames[first].at(at_first) - frames[body].at(local)
+                rows += [gap.x, gap.y]
+        return rows
+
+    def ride(self, frames: Mapping[str, Frame], slider: Slider) -> tuple[Place, Place]:
+        """From the line's point to the slider's, and the direction of the line."""
+        body, guide = sliding_body(slider), frames[slider.on]
+        tip = (0.0, 0.0) if slider.link is None else local_point(self.scene, body, slider.point)
+        return frames[body].at(tip) - guide.at(slider.through_m), self.along(guide, slider)
+
+    def solved(self, frames: Mapping[str, Frame]) -> Solved:
+        rides = {name: self.ride(frames, s) for name, s in self.scene.sliders.items()}
+        held = {name: bodies[0] for name, bodies in self.held.items()}
+        for slider in self.scene.sliders.values():
+            held.setdefault(slider.point, (sliding_body(slider), (0.0, 0.0)))
+        return Solved(
+            {name: frames[name].angle for name in self.scene.links},
+            {name: frames[body].at(local) for name, (body, local) in held.items()},
+            {name: along.dot(away) for name, (away, along) in rides.items()},
+        )
+
+
+class Chain(JetChain):
+    """The constraints in fifty digits."""
+
+    def __init__(self, scene: Scene) -> None:
+        super().__init__(scene)
         self.floats = Constraints(scene)
         self.bodies = self.floats.bodies
-        self.held = held_points(scene)
 
     def solve(self, time_s: float, start: list[float]) -> Solved:
         """The motion at a time, by iteration from coordinates near it."""
@@ -93,25 +146,24 @@ class Chain:
                 break
         else:
             raise AssertionError(f"no convergence at {time_s} s")
-        return self._solved([Jet(*row) for row in zip(*levels, strict=True)])
+        return self.solved(self._frames([Jet(*row) for row in zip(*levels, strict=True)]))
+
+    def along(self, guide: Frame, slider: Slider) -> Place:
+        return oracle.toward(guide.angle + mpf(slider.direction_rad))
 
     def _frames(self, q: list[Jet]) -> dict[str, Frame]:
-        frames = {GROUND: (oracle.at(0, 0), Jet(0), oracle.at(1, 0))}
+        frames = {GROUND: Frame(oracle.at(0, 0), Jet(0), oracle.at(1, 0))}
         for i, body in enumerate(self.bodies):
             x, y, angle = q[3 * i : 3 * i + 3]
-            frames[body] = (Place(x, y), angle, oracle.toward(angle))
+            frames[body] = Frame(Place(x, y), angle, oracle.toward(angle))
         return frames
 
     def _equations(self, q: list[Jet], drive: Jet) -> list[Jet]:
         frames = self._frames(q)
-        rows: list[Jet] = []
-        for (first, at_first), *others in self.held.values():
-            for body, local in others:
-                gap = _point(frames[first], at_first) - _point(frames[body], local)
-                rows += [gap.x, gap.y]
+        rows = self.gaps(frames)
         for slider in self.scene.sliders.values():
-            away, along = self._ride(frames, slider)
-            turn = frames[sliding_body(slider)][1] - frames[slider.on][1]
+            away, along = self.ride(frames, slider)
+            turn = frames[sliding_body(slider)].angle - frames[slider.on].angle
             turn -= mpf(slider.direction_rad) + mpf(slider.angle_rad)
             whole = mp.nint(turn.value / (2 * mp.pi))  # angles of links are known but for turns
             rows += [along.cross(away), turn - 2 * mp.pi * whole]
@@ -121,31 +173,12 @@ class Chain:
         """The driver's coordinate less what it should be."""
         driver = self.scene.driver
         if driver.slider is not None:
-            away, along = self._ride(frames, self.scene.sliders[driver.slider])
+            away, along = self.ride(frames, self.scene.sliders[driver.slider])
             return along.dot(away) - drive
-        off = frames[driver.link][1] - frames[driver.base][1] - drive
+        off = frames[driver.link].angle - frames[driver.base].angle - drive
         if driver.base == GROUND:
             return off
         return off - 2 * mp.pi * mp.nint(off.value / (2 * mp.pi))  # known but for turns
-
-    def _ride(self, frames: Mapping[str, Frame], slider: Slider) -> tuple[Place, Place]:
-        """From the line's point to the slider's, and the direction of the line."""
-        body = sliding_body(slider)
-        tip = (0.0, 0.0) if slider.link is None else local_point(self.scene, body, slider.point)
-        away = _point(frames[body], tip) - _point(frames[slider.on], slider.through_m)
-        return away, oracle.toward(frames[slider.on][1] + mpf(slider.direction_rad))
-
-    def _solved(self, q: list[Jet]) -> Solved:
-        frames = self._frames(q)
-        rides = {name: self._ride(frames, s) for name, s in self.scene.sliders.items()}
-        held = {name: bodies[0] for name, bodies in self.held.items()}
-        for slider in self.scene.sliders.values():
-            held.setdefault(slider.point, (sliding_body(slider), (0.0, 0.0)))
-        return Solved(
-            {name: frames[name][1] for name in self.scene.links},
-            {name: _point(frames[body], local) for name, (body, local) in held.items()},
-            {name: along.dot(away) for name, (away, along) in rides.items()},
-        )
 
 
 def coordinates(scene: Scene, motion: Motion, index: int) -> list[float]:
@@ -162,12 +195,6 @@ def coordinates(scene: Scene, motion: Motion, index: int) -> list[float]:
             place = motion.points[slider.point].position[index]
             found += [*place, angles[slider.on] + slider.direction_rad]
     return [float(c) for c in found]
-
-
-def _point(frame: Frame, local: Point) -> Place:
-    origin, _, along = frame
-    x, y = mpf(local[0]), mpf(local[1])
-    return Place(origin.x + along.x * x - along.y * y, origin.y + along.y * x + along.x * y)
 
 
 def _level(jet: Jet, level: int) -> Number:

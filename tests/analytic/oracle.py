@@ -16,8 +16,6 @@ from tests.analytic.change_points.jets import Jet, Number, acos, atan2, cos_sin,
 
 @dataclass(frozen=True)
 class Place:
-    """A point in motion."""
-
     x: Jet
     y: Jet
 

@@ -48,29 +48,31 @@ def _shares_at(motion: Motion, solved: Solved, i: int) -> Array:
         for name, wanted in exact.items():
             own = vars(found[name])
             if kind == "points":
-                x = _apart(wanted.x, {k: v[:, 0] for k, v in own.items()}, i)
-                y = _apart(wanted.y, {k: v[:, 1] for k, v in own.items()}, i)
-                errors = list(map(math.hypot, x, y))
+                x = errors(wanted.x, {k: v[:, 0] for k, v in own.items()}, i)
+                y = errors(wanted.y, {k: v[:, 1] for k, v in own.items()}, i)
+                off = list(map(math.hypot, x, y))
             else:
-                errors = _apart(wanted, own, i, turning=kind == "links")
-            columns.append(_over(errors, vars(bound[name]), i))
+                off = errors(wanted, own, i, turning=kind == "links")
+            columns.append(over(off, vars(bound[name]), i))
     return np.array(columns).T
 
 
-def _apart(jet: Jet, found: dict[str, Array], i: int, *, turning: bool = False) -> list[float]:
+def errors(
+    jet: Jet, found: dict[str, Array], i: int, *, turning: bool = False, nothing: float = NOTHING
+) -> list[float]:
     """The errors at the three levels, but for the oracle's own; of angles modulo whole turns."""
     exact = (jet.value, jet.rate, jet.second)
     apart = [mpf(float(array[i])) - e for array, e in zip(found.values(), exact, strict=True)]
     if turning:
         apart[0] -= 2 * mp.pi * mp.nint(apart[0] / (2 * mp.pi))
-    return [float(abs(a)) if abs(a) > NOTHING else 0.0 for a in apart]
+    return [0.0 if abs(a) <= nothing else float(abs(a)) for a in apart]
 
 
-def _over(errors: list[float], bounds: dict[str, Array], i: int) -> list[float]:
+def over(off: list[float], bounds: dict[str, Array], i: int) -> list[float]:
     """Errors over bounds; 0 / 0 is 0, and a bound of 0 is broken by any error."""
     limits = [float(array[i]) for array in bounds.values()]
     assert not any(math.isnan(limit) for limit in limits)
-    return [e / b if b else (math.inf if e else 0.0) for e, b in zip(errors, limits, strict=True)]
+    return [e / b if b else (math.inf if e else 0.0) for e, b in zip(off, limits, strict=True)]
 
 
 def random_times(scene: Scene, count: int, turns: float, seed: int = 1) -> Array:

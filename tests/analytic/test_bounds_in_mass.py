@@ -130,7 +130,6 @@ def test_long_doubles_agree_with_fifty_digits(number: int) -> None:
 
 
 def _apart(own: Jet, other: Jet, i: int, *, turning: bool) -> list[mpf]:
-    """How far two are apart at a sample, angles but for whole turns."""
     apart = [_digits(getattr(own, name), i) - getattr(other, name) for name in LEVELS]
     if turning:
         apart[0] -= 2 * mp.pi * mp.nint(apart[0] / (2 * mp.pi))

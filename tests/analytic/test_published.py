@@ -174,18 +174,6 @@ def test_whitworth_quick_return() -> None:
     assert travel(found, Along("D", 0.0)).time_ratio == pytest.approx(2.735, abs=5e-4)
 
 
-def test_time_ratio_is_that_of_the_synthesis_lecture() -> None:
-    """Lecture "Tong hop co cau", slider-crank types: central, a stroke of twice the crank; offset,
-    more than that, and Q = (180 + a) / (180 - a), a the angle between the rod's limit positions."""
-    central = travel(scene(SLIDER_CRANK, crank=0.1, rod=0.3, middle=0.1), "A")
-    assert central.stroke == pytest.approx(0.2, rel=1e-14)
-    offset = travel(scene(SLIDER_CRANK, crank=0.1, rod=0.3, middle=0.1, offset=-0.1), "A")
-    assert offset.stroke > 0.2
-    between = math.degrees(math.asin(0.1 / 0.2) - math.asin(0.1 / 0.4))
-    ratio = (180.0 + between) / (180.0 - between)
-    assert offset.time_ratio == pytest.approx(ratio, rel=1e-13)
-
-
 def test_a_clockwise_crank() -> None:
     """Khurmi and Gupta, chapter 8: crank 150 mm clockwise at 300 rpm, rod 600 mm, at 45 degrees
     from the inner dead centre: its middle has 4.1 m/s and 117 m/s^2, the rod 5.67 rad/s, 171.67

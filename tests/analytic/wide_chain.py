@@ -15,10 +15,10 @@ import numpy as np
 
 from models.array import Array
 from models.motion import Motion
-from models.scene import GROUND, Point, Scene, Slider
-from models.scene.joints import local_point, sliding_body
+from models.scene import GROUND, Scene, Slider
+from models.scene.joints import sliding_body
 from models.scene.laws import ConstantSpeed, Law, Oscillating
-from tests.analytic.chain import Solved, held_points
+from tests.analytic.chain import Frame, JetChain, Solved, turned
 from tests.analytic.change_points.jets import Jet, _made
 from tests.analytic.oracle import Place
 
@@ -89,34 +89,18 @@ def toward(angle: Jet) -> Place:
     )
 
 
-@dataclass(frozen=True)
-class Frame:
-    origin: Place
-    angle: Jet
-    along: Place
-
-    def at(self, local: Point) -> Place:
-        return self.origin + turned(self.along, (Wide(local[0]), Wide(local[1])))
-
-
-def turned(along: Place, by: tuple[Rows, Rows]) -> Place:
-    """A direction times a constant vector, as complex numbers."""
-    x, y = by
-    return Place(along.x * x - along.y * y, along.y * x + along.x * y)
-
-
 def still(value: float) -> Jet:
     return _made(Wide(value), Wide(0), Wide(0))
 
 
-class WideChain:
+class WideChain(JetChain):
     """The constraints of a scene over jets of samples."""
 
     def __init__(self, scene: Scene, given: Given) -> None:
-        self.scene, self.given = scene, given
+        super().__init__(scene)
+        self.given = given
         blocks = [sliding_body(s) for s in scene.sliders.values() if s.link is None]
         self.bodies = (*scene.links, *blocks)
-        self.held = held_points(scene)
 
     def solve(self, motion: Motion) -> Solved:
         """The motion at the times of another one, which is near it."""
@@ -129,7 +113,10 @@ class WideChain:
             for level, name in enumerate(("value", "rate", "second")):
                 off = _rows([getattr(jet, name) for jet in wrong], len(place))
                 levels[level] = levels[level] - np.einsum("tij,tj->ti", inverse, off)
-        return self._solved(self._frames(levels))
+        return self.solved(self._frames(levels))
+
+    def along(self, guide: Frame, slider: Slider) -> Place:
+        return turned(guide.along, self.given.lines[slider.name].direction)
 
     def _coordinates(self, motion: Motion, drive: Jet) -> Rows:
         angles: dict[str, Rows] = {GROUND: Wide(0)}
@@ -168,34 +155,12 @@ class WideChain:
 
     def _equations(self, levels: list[Rows], drive: Jet) -> list[Jet]:
         frames = self._frames(levels)
-        rows: list[Jet] = []
-        for (first, at_first), *others in self.held.values():
-            for body, local in others:
-                gap = frames[first].at(at_first) - frames[body].at(local)
-                rows += [gap.x, gap.y]
+        rows = self.gaps(frames)
         for slider in self.scene.sliders.values():
-            away, along = self._ride(frames, slider)
+            away, along = self.ride(frames, slider)
             kept = turned(along, self.given.leans[slider.name].direction)
             rows += [along.cross(away), kept.cross(frames[sliding_body(slider)].along)]
         return [*rows, frames[self.scene.driver.link].angle - drive]
-
-    def _ride(self, frames: Mapping[str, Frame], slider: Slider) -> tuple[Place, Place]:
-        """From the line's point to the slider's, and the direction of the line."""
-        body, guide = sliding_body(slider), frames[slider.on]
-        tip = (0.0, 0.0) if slider.link is None else local_point(self.scene, body, slider.point)
-        along = turned(guide.along, self.given.lines[slider.name].direction)
-        return frames[body].at(tip) - guide.at(slider.through_m), along
-
-    def _solved(self, frames: dict[str, Frame]) -> Solved:
-        rides = {name: self._ride(frames, s) for name, s in self.scene.sliders.items()}
-        held = {name: bodies[0] for name, bodies in self.held.items()}
-        for slider in self.scene.sliders.values():
-            held.setdefault(slider.point, (sliding_body(slider), (0.0, 0.0)))
-        return Solved(
-            {name: frames[name].angle for name in self.scene.links},
-            {name: frames[body].at(local) for name, (body, local) in held.items()},
-            {name: along.dot(away) for name, (away, along) in rides.items()},
-        )
 
 
 def _rows(columns: list[Rows], samples: int) -> Rows:

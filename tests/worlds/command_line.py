@@ -1,7 +1,11 @@
 """The command line, in the process of the tests."""
 
+import re
+from pathlib import Path
+
 from typer.testing import CliRunner, Result
 
+from models.files.reading import shipped
 from reports.cli import app
 from tests.worlds.in_process import in_this_process
 
@@ -35,3 +39,14 @@ def told(line: str, *more: object, code: int = 0) -> str:
     result = crank(*line.split(), *more)
     assert result.exit_code == code, result.output
     return result.output
+
+
+def edited(folder: Path, name: str, *changes: tuple[str, str]) -> Path:
+    """A shipped scene with some of its text, as regular expressions, changed, as a file."""
+    text = shipped()[name].read_text(encoding="utf-8")
+    for old, new in changes:
+        text, count = re.subn(old, new, text)
+        assert count
+    path = folder / "edited.toml"
+    path.write_text(text, encoding="utf-8")
+    return path

@@ -220,7 +220,6 @@ def _exact(machine: TurningMachine, delta: float, first: float) -> SteadyCycle:
 
 
 def _next(tried: list[tuple[float, SteadyCycle]], delta: float) -> float:
-    """Return the next flywheel to try."""
     inertia, cycle = tried[-1]
     off = 1.0 / cycle.delta - 1.0 / delta
     own = cycle.inertia_range[0] - inertia

@@ -155,7 +155,6 @@ class _Newton:
         raise StallError(self._stalled(solution))
 
     def _begun(self, guess: PeriodicSolution | float) -> PeriodicSolution:
-        """Return the first guess of the steps."""
         if isinstance(guess, float):
             square = 0.5 * guess**2
             return self._solution(square * self.inertia, square * self.at_borders, 0.0, 1.0)

@@ -82,7 +82,6 @@ def _rows(scheme: Scheme) -> Iterator[tuple[str, ...]]:
 
 
 def _outer(scheme: Scheme, links: tuple[str, ...]) -> list[SchemeJoint]:
-    """Return the joints of some links with others."""
     return [joint for joint in scheme.joints if len(set(joint.between) & set(links)) == 1]
 
 

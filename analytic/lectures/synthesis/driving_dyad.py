@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from analytic.lectures.synthesis.design import (
@@ -36,8 +36,7 @@ from analytic.lectures.synthesis.design import (
     letters_beside,
 )
 from models.errors import CrankcheckError
-from models.files.assemble import Table
-from models.lectures.draft import bar, plate
+from models.lectures.draft import bar, plate, points_of
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
 """Default distances of O2 from the middle of B1 B2, over the crank."""
@@ -124,12 +123,14 @@ def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
     """Yield the six-bars of a four-bar of two positions, the dyad on its input link, O6 on either
     side of the chord and at several distances from it."""
     draft = proposal.draft
-    pivot_name, pin_name = _points(draft.links[INPUT])
+    pivot_name, pin_name = points_of(draft.links[INPUT])
     length = draft.links[INPUT]["length_m"]
     assert isinstance(length, float)
     pivot = draft.ground[pivot_name]
     first, second = (position.driver_rad for position in proposal.positions)
-    on, own_pin = letters_beside({name for one in draft.links.values() for name in _points(one)}, 2)
+    on, own_pin = letters_beside(
+        {name for one in draft.links.values() for name in points_of(one)}, 2
+    )
     radius = SHARE * length
     ends = tuple(pivot + cmath.rect(radius, angle) for angle in (first, second))
     crank = 0.5 * abs(ends[1] - ends[0])
@@ -165,13 +166,6 @@ def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
                 chosen={**proposal.chosen, **told},
                 steps=steps,
             )
-
-
-def _points(link: Table) -> list[str]:
-    """Return the names of the points of a link's table."""
-    names = link.get("bar") or link["points"]
-    assert isinstance(names, Iterable)
-    return list(names)
 
 
 def swings_little(proposal: Proposal) -> bool:

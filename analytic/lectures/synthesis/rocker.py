@@ -144,7 +144,6 @@ def _pole_steps(
 def _pin_step(
     pivot: complex, ends: tuple[complex, complex], pin: str, letter: str
 ) -> design.DrawingStep:
-    """Return the rocker's pin in both positions."""
     words = f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2"
     return design.DrawingStep(
         words if letter else f"{pin} at its distance from O4, in both positions",

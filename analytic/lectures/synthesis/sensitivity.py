@@ -6,7 +6,6 @@ central differences, good to some nine digits.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +15,7 @@ from analytic.lectures.synthesis.design import Asked, asked_motion
 from analytic.lectures.synthesis.examine import Examined, way_of
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.files.assemble import Table
-from models.lectures.draft import Draft, plate
+from models.lectures.draft import Draft, plate, points_of
 from models.scene import Scene
 
 SINGULAR = 1e-3
@@ -164,22 +162,13 @@ def is_measured(examined: Examined, one: TolerancedDimension) -> bool:
     if one.point not in pinned(examined.scene):
         return False
     link = examined.draft.links[one.body]
-    return "bar" not in link or (one.axis == 0 and one.point == list(_points_of(link))[1])
+    return "bar" not in link or (one.axis == 0 and one.point == list(points_of(link))[1])
 
 
 def as_plates(examined: Examined) -> Draft:
     """Return the draft of the examined scene, every bar as a link of points."""
-    links = {name: plate(_points_of(link)) for name, link in examined.draft.links.items()}
+    links = {name: plate(points_of(link)) for name, link in examined.draft.links.items()}
     return replace(examined.draft, links=links)
-
-
-def _points_of(link: Table) -> dict[str, complex]:
-    """Return the points of a link's table in its own frame."""
-    if "bar" in link:
-        (one, other), length = cast(Sequence[str], link["bar"]), cast(float, link["length_m"])
-        return {one: 0j, other: complex(length)}
-    points = cast(Mapping[str, tuple[float, float]], link["points"])
-    return {name: complex(*place) for name, place in points.items()}
 
 
 def _dimensions(draft: Draft) -> Iterator[TolerancedDimension]:
@@ -189,7 +178,7 @@ def _dimensions(draft: Draft) -> Iterator[TolerancedDimension]:
 
 
 def _bodies(draft: Draft) -> list[tuple[str, dict[str, complex]]]:
-    return [(name, _points_of(link)) for name, link in draft.links.items()]
+    return [(name, points_of(link)) for name, link in draft.links.items()]
 
 
 def _varied(draft: Draft, by: Mapping[TolerancedDimension, float]) -> Draft:

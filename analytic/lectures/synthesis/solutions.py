@@ -219,7 +219,6 @@ def _named(one: Examined, number: int) -> Examined:
 
 
 def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposal], int]:
-    """Return the proposals for a task, and the number considered for the choice."""
     if isinstance(task, CouplerTask):
         return coupler_proposals(task)
     if isinstance(task, RockerTask):
@@ -238,7 +237,6 @@ def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposa
 
 
 def _paths(task: PathTable, progress: Progress | None) -> tuple[list[Proposal], int]:
-    """Return the results of least squares, from so many starts."""
     search = generate(
         path_task(task),
         name=task.name,

@@ -238,7 +238,6 @@ def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
 
 
 def _frame(axes: Axes, sheet: ConstructionSheet, note: str) -> None:
-    """Title, note, borders and words."""
     told = f": construction, position 1 of {len(sheet.view.placements)}, K_l = {sheet.scale:g} m/mm"
     room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN / 1.15  # bold is so much wider
     name = cut(sheet.view.examined.scene.name, room / 2, LARGE)
@@ -268,7 +267,6 @@ def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> l
 
 
 def _is_whole(sheet: ConstructionSheet, circle: DrawnCircle) -> bool:
-    """True if all of a circle is on the paper."""
     low, high = sheet.cut
     middle = xy(circle.centre)
     return bool(np.all((middle - circle.radius > low) & (middle + circle.radius < high)))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +14,7 @@ from analytic.lectures.synthesis.examine import Examined
 from analytic.lectures.synthesis.sensitivity import Sensitivity, Spread
 from analytic.lectures.synthesis.solutions import Solutions
 from reports.lectures.design.proof import Met, in_words, unit_of
-from reports.output.console import plain_table
+from reports.output.console import grid
 from reports.output.numbers import count
 
 if TYPE_CHECKING:
@@ -43,11 +42,8 @@ def counted(solutions: Solutions, listed: int) -> str:
 
 def solution_table(every: Sequence[Examined]) -> Table:
     """Table of solutions, a row each, numbered from 1."""
-    table = plain_table(gap=2)
-    for head in ("", "defect", "driver", "trans. deg", "size m", "type", "chosen, remarks"):
-        table.add_column(head, overflow="fold")
-    for number, one in enumerate(every, 1):
-        table.add_row(
+    rows = [
+        (
             str(number),
             ", ".join(one.defects) or DEFECT_FREE,
             "turns" if one.turns_fully else "swings",
@@ -56,7 +52,9 @@ def solution_table(every: Sequence[Examined]) -> Table:
             one.grashof,
             "; ".join([*_chosen(one), *remarks(one)]),
         )
-    return table
+        for number, one in enumerate(every, 1)
+    ]
+    return grid(("", "defect", "driver", "trans. deg", "size m", "type", "chosen, remarks"), rows)
 
 
 def solution_frame(every: Sequence[Examined]) -> pd.DataFrame:
@@ -94,23 +92,9 @@ def _chosen(one: Examined) -> list[str]:
     return [f"{name} {value}" for name, value in one.proposal.chosen.items()] + torque
 
 
-@dataclass(frozen=True)
-class ProofRow:
-    """The largest miss of an engine for a solution, in words; ``within`` says whether all of its
-    misses are within their limits."""
-
-    within: bool
-    solution: int
-    engine: str
-    position: int
-    driver_deg: str
-    what: str
-    off: str
-    allowed: str
-
-
-def proof_rows(proofs: Mapping[int, Sequence[Met]]) -> list[ProofRow]:
-    """The rows by number of the solution, one for each engine and profile."""
+def proof_rows(proofs: Mapping[int, Sequence[Met]]) -> list[dict[str, object]]:
+    """The rows by number of the solution, one for each engine and profile: its largest miss in
+    words; ``within`` says whether all of its misses are within their limits."""
     rows = []
     for number, every in proofs.items():
         for engine in dict.fromkeys((one.engine, one.profile) for one in every):
@@ -119,37 +103,30 @@ def proof_rows(proofs: Mapping[int, Sequence[Met]]) -> list[ProofRow]:
             unit = unit_of(worst.asked)
             none = worst.reason or "did not come there"
             rows.append(
-                ProofRow(
-                    all(one.within for one in own),
-                    number,
-                    " ".join(filter(None, engine)),
-                    worst.position,
-                    f"{math.degrees(worst.driver_rad):.4f}",
-                    in_words(worst.asked),
-                    none if math.isnan(worst.off) else f"{worst.off:.1e} {unit}",
-                    f"{worst.limit:.1e} {unit}",
-                )
+                {
+                    "within": all(one.within for one in own),
+                    "solution": number,
+                    "engine": " ".join(filter(None, engine)),
+                    "position": worst.position,
+                    "driver_deg": f"{math.degrees(worst.driver_rad):.4f}",
+                    "what": in_words(worst.asked),
+                    "off": none if math.isnan(worst.off) else f"{worst.off:.1e} {unit}",
+                    "allowed": f"{worst.limit:.1e} {unit}",
+                }
             )
     return rows
 
 
 def proof_table(proofs: Mapping[int, Sequence[Met]]) -> Table:
     """Table of the rows for a terminal."""
-    table = plain_table(gap=2)
-    for head in ("", "solution", "engine", "position", "driver deg", "what", "off", "allowed"):
-        table.add_column(head, overflow="fold")
-    for row in proof_rows(proofs):
-        table.add_row(
-            "ok" if row.within else "OUT",
-            str(row.solution),
-            row.engine,
-            str(row.position),
-            row.driver_deg,
-            row.what,
-            row.off,
-            row.allowed,
-        )
-    return table
+    heads = ("", "solution", "engine", "position", "driver deg", "what", "off", "allowed")
+    return grid(
+        heads,
+        (
+            ("ok" if row["within"] else "OUT", *map(str, list(row.values())[1:]))
+            for row in proof_rows(proofs)
+        ),
+    )
 
 
 def proof_frame(proofs: Mapping[int, Sequence[Met]]) -> pd.DataFrame:
@@ -184,20 +161,16 @@ def sensitivity_table(
 ) -> Table:
     """Table of requirements: linear worst case and root of squares, the Monte Carlo's largest, the
     limit, and the dimension of largest influence."""
-    table = plain_table(f"Solution 1, every dimension off by up to {tolerance_m:g} m", gap=2)
-    for head in ("position", "what", "worst", "root sum sq.", "Monte Carlo", "allowed", "most by"):
-        table.add_column(head, overflow="fold")
+    rows: list[tuple[str, ...]] = []
     worst, usual = found.worst(tolerance_m), found.usual(tolerance_m)
     for k, (number, asked) in enumerate(found.asked):
         unit, most = unit_of(asked), int(np.argmax(np.abs(found.slopes[k])))
         cells = (worst[k], usual[k], spread.largest[k], limits[k])
-        table.add_row(
-            str(number),
-            in_words(asked),
-            *(f"{value:.2e} {unit}" for value in cells),
-            f"{found.dimensions[most].words} ({found.slopes[k, most]:.3g} {unit}/m)",
-        )
-    return table
+        by = f"{found.dimensions[most].words} ({found.slopes[k, most]:.3g} {unit}/m)"
+        sizes = (f"{value:.2e} {unit}" for value in cells)
+        rows.append((str(number), in_words(asked), *sizes, by))
+    heads = ("position", "what", "worst", "root sum sq.", "Monte Carlo", "allowed", "most by")
+    return grid(heads, rows, f"Solution 1, every dimension off by up to {tolerance_m:g} m")
 
 
 def clearance_in_words(found: Sensitivity, limits: Sequence[float], spread: Spread) -> str:

@@ -64,7 +64,6 @@ def construction_page(proposed: Examined | design.Proposal) -> str:
 
 
 def _doubts(view: construction_view.ConstructionView) -> list[str]:
-    """Doubts and defects that keep the mechanism from its task."""
     doubt, defects = view.examined.proposal.doubt, view.examined.defects
     return [doubt] * bool(doubt) + [f"It has a fault: {listed(defects)}."] * bool(defects)
 
@@ -168,7 +167,7 @@ def solutions_page(
     sections = [_solutions(every, task, counted, sheet)]
     if proofs:
         rows = proof_rows(proofs)
-        words = {"rows": rows, "within": all(row.within for row in rows)}
+        words = {"rows": rows, "within": all(row["within"] for row in rows)}
         sections.append(Section("proof", "Proof in engines", "synthesis_proof.html", words))
     told = [f"{name} {value}" for name, value in facts.items() if name != "made"]
     head = Head(

@@ -67,7 +67,6 @@ def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[ColumnPart
 
 
 def _key(view: ConstructionView) -> list[ColumnPart]:
-    """The key of the lines, for the looks that occur."""
     coloured = {id(curve) for curve in curves_of(view.steps)}  # by the numbers of their steps
     every = [each for step in view.steps for each in step.elements if id(each) not in coloured]
     looks = {each.look for each in every if not isinstance(each, Dot)}

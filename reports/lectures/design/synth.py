@@ -32,7 +32,7 @@ from reports.lectures.design.design_tables import (
 )
 from reports.lectures.design.proof import Met, by_reference, limit_of, proven
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.output.console import plain_table
+from reports.output.console import grid, say
 from reports.output.formats import csv
 from reports.output.numbers import count
 from reports.output.write import check_folder, provenance, write
@@ -108,8 +108,8 @@ class SynthRequest:
         profiles = [name for name, _ in chosen_profiles(self.profiles or USUAL, engines)]
         solutions = _searched(task, console)
         listed = solutions.examined[: self.best]
-        _say(console, f"{task.name}: {task.source}")
-        _say(console, counted(solutions, len(listed)))
+        say(console, f"{task.name}: {task.source}")
+        say(console, counted(solutions, len(listed)))
         console.print("", solution_table(listed), sep="\n")
         if self.vary_m is not None:
             _show_sensitivity(console, solutions, task, self.vary_m)
@@ -137,7 +137,6 @@ class SynthRequest:
 
 
 def _check(request: SynthRequest) -> None:
-    """Refuse numbers that are not finite, and options of a proof that is not requested."""
     numbers = {"--steps-per-turn": request.steps_per_turn, "--vary": request.vary_m}
     for option, number in numbers.items():
         if number is not None and not math.isfinite(number):
@@ -149,7 +148,6 @@ def _check(request: SynthRequest) -> None:
 
 
 def _searched(task: TaskTable, console: Console) -> Solutions:
-    """The solutions, with a bar of a search for people who wait."""
     with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("searching", total=1.0)
 
@@ -161,25 +159,19 @@ def _searched(task: TaskTable, console: Console) -> Solutions:
 
 
 def _list(kind: str | None, console: Console) -> int:
-    """List the kinds with their shipped tasks."""
     if kind is not None:
         refuse_unknown(kind)
-    table = plain_table(gap=2)
-    for head in ("kind", "shipped tasks"):
-        table.add_column(head, overflow="fold")
-    for name, tasks in shipped_tasks().items():
-        if kind in (None, name):
-            table.add_row(name, ", ".join(tasks))
-    console.print(table)
+    every = shipped_tasks().items()
+    rows = ((name, ", ".join(tasks)) for name, tasks in every if kind in (None, name))
+    console.print(grid(("kind", "shipped tasks"), rows))
     return 0
 
 
 def _show_sensitivity(
     console: Console, solutions: Solutions, task: TaskTable, tolerance_m: float
 ) -> None:
-    """Show the effect of tolerances and clearances on the best solution."""
     if not solutions.sound:
-        _say(console, "\nno sensitivity: no solution is without a defect")
+        say(console, "\nno sensitivity: no solution is without a defect")
         return
     best = solutions.sound[0]
     limits = [limit_of(one, best.scene, task) for p in best.positions for one in p.asked]
@@ -187,24 +179,23 @@ def _show_sensitivity(
         slopes = sensitivity(best)
         spread = monte_carlo(best, tolerance_m, limits, SAMPLES)
     except CrankcheckError as error:
-        _say(console, f"\nno sensitivity: {error}")
+        say(console, f"\nno sensitivity: {error}")
         return
     console.print("", sensitivity_table(slopes, limits, tolerance_m, spread), sep="\n")
-    _say(console, clearance_in_words(slopes, limits, spread))
+    say(console, clearance_in_words(slopes, limits, spread))
 
 
 def _show_proof(
     console: Console, proofs: Proofs, facts: Mapping[str, str], request: SynthRequest
 ) -> None:
-    """Show the proof, with versions and settings."""
     if not proofs:
-        _say(console, "\nnothing to prove: no solution listed is without a defect")
+        say(console, "\nnothing to prove: no solution listed is without a defect")
         return
     console.print("", proof_table(proofs), sep="\n")
     within = all(one.within for every in proofs.values() for one in every)
     verdict = "PROVEN: every position is met" if within else "NOT PROVEN: a position is missed"
-    _say(console, f"\n{verdict}")
-    _say(console, f"{request.steps_per_turn:g} steps a turn; " + ", ".join(
+    say(console, f"\n{verdict}")
+    say(console, f"{request.steps_per_turn:g} steps a turn; " + ", ".join(
         f"{name} {value}" for name, value in facts.items()))  # fmt: skip
 
 
@@ -218,7 +209,6 @@ def _write(
     paper: Paper,
     console: Console,
 ) -> None:
-    """Write the scenes, the tables, the constructions and the page that links to them."""
     from reports.lectures.design.construction_sheet import construction_sheet
     from reports.lectures.design.pages import (
         construction_name,
@@ -250,14 +240,10 @@ def _write(
     )
     for name, text in texts.items():
         write(folder / name, text)
-    _say(console, f"\n{folder / PAGE}: {count(len(listed), 'solution')}, with scenes, tables and "
+    say(console, f"\n{folder / PAGE}: {count(len(listed), 'solution')}, with scenes, tables and "
          "constructions beside it")  # fmt: skip
     if left:
-        _say(console, f"left there by an earlier run: {', '.join(left)}")
-
-
-def _say(console: Console, words: str) -> None:
-    console.print(words, highlight=False, markup=False)
+        say(console, f"left there by an earlier run: {', '.join(left)}")
 
 
 LISTED = 5
@@ -300,7 +286,7 @@ class Synthesis(Shown):
 
     def show(self, console: Console) -> None:
         listed = self.details.examined[:LISTED]
-        console.print(counted(self.details, len(listed)), highlight=False, markup=False)
+        say(console, counted(self.details, len(listed)))
         console.print("", solution_table(listed), sep="\n")
 
 

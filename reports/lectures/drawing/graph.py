@@ -103,7 +103,6 @@ def _tell_graphs(
 def _tell_errors(
     request: GraphRequest, console: Console, errors: graph_orders.GraphErrors, paper: Paper
 ) -> None:
-    """Show the errors, and draw them where a file is given."""
     of = errors.span
     if request.output is not None:
         told = f"errors of {of.quantity.name} of {of.scene.name} over divisions{_by(errors.by)}"

@@ -15,7 +15,7 @@ from models.errors import CrankcheckError, harmless
 from models.lectures.scheme import HIGHER, Scheme
 from models.lectures.scheme_files import find_scheme, load_scheme, scheme_text, shipped_schemes
 from models.lectures.touching import Touching, load_touching, shipped_contacts
-from reports.output.console import hanging, plain_table
+from reports.output.console import grid, hanging, say_whole
 from reports.output.write import check_file, write
 
 HEAD = 10
@@ -118,7 +118,6 @@ def _mobility(mobility: SchemeMobility) -> str:
 
 
 def _show_replaced(console: Console, scheme: Scheme, request: MobilityRequest) -> None:
-    """Show the scheme with lower pairs alone as a list of joints, and write it where requested."""
     fewer = replaced(scheme)
     if fewer == scheme:
         raise CrankcheckError(f"{scheme.name}: no higher pair; there is nothing to replace")
@@ -135,13 +134,12 @@ def _show_replaced(console: Console, scheme: Scheme, request: MobilityRequest) -
     if request.output is not None:
         write(request.output, scheme_text(fewer))
         told = harmless(f"{request.output}: {scheme.name} with lower pairs alone")
-        console.print(told, highlight=False, markup=False, soft_wrap=True)
+        say_whole(console, told)
 
 
 def _list(console: Console) -> None:
-    table = plain_table(gap=2)
-    for head in ("scheme", "space", "count", "mobility", "idle", "source"):
-        table.add_column(head, overflow="fold", no_wrap=head == "scheme")
+    heads = ("scheme", "space", "count", "mobility", "idle", "source")
+    table = grid(heads, whole=("scheme",))
     for name in shipped_schemes():
         scheme = load_scheme(name)
         mobility = scheme_mobility(scheme)
@@ -191,9 +189,7 @@ def show_joint(console: Console, joint: JointAnalysis) -> None:
 
 
 def _list_contacts(console: Console) -> None:
-    table = plain_table(gap=2)
-    for head in ("joint", "pair", "class", "guided", "freedoms"):
-        table.add_column(head, overflow="fold", no_wrap=head == "joint")
+    table = grid(("joint", "pair", "class", "guided", "freedoms"), whole=("joint",))
     for name in shipped_contacts():
         joint = analyse_joint(load_touching(name))
         last = [*joint.guided.values()]
@@ -209,6 +205,5 @@ def _pair(touching: Touching) -> str:
 
 
 def _contacts(touching: Touching) -> str:
-    """The kinds and numbers of the contacts."""
     counts = Counter(contact.kind for contact in touching.contacts)
     return ", ".join(f"{kind} x {n}" if n > 1 else kind for kind, n in counts.items())

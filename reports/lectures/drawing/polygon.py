@@ -15,7 +15,7 @@ from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from analytic.lectures.drawings.polygon import UNITS
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.drawing.sheets import polygon_instant, polygon_table
@@ -32,7 +32,7 @@ from reports.lectures.drawing.sheets.polygon_page import (
 )
 from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
 from reports.logs.map_file import Map, read_map
-from reports.output.console import plain_table
+from reports.output.console import grid, say_whole
 from reports.output.numbers import readable
 from reports.output.write import check_file, write
 from reports.requests.options import PaperSize, SceneName, seconds
@@ -40,21 +40,17 @@ from reports.requests.options import PaperSize, SceneName, seconds
 
 def show_polygons(console: Console, sheet: PolygonSheet) -> None:
     """Print both polygons, step by step, the rates of the links, and their images."""
-    _say(console, _heading(sheet))
+    say_whole(console, _heading(sheet))
     for drawn in (sheet.velocity, sheet.acceleration):
         quantity, unit = drawn.polygon.quantity, UNITS[drawn.polygon.quantity]
-        _say(console, f"\n{quantity} polygon, {readable(drawn.scale)} {unit} to the mm")
+        say_whole(console, f"\n{quantity} polygon, {readable(drawn.scale)} {unit} to the mm")
         console.print(_vectors(drawn))
         if drawn.polygon.largest == 0.0:
-            _say(console, polygon_table.at_rest(quantity))
+            say_whole(console, polygon_table.at_rest(quantity))
         _show_log(console, drawn, sheet)
     _show_links(console, sheet)
     for told in polygon_table.doubts(sheet.drawn):
-        _say(console, told)
-
-
-def _say(console: Console, words: str) -> None:
-    console.print(harmless(words), highlight=False, markup=False, soft_wrap=True)
+        say_whole(console, told)
 
 
 def _heading(sheet: PolygonSheet) -> str:
@@ -71,9 +67,8 @@ def _heading(sheet: PolygonSheet) -> str:
 
 
 def _vectors(drawn: DrawnPolygon) -> Table:
-    table = plain_table(gap=2)
-    for head in ("vector", UNITS[drawn.polygon.quantity], "mm", "towards deg", "found"):
-        table.add_column(head, justify="left" if head in ("vector", "found") else "right")
+    unit = UNITS[drawn.polygon.quantity]
+    table = grid(("vector", f"{unit}:", "mm:", "towards deg:", "found"))
     for vector in drawn.polygon.vectors:
         size = drawn.size_of(vector)
         table.add_row(
@@ -91,17 +86,15 @@ def _towards(vector: Array) -> str:
 
 
 def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> None:
-    """Print the images of a log's points beside those of the reference, where there is a log."""
     if drawn.logged is None:
         return
     unit = UNITS[drawn.polygon.quantity]
     if not drawn.logged.errors:
-        _say(console, f"\nno {drawn.polygon.quantity} of any point in the log")
+        say_whole(console, f"\nno {drawn.polygon.quantity} of any point in the log")
         return
-    _say(console, f"\n{drawn.logged_by}: {drawn.logged.words} on the sheet")
-    table = plain_table(gap=2)
-    for head in ("point", unit, "mm", f"logged {unit}", "mm", f"error {unit}", "mm", "towards deg"):
-        table.add_column(head, justify="left" if head == "point" else "right")
+    say_whole(console, f"\n{drawn.logged_by}: {drawn.logged.words} on the sheet")
+    heads = (unit, "mm", f"logged {unit}", "mm", f"error {unit}", "mm", "towards deg")
+    table = grid(("point", *(f"{head}:" for head in heads)))
     for name, size, own, error in drawn.logged_sizes():
         off = float(np.hypot(*error))
         table.add_row(
@@ -113,17 +106,13 @@ def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> Non
 
 
 def _show_links(console: Console, sheet: PolygonSheet) -> None:
-    rates = plain_table(gap=2)
-    for head in ("link", "omega rad/s", "alpha rad/s^2"):
-        rates.add_column(head, justify="left" if head == "link" else "right")
+    rates = grid(("link", "omega rad/s:", "alpha rad/s^2:"))
     for name in polygon_table.drawn_links(sheet.drawn):
         rates.add_row(
             name, *(f"{rate:.7g}" for rate in drawn_polygons.link_rates(sheet.drawn, name))
         )
     console.print("", rates, sep="\n")
-    images = plain_table(gap=2)
-    for head in ("image of", "in velocities", "in accelerations"):
-        images.add_column(head)
+    images = grid(("image of", "in velocities", "in accelerations"))
     for name in polygon_table.drawn_links(sheet.drawn):
         words = (
             polygon_table.image_words(sheet.drawn, name, quantity)
@@ -204,7 +193,7 @@ class PolygonRequest:
             raw = turning_file(sheet, steady=steady) if self.turn else polygon_file(sheet, ending)
         write(self.output, raw)
         told = f"{self.output}: {_told(sheet, self)}"
-        console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+        say_whole(console, told)
         _tell_doubts(console, sheet.drawn)
         return 0
 
@@ -241,7 +230,6 @@ def _contradiction(request: PolygonRequest, ending: str) -> str:
 
 
 def _logged(scene: Scene, request: PolygonRequest) -> polygon_instant.LoggedInstant | None:
-    """The log at the instant, where one is given."""
     if request.log is None:
         return None
     map_ = read_map(request.map) if request.map else Map()
@@ -259,7 +247,6 @@ def _placed(scene: Scene, request: PolygonRequest) -> PlacedMechanism:
 
 
 def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
-    """Description of the drawing."""
     name = sheet.drawn.placement.scene.name
     ending = request.output.suffix.lower() if request.output is not None else ""
     if request.turn or ending == PAGE:
@@ -276,4 +263,4 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
 
 def _tell_doubts(console: Console, drawn: drawn_polygons.DrawnPolygons) -> None:
     for told in polygon_table.doubts(drawn):
-        console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+        say_whole(console, told)

@@ -15,7 +15,7 @@ from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.placed_mechanism import DriverState
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.describe.facts import angle_at, driver_at
@@ -30,7 +30,7 @@ from reports.lectures.drawing.sheets.field_sheets import DrawnChain, check_room,
 from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions
 from reports.lectures.drawing.sheets.scheme import sense_of_law
-from reports.output.console import plain_table
+from reports.output.console import grid, say, say_whole
 from reports.output.numbers import roman
 from reports.output.write import check_file, crankcheck_version, write
 from reports.requests.options import PaperSize, SceneName
@@ -69,7 +69,7 @@ def _checked(scene: str, output: Path, paper: str) -> Paper:
 def save_sheet(console: Console, canvas: Canvas, path: Path, told: str) -> None:
     """Write a sheet, and print its name and content."""
     write(path, canvas.saved(path.suffix.lower()[1:], told))
-    console.print(harmless(f"{path}: {told}"), highlight=False, markup=False, soft_wrap=True)
+    say_whole(console, f"{path}: {told}")
 
 
 @dataclass(frozen=True)
@@ -113,10 +113,8 @@ def _angle(scene: Scene, at_deg: float) -> float:
 def _show(console: Console, sheet: CentreSheet) -> None:
     numbers = body_numbers(sheet.drawn)
     bodies = ", ".join(f"{k} {body}" for body, k in numbers.items())
-    console.print(f"bodies: {bodies}", highlight=False, markup=False)
-    table = plain_table(gap=2)
-    for head in ("centre", "x m", "y m", "found"):
-        table.add_column(head, justify="right" if head.endswith(" m") else "left")
+    say(console, f"bodies: {bodies}")
+    table = grid(("centre", "x m:", "y m:", "found"))
     ranked = sorted(sheet.centres.items(), key=lambda each: sorted(numbers[b] for b in each[0]))
     for pair, centre in ranked:
         crossing = " and ".join(
@@ -134,12 +132,9 @@ def _place(place: Array | None) -> tuple[str, str]:
 
 
 def _show_circles(console: Console, sheet: CentreSheet) -> None:
-    """Show the poles and circles of the named link."""
     circles = sheet.circles
     assert circles is not None
-    table = plain_table(gap=2)
-    for head in (f"of {sheet.link}, driver steady", "x m", "y m", "radius m"):
-        table.add_column(head, justify="right" if head.endswith(" m") else "left")
+    table = grid((f"of {sheet.link}, driver steady", "x m:", "y m:", "radius m:"))
     table.add_row("velocity pole P", *_place(circles.pole), "")
     table.add_row("acceleration pole Q", *_place(circles.acceleration_pole), "")
     for name, circle in (
@@ -191,7 +186,7 @@ class ChainsRequest:
             note = f"crankcheck {crankcheck_version()}, W = 3 (n - 1) - 2 p"
             save_sheet(console, draw_chains(rows, told, note, paper), self.output, told)
             return 0
-        console.print(told, highlight=False, markup=False)
+        say(console, told)
         _show_chains(console, self, rows)
         if self.sliders is None and not self.inversions:
             _show_assortments(console, self, [chain for _, chain in named])
@@ -237,11 +232,10 @@ def _words(mechanism: Mechanism) -> str:
 
 
 def _show_chains(console: Console, request: ChainsRequest, rows: list[DrawnChain]) -> None:
-    table = plain_table(gap=2)
-    heads = ["mechanism", "ground"] if request.inversions else ["chain"]
-    told = "links" if not request.inversions else "by its drivers"
-    for head in (*heads, told, "joints of links, sliders with *"):
-        table.add_column(head, overflow="fold")
+    heads = ["chain", "links"]
+    if request.inversions:
+        heads = ["mechanism", "ground", "by its drivers"]
+    table = grid((*heads, "joints of links, sliders with *"))
     for row in rows:
         ground = [] if row.ground is None else [f"link {row.ground + 1}"]
         joints = " ".join(
@@ -253,11 +247,8 @@ def _show_chains(console: Console, request: ChainsRequest, rows: list[DrawnChain
 
 
 def _show_assortments(console: Console, request: ChainsRequest, every: list[Chain]) -> None:
-    """Show all counts of links that the mobility allows, with the number of chains of each."""
-    table = plain_table(gap=2)
-    table.add_column("assortment of links")
-    table.add_column("chains", justify="right")
-    for counts in assortments(request.links, request.mobility):
-        many = sum(chain.assortment == counts for chain in every)
-        table.add_row(assortment_in_words(counts), str(many))
-    console.print("", table, sep="\n")
+    rows = (
+        (assortment_in_words(counts), str(sum(chain.assortment == counts for chain in every)))
+        for counts in assortments(request.links, request.mobility)
+    )
+    console.print("", grid(("assortment of links", "chains:"), rows), sep="\n")

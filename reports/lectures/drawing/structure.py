@@ -25,7 +25,7 @@ from reports.describe.facts import place_at
 from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.field_sheets import draw_assemblies
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
-from reports.output.console import plain_table
+from reports.output.console import grid, say
 from reports.output.numbers import roman
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName
@@ -154,8 +154,8 @@ class StructureRequest:
             canvas = draw_assemblies(drawn, told, sheet_note(scene), paper)
             save_sheet(console, canvas, self.output, told)
             return 0
-        _say(console, f"{scene.name}: {scene.source}")
-        _say(console, _count_in_words(structure))
+        say(console, f"{scene.name}: {scene.source}")
+        say(console, _count_in_words(structure))
         _show_groups(console, structure)
         _show_drivers(console, scene, structure)
         _show_assemblies(console, every, at)
@@ -170,14 +170,12 @@ def _coordinate(scene: Scene, request: StructureRequest) -> float:
 
 
 def _told(scene: Scene, coordinate: float) -> str:
-    """The driver's place as text."""
     if scene.driver.slider is not None:
         return f"{coordinate:.6g} m"
     return f"{math.degrees(coordinate):.6g} deg"
 
 
 def _count_in_words(structure: Structure) -> str:
-    """Links and joints by class, and the mobility, as text."""
     n, p = len(structure.bodies), structure.pairs
     sliders = len(structure.prismatics)
     return (
@@ -188,11 +186,8 @@ def _count_in_words(structure: Structure) -> str:
 
 
 def _show_groups(console: Console, structure: Structure) -> None:
-    """Show the groups in solving order, and the class of the mechanism."""
-    table = plain_table("Assur groups in solving order", gap=2)
-    for head in ("group", "links", "class", "order"):
-        table.add_column(head, overflow="fold")
-    highest = 1
+    heads = ("group", "links", "class", "order")
+    table, highest = grid(heads, title="Assur groups in solving order"), 1
     for part in structure.order:
         if isinstance(part, Bridge):
             table.add_row("redundant", part.link, "", "")
@@ -202,14 +197,12 @@ def _show_groups(console: Console, structure: Structure) -> None:
         links = ", ".join(group.links)
         table.add_row(group.kind, links, roman(group.class_number), str(group.order))
     console.print("", table, sep="\n")
-    _say(console, f"the mechanism is of class {roman(highest)}")
+    say(console, f"the mechanism is of class {roman(highest)}")
 
 
 def _show_drivers(console: Console, scene: Scene, structure: Structure) -> None:
-    """Show the class for every joint that could drive."""
-    table = plain_table("Driven at another joint (* this scene's)", gap=2)
-    for head in ("", "driver", "class", "groups"):
-        table.add_column(head, overflow="fold")
+    heads = ("", "driver", "class", "groups")
+    table = grid(heads, title="Driven at another joint (* this scene's)")
     for one in by_drivers(scene, structure):
         if one.class_number is None:
             told = f"none: it can not move, or leaves {', '.join(one.left)} loose"
@@ -226,16 +219,11 @@ def _group_in_words(group: ClassedGroup) -> str:
 
 
 def _show_assemblies(console: Console, every: list[SceneAssembly], at: str) -> None:
-    """Show every assembly, by the angles of its links."""
-    _say(console, f"\n{_counted(every)} with {at}" + (" (* this scene's)" if every else ""))
+    say(console, f"\n{_counted(every)} with {at}" + (" (* this scene's)" if every else ""))
     if not every:
         return
-    table = plain_table(gap=2)
-    table.add_column("")
-    table.add_column("branch", overflow="fold")
     links = list(every[0].placement.scene.links)
-    for name in links:
-        table.add_column(f"{name} deg", justify="right")
+    table = grid(("", "branch", *(f"{name} deg:" for name in links)))
     for one in every:
         angles = (math.degrees(math.remainder(one.placement.angles[n], math.tau)) for n in links)
         table.add_row(
@@ -251,7 +239,3 @@ def _caption(one: SceneAssembly) -> str:
 def _counted(every: list[SceneAssembly]) -> str:
     many = len(every)
     return f"{many or 'no'} assembl{'y' if many == 1 else 'ies'}"
-
-
-def _say(console: Console, words: str) -> None:
-    console.print(words, highlight=False, markup=False)

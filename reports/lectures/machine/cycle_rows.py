@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -15,8 +14,10 @@ from rich.table import Table
 from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
-from reports.output.console import plain_table
-from reports.output.numbers import NONE, error_text, finite, readable
+from models.scene import Scene
+from reports.output.console import grid, say, say_each
+from reports.output.formats import json_text
+from reports.output.numbers import NONE, error_text, readable
 from reports.output.write import crankcheck_version
 
 if TYPE_CHECKING:
@@ -260,15 +261,15 @@ def cycle_frame(cycle: SteadyCycle, bare: SteadyCycle | None = None) -> pd.DataF
 
 def cycle_document(cycle: SteadyCycle) -> str:
     """The numbers of a cycle as JSON."""
-    return _text({**_origin(cycle), "cycle": _numbers(cycle)})
+    return json_text({**origin_of(cycle.machine.scene), "cycle": _numbers(cycle)})
 
 
 def flywheel_document(found: WantedFlywheel) -> str:
     """The numbers of a flywheel as JSON."""
     steep, flat = found.slopes
-    return _text(
+    return json_text(
         {
-            **_origin(found.cycle),
+            **origin_of(found.cycle.machine.scene),
             "delta": found.delta,
             "flywheel_kg_m2": {row.key: row.inertia_kg_m2 for row in way_rows(found)},
             "tan_psi_max_j_per_kg_m2": steep,
@@ -279,13 +280,12 @@ def flywheel_document(found: WantedFlywheel) -> str:
     )
 
 
-def _origin(cycle: SteadyCycle) -> dict[str, object]:
-    scene = cycle.machine.scene
+def origin_of(scene: Scene) -> dict[str, object]:
+    """The origin of numbers: the scene, its source, and the version."""
     return {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()}
 
 
 def _numbers(cycle: SteadyCycle) -> dict[str, object]:
-    """All numbers of a cycle."""
     numbers: dict[str, object] = {"cycle_rad": cycle.machine.cycle_rad}
     for row in number_rows(cycle):
         numbers[row.key] = row.value
@@ -294,13 +294,9 @@ def _numbers(cycle: SteadyCycle) -> dict[str, object]:
     return numbers | {"settling": cycle.settling, "works": [asdict(r) for r in work_rows(cycle)]}
 
 
-def _text(content: Mapping[str, object]) -> str:
-    return json.dumps(finite(content), indent=1) + "\n"
-
-
 def show_cycle(console: Console, cycle: SteadyCycle) -> None:
     """Print a cycle."""
-    console.print(heading(cycle), "", highlight=False, markup=False, sep="\n")
+    say(console, f"{heading(cycle)}\n")
     table = _table(("", "value", "", f"{cycle.machine.scene.driver.link} at"))
     for row in number_rows(cycle):
         at = "" if math.isnan(row.at_deg) else f"{row.at_deg:.4f} deg"
@@ -310,12 +306,12 @@ def show_cycle(console: Console, cycle: SteadyCycle) -> None:
     for work in work_rows(cycle):
         works.add_row(work.name, _digits(work.work_j), "", _digits(work.mean_n_m))
     console.print(works, "")
-    _notes(console, notes(cycle))
+    say_each(console, notes(cycle))
 
 
 def show_flywheel(console: Console, found: WantedFlywheel) -> None:
     """Print a flywheel."""
-    console.print(flywheel_heading(found), "", highlight=False, markup=False, sep="\n")
+    say(console, f"{flywheel_heading(found)}\n")
     ways = _table(("flywheel", "kg m^2", "", "off the exact one"))
     for row in way_rows(found):
         off = "" if row.key == "exact" else f"{'+' * (row.off > 0.0)}{error_text(row.off)}"
@@ -325,22 +321,14 @@ def show_flywheel(console: Console, found: WantedFlywheel) -> None:
     for each in beside_rows(found):
         beside.add_row(each.name, _digits(each.without), _digits(each.with_it), each.unit)
     console.print(beside, "")
-    _notes(console, flywheel_notes(found))
+    say_each(console, flywheel_notes(found))
 
 
 def _table(heads: tuple[str, str, str, str]) -> Table:
     """A table of names, then numbers; a column without a head has units."""
-    table = plain_table(gap=2)
-    for k, head in enumerate(heads):
-        table.add_column(head, justify="right" if head and k else "left", no_wrap=True)
-    return table
+    first, *others = heads
+    return grid((first, *(head and f"{head}:" for head in others)), whole=heads)
 
 
 def _digits(value: float) -> str:
-    """Seven significant digits; a dash for NaN."""
     return NONE if math.isnan(value) else f"{value + 0.0:.7g}"
-
-
-def _notes(console: Console, told: list[str]) -> None:
-    for note in told:
-        console.print(note, style="dim", highlight=False, markup=False)

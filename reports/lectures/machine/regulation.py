@@ -14,13 +14,14 @@ from analytic.lectures.regulation.cycle_search import cycle_of
 from analytic.lectures.regulation.flywheel import CoefficientError, WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, with_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.machine import cycle_rows
+from reports.output.console import say_whole
 from reports.output.formats import ENDINGS, write_frame
-from reports.output.write import check_file, check_folder, check_outputs, write
+from reports.output.write import Outputs, check_file, check_folder, write
 from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
 from reports.requests.options import SceneName
 from reports.requests.shown import Shown
@@ -84,7 +85,6 @@ class MachineCycle(Shown):
         return cycle_rows.cycle_frame(self.details)
 
     def show(self, console: Console) -> None:
-
         cycle_rows.show_cycle(console, self.details)
 
 
@@ -116,7 +116,6 @@ class MachineFlywheel(Shown):
         return cycle_rows.cycle_frame(self.details.cycle, self.details.bare)
 
     def show(self, console: Console) -> None:
-
         cycle_rows.show_flywheel(console, self.details)
 
 
@@ -184,14 +183,7 @@ class CycleRequest:
         """Show or write a steady cycle. Raises CrankcheckError for a faulty request."""
         check_outputs_of(self.scene, self.output, self.figures)
         cycle = cycle_of(TurningMachine.of(load_scene(self.scene)))
-        if self.figures is not None:
-            from reports.lectures.machine.regulation_figures import Regulated, written_figures
-
-            tell_of(console, written_figures(Regulated(cycle), self.figures))
-        if self.output is not None:
-            _write_cycle(self.output, cycle)
-            name = cycle.machine.scene.name
-            tell_of(console, f"{self.output}: the steady cycle of {name}")
+        _write(self, cycle, None, console)
         cycle_rows.show_cycle(console, cycle)
         return 0
 
@@ -201,28 +193,41 @@ def check_outputs_of(scene: str, output: Path | None, figures: Path | None) -> N
     if output is not None:
         check_file(output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=[find_scene(scene)])
     if figures is not None:
-        from reports.lectures.machine.regulation_figures import figure_files
+        from reports.lectures.machine.regulation_figures import REGULATION_FIGURES
 
-        check_folder(figures, "--figures", figure_files(), inputs=[find_scene(scene)])
-
-
-def tell_of(console: Console, told: str) -> None:
-    """Print a line on a written file."""
-    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+        check_folder(figures, "--figures", REGULATION_FIGURES.files, inputs=[find_scene(scene)])
 
 
-def _write_cycle(path: Path, cycle: SteadyCycle) -> None:
-    """Write the cycle as a file of the kind of its ending."""
-    ending, scene = path.suffix.lower(), cycle.machine.scene
-    if ending == PAGE:
-        from reports.lectures.machine.regulation_page import page_of_cycle
+def _write(
+    request: CycleRequest | FlywheelRequest,
+    cycle: SteadyCycle,
+    found: WantedFlywheel | None,
+    console: Console,
+) -> None:
+    """Write the requested figures and file of a cycle, and of its flywheel if it has one."""
+    scene, output = cycle.machine.scene, request.output
+    if request.figures is not None:
+        from reports.lectures.machine.regulation_figures import REGULATION_FIGURES, Regulated
 
-        write(path, page_of_cycle(cycle))
-    elif ending == NUMBERS:
-        write(path, cycle_rows.cycle_document(cycle))
+        figures = REGULATION_FIGURES.written(Regulated(cycle, found), request.figures)
+        say_whole(console, figures)
+    if output is None:
+        return
+    if output.suffix.lower() == PAGE:
+        from reports.lectures.machine.regulation_page import regulation_page
+
+        write(output, regulation_page(cycle, found))
+    elif output.suffix.lower() == NUMBERS:
+        numbers = cycle_rows.flywheel_document(found) if found else cycle_rows.cycle_document(cycle)
+        write(output, numbers)
     else:
         origin = {"scene": scene.name, "source": scene.source}
-        write_frame(path, cycle_rows.cycle_frame(cycle), "cycle", origin)
+        if found is not None:
+            origin["flywheel_kg_m2"] = repr(found.inertia_kg_m2)
+        frame = cycle_rows.cycle_frame(cycle, found.bare if found else None)
+        write_frame(output, frame, "cycle", origin)
+    what, more = ("flywheel", ", and its cycle") if found else ("steady cycle", "")
+    say_whole(console, f"{output}: the {what} of {scene.name}{more}")
 
 
 SCENE = ".toml"
@@ -258,18 +263,11 @@ class FlywheelRequest:
             found = wanted_flywheel(machine, self.delta)
         except CoefficientError as error:
             raise CrankcheckError(f"--{error}") from None  # of the option
-        if self.figures is not None:
-            from reports.lectures.machine.regulation_figures import Regulated, written_figures
-
-            tell_of(console, written_figures(Regulated(found.cycle, found), self.figures))
-        if self.output is not None:
-            _write_flywheel(self.output, found)
-            name = found.cycle.machine.scene.name
-            tell_of(console, f"{self.output}: the flywheel of {name}, and its cycle")
+        _write(self, found.cycle, found, console)
         if self.written is not None:
             write(self.written, _scene(found, free=self.free))
             told = ", let go in its steady cycle" * self.free
-            tell_of(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
+            say_whole(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
         cycle_rows.show_flywheel(console, found)
         return 0
 
@@ -286,7 +284,7 @@ def _check(request: FlywheelRequest) -> None:
                 f"{SCENE}"
             )
         files = {"-o": request.output, "--write": request.written}
-        check_outputs(files, inputs=[find_scene(request.scene)])
+        Outputs(files).check([find_scene(request.scene)])
 
 
 def _scene(found: WantedFlywheel, *, free: bool) -> str:
@@ -294,21 +292,3 @@ def _scene(found: WantedFlywheel, *, free: bool) -> str:
     machine = found.cycle.machine
     scene = cycle_scene(found.cycle, flywheel=False) if free else machine.scene
     return scene_text(scene, {scene.driver.link: found.inertia_kg_m2})
-
-
-def _write_flywheel(path: Path, found: WantedFlywheel) -> None:
-    """Write the flywheel as a file of the kind of its ending."""
-    ending, scene = path.suffix.lower(), found.cycle.machine.scene
-    if ending == PAGE:
-        from reports.lectures.machine.regulation_page import page_of_flywheel
-
-        write(path, page_of_flywheel(found))
-    elif ending == NUMBERS:
-        write(path, cycle_rows.flywheel_document(found))
-    else:
-        origin = {
-            "scene": scene.name,
-            "source": scene.source,
-            "flywheel_kg_m2": repr(found.inertia_kg_m2),
-        }
-        write_frame(path, cycle_rows.cycle_frame(found.cycle, found.bare), "cycle", origin)

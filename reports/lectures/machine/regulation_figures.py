@@ -1,10 +1,8 @@
 """Figures of regulation: a cycle, the cycle without a flywheel, and their axis."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,17 +15,18 @@ from matplotlib.ticker import MultipleLocator
 from analytic.lectures.regulation.flywheel import EnergyMass, WantedFlywheel, energy_mass
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
+from models.scene import Scene
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, FORMATS, INK, QUIET, SMALL, TINY, saved, styled
+from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, FigureSet, Look, shorten
 from reports.lectures.machine.cycle_rows import CycleSeries, cycle_series
-from reports.output.numbers import count, readable
-from reports.output.write import crankcheck_version, write
+from reports.output.numbers import readable
+from reports.output.write import crankcheck_version
 
 SIDES = (0.58, 0.1)
 """Room on the left and on the right of a panel over the angle [inch]."""
-CURVE = {"color": "#1f5f9e", "linewidth": 1.3}
-OTHER = {"color": "#c04a1d", "linewidth": 1.0, "linestyle": (0, (4.0, 1.5))}
-RETURNING = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
+CURVE: Look = {"color": "#1f5f9e", "linewidth": 1.3}
+OTHER: Look = {"color": "#c04a1d", "linewidth": 1.0, "linestyle": (0, (4.0, 1.5))}
+RETURNING: Look = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
 
 
 @dataclass(frozen=True)
@@ -36,6 +35,10 @@ class Regulated:
 
     cycle: SteadyCycle
     wanted: WantedFlywheel | None = None
+
+    @property
+    def scene(self) -> Scene:
+        return self.cycle.machine.scene
 
     @cached_property
     def series(self) -> CycleSeries:
@@ -59,8 +62,7 @@ class Regulated:
         """Set limits and ticks of the angle; short numbers on the other axis."""
         ends = self.degrees[[0, -1]]
         axes.set_xlim(*sorted(ends))
-        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
-        axes.yaxis.get_offset_text().set_fontsize(SMALL)
+        shorten(axes)
         turns = round(self.cycle.machine.cycle_rad / math.tau)
         axes.xaxis.set_major_locator(MultipleLocator(60.0 if turns == 1 else 90.0 * turns / 2.0))
 
@@ -84,11 +86,11 @@ class Regulated:
         return [f"{'; '.join(parts)}."]
 
 
-TOUCH = {"color": "#1f5f9e", "marker": "o", "markersize": 3.0, "linestyle": "none"}
+TOUCH: Look = {"color": "#1f5f9e", "marker": "o", "markersize": 3.0, "linestyle": "none"}
 NARROW = 1e-6
 """Variation of the moment of inertia, over its size, below which it is constant: no diagram."""
 EVERY_DEG = 90
-PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.3, "alpha": 0.85}
+PAPER: Look = {"facecolor": "white", "edgecolor": "none", "pad": 0.3, "alpha": 0.85}
 ROOM = 0.12
 """Room around the curve, over its size."""
 
@@ -101,19 +103,19 @@ def draw_energy_mass(of: Regulated) -> Figure | None:
         return None
     high, low = cycle.extreme_speeds_rad_s
     slopes = ((0.5 * high**2, True, OTHER, "max"), (0.5 * low**2, False, RETURNING, "min"))
-    entries: list[tuple[Artist, str]] = [(Line2D([], [], **CURVE), "over the cycle")]  # type: ignore[arg-type]  # looks of a line
+    entries: list[tuple[Artist, str]] = [(Line2D([], [], **CURVE), "over the cycle")]
     for slope, _, look, which in slopes:
         words = f"tan psi {which} = {readable(slope, 5)} J/(kg m²)"
-        entries.append((Line2D([], [], **look), words))  # type: ignore[arg-type]  # as above
+        entries.append((Line2D([], [], **look), words))
     notes = [*of.notes, f"The tangents meet in {_origin(cycle)}, the origin of the diagram."]
     title = f"Energy and mass: {cycle.machine.scene.name}"
     figure, (axes,) = sheet(COLUMN_IN, Panels(1, 1, 2.6, *SIDES, 0.2), title, entries, notes)
-    axes.plot(diagram.inertia, diagram.work, **CURVE)  # type: ignore[arg-type]  # as above
+    axes.plot(diagram.inertia, diagram.work, **CURVE)
     _limits(axes, diagram)
     for slope, above, look, _ in slopes:
         height, at = diagram.tangent(slope, above=above)
-        axes.axline((0.0, height), slope=slope, **look)  # type: ignore[arg-type]  # as above
-        axes.plot(diagram.inertia[at], diagram.work[at], **TOUCH)  # type: ignore[arg-type]  # as above
+        axes.axline((0.0, height), slope=slope, **look)
+        axes.plot(diagram.inertia[at], diagram.work[at], **TOUCH)
     _angles(of, axes)
     axes.ticklabel_format(scilimits=(-3, 4), useMathText=False)
     for axis in (axes.xaxis, axes.yaxis):
@@ -141,7 +143,7 @@ def _angles(of: Regulated, axes: Axes) -> None:
     inertia, work = cycle.machine.inertia(u)[0], cycle.energy(u) - cycle.solution.at_borders[0]
     axes.plot(inertia, work, "o", color=QUIET, markersize=2.0, zorder=3)
     for deg, x, y in zip(degrees, inertia, work, strict=True):
-        look: dict[str, Any] = {"size": TINY, "color": QUIET, "va": "center", "bbox": PAPER}
+        look: Look = {"size": TINY, "color": QUIET, "va": "center", "bbox": PAPER}
         axes.annotate(
             f"{deg:.0f}",
             (x, y),
@@ -158,8 +160,8 @@ def _origin(cycle: SteadyCycle) -> str:
     return f"{inertia} kg m² and {readable(-float(cycle.solution.at_borders[0]), 5)} J"
 
 
-MEAN = {"color": INK, "linewidth": 0.7, "linestyle": (0, (5.0, 2.0))}
-EXTREME = {"color": "#1f5f9e", "marker": "o", "markersize": 3.2, "linestyle": "none"}
+MEAN: Look = {"color": INK, "linewidth": 0.7, "linestyle": (0, (5.0, 2.0))}
+EXTREME: Look = {"color": "#1f5f9e", "marker": "o", "markersize": 3.2, "linestyle": "none"}
 APART = 6.0
 """Ratio of fluctuations above which they have no room in one panel."""
 
@@ -169,12 +171,12 @@ def draw_speed(of: Regulated) -> Figure:
     cycle, bare = of.cycle, of.bare
     with_it = "with the flywheel" if of.wanted is not None else "speed"
     entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **CURVE), f"{with_it}, delta = {readable(cycle.delta)}"),  # type: ignore[arg-type]  # looks of a line
-        (Line2D([], [], **MEAN), f"mean {readable(cycle.mean_rad_s, 5)} rad/s"),  # type: ignore[arg-type]  # as above
-        (Line2D([], [], **EXTREME), _extremes(of)),  # type: ignore[arg-type]  # as above
+        (Line2D([], [], **CURVE), f"{with_it}, delta = {readable(cycle.delta)}"),
+        (Line2D([], [], **MEAN), f"mean {readable(cycle.mean_rad_s, 5)} rad/s"),
+        (Line2D([], [], **EXTREME), _extremes(of)),
     ]
     if bare is not None:
-        entries.append((Line2D([], [], **OTHER), f"without, delta = {readable(bare.delta)}"))  # type: ignore[arg-type]  # as above
+        entries.append((Line2D([], [], **OTHER), f"without, delta = {readable(bare.delta)}"))
     notes = list(of.notes)
     if of.wanted is not None and bare is None:
         notes.append("Without the flywheel there is no steady cycle at this speed.")
@@ -186,10 +188,10 @@ def draw_speed(of: Regulated) -> Figure:
         if bare is not None and (rows == 1 or k == 0):
             of.plot(one, bare.solution.speed_at(of.series.turned), **OTHER)
         of.plot(one, of.series.speed, **CURVE)
-        one.axhline(cycle.mean_rad_s, **MEAN)  # type: ignore[arg-type]  # as above
+        one.axhline(cycle.mean_rad_s, **MEAN)
         at = np.array([cycle.fastest, cycle.slowest])
         if k == len(axes) - 1:
-            one.plot(np.degrees(cycle.machine.theta(at)), cycle.extreme_speeds_rad_s, **EXTREME)  # type: ignore[arg-type]  # as above
+            one.plot(np.degrees(cycle.machine.theta(at)), cycle.extreme_speeds_rad_s, **EXTREME)
         of.mark_axis(one)
         one.tick_params(labelbottom=k == len(axes) - 1)
         one.set_ylabel(f"{cycle.machine.scene.driver.link} [rad/s]")
@@ -203,7 +205,7 @@ def _extremes(of: Regulated) -> str:
     return f"extreme at {readable(high, 4)} and {readable(low, 4)} deg"
 
 
-WORK = {"color": INK, "linewidth": 1.2}
+WORK: Look = {"color": INK, "linewidth": 1.2}
 
 
 def draw_torques(of: Regulated) -> Figure:
@@ -216,11 +218,10 @@ def draw_torques(of: Regulated) -> Figure:
     ]
     curves = [each for each in curves if np.any(np.abs(each[0]) > 0.0)]
     entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **look), words)  # type: ignore[arg-type]  # looks of a line
-        for _, look, words in curves
+        (Line2D([], [], **look), words) for _, look, words in curves
     ]
     words = f"work since the start, surplus {readable(cycle.surplus_j, 4)} J"
-    entries.append((Line2D([], [], **WORK), words))  # type: ignore[arg-type]  # as above
+    entries.append((Line2D([], [], **WORK), words))
     shape = Panels(2, 1, 1.5, *SIDES, 0.15, between=(0, 0.2))
     title = f"Torques and work: {cycle.machine.scene.name}"
     figure, (upper, lower) = sheet(COLUMN_IN, shape, title, entries, of.notes)
@@ -236,35 +237,7 @@ def draw_torques(of: Regulated) -> Figure:
     return figure
 
 
-REGULATION_FIGURES: Mapping[str, Callable[[Regulated], Figure | None]] = {
-    "speed": draw_speed,
-    "torques": draw_torques,
-    "energy-mass": draw_energy_mass,
-}
-"""Figures by name, each None where there is nothing to draw: a machine of constant moment of
-inertia has no energy-mass diagram."""
-
-
-def figure_files() -> list[str]:
-    """The names of all files that may be written."""
-    return [f"{name}.{kind}" for name in REGULATION_FIGURES for kind in FORMATS]
-
-
-def drawn_figures(of: Regulated) -> Iterator[tuple[str, Figure]]:
-    """The figures by their names, without empty ones."""
-    for name, draw in REGULATION_FIGURES.items():
-        with styled():
-            figure = draw(of)
-        if figure is not None:
-            yield name, figure
-
-
-def written_figures(of: Regulated, folder: Path) -> str:
-    """Write all figures; return a line on them. Raises CrankcheckError where the system refuses."""
-    names, title = [], of.cycle.machine.scene.name
-    for name, figure in drawn_figures(of):
-        names.append(name)
-        for kind in FORMATS:
-            write(folder / f"{name}.{kind}", saved(figure, kind, f"{title}: {name}"))
-    kinds = " and ".join(f".{kind}" for kind in FORMATS)
-    return f"{folder}: {count(len(names), 'figure')}, each as {kinds}: {', '.join(names)}"
+REGULATION_FIGURES = FigureSet[Regulated](
+    "", {"speed": draw_speed, "torques": draw_torques, "energy-mass": draw_energy_mass}
+)
+"""A machine of constant moment of inertia has no energy-mass diagram."""

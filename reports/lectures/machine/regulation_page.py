@@ -5,9 +5,8 @@ from collections.abc import Mapping
 
 from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
-from reports.figures.style import saved
 from reports.lectures.machine import cycle_rows
-from reports.lectures.machine.regulation_figures import Regulated, drawn_figures
+from reports.lectures.machine.regulation_figures import REGULATION_FIGURES, Regulated
 from reports.output.numbers import count
 from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
@@ -57,15 +56,13 @@ def flywheel_section(found: WantedFlywheel) -> Section:
     )
 
 
-def cycle_page(cycle: SteadyCycle, figures: Mapping[str, bytes]) -> str:
-    """The page of a cycle; ``figures`` are SVG files by name."""
-    return assembled(_head(cycle, "cycle"), [cycle_section(cycle, figures)])
-
-
-def flywheel_page(found: WantedFlywheel, figures: Mapping[str, bytes]) -> str:
-    """The page of a flywheel, with its cycle."""
-    sections = [flywheel_section(found), cycle_section(found.cycle, figures)]
-    return assembled(_head(found.cycle, "flywheel"), sections)
+def regulation_page(cycle: SteadyCycle, found: WantedFlywheel | None) -> str:
+    """The page of a cycle, or of a flywheel and its cycle, as HTML."""
+    figures = REGULATION_FIGURES.pictures(Regulated(cycle, found))
+    sections = [cycle_section(cycle, figures)]
+    if found is not None:
+        sections.insert(0, flywheel_section(found))
+    return assembled(_head(cycle, sections[0].anchor), sections)
 
 
 def _head(cycle: SteadyCycle, first: str) -> Head:
@@ -81,18 +78,3 @@ def _head(cycle: SteadyCycle, first: str) -> Head:
         made="",
         first=first,
     )
-
-
-def page_of_cycle(cycle: SteadyCycle) -> str:
-    """The page of a cycle as HTML."""
-    return cycle_page(cycle, _figures(Regulated(cycle)))
-
-
-def page_of_flywheel(found: WantedFlywheel) -> str:
-    """The page of a flywheel as HTML."""
-    return flywheel_page(found, _figures(Regulated(found.cycle, found)))
-
-
-def _figures(of: Regulated) -> dict[str, bytes]:
-    title = of.cycle.machine.scene.name
-    return {name: saved(figure, "svg", f"{title}: {name}") for name, figure in drawn_figures(of)}

@@ -24,7 +24,7 @@ from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.driver import driver_unit
-from reports.output.console import plain_table, say, say_whole
+from reports.output.console import grid, say, say_whole
 from reports.requests.options import SceneName, option
 
 Row = Mapping[str, object]
@@ -73,7 +73,6 @@ class RotatabilityRequest:
 
 
 def _position(circuits: Circuits, text: str) -> Position:
-    """Parse a position. Raises CrankcheckError."""
     degrees, colon, written = text.partition(":")
     signs = circuits.signed.signs
     try:
@@ -160,7 +159,6 @@ def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
 
 
 def _show_own_branch(console: Console, document: Mapping[str, Any]) -> None:
-    """Print the answer of `_of_own_branch` in words and a table."""
     say(console, f"{document['scene']}: the branch that it is on alone")
     show_rows(console, document["rotations"], TABLES["rotations"].split())
     say(console, "")
@@ -213,7 +211,6 @@ TABLES = {
 
 
 def _show(console: Console, document: Mapping[str, Any]) -> None:
-    """Print the answer of `_document` in words and tables."""
     kind = "no four-bar or slider-crank driven at its crank, so of no Grashof type"
     if document["type"] is not None:
         kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
@@ -234,12 +231,9 @@ def _show(console: Console, document: Mapping[str, Any]) -> None:
 
 
 def show_rows(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:
-    table = plain_table(gap=2)
-    for column in columns:
-        table.add_column(column.replace("_", " "), overflow="fold")
-    for row in rows:
-        table.add_row(*(_cell(row.get(column)) for column in columns))
-    console.print(table, highlight=False)
+    heads = [column.replace("_", " ") for column in columns]
+    cells = ([_cell(row.get(column)) for column in columns] for row in rows)
+    console.print(grid(heads, cells), highlight=False)
 
 
 def _cell(value: object) -> str:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Generic, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
 import numpy as np
 import typer
@@ -28,17 +27,18 @@ from analytic.lectures.vibration.steady_vibration import (
     steady_vibration,
 )
 from models.array import Array
-from models.errors import CrankcheckError, harmless, shown
+from models.errors import CrankcheckError, shown
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.machine import vibration_tables as files
 from reports.lectures.machine.vibration_tables import show_map, show_speeds, show_vibration
+from reports.output.console import say_whole
 from reports.output.formats import csv
 from reports.output.write import check_folder, write
 from reports.requests.options import SceneName
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from reports.figures.style import FigureSet
 
 MOST_COUNT = 5000
 """Number of speeds, or of speeds times factors, beyond which it takes minutes."""
@@ -55,59 +55,48 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class Files(Generic[Found]):
-    """Files of a result: texts by file, and ``figures``, with a function of ``draws`` for each,
-    whose imports wait until then."""
+    """Printed form and files of a result: texts by file, and figures by the name of their set in
+    `vibration_figures`, whose import waits until they are needed."""
 
+    show: Callable[[Console, Found], None]
     texts: Mapping[str, Callable[[Found], str]]
-    figures: Sequence[str]
-    draws: Callable[[], Sequence[Callable[[Found], Figure]]]
+    set_name: str
 
+    @property
+    def figures(self) -> FigureSet[Any]:
+        from reports.lectures.machine import vibration_figures
 
-def _over_turn() -> Sequence[Callable[[SteadyVibration], Figure]]:
-    from reports.lectures.machine import vibration_figures
-
-    return vibration_figures.draw_over_turn, vibration_figures.draw_spectrum
-
-
-def _over_speed() -> Sequence[Callable[[OverSpeeds], Figure]]:
-    from reports.lectures.machine import vibration_figures
-
-    return vibration_figures.draw_over_speed, vibration_figures.draw_waterfall
-
-
-def _over_inertia() -> Sequence[Callable[[InertiaMap], Figure]]:
-    from reports.lectures.machine import vibration_figures
-
-    return (vibration_figures.draw_over_inertia,)
+        found: FigureSet[Any] = vars(vibration_figures)[self.set_name]
+        return found
 
 
 AT_A_SPEED = Files[SteadyVibration](
+    show_vibration,
     {
         "vibration.json": files.vibration_document,
         "turn.csv": lambda found: csv(files.turn_frame(found)),
         "natural.csv": lambda found: csv(files.natural_frame(found)),
         "spectrum.csv": lambda found: csv(files.spectrum_frame(found)),
     },
-    ("deflection", "spectrum"),
-    _over_turn,
+    "AT_A_SPEED",
 )
 OVER_SPEEDS = Files[OverSpeeds](
+    show_speeds,
     {
         "speeds.json": files.speeds_document,
         "speeds.csv": lambda found: csv(files.speeds_frame(found)),
         "waterfall.csv": lambda found: csv(files.waterfall_frame(found)),
         "critical.csv": lambda found: csv(files.critical_frame(found)),
     },
-    ("speeds", "waterfall"),
-    _over_speed,
+    "OVER_SPEEDS",
 )
 OVER_INERTIA = Files[InertiaMap](
+    show_map,
     {
         "map.json": files.map_document,
         "map.csv": lambda found: csv(files.map_frame(found)),
     },
-    ("map",),
-    _over_inertia,
+    "OVER_INERTIA",
 )
 
 
@@ -156,11 +145,12 @@ class VibrationRequest:
         if self.factors is not None and self.map_link is None:
             raise CrankcheckError("--factors: they are of the inertia of a link; give --map LINK")
         if self.map_link is not None:
-            _map(self, scene, by, self.map_link, console)
+            link = self.map_link
+            _answer(self, OVER_INERTIA, lambda: _over_inertia(self, link, scene, by), console)
         elif self.speeds is not None:
-            _speeds(self, scene, by, console)
+            _answer(self, OVER_SPEEDS, lambda: _over_speeds(self, scene, by), console)
         else:
-            _vibration(self, scene, by, console)
+            _answer(self, AT_A_SPEED, lambda: steady_vibration(scene, by), console)
         return 0
 
 
@@ -168,39 +158,22 @@ def _modes(across: int) -> Modes:
     return Modes(across, min(across, Modes().along))
 
 
-def _vibration(request: VibrationRequest, scene: Scene, by: Modes, console: Console) -> None:
-    """Show and write the vibration at the speed of the scene."""
-    _check(request, AT_A_SPEED)
-    found: SteadyVibration = steady_vibration(scene, by)
-    show_vibration(console, found)
-    _write(request, AT_A_SPEED, found, console, scene)
-
-
-def _speeds(request: VibrationRequest, scene: Scene, by: Modes, console: Console) -> None:
-    """Show and write the vibration over speeds."""
-    _check(request, OVER_SPEEDS)
+def _over_speeds(request: VibrationRequest, scene: Scene, by: Modes) -> OverSpeeds:
     speeds = _asked_speeds(scene, request.speeds)
     _refuse_many(len(speeds), "--speeds")
-    found: OverSpeeds = over_speeds(scene, by, speeds)
-    show_speeds(console, found)
-    _write(request, OVER_SPEEDS, found, console, scene)
+    return over_speeds(scene, by, speeds)
 
 
-def _map(request: VibrationRequest, scene: Scene, by: Modes, link: str, console: Console) -> None:
-    """Show and write the vibration over speeds and inertia."""
-    _check(request, OVER_INERTIA)
+def _over_inertia(request: VibrationRequest, link: str, scene: Scene, by: Modes) -> InertiaMap:
     low, high, count = asked_range(request.factors or FACTORS, "--factors", "0.1:10:9")
     factors = np.geomspace(low, high, count)
     with_inertia(scene, link, 1.0)  # or refused
     speeds = _asked_speeds(scene, request.speeds)
     _refuse_many(len(speeds) * len(factors), "--speeds and --factors")
-    found: InertiaMap = over_inertia(scene, by, speeds, link, factors)
-    show_map(console, found)
-    _write(request, OVER_INERTIA, found, console, scene)
+    return over_inertia(scene, by, speeds, link, factors)
 
 
 def _asked_speeds(scene: Scene, text: str | None) -> Array:
-    """The requested speeds, or speeds by frequency ratios."""
     if text is None:
         low, high = (lowest_rad_s(scene) / ratio for ratio in RATIOS)
         return np.linspace(low, high, COUNT)
@@ -238,29 +211,20 @@ def _refuse_many(count: int, option: str) -> None:
         raise CrankcheckError(f"{option}: found {count} points; give {MOST_COUNT} or fewer")
 
 
-def _check(request: VibrationRequest, written: Files[Found]) -> None:
-    """Refuse a folder that can not be written. Raises CrankcheckError."""
-    if request.output is not None:
-        drawn = [f"{name}.{kind}" for name in written.figures for kind in ("svg", "pdf")]
-        inputs = [find_scene(request.scene)]
-        check_folder(request.output, "-o", [*written.texts, *drawn], inputs=inputs)
-
-
-def _write(
-    request: VibrationRequest, written: Files[Found], found: Found, console: Console, scene: Scene
+def _answer(
+    request: VibrationRequest, wanted: Files[Found], find: Callable[[], Found], console: Console
 ) -> None:
-    """Write tables and figures into a folder, where one was named."""
-    folder = request.output
+    """Find and show a result, and write its tables and figures into a folder, where one is named.
+    Raises CrankcheckError for a folder that can not be written."""
+    folder, files = request.output, list(wanted.texts)
+    if folder is not None:
+        files += wanted.figures.files
+        check_folder(folder, "-o", files, inputs=[find_scene(request.scene)])
+    found = find()
+    wanted.show(console, found)
     if folder is None:
         return
-    from reports.lectures.machine.vibration_figures import VibrationDrawing, write_figures
-
-    for name, text in written.texts.items():
+    for name, text in wanted.texts.items():
         write(folder / name, text(found))
-    drawings = [
-        VibrationDrawing(name, partial(draw, found))
-        for name, draw in zip(written.figures, written.draws(), strict=True)
-    ]
-    figures = write_figures(folder, drawings, scene.name)
-    told = f"{folder}: {', '.join((*written.texts, *figures))}"
-    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+    wanted.figures.written(found, folder)
+    say_whole(console, f"{folder}: {', '.join(files)}")

@@ -1,9 +1,6 @@
-"""Figures of vibration: the shared way of writing them, and the notes under them."""
+"""Figures of vibration at a speed, over speeds and over inertia, and the notes under them."""
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -19,9 +16,9 @@ from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from models.array import Array
 from models.scene import Scene
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, FORMATS, PAGE_IN, SMALL, logarithmic, saved, styled
+from reports.figures.style import COLUMN_IN, PAGE_IN, SMALL, FigureSet, logarithmic
 from reports.lectures.machine.vibration_rows import unstable_speeds
-from reports.output.write import crankcheck_version, write
+from reports.output.write import crankcheck_version
 
 COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a4d9e")
 """Colours of the links, one after the other."""
@@ -31,27 +28,6 @@ ORDERS = 24
 """Largest number of drawn orders."""
 SMALLEST = 1e-7
 """Smallest drawn amplitude over the length."""
-
-
-@dataclass(frozen=True)
-class VibrationDrawing:
-    """A figure by its name, and the function that draws it."""
-
-    name: str
-    draw: Callable[[], Figure]
-
-
-def write_figures(folder: Path, drawings: Iterable[VibrationDrawing], title: str) -> list[str]:
-    """Write figures in all formats; return the names of the files. Raises CrankcheckError where the
-    system refuses."""
-    names = []
-    for each in drawings:
-        with styled():
-            figure = each.draw()
-        for kind in FORMATS:
-            names.append(f"{each.name}.{kind}")
-            write(folder / names[-1], saved(figure, kind, f"{title}: {each.name}"))
-    return names
 
 
 def notes(scene: Scene, said: str) -> list[str]:
@@ -282,3 +258,10 @@ def between(series: Array, shares: Array) -> Array:
     found[1:] *= 2.0
     wave = np.exp(2j * np.pi * np.outer(shares, np.arange(len(found))))
     return np.asarray((wave @ found).real)
+
+
+AT_A_SPEED = FigureSet[SteadyVibration](
+    "", {"deflection": draw_over_turn, "spectrum": draw_spectrum}
+)
+OVER_SPEEDS = FigureSet[OverSpeeds]("", {"speeds": draw_over_speed, "waterfall": draw_waterfall})
+OVER_INERTIA = FigureSet[InertiaMap]("", {"map": draw_over_inertia})

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -16,9 +15,10 @@ from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from models.scene import Scene
 from reports.lectures.machine import vibration_rows
-from reports.output.console import plain_table
-from reports.output.numbers import NONE, count, finite, readable
-from reports.output.write import crankcheck_version
+from reports.lectures.machine.cycle_rows import origin_of
+from reports.output.console import grid, say, say_each
+from reports.output.formats import json_text
+from reports.output.numbers import NONE, count, readable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -63,7 +63,7 @@ def show_vibration(console: Console, vibration: SteadyVibration) -> None:
         shares = (each.linear_off, each.unstiffened_off)
         theories.add_row(each.link, *(f"{100.0 * share:+.2g} %" for share in shares))
     console.print(theories, "")
-    _notes(console, vibration_rows.notes(vibration))
+    say_each(console, vibration_rows.notes(vibration))
 
 
 def show_speeds(console: Console, over: OverSpeeds) -> None:
@@ -80,10 +80,10 @@ def show_speeds(console: Console, over: OverSpeeds) -> None:
         console.print(table, "")
         left = len(critical) - vibration_rows.MOST_ROWS
         if left > 0:
-            _notes(console, [f"{count(left, 'weaker one')} left out; -o writes all."])
+            say_each(console, [f"{count(left, 'weaker one')} left out; -o writes all."])
     else:
-        _notes(console, ["No critical speed lies between them."])
-    _notes(console, vibration_rows.speeds_notes(over))
+        say_each(console, ["No critical speed lies between them."])
+    say_each(console, vibration_rows.speeds_notes(over))
 
 
 def show_map(console: Console, found: InertiaMap) -> None:
@@ -98,19 +98,19 @@ def show_map(console: Console, found: InertiaMap) -> None:
             _digits(row.at_rad_s), count(row.unstable, "speed"),
         )  # fmt: skip
     console.print(table, "")
-    _notes(console, ["Deflection: the largest over the length of a link, in the middle of speeds."])
+    say_each(
+        console, ["Deflection: the largest over the length of a link, in the middle of speeds."]
+    )
 
 
 def _head(console: Console, text: str) -> None:
-    console.print(text, "", highlight=False, markup=False, sep="\n")
+    say(console, f"{text}\n")
 
 
 def _table(*heads: str) -> Table:
     """A table of a name, then numbers."""
-    table = plain_table(gap=2)
-    for k, head in enumerate(heads):
-        table.add_column(head, justify="right" if k else "left", no_wrap=True)
-    return table
+    first, *others = heads
+    return grid((first, *(f"{head}:" for head in others)), whole=(first,))
 
 
 def _digits(value: float) -> str:
@@ -123,11 +123,6 @@ def _milli(value_m: float) -> str:
 
 def _percent(share: float) -> str:
     return f"{readable(100.0 * share)} %"
-
-
-def _notes(console: Console, told: Iterable[str]) -> None:
-    for note in told:
-        console.print(note, style="dim", highlight=False, markup=False)
 
 
 def turn_frame(vibration: SteadyVibration) -> pd.DataFrame:
@@ -254,5 +249,4 @@ def map_document(found: InertiaMap) -> str:
 
 
 def _text(scene: Scene, content: Mapping[str, object]) -> str:
-    origin = {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()}
-    return json.dumps(finite({**origin, **content}), indent=1) + "\n"
+    return json_text({**origin_of(scene), **content})

@@ -25,7 +25,8 @@ RecommendationRow = dict[str, object]
 
 def recommendation(report: Report) -> Section:
     """Return the section."""
-    period_s = _usual_period(report)
+    # Copied texts are written for the period of most lines.
+    period_s = Counter(line.period_s for line in report.lines).most_common(1)[0][0]
     # Engines side by side for each target, the least demanding first.
     ordered = sorted(report.recommendations, key=lambda one: -one.target)
     rows = [row for one in ordered for row in _rows(report, one, period_s)]
@@ -43,11 +44,6 @@ def recommendation(report: Report) -> Section:
     )
 
 
-def _usual_period(report: Report) -> float:
-    """Return the period of most lines [s], for which copied texts are written."""
-    return Counter(line.period_s for line in report.lines).most_common(1)[0][0]
-
-
 def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[RecommendationRow]:
     """Yield a recommendation, and after it the steadier one."""
     yield {**_row(report, one, period_s), "cheapest": _cheapest(report, one)}
@@ -56,7 +52,6 @@ def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[Reco
 
 
 def _row(report: Report, one: Recommendation, period_s: float) -> RecommendationRow:
-    """Return a recommendation with its look and its text to be copied."""
     best = one.best
     return {
         "one": one,
@@ -82,7 +77,6 @@ def _cheapest(report: Report, one: Recommendation) -> bool:
 
 
 def _first(names: Sequence[str], most: int = 2) -> str:
-    """Return the first names of a list, and the number of the rest."""
     rest = len(names) - most
     return "; ".join(names[:most]) + (f"; and {rest} more" if rest > 0 else "")
 

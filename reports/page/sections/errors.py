@@ -47,7 +47,8 @@ def convergence(report: Report) -> Section:
         for name, (words, _) in DIAGRAMS.items()
         if name in report.cells and report.cells[name].notna().any()
     }
-    curves = {name: [drawn(report, x) for x in _lines(report, name)] for name in names}
+    own = {name: lines(report.stored, name) for name in names if name != "place_pure"}
+    curves = {name: [drawn(report, x) for x in own.get(name, report.lines)] for name in names}
     return Section(
         anchor="convergence",
         title="Error against step",
@@ -61,10 +62,6 @@ def convergence(report: Report) -> Section:
         scripts=("legend.js", "charts.js", "convergence.js"),
         plotly=True,
     )
-
-
-def _lines(report: Report, quantity: str) -> tuple[Line, ...]:
-    return report.lines if quantity == "place_pure" else lines(report.stored, quantity)
 
 
 def drawn(report: Report, line: Line) -> dict[str, object]:
@@ -88,14 +85,12 @@ def drawn(report: Report, line: Line) -> dict[str, object]:
 
 
 def _label(fit: LineFit) -> str:
-    """Return the text of a line in the legend."""
     if fit.kind == "floor":
         return f"floor {error_text(fit.floor)}"
     return f"order {fit.order:.2f}" if fit.kind == "order" else fit.kind
 
 
 def _row(report: Report, line: Line) -> dict[str, object]:
-    """Return a line of the table of fits."""
     fit = line.fit
     return {
         "scene": line.scene,
@@ -110,7 +105,6 @@ def _row(report: Report, line: Line) -> dict[str, object]:
 
 
 def _order(order: float, error: float) -> str:
-    """Return the order with its uncertainty."""
     if not math.isfinite(order):
         return "\N{EN DASH}"
     doubt = f" \N{PLUS-MINUS SIGN} {error:.2f}" if math.isfinite(error) else ""
@@ -118,7 +112,6 @@ def _order(order: float, error: float) -> str:
 
 
 def _floor(floor: float, below: float) -> str:
-    """Return the floor, or the largest possible floor."""
     if math.isfinite(floor):
         return error_text(floor)
     return f"below {error_text(below)}" if math.isfinite(below) else "\N{EN DASH}"
@@ -171,23 +164,21 @@ def _cost(report: Report, costs: Costs) -> dict[str, object]:
 
 
 def _known(number: float) -> float | None:
-    """Return a finite number; None for any other."""
     return number if math.isfinite(number) else None
 
 
 def _scene(report: Report, scene: str) -> dict[str, object]:
-    """Return the lines of one scene, and its unbeaten cells."""
     lines = report.lines_of(scene)
     cells = pd.concat([line.cells for line in lines])
+    best = cells.set_index("key").loc[front(cells)].sort_values("s_per_turn")
     return {
         "name": scene,
         "lines": [_line(report, line) for line in lines],
-        "front": _points(cells.set_index("key").loc[front(cells)]),
+        "front": {"error": list(best["place_pure"]), "s_per_turn": list(best["s_per_turn"])},
     }
 
 
 def _line(report: Report, line: Line) -> dict[str, object]:
-    """Return the cells of a line that ended well."""
     cells = line.cells[(line.cells["status"] == "ok") & (line.cells["place_pure"] > 0.0)]
     return {
         "look": report.look(line).number,
@@ -198,12 +189,6 @@ def _line(report: Report, line: Line) -> dict[str, object]:
         "within": list(cells["verdict"] == "within"),
         "dt_s": list(cells["dt_s"]),
     }
-
-
-def _points(cells: pd.DataFrame) -> dict[str, object]:
-    """Return the corners of a front, from the cheapest on."""
-    ordered = cells.sort_values("s_per_turn")
-    return {"error": list(ordered["place_pure"]), "s_per_turn": list(ordered["s_per_turn"])}
 
 
 def _over_all(report: Report) -> dict[str, object]:

@@ -11,14 +11,7 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free_facts import window_means
-from reports.drawing.moving import (
-    displacements,
-    drawing,
-    drawn_links,
-    moving_points,
-    packed,
-    size_of,
-)
+from reports.drawing import moving
 from reports.drawing.shape import true_motion
 from reports.output.numbers import duration
 from reports.page.sections.section import chosen
@@ -38,11 +31,17 @@ def sizes_of(report: Report, lines: Sequence[Line]) -> dict[str, int]:
     sizes = {}
     for line in lines:
         scene = report.scenes[line.scene]
-        rows = 0 if scene is None else 2 * len(moving_points(scene)) + len(drawn_links(scene))
+        rows = (
+            0
+            if scene is None
+            else 2 * len(moving.moving_points(scene)) + len(moving.drawn_links(scene))
+        )
         for key in map(str, line.cells["key"]):
             trace = report.stored.trace(key)
             if "phase" in trace:
-                sizes[key] = size_of(rows, INSTANTS) + size_of(CURVES, len(trace["time_s"]))
+                sizes[key] = moving.size_of(rows, INSTANTS) + moving.size_of(
+                    CURVES, len(trace["time_s"])
+                )
     return sizes
 
 
@@ -74,7 +73,7 @@ class FreeCourses:
 
     def _drawing(self, time_s: Array, truth: Motion) -> dict[str, object]:
         assert self.scene is not None
-        return drawing(self.scene, time_s, truth) | {"until_s": float(time_s[-1])}
+        return moving.drawing(self.scene, time_s, truth) | {"until_s": float(time_s[-1])}
 
     def _instants(self, lines: Sequence[Line]) -> Array:
         """Return equal parts of the longest run of a scene."""
@@ -87,7 +86,6 @@ class FreeCourses:
         return np.linspace(0.0, max(ends, default=1.0), INSTANTS)
 
     def _truth(self, time_s: Array) -> Motion | None:
-        """Return the integrated reference; None where the store does not have its scene."""
         try:
             return None if self.scene is None else true_motion(self.scene, time_s)
         except CrankcheckError:
@@ -99,7 +97,7 @@ class FreeCourses:
         driver = truth.links[self.scene.driver.link]
         return {
             "time_s": time_s,
-            "curves": packed(np.vstack([driver.theta / math.tau, driver.omega])),
+            "curves": moving.packed(np.vstack([driver.theta / math.tau, driver.omega])),
         }
 
     def _line(self, line: Line, time_s: Array, truth: Motion | None) -> dict[str, object]:
@@ -119,12 +117,12 @@ class FreeCourses:
         off = None
         if self.scene is not None and truth is not None:
             own = true_motion(self.scene, trace["time_s"])
-            off = displacements(self.scene, trace, time_s, own)
+            off = moving.displacements(self.scene, trace, time_s, own)
         return {
             "off": off,
             "time_s": trace["time_s"],
             "names": list(curves),
-            "curves": packed(np.vstack(list(curves.values()))),
+            "curves": moving.packed(np.vstack(list(curves.values()))),
         }
 
 

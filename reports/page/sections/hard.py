@@ -82,26 +82,24 @@ def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
     The easiest failures of each case in each engine, its limits, come first if the room is short.
     """
     places = {case.name: index for index, case in enumerate(matrix.cases)}
-    lines = {(run.engine, run.profile): None for run in matrix.runs}
-    columns = {line: index for index, line in enumerate(lines)}
+    columns = list(dict.fromkeys((run.engine, run.profile) for run in matrix.runs))
     shown = []
     for picture in matrix.pictures:
         number = _number(matrix, picture)
         if number is not None and picture.case in places:
             shown.append((number, picture))
-    shown.sort(key=lambda x: (places[x[1].case], columns[x[1].engine, x[1].profile], x[0]))
-    ranks: dict[tuple[str, str, str], int] = {}
+    shown.sort(key=lambda x: (places[x[1].case], columns.index((x[1].engine, x[1].profile)), x[0]))
+    ranks = Counter[tuple[str, str, str]]()
     order = []
     for index, (_, one) in enumerate(shown):
         line = (one.case, one.engine, one.profile)
-        ranks[line] = ranks.get(line, 0) + 1
+        ranks[line] += 1
         order.append((ranks[line], index))
     sizes = [len(embedded([one.drawing, one.rows])) for _, one in shown]
     return [shown[i] for i in fitting([index for _, index in sorted(order)], sizes, room)]
 
 
 def _number(matrix: Matrix, picture: Picture) -> int | None:
-    """Return the number of the run of a picture."""
     wanted = (picture.case, picture.engine, picture.profile)
     for number, run in enumerate(matrix.runs):
         if (run.case, run.engine, run.profile) == wanted and same(run.value, picture.value):
@@ -134,19 +132,11 @@ def _failures(matrix: Matrix, shown: Sequence[int]) -> dict[str, list[tuple[int,
 
 
 def _case(case: CaseFacts) -> dict[str, object]:
-    """Return the facts of a case for the scripts."""
-    return {
-        "title": case.title,
-        "parameter": case.parameter,
-        "unit": case.unit,
-        "within": case.within,
-        "error_of": case.error_of,
-        "good": ", ".join(case.good),
-    }
+    told = ("title", "parameter", "unit", "within", "error_of")
+    return {name: getattr(case, name) for name in told} | {"good": ", ".join(case.good)}
 
 
 def _driver(case: CaseFacts | None, place: float | None) -> str | None:
-    """Return the place of the driver, in words; None where it has no place."""
     if place is None or math.isnan(place):
         return None
     if case is not None and case.driver_unit == "m":
@@ -155,7 +145,6 @@ def _driver(case: CaseFacts | None, place: float | None) -> str | None:
 
 
 def _run(case: CaseFacts | None, run: Graded) -> dict[str, object]:
-    """Return the facts of a run for the scripts."""
     return {
         **vars(run),
         "value_told": amount(run.value, case.unit if case else ""),
@@ -201,21 +190,8 @@ class HeatCell:
     pictured: bool
 
 
-@dataclass(frozen=True)
-class Strip:
-    """A case in one column: its cells from easy to hard, and its limit in words."""
-
-    cells: tuple[HeatCell, ...]
-    words: str
-
-
-@dataclass(frozen=True)
-class HeatRow:
-    """A case with a strip for each column."""
-
-    case: CaseFacts
-    strips: tuple[Strip, ...]
-    good: str
+Strip = tuple[list[HeatCell], str]
+"""A case in one column: its cells from easy to hard, and its limit in words."""
 
 
 @dataclass(frozen=True)
@@ -233,10 +209,10 @@ class HeatColumn:
 
 @dataclass(frozen=True)
 class Heat:
-    """The whole map: columns, and rows by group in the order of the cases."""
+    """The whole map: columns, and by group in the order of the cases a strip for each of these."""
 
-    columns: tuple[HeatColumn, ...]
-    groups: Mapping[str, tuple[HeatRow, ...]]
+    columns: list[HeatColumn]
+    groups: Mapping[str, list[tuple[CaseFacts, list[Strip]]]]
 
 
 def kind(outcome: str) -> str:
@@ -275,27 +251,26 @@ def heat(matrix: Matrix, pictured: frozenset[int] = frozenset()) -> Heat:
     for number, run in enumerate(matrix.runs):
         numbered.setdefault((run.case, (run.engine, run.profile)), []).append((number, run))
     words = {(one.case, (one.engine, one.profile)): one.words for one in matrix.critical}
-    groups: dict[str, tuple[HeatRow, ...]] = {}
+    groups: dict[str, list[tuple[CaseFacts, list[Strip]]]] = {}
     for case in matrix.cases:
-        strips = tuple(
-            Strip(
-                tuple(_cells(case, numbered.get((case.name, x), []), pictured)),
-                words.get((case.name, x), ""),
+        strips = [
+            (
+                [*_cells(case, numbered.get((case.name, line), []), pictured)],
+                words.get((case.name, line), ""),
             )
-            for x in lines
-        )
-        row = HeatRow(case, strips, ", ".join(case.good))
-        groups[case.group] = (*groups.get(case.group, ()), row)
-    rows = [row for group in groups.values() for row in group]
-    columns = [HeatColumn(*x, _held([row.strips[i] for row in rows])) for i, x in enumerate(lines)]
-    return Heat(tuple(columns), groups)
+            for line in lines
+        ]
+        groups.setdefault(case.group, []).append((case, strips))
+    by_column = zip(*(strips for group in groups.values() for _, strips in group), strict=True)
+    held = [_held(strips) for strips in by_column] or [_held(())] * len(lines)
+    columns = [HeatColumn(*line, told) for line, told in zip(lines, held, strict=True)]
+    return Heat(columns, groups)
 
 
 def _held(strips: Sequence[Strip]) -> str:
-    """Say in how many of its cases a column holds throughout."""
-    run = [s for s in strips if any(cell.number is not None for cell in s.cells)]
-    held = sum(all(cell.held for cell in s.cells if cell.number is not None) for s in run)
-    return f"holds {held} of {len(run)} throughout"
+    run = [[cell.held for cell in cells if cell.number is not None] for cells, _ in strips]
+    ran = [cells for cells in run if cells]
+    return f"holds {sum(map(all, ran))} of {len(ran)} throughout"
 
 
 def _cells(

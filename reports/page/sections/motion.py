@@ -88,7 +88,6 @@ class _DrawnScene:
     axes: dict[str, int] = field(default_factory=dict)
 
     def embedded(self) -> dict[str, object]:
-        """Return the scene with its drawing and its lines."""
         lines = self.report.lines_of(self.scene.name)
         time_s = self._instants(lines)
         body = worst_body(lines, self.report.stored.trace, self.scene.longest_m)
@@ -112,7 +111,6 @@ class _DrawnScene:
         return longest if len(longest) > 1 else moving.instants(self.scene)
 
     def _line(self, line: Line, time_s: Array, body: CurveBody | None) -> dict[str, object]:
-        """Return a line: its error in the drawing and over the crank angle, at some steps."""
         trace = self.report.stored.trace
         parts = None if body is None else split(line, trace, body, self.scene.longest_m)
         rows = line.cells.set_index("key")
@@ -131,7 +129,6 @@ class _DrawnScene:
         }
 
     def _parts(self, parts: ErrorParts | None) -> dict[str, object] | None:
-        """Return the curves of one cell, and the number of their axis."""
         if parts is None:
             return None
         axis = json.dumps(self._axis(parts), default=float)
@@ -142,8 +139,7 @@ class _DrawnScene:
         }
 
     def _axis(self, parts: ErrorParts) -> dict[str, object]:
-        """Return the driver's place [deg or m], angles from the first turn on, and the period part
-        [%]."""
+        """Return the driver's place [deg or m], from the first turn on, and the period part [%]."""
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
         return {
             "angle": [round(float(a), 6) for a in moving.told_places(self.scene, parts.driver_rad)],
@@ -152,7 +148,6 @@ class _DrawnScene:
 
 
 def _floor(found: Split) -> str:
-    """Return the result of the extrapolation to dt = 0, in words."""
     if not math.isfinite(found.floor):
         return f"Model floor not told apart: {found.why}." if found.why else ""
     if found.seen:

@@ -7,8 +7,8 @@ import shlex
 from collections.abc import Mapping, Sequence
 
 from reports.output.write import crankcheck_version
-from reports.page.sections.section import Section
-from reports.results.lines import Line, Look, left_out, usual, value_text
+from reports.page.sections.section import Section, setting_rows
+from reports.results.lines import Line, Look, left_out, usual
 from reports.results.overview import Report
 
 
@@ -38,7 +38,6 @@ def provenance(report: Report) -> Section:
 
 
 def _run(run: Mapping[str, object]) -> dict[str, object]:
-    """Return a run of the sweep: date, command, machine, and its study."""
     command, facts = run.get("command"), run.get("provenance")
     typed = shlex.join(str(part) for part in command) if isinstance(command, Sequence) else ""
     return {
@@ -50,77 +49,43 @@ def _run(run: Mapping[str, object]) -> dict[str, object]:
 
 
 def _settings(report: Report, engine: str) -> dict[str, object]:
-    """Return all settings of all variants of an engine: a row per setting."""
     variants: dict[Look, Line] = {}
     for line in report.lines:
         if line.engine == engine:
             variants.setdefault(report.look(line), line)
     first = usual(report.lines, engine)
-    rows = []
-    for name in dict.fromkeys(name for line in variants.values() for name in line.settings):
-        known = value_text(first.settings.get(name))
-        values = [value_text(line.settings.get(name)) for line in variants.values()]
-        rows.append((name, [(value, value != known) for value in values]))
+    rows = setting_rows([line.settings for line in variants.values()], first.settings)
     return {"engine": engine, "looks": list(variants), "usual": first.name, "rows": rows}
 
 
-RULES = (
-    (
-        "One truth for all",
-        "Every engine is held to the closed-form solution of the mechanism, whose own error is "
-        "bounded at every sample. No engine is the reference for another.",
-    ),
-    (
-        "One scene",
-        "Lengths, masses, joints and the assembly branch come from one scene file. Each engine's "
-        "model is built from it and from nothing else.",
-    ),
-    (
-        "One start",
-        "Every run starts from the same state: angles, places and velocities of the closed form "
-        "at the first instant, with all pins closed.",
-    ),
-    (
-        "One drive",
-        "The crank follows the same law everywhere. Where it is not where it was told to be, that "
-        "is the drive's error, and is shown apart from the geometry's.",
-    ),
-    (
-        "Each at its own instants",
-        "Positions and velocities are compared at the instants that they belong to in the engine "
-        "that logged them: some engines log a velocity half a step away from the position.",
-    ),
-    (
-        "Twice where it can be",
-        "Velocities and accelerations are taken as an engine reports them, and by differencing "
-        "the places that it logged.",
-    ),
-    (
-        "Tolerances that know the step",
-        "A limit follows from the step, the curvature of the motion and the conditioning of its "
-        "dyads. It is one number per quantity, for every engine alike.",
-    ),
-    (
-        "Judged as tuned, shown as shipped",
-        "What is judged is profile tuned, with the settings that suit an engine best. What it "
-        "does as shipped, and under other settings, is shown beside it.",
-    ),
-    (
-        "Errors and times apart",
-        "Runs that are measured for error record every step; runs that are timed record nothing. "
-        "Timed runs go one by one, warmed up, with no other run beside them, several times over.",
-    ),
-    (
-        "Time is advice",
-        "The least of the repeats is shown. Times are compared within one processor only, and "
-        "called equal where they differ by less than two timings of one run.",
-    ),
-    (
-        "Nothing left out",
-        "A run that diverged, came apart or was not supported is a row with its reason, and takes "
-        "no part in a recommendation.",
-    ),
-)
+RULES = {
+    "One truth for all": "Every engine is held to the closed-form solution of the mechanism, "
+    "whose own error is bounded at every sample. No engine is the reference for another.",
+    "One scene": "Lengths, masses, joints and the assembly branch come from one scene file. Each "
+    "engine's model is built from it and from nothing else.",
+    "One start": "Every run starts from the same state: angles, places and velocities of the "
+    "closed form at the first instant, with all pins closed.",
+    "One drive": "The crank follows the same law everywhere. Where it is not where it was told to "
+    "be, that is the drive's error, and is shown apart from the geometry's.",
+    "Each at its own instants": "Positions and velocities are compared at the instants that they "
+    "belong to in the engine that logged them: some engines log a velocity half a step away "
+    "from the position.",
+    "Twice where it can be": "Velocities and accelerations are taken as an engine reports them, "
+    "and by differencing the places that it logged.",
+    "Tolerances that know the step": "A limit follows from the step, the curvature of the motion "
+    "and the conditioning of its dyads. It is one number per quantity, for every engine "
+    "alike.",
+    "Judged as tuned, shown as shipped": "What is judged is profile tuned, with the settings that "
+    "suit an engine best. What it does as shipped, and under other settings, is shown beside "
+    "it.",
+    "Errors and times apart": "Runs that are measured for error record every step; runs that are "
+    "timed record nothing. Timed runs go one by one, warmed up, with no other run beside "
+    "them, several times over.",
+    "Time is advice": "The least of the repeats is shown. Times are compared within one processor "
+    "only, and called equal where they differ by less than two timings of one run.",
+    "Nothing left out": "A run that diverged, came apart or was not supported is a row with its "
+    "reason, and takes no part in a recommendation.",
+}
 
 LET_GO = {
     "One truth for all": (
@@ -164,7 +129,7 @@ def fairness(report: Report) -> Section:
         title="How it is kept fair",
         template="fairness.html",
         words={
-            "rules": [_other(report).get(rule[0], rule) for rule in RULES],
+            "rules": [_other(report).get(rule[0], rule) for rule in RULES.items()],
             "noise": report.noise if math.isfinite(report.noise) else None,
         },
     )

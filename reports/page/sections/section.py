@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from models.errors import cut, harmless
-from reports.results.lines import Line
+from reports.results.lines import Line, value_text
 from reports.results.overview import Report
 from reports.stability.matrix import Matrix
+from sim.engine import Settings
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,17 @@ def toml_text(value: object) -> str:
 def _escape(character: str) -> str:
     number = ord(character)
     return f"\\u{number:04x}" if number < 0x10000 else f"\\U{number:08x}"
+
+
+def setting_rows(
+    columns: Sequence[Settings], usual: Settings
+) -> list[tuple[str, list[tuple[str, bool]]]]:
+    """Return each setting with its value in every column, and whether it differs from the usual."""
+    rows = []
+    for name in dict.fromkeys(name for own in columns for name in own):
+        values = [value_text(own.get(name)) for own in columns]
+        rows.append((name, [(each, each != value_text(usual.get(name))) for each in values]))
+    return rows
 
 
 BUDGET = 1_900_000

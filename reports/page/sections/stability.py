@@ -69,7 +69,6 @@ def _step(row: pd.Series) -> str:
 
 
 def _runs(steps: list[str], ran: list[bool], why: str) -> str:
-    """Return the steps at which a line ends well, in words."""
     if all(ran):
         return "every step"
     if not any(ran):
@@ -85,7 +84,6 @@ def _runs(steps: list[str], ran: list[bool], why: str) -> str:
 
 
 def _within(steps: list[str], within: list[bool]) -> str:
-    """Return the steps at which a line is within tolerance, in words."""
     if all(within) or not any(within):
         return f"within: {'all' if all(within) else 'none'}"
     first, number = within.index(True), sum(within)
@@ -97,7 +95,6 @@ def _within(steps: list[str], within: list[bool]) -> str:
 
 
 def _lost(report: Report, row: pd.Series) -> dict[str, object]:
-    """Return a run that did not end well."""
     look = report.looks[row["engine"], row["variant"], row["drive"]]
     return {
         "scene": row["scene"],

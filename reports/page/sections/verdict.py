@@ -48,7 +48,11 @@ class VerdictRow:
 
 def build(report: Report) -> Section:
     """Return the section."""
-    rows = [_row(look, lines) for look, lines in _by_look(report)]
+    rows = [
+        _row(look, [line for line in report.lines if named(line) == name])
+        for name, look in report.looks.items()
+    ]
+    kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
     chosen = () if report.driven is None else report.driven.recommendations
     gated = report.cells[report.cells["gated"]]
     return Section(
@@ -63,16 +67,10 @@ def build(report: Report) -> Section:
                 for engine, version in report.engines.items()
             ],
             "rows": rows,
-            "held_to": _held_to(report),
+            "held_to": list(dict.fromkeys(kind.error for kind in kinds)),
             "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
         },
     )
-
-
-def _held_to(report: Report) -> list[str]:
-    """Return the meaning of errors, for each kind of cell in the report."""
-    kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
-    return list(dict.fromkeys(kind.error for kind in kinds))
 
 
 def level(gated: pd.DataFrame) -> str:
@@ -108,7 +106,6 @@ def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommend
 
 
 def _held(row: VerdictRow) -> str:
-    """Say if an engine holds with settings that are judged."""
     name = row.look.variant
     manner = f"As {name}," if "," in name else f"With {name} settings"
     text = f"{manner} it is within tolerance in {_share(row)}"
@@ -122,7 +119,6 @@ def _held(row: VerdictRow) -> str:
 
 
 def _shipped(row: VerdictRow) -> str:
-    """Return the sentence on an engine as shipped."""
     text = f"As shipped it is within tolerance in {_share(row)}"
     texts = []
     if row.floors:
@@ -137,7 +133,6 @@ def _shipped(row: VerdictRow) -> str:
 
 
 def _cheapest(chosen: Sequence[Recommendation]) -> str:
-    """Return the sentence on the settings that reach the target at least cost."""
     asked = next((one for one in chosen if one.target == ASKED), None)
     if asked is None:
         return ""
@@ -160,15 +155,7 @@ def spread(told: Sequence[str]) -> str:
     return told[0] if told[0] == told[-1] else f"{told[0]} to {told[-1]}"
 
 
-def _by_look(report: Report) -> list[tuple[Look, list[Line]]]:
-    return [
-        (look, [line for line in report.lines if named(line) == name])
-        for name, look in report.looks.items()
-    ]
-
-
 def _row(look: Look, lines: Sequence[Line]) -> VerdictRow:
-    """Return the numbers of one engine with its settings."""
     cells = pd.concat([line.cells for line in lines])
     finest = [_finest(line) for line in lines]
     return VerdictRow(

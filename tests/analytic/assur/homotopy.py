@@ -71,7 +71,6 @@ def _followed(equations: Sequence[Equation]) -> Array:
 
 
 def once(ends: Sequence[Array]) -> Array:
-    """Points (K, 4), each once."""
     every: list[Array] = []
     for end in ends:
         if not any(np.abs(end - other).max() < CLOSE * (1.0 + np.abs(end[0])) for other in every):

@@ -157,7 +157,6 @@ UP, ALONG = (0.0, 1.0), (1.0, 0.0)
 
 
 def counted(*rows: LegRow) -> list[tuple[float, float, float, int]]:
-    """Angle, place and count of all assemblies."""
     return [(one.angle_rad, *one.place, one.count) for one in assemblies(rows)]
 
 

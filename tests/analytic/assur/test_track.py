@@ -40,7 +40,6 @@ def start_of(scene: Scene) -> float:
 
 @functools.cache
 def as_drawn(kinds: tuple[str, str, str], seed: int) -> Scene:
-    """A random triad on the assembly that it was drawn in."""
     scene, angle = triad(kinds, seed)
     found = [one.angle_rad for one in step_of(scene).assemblies(start_of(scene), {})]
     apart = [abs(math.remainder(one - angle, math.tau)) for one in found]
@@ -66,10 +65,10 @@ def test_error_stays_below_the_bound_in_every_kind_of_triad(
 
 def test_bounds_are_infinite_beside_a_limit_position_and_never_nan() -> None:
     scene = as_drawn(("RR", "RR", "RR"), 0)
-    track = step_of(scene).track({})
-    law = ConstantSpeed(0.5 * (track.low.theta + track.high.theta), 1.0)
+    low, high = (end.theta for end in step_of(scene).track({}).ends)
+    law = ConstantSpeed(0.5 * (low + high), 1.0)
     start = replace(scene.driver, law=law)
-    beside = track.high.theta - law.start_rad - np.array([1e-3, 1e-6, 1e-9, 1e-12])
+    beside = high - law.start_rad - np.array([1e-3, 1e-6, 1e-9, 1e-12])
     bounds = solve(replace(scene, driver=start), beside).bound.links
     for name, one in bounds.items():
         for level in (one.theta, one.omega, one.alpha):
@@ -86,10 +85,8 @@ def test_error_stays_below_the_bound_a_million_lengths_away(kinds: tuple[str, st
 
 
 def followed(step: AssurStep, theta: Array) -> BodyKinematics:
-    """The central link at driver angles within the track."""
     track = step.track({})
-    chunk = step.before.chunk(theta, 0.0, {})
-    rows = step.mounting.rows(chunk)
+    rows = step.mounting.rows(step.before(theta, 0.0, {}))
     place, turn = track.guess(track.home(theta))
     solved = solve_platform(rows, place, turn, step.mounting.size_m, certified=True)
     assert solved.closed.all()
@@ -150,8 +147,8 @@ def test_every_assembly_has_a_track_of_its_own() -> None:
 @pytest.mark.parametrize("seed", few(range(2), [0], "another random triad"))
 def test_two_assemblies_are_gone_beyond_a_limit_position(seed: int) -> None:
     step = step_of(triad(("RR", "RR", "RR"), seed, crank_m=0.6)[0])
-    ends = [(step.track({}).low, -1.0), (step.track({}).high, 1.0)]
-    assert all(end is not None and end.kind == "limit position" for end, _ in ends)
-    for end, way in ends:
+    ends = step.track({}).ends
+    assert all(end is not None and end.kind == "limit position" for end in ends)
+    for end, way in zip(ends, (-1.0, 1.0), strict=True):
         counts = [len(step.assemblies(end.theta - way * off, {})) for off in (1e-9, -1e-9)]
         assert counts[0] == counts[1] + 2

@@ -25,10 +25,13 @@ from tests.analytic import four_bars, oracle
 from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet
+from tests.analytic.test_bounds import errors, over
 from tests.worlds.strategies import examples
 from tests.worlds.tiers import few, slowly
 
 Lengths = tuple[float, float, float, float]
+OFF = 1e-30
+"""What the driver of the oracle is off by where it would be in a change point itself [rad]."""
 Exact = Mapping[str, Jet]
 """Links by name, sliders by "s NAME", in fifty digits."""
 
@@ -84,18 +87,10 @@ def shares(motion: Motion, exact: Callable[[int], Exact]) -> Array:
         for name, jet in exact(i).items():
             where, key = ("sliders", name[2:]) if name.startswith("s ") else ("links", name)
             found, limit = (vars(getattr(m, where)[key]) for m in (motion, motion.bound))
-            truths = (jet.value, jet.rate, jet.second)
-            errors = [mpf(float(v[i])) - t for v, t in zip(found.values(), truths, strict=True)]
-            if where == "links":
-                errors[0] -= 2 * mp.pi * mp.nint(errors[0] / (2 * mp.pi))
-            pairs = zip(errors, limit.values(), strict=True)
-            row.append([_share(float(abs(e)), float(most[i])) for e, most in pairs])
+            off = errors(jet, found, i, turning=where == "links", nothing=OFF)
+            row.append(over(off, limit, i))
         rows.append(row)
     return np.array(rows)
-
-
-def _share(error: float, bound: float) -> float:
-    return error / bound if bound else (math.inf if error > 1e-30 else 0.0)
 
 
 def assert_below(motion: Motion, most: float) -> None:
@@ -130,13 +125,13 @@ def crossed(start: jets.Number, theta: jets.Number, angles: Sequence[float]) -> 
 def exact_fourbar(
     scene: Scene, lengths: Sequence[float], angles: Sequence[float], drive: Callable[[int], Jet]
 ) -> Callable[[int], Exact]:
-    """Coupler and rocker, the driver off by 1e-30 where it would be in a change point itself."""
+    """Coupler and rocker, the driver off by `OFF`."""
     crank, coupler, rocker, ground = lengths
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
 
     def at(i: int) -> Exact:
         with mp.workdps(200):  # of which an angle of 1e-30 takes 90, twice differentiated
-            theta = drive(i) + mpf(10) ** -30
+            theta = drive(i) + mpf(OFF)
             sign = (-1) ** crossed(start, theta.value, angles) * scene.branch["C"]
             p1 = oracle.toward(theta).times(mpf(crank))
             first, second = oracle.rrr(p1, oracle.at(ground, 0), coupler, rocker, sign)
@@ -150,7 +145,6 @@ def at_angles(theta: Array) -> Callable[[int], Jet]:
 
 
 def follows(lengths: Lengths, branch: int, theta: Array, angles: list[float], most: float) -> None:
-    """A four-bar is on its smooth branch, through change points at these angles."""
     scene = fourbar(*lengths, branch)
     motion = driven(scene, theta)
     held(motion, exact_fourbar(scene, lengths, angles, at_angles(theta)), most)

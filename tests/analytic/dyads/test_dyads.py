@@ -1,7 +1,7 @@
 """The closed-form dyads against fifty digits: their error never exceeds the bound they carry."""
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -46,8 +46,8 @@ def _levels(unknown: Turning | Sliding) -> tuple[list[Array], list[Array]]:
         values = [np.zeros(BUNCH), unknown.omega, unknown.alpha]
     else:
         values = [unknown.s, unknown.speed, unknown.acceleration]
-    bounds = astuple(unknown.error)
-    return values, [np.broadcast_to(np.asarray(b, dtype=float), (BUNCH,)) for b in bounds]
+    bounds = (np.broadcast_to(np.asarray(b, dtype=float), (BUNCH,)) for b in unknown.error)
+    return values, list(bounds)
 
 
 def _angle_between(unknown: Turning, i: int, angle: Jet) -> float:
@@ -82,7 +82,6 @@ def _compare(bunch: Bunch, shift: Exact | Moved) -> Found:
 
 
 def _many(kind: str, count: int, *, wrong: tuple[float, float] | None = None) -> Found:
-    """``count`` random dyads of a kind, half of them within 1e-6 of toggle."""
     found = []
     for number in range(count // BUNCH):
         rng = np.random.default_rng([number, len(kind), ord(kind[1]), wrong is None])

@@ -22,7 +22,6 @@ def turn(scene: Scene) -> Array:
 
 
 def at(scene: Scene, *angles_rad: float, speed: float = 1.0) -> Motion:
-    """A motion of one speed through angles of the driver."""
     return solve_driven(scene, np.array(angles_rad), np.array(speed), np.array(0.0))
 
 
@@ -41,7 +40,6 @@ def unlocked(scene: Scene, time_s: Array) -> Array:
 
 
 def series(found: Forces) -> Iterator[tuple[str, Array]]:
-    """Everything, by name."""
     yield "torque", found.torque
     for point, by_body in found.pins.items():
         for body, force in by_body.items():

@@ -14,10 +14,9 @@ import numpy as np
 from mpmath import matrix, mp, mpc, mpf
 
 from analytic.kinematics import solve
-from analytic.structure.mobility import analyse
 from models.scene import GROUND, Point, Scene, Slider
 from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.scene.joints import block_name, local_point, sliding_body
+from models.scene.joints import block_name, joined_at, local_point, sliding_body
 from models.scene.loads import CoulombFriction, Load, PinSpring, SlideSpring, Spring
 from models.scene.tabulated import Tabulated
 from tests.analytic.chain import Solved, law_at
@@ -50,7 +49,6 @@ class ExactForces:
 
     @property
     def largest(self) -> float:
-        """The largest of its numbers."""
         return float(max(abs(number) for _, numbers in self.series() for number in numbers))
 
 
@@ -85,7 +83,6 @@ class _Demand:
     b: matrix
 
     def couple(self, name: str, size: Number) -> None:
-        """A moment on a body."""
         if name != GROUND:
             self.b[self.at[name] + 2] -= size
 
@@ -142,7 +139,7 @@ def exact_forces(
             if body != GROUND:
                 a[at[body] + 2, column] += sign
 
-    hinges = [(p, held[0], other) for p, held in _pins(scene).items() for other in held[1:]]
+    hinges = [(p, held[0], other) for p, held in joined_at(scene).items() for other in held[1:]]
     for point, first, other in hinges:
         place = bodies[first].place(local_point(scene, first, point))
         for along in (mpc(1), mpc(0, 1)):
@@ -169,14 +166,6 @@ def exact_forces(
     return ExactForces(pins, sliders, next(found), friction)
 
 
-def _pins(scene: Scene) -> dict[str, list[str]]:
-    held = {point: list(names) for point, names in scene.pins.items()}
-    for slider in scene.sliders.values():
-        if slider.link is None:
-            held.setdefault(slider.point, []).append(block_name(slider))
-    return {point: names for point, names in held.items() if len(names) > 1}
-
-
 def _bodies(scene: Scene, solved: Solved) -> dict[str, _Body]:
     found = {GROUND: _Body(mpc(0), mpc(0), mpf(0), mpf(0), mpf(0))}
     for link in scene.links.values():
@@ -193,7 +182,6 @@ def _bodies(scene: Scene, solved: Solved) -> dict[str, _Body]:
 
 
 def _moving(at: Place) -> tuple[mpc, mpc]:
-    """A place and its acceleration."""
     return mpc(at.x.value, at.y.value), mpc(at.x.second, at.y.second)
 
 
@@ -236,7 +224,7 @@ def _rub(demand: _Demand, joint: str, size: Number) -> None:
     if joint in demand.scene.sliders:
         demand.along_line(demand.scene.sliders[joint], size)
         return
-    first, second = _pins(demand.scene)[joint]
+    first, second = joined_at(demand.scene)[joint]
     demand.couple(first, -size)
     demand.couple(second, size)
 
@@ -261,7 +249,7 @@ def _stretch(demand: _Demand, spring: Spring, solved: Solved) -> None:
         pull = rate * (way.length.value - free) + damping * way.length.rate
         force = pull * mp.expj(way.angle.value)
         for name, end, own in zip(spring.points, ends, (force, -force), strict=True):
-            demand.push(_pins(scene)[name][0], _moving(end)[0], own)
+            demand.push(joined_at(scene)[name][0], _moving(end)[0], own)
 
 
 def _turns_at_start(scene: Scene, spring: PinSpring) -> int:
@@ -333,7 +321,6 @@ def _outer(near: Pair, far: Pair) -> Number:
 
 
 def exact_rubbed(scene: Scene, time_s: float, solved: Solved) -> ExactForces:
-    """The forces with friction."""
     way = {joint: -mp.sign(_rate(scene, joint, solved)) for joint in scene.friction}
     alone = _reactions(scene, exact_forces(scene, time_s, solved))
     influence = {}
@@ -406,5 +393,5 @@ def _rate(scene: Scene, joint: str, solved: Solved) -> Number:
     for slider in scene.sliders.values():
         if slider.link is None:
             turning[block_name(slider)] = turning[slider.on]
-    first, second = analyse(scene).pins[joint]
+    first, second = joined_at(scene)[joint]
     return turning[second] - turning[first]

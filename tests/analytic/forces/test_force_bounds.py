@@ -40,8 +40,6 @@ LOOSE = 4000.0
 
 @dataclass(frozen=True)
 class Held:
-    """The error of a force or moment and its bound."""
-
     what: str
     error: float
     bound: float

@@ -9,17 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.forces import kinetostatics
+from analytic.forces import friction, kinetostatics
 from analytic.forces.efficiency import efficiency, friction_power, self_locking
-from analytic.forces.friction import (
-    SOLVED,
-    CoulombErrors,
-    CoulombSystem,
-    coulomb_bound,
-    solve_coulomb,
-    solve_small,
-    weights,
-)
+from analytic.forces.friction import CoulombSystem, solve_coulomb
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
@@ -240,7 +232,6 @@ def test_a_driver_that_speeds_up_has_no_cycle() -> None:
 
 @pytest.mark.parametrize("every", [4, slowly(2, reason="random mechanisms")])
 def test_friction_never_puts_power_in(every: int) -> None:
-    """In any mechanism, in any joint."""
     told = 0
     for number in range(0, 40, every):
         scene, _ = rubbed_mechanism(number)
@@ -320,7 +311,7 @@ def test_sliders_have_the_solutions_that_trying_all_signs_finds(m: int) -> None:
 @pytest.mark.parametrize("gain", [0.3, 0.7])
 def test_where_they_contract_substitution_leads_to_the_same(gain: float) -> None:
     system = drawn(100, 4, gain, pins=True, seed=1)
-    inside = np.all(weights(system.gains()) > 0.0, axis=1)
+    inside = np.all(friction.weights(system.gains()) > 0.0, axis=1)
     radius = np.abs(np.linalg.eigvals(system.gains())).max(axis=1)
     np.testing.assert_array_equal(inside, radius < 1.0)
     system = system.at(inside)
@@ -337,7 +328,7 @@ def test_where_they_contract_substitution_leads_to_the_same(gain: float) -> None
 
 def test_a_singular_system_spoils_no_other() -> None:
     matrices = np.array([np.eye(2), np.ones((2, 2)), 2.0 * np.eye(2)])
-    x = solve_small(matrices, np.ones((3, 2)))
+    x = friction.solve_small(matrices, np.ones((3, 2)))
     np.testing.assert_array_equal(x[[0, 2]], [[1.0, 1.0], [0.5, 0.5]])
     assert np.isnan(x[1]).all()
 
@@ -347,9 +338,11 @@ def bounded(gain: float, off: float, error: float) -> tuple[Array, Array]:
     chance = np.random.default_rng(7)
     system = drawn(60, 3, gain, pins=True, seed=5)
     found = solve_coulomb(system)
-    errors = CoulombErrors(np.full((60, 3), error), np.full((60, 3, 3), error), np.zeros((60, 3)))
+    errors = friction.CoulombErrors(
+        np.full((60, 3), error), np.full((60, 3, 3), error), np.zeros((60, 3))
+    )
     sizes = np.hypot(system.influence[..., 0], system.influence[..., 1])
-    bound = coulomb_bound(system, errors, found.g, sizes)
+    bound = friction.coulomb_bound(system, errors, found.g, sizes)
     most = np.zeros_like(found.g)
     for _ in range(12):
         angles = chance.uniform(-np.pi, np.pi, (2, 60, 3, 4))
@@ -377,5 +370,5 @@ def test_a_bound_for_less_than_that_is_broken() -> None:
 def test_what_is_searched_leaves_little_open() -> None:
     found = solve_coulomb(drawn(300, 3, 2.0, pins=True, seed=9))
     some = found.solutions > 0
-    assert np.nanmax(found.change[some]) <= SOLVED
+    assert np.nanmax(found.change[some]) <= friction.SOLVED
     assert np.isnan(found.g[~some]).all()

@@ -59,7 +59,7 @@ def test_a_four_bar_has_its_class_and_its_name(lengths: Lengths, of_class: str, 
     assert FourBar(*(1e3 * x for x in lengths)).grashof_class == of_class
     found = four_bar_type(FourBar(*lengths))
     assert found.name == name
-    assert found.is_grashof != name.startswith("non-Grashof")
+    assert (found.margin_m >= 0.0) != name.startswith("non-Grashof")
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_a_rocker_on_the_pivot_of_the_crank_is_no_four_bar() -> None:
 @pytest.mark.parametrize("branch", [1, -1])
 def test_swing_and_time_ratio_are_those_of_the_motion(lengths: Lengths, branch: int) -> None:
     bar, found = FourBar(*lengths), travel(fourbar(*lengths, branch), "rocker")
-    assert found.stroke == pytest.approx(bar.rocker_swing_rad, abs=1e-12)
+    assert found.stroke == pytest.approx(np.ptp(bar.rocker_limits_rad), abs=1e-12)
     assert found.time_ratio == pytest.approx(bar.time_ratio, abs=1e-9)
     assert bar.time_ratio >= 1.0
 
@@ -153,7 +153,8 @@ def test_transmission_extremes_are_those_of_a_sweep(lengths: Lengths) -> None:
 
 @pytest.mark.parametrize("e", [0.0, 0.02, -0.02, 0.15])
 def test_stroke_and_time_ratio_of_the_slider_crank(e: float) -> None:
-    """On either side of the pivot: to and fro change places, the ratio stays above 1."""
+    """On either side of the pivot: to and fro change places, the ratio stays above 1; as in lecture
+    "Tong hop co cau", by the angle between the rod's limit positions."""
     scene, r, rod = load_scene("slider-crank-offset"), 0.1, 0.3
     scene = replace(scene, sliders={"C": replace(scene.sliders["C"], through_m=(0.0, -e))})
     found = travel(scene, "C")
@@ -162,7 +163,7 @@ def test_stroke_and_time_ratio_of_the_slider_crank(e: float) -> None:
     assert (found.high_at_rad - found.low_at_rad) % math.tau > math.pi or e <= 0.0
     assert found.stroke == pytest.approx(stroke, abs=1e-15)
     ratio = (math.pi + imbalance) / (math.pi - imbalance)
-    assert found.time_ratio == pytest.approx(ratio, abs=1e-9)
+    assert found.time_ratio == pytest.approx(ratio, rel=1e-13)
 
 
 @pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-12])
@@ -235,7 +236,7 @@ def test_travels_of_many_outputs_take_the_work_of_one(monkeypatch: pytest.Monkey
 
 def test_an_offset_counts() -> None:
     assert slider_crank_type(0.1, 0.3, 0.1).driver_turns
-    assert not slider_crank_type(0.1, 0.3, 0.21).is_grashof
+    assert slider_crank_type(0.1, 0.3, 0.21).margin_m < 0.0
     assert slider_crank_type(0.1, 0.3, 0.2).name == "change point, offset slider-crank"
     assert slider_crank_type(0.2, 0.2, 0.0).name == "change point, isosceles central slider-crank"
     assert inverted_slider_crank_type(0.3, 0.1, 0.05).follower_turns

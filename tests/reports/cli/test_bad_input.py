@@ -116,20 +116,15 @@ YAML: dict[str, tuple[bytes, str]] = {
     "degrees by another way": (b"a: !!int {!!value b: !!str '" + b"1:" * 90_000 + b"1'}",
         "a number"),
     "no integer": (b'turns: !!int ""', "line 1, column 8: found ; it can not be read as int"),
-    "no float": (b'turns: !!float ""', "line 1, column 8: found ; it can not be read as float"),
-    "integer of no digits": (b'turns: !!int "_"', "found _; it can not be read as int, write"),
     "float of no digits": (b'turns: !!float "_"', "found _; it can not be read as float, write"),
     "no character": (b'scenes: ["\\U00110000"]',
         "line 1, column 13: an escape that is no character"),
-    "no character at all": (b'scenes: ["\\Uffffffff"]', "line 1, column 13: an escape that is no"),
     "half a character": (b'scenes: ["\\ud800"]',
         r"column 10: found .ud800; it can not be read as str"),
     "half a character as a key": (b'"\\ud800": 1', r"column 1: found .ud800; it can not be"),
     "version": (b"%YAML " + b"9" * 5000 + b".1\n--- a",
         "line 1, column 7: .*number of too many dig"),
     "date": (b"turns: 2020-12-25", "turns: found '2020-12-25'; input should be a valid number"),
-    "date that is none": (b"turns: 2020-13-45", "turns: found '2020-13-45'; input should be"),
-    "date as a key": (b"2020-12-25: 1", "2020-12-25: unknown key; known: scenes"),
     "date that is none as a key": (b"2020-13-45: 1", "2020-13-45: unknown key; known: scenes"),
     "number as a key": (b"1: 1", "1: found 1; keys should be strings"),
     "number of many digits as a key": (b"? 0x" + b"f" * 90 + b"\n: 1", "a whole number of 360"),
@@ -242,20 +237,12 @@ RUNS = (
 COMMANDS = (*RUNS, "solve FILE", "run FILE --engine mujoco", "export FILE", "view FILE -o OUT.png",
             "cycle FILE -o OUT.csv", "flywheel FILE --delta 0.02 --write OUT.toml",
             "advise FILE --dt 1e-3 --speed 6.0 --target 1e-4")  # fmt: skip
-BLOCK = 'block = "E"\n'
-FAULTS = {
-    (BLOCK, 'link = "lower"\npoint = "Z"\n'): "loads.work.point: lower has no point Z",
-    (BLOCK, 'link = "ground"\npoint = "D"\n'): "loads.work.link: found gro",
-    ("0.0469, 0.0499", "0.0499, 0.0469"): "found 0.0469 after 0.0499",
-    ("0.0469, 0.0499", "0.0469"): "found 4 places and 5 values",
-}
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-@pytest.mark.parametrize("fault", FAULTS, ids=["no point", "the ground", "falling", "a row less"])
-def test_a_fault_of_a_load_is_one_message(fault: tuple[str, str], command: str) -> None:
-    assert fault[0] in PRESS
-    check_refused(PRESS.replace(*fault, 1), command, FAULTS[fault])
+def test_a_fault_of_a_load_is_one_message(command: str) -> None:
+    faulty = PRESS.replace('block = "E"\n', 'link = "lower"\npoint = "Z"\n', 1)
+    check_refused(faulty, command, "loads.work.point: lower has no point Z")
 
 
 @pytest.mark.parametrize("command", RUNS)

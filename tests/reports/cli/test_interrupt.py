@@ -45,23 +45,6 @@ SECOND_STARTS: Moment = ("subprocess.Popen", "python", 2)
 FIRST_ANSWER: Moment = ("pickle.find_class", "reports.judge.cell", 1)
 LONG = ("verify", "--turns", "4", "--jobs", "2", "-o", "out")
 """Some ten seconds of work, which ends in its first moments."""
-BRIEF = ("verify", "fourbar-lecture-1", "-o", "out")
-"""Work that comes to its end."""
-DEAF = ("sh", "-c", 'trap "" INT; exec "$@"', "sh")
-"""Starts a program that ignores Ctrl-C, as `nohup` and a script's background do."""
-
-
-def ended(
-    start: Start, folder: Path, kill: str, moment: Moment, times: int, *, deaf: bool = False
-) -> tuple[int, str, str]:
-    """Exit code, output and complaint of a run that is told to end at a moment, so many times."""
-    arguments = BRIEF if deaf else LONG
-    code = script(SCRIPT.format(kill=kill, moment=moment, times=times, arguments=arguments))
-    (folder / "run.py").write_text(code, encoding="utf-8")
-    running = start(*(DEAF if deaf else ()), PYTHON, "-P", folder / "run.py", cwd=folder)
-    # The pipes end when the last process that holds them does: no worker outlives the command.
-    output, complaint = running.communicate()
-    return running.returncode, output, complaint
 
 
 ENDED = {"interrupted": (GROUP, 4, 130), "terminated": (ALONE, 2, 143)}
@@ -84,17 +67,14 @@ def test_a_signal_ends_the_workers_with_one_line_and_nothing_written(
     programs: Start, tmp_path: Path, case: tuple[str, Moment]
 ) -> None:
     kill, times, exit_code = ENDED[case[0]]
-    code, output, complaint = ended(programs, tmp_path, kill, case[1], times)
+    code = script(SCRIPT.format(kill=kill, moment=case[1], times=times, arguments=LONG))
+    (tmp_path / "run.py").write_text(code, encoding="utf-8")
+    running = programs(PYTHON, "-P", tmp_path / "run.py", cwd=tmp_path)
+    # The pipes end when the last process that holds them does: no worker outlives the command.
+    output, complaint = running.communicate()
     assert complaint.splitlines() == [f"crankcheck: {case[0]}"]
-    assert (code, output) == (exit_code, "")
+    assert (running.returncode, output) == (exit_code, "")
     assert not (tmp_path / "out").exists()
-
-
-@slow("a second with a shell that ignores it, as `nohup` does; a process that does is below")
-def test_ctrl_c_stays_ignored_where_the_parent_ignores_it(programs: Start, tmp_path: Path) -> None:
-    code, _, complaint = ended(programs, tmp_path, GROUP, IMPORTS, times=2, deaf=True)
-    assert (code, complaint) == (0, "")
-    assert (tmp_path / "out" / "verify.csv").exists()
 
 
 START = """
@@ -124,8 +104,6 @@ else:
     exec(compile(open(program).read(), program, "exec"), {"__name__": "__main__"})
 """
 """The command, as `python -m` and the program of the wheel start it, with Ctrl-C at an import."""
-EARLY = ("reports.cli", "typer", "rich.console", "reports.cli.application", "reports.cli.commands")
-LATE = ("numpy", "analytic.kinematics", "pydantic", "models.files.reading", "rich.table")
 SOLVE = ("solve", "fourbar-lecture-1", "--at-deg", "90")
 
 
@@ -137,18 +115,17 @@ def started(module: str, number: int, program: str, start: Start) -> tuple[int, 
     return running.returncode, complaint
 
 
-IMPORTED = [*((module, COMMAND) for module in (*EARLY, *LATE)), (EARLY[0], "-m"), (LATE[-1], "-m")]
-
-
-FOUR = [(EARLY[0], COMMAND), (EARLY[3], COMMAND), (LATE[0], COMMAND), (EARLY[0], "-m")]
-BEFORE = "four in place of all: before, in and after the command line, and as `python -m`"
-
-
-@pytest.mark.parametrize("imported", few(IMPORTED, FOUR, BEFORE))
+@pytest.mark.parametrize(
+    ("module", "program"),
+    [
+        *((each, COMMAND) for each in ("reports.cli", "reports.cli.application", "numpy")),
+        ("reports.cli", "-m"),
+    ],
+    ids=["before the command line", "in it", "after it", "as a module"],
+)
 def test_ctrl_c_during_an_import_ends_in_one_line(
-    imported: tuple[str, str], programs: Start
+    module: str, program: str, programs: Start
 ) -> None:
-    module, program = imported
     assert started(module, 1, program, programs) == (130, "crankcheck: interrupted\n")
 
 

@@ -5,44 +5,41 @@ from pathlib import Path
 
 import pytest
 
-from reports.lectures.machine.regulation import CycleRequest, FlywheelRequest
-from reports.requests.advise import AdviseRequest
-from reports.requests.diff import DiffRequest
-from reports.requests.history import HistoryRequest
-from reports.requests.judge import JudgeRequest
-from reports.requests.run import RunRequest
-from reports.requests.selftest import SelftestRequest
-from reports.requests.solve import SolveRequest
-from reports.requests.stability import StabilityRequest
-from reports.requests.sweep import SweepRequest
-from reports.requests.tune import TuneRequest
+from reports.cli.commands import COMMANDS
+from reports.requests.options import named
 from reports.requests.verify import VerifyRequest
 from tests.worlds.command_line import crank, refused
 
-LEAST = {
-    "verify": VerifyRequest(),
-    "diff old new": DiffRequest(Path("old"), Path("new")),
-    "history mujoco 1 2": HistoryRequest("mujoco", ["1", "2"]),
-    "selftest": SelftestRequest(),
-    "sweep -o out": SweepRequest(Path("out")),
-    "tune a b --engine c --target 1": TuneRequest(["a", "b"], "c", 1.0),
-    "advise --dt 1 --speed 2 --target 3": AdviseRequest(1.0, 2.0, 3.0),
-    "stability": StabilityRequest(),
-    "solve a": SolveRequest("a"),
-    "cycle a": CycleRequest("a"),
-    "flywheel a --delta 1": FlywheelRequest("a", 1.0),
+LEAST: dict[str, tuple[object, ...]] = {
+    "verify": (),
+    "diff old new": (Path("old"), Path("new")),
+    "history mujoco 1 2": ("mujoco", ["1", "2"]),
+    "selftest": (),
+    "sweep -o out": (Path("out"),),
+    "tune a b --engine c --target 1": (["a", "b"], "c", 1.0),
+    "advise --dt 1 --speed 2 --target 3": (1.0, 2.0, 3.0),
+    "stability": (),
+    "solve a": ("a",),
+    "cycle a": ("a",),
+    "flywheel a --delta 1": ("a", 1.0),
 }
+"""The least that a command takes, and the same as arguments of its request."""
 
 
-def asked(monkeypatch: pytest.MonkeyPatch, line: str, kind: type[object]) -> object:
-    """The request of a kind that a command line makes."""
+def kind_of(line: str) -> type:
+    """The kind of the request of a command."""
+    kind = named(COMMANDS[line.split()[0]][0])
+    return named(kind.answered_by) if hasattr(kind, "answered_by") else kind
+
+
+def asked(monkeypatch: pytest.MonkeyPatch, line: str) -> object:
     requests: list[object] = []
 
     def run(request: object, *_: object) -> int:
         requests.append(request)
         return 1
 
-    monkeypatch.setattr(kind, "run", run)
+    monkeypatch.setattr(kind_of(line), "run", run)
     result = crank(*line.split())
     assert result.exit_code == 1, result.output
     (request,) = requests
@@ -53,22 +50,21 @@ def asked(monkeypatch: pytest.MonkeyPatch, line: str, kind: type[object]) -> obj
 def test_what_is_not_given_keeps_the_default_of_the_request(
     line: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert asked(monkeypatch, line, type(LEAST[line])) == LEAST[line]
+    assert asked(monkeypatch, line) == kind_of(line)(*LEAST[line])
 
 
 SECONDS = {
-    "verify --dt {}": (VerifyRequest, "dt_s"),
-    "run a --dt {}": (RunRequest, "dt_s"),
-    "judge a b --step {}": (JudgeRequest, "step_s"),
-    "advise --dt {} --speed 1 --target 1": (AdviseRequest, "dt_s"),
+    "verify --dt {}": "dt_s",
+    "run a --dt {}": "dt_s",
+    "judge a b --step {}": "step_s",
+    "advise --dt {} --speed 1 --target 1": "dt_s",
 }
 
 
 @pytest.mark.parametrize("line", SECONDS)
 def test_seconds_may_be_a_fraction(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    kind, field = SECONDS[line]
     for text, number in {"1/60": 1 / 60, "1e-3/4": 2.5e-4, "0.02": 0.02}.items():
-        assert getattr(asked(monkeypatch, line.format(text), kind), field) == number
+        assert getattr(asked(monkeypatch, line.format(text)), SECONDS[line]) == number
     for wrong in ("1/0", "1/", "/60", "1/60/2", "a", "60 Hz"):
         command = [word.format(wrong) for word in line.split()]
         refused(crank(*command), "no number of seconds")
@@ -93,8 +89,8 @@ def test_every_option_reaches_its_field(monkeypatch: pytest.MonkeyPatch) -> None
         mjcf=Path("a"), speed_rad_s=1.0, key="b", start_deg=2.0, branch=["c=1"],
         write_scene=Path("d"), limit_s=3.0, memory_gb=4.0,
     )  # fmt: skip
-    assert asked(monkeypatch, line, VerifyRequest) == request
-    assert asked(monkeypatch, of_models, VerifyRequest) == model
+    assert asked(monkeypatch, line) == request
+    assert asked(monkeypatch, of_models) == model
     default = VerifyRequest()
     for name in (each.name for each in fields(default)):
         given = [getattr(one, name) != getattr(default, name) for one in (request, model)]

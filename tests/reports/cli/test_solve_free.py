@@ -170,15 +170,6 @@ def test_figures_are_written(tmp_path: Path) -> None:
     assert "magnified 50 times" in (folder / "positions.svg").read_text(encoding="utf-8")
 
 
-@slow("a second, for the figures of above in one page; tests/reports/page looks at such a page")
-def test_a_page_is_written(tmp_path: Path) -> None:
-    page = tmp_path / "page.html"
-    told(BENDS, "-o", page)
-    text = page.read_text(encoding="utf-8")
-    assert text.count("data:image/svg+xml;base64,") == 5
-    assert "Starts on the periodic motion" in text
-
-
 PULSE = "solve fourbar-elastic-pulse --modes 1 --duration 0.1"
 """A tenth of the pulse, on one sine."""
 

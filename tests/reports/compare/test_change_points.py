@@ -30,7 +30,6 @@ from tests.worlds.turns import of_turns
 
 
 def edited(name: str, *changes: tuple[str, str]) -> Scene:
-    """A shipped scene with some of its text changed."""
     text = shipped()[name].read_text(encoding="utf-8")
     for old, new in changes:
         assert text.count(old) == 1

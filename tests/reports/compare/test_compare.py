@@ -33,13 +33,11 @@ ROUNDING = 1e-12
 
 
 def compared(scene: Scene, run: Run) -> Errors:
-    """The errors of a run beside its truth."""
     return compare(Beside.of(Truth(scene), run))
 
 
 @pytest.fixture(scope="module")
 def healthy(fourbar: Scene, disturbed: Callable[..., Run]) -> Run:
-    """A run of the four-bar without any error."""
     return disturbed(fourbar)
 
 
@@ -52,7 +50,6 @@ def with_motion(run: Run, **parts: Any) -> Run:
 
 
 def with_link(run: Run, name: str = "rocker", **series: Array) -> Run:
-    """The run with other series of a link."""
     return with_motion(run, links={**run.motion.links, name: replace(link_of(run, name), **series)})
 
 
@@ -252,9 +249,7 @@ def test_a_whole_log_is_complete_however_thin_it_is(fourbar: Scene, steps: int, 
     assert incomplete(run) == ""
 
 
-def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(
-    disturbed: Callable[..., Run],
-) -> None:
+def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(disturbed: Callable[..., Run]) -> None:
     scene = load_scene("fourbar-double-rocker")
     run = disturbed(scene)
     errors = compared(scene, with_link(run, "driver", theta=link_of(run, "driver").theta + 2.0))

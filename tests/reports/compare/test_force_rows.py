@@ -44,7 +44,6 @@ def _run(engine: str, steps: int = 360) -> Run:
 
 
 def _case(name: str) -> Scene:
-    """The easiest of a hard case."""
     case = CATALOGUE[name]
     return case.trial(case.values[0]).scene
 
@@ -215,50 +214,48 @@ def _motion(scene: Scene, steps: int = 360) -> Motion:
     return solve(scene, np.linspace(0.0, scene.driver.law.period_s, steps + 1), bound=False)
 
 
-def _loading(scene: Scene) -> float:
-    return loading(scene, _motion(scene))
+def _shaken(force: float, inertia: float) -> object:
+    """The second difference of a force, or a torque, that swings once a turn."""
+    return pytest.approx(force / inertia * (STEP_RAD / SPEED_RAD_S) ** 2, rel=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("law", "most"),
-    [
-        (Constant(100.0), 1e-10),
-        (Polynomial((3.0, 100.0)), 1e-10),
-        (Tabulated((0.0, 1e-3), (0.0, 1.0)), 0.0),  # it ends before the motion
-    ],
-)
-def test_a_load_that_ends_or_grows_evenly_shakes_nothing(law: Characteristic, most: float) -> None:
-    assert _loading(_pushed(law)) <= most
+SINE, NEARLY_0 = Sine(1.0, PERIOD_S), pytest.approx(0.0, abs=1e-10)
+CRANK, ROD, BLOCK = SLIDER.links["crank"], SLIDER.links["rod"], SLIDER.sliders["C"]
+SHAKES = {
+    "no load": (SLIDER, 0.0),
+    "a constant": (_pushed(Constant(100.0)), NEARLY_0),
+    "one that grows evenly": (_pushed(Polynomial((3.0, 100.0))), NEARLY_0),
+    "a table that ends before the motion": (_pushed(Tabulated((0.0, 1e-3), (0.0, 1.0))), 0.0),
+    "a sine, by the mass of its body": (
+        _pushed(Sine(100.0, PERIOD_S)), _shaken(100.0, BLOCK.mass_kg * SLIDER.longest_m),
+    ),
+    "a torque, by the inertia of its link": (
+        _loaded(Load("turn", "rod", None, SINE)), _shaken(1.0, ROD.inertia_kg_m2),
+    ),
+    "a torque on a link that a guide holds": (
+        _loaded(Load("turn", "ram", None, SINE), load_scene("shaper-cutting")), 0.0,
+    ),
+    "a constant in the frame of a body, as that turns": (
+        _loaded(Load("push", "crank", "B", Constant(10.0), frame="body")),
+        _shaken(10.0, CRANK.mass_kg * SLIDER.longest_m),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("load", SHAKES)
+def test_a_load_shakes_bodies_by_its_second_difference(load: str) -> None:
+    scene, expected = SHAKES[load]
+    assert loading(scene, _motion(scene)) == expected
+
+
+def test_a_body_without_mass_counts_as_the_lightest() -> None:
+    light = replace(_pushed(SINE), sliders={"C": replace(BLOCK, mass_kg=0.0)})
+    assert 0.0 < loading(light, _motion(light)) < np.inf
 
 
 def test_without_loads_over_a_displacement_there_is_no_slope() -> None:
-    assert _loading(SLIDER) == 0.0
     for scene in (SLIDER, _pushed(Sine(100.0, 0.1))):
         assert load_slopes(scene, _motion(scene), 1.0, 1.0) == {"reaction": 0.0, "torque": 0.0}
-
-
-def test_a_sine_shakes_by_its_second_difference_over_the_mass_of_its_body() -> None:
-    mass = SLIDER.sliders["C"].mass_kg
-    by = 100.0 * STEP_RAD**2 / (mass * SPEED_RAD_S**2 * SLIDER.longest_m)
-    sine = _pushed(Sine(100.0, PERIOD_S))
-    assert _loading(sine) == pytest.approx(by, rel=1e-3)
-    light = replace(sine, sliders={"C": replace(SLIDER.sliders["C"], mass_kg=0.0)})
-    assert 0.0 < _loading(light) < np.inf  # a body without mass counts as the lightest
-
-
-def test_a_torque_counts_by_the_inertia_of_its_link_and_not_where_a_guide_holds_it() -> None:
-    sine = Sine(1.0, PERIOD_S)
-    by = STEP_RAD**2 / (SLIDER.links["rod"].inertia_kg_m2 * SPEED_RAD_S**2)
-    assert _loading(_loaded(Load("turn", "rod", None, sine))) == pytest.approx(by, rel=1e-3)
-    held = _loaded(Load("turn", "ram", None, sine), load_scene("shaper-cutting"))
-    assert _loading(held) == 0.0
-
-
-def test_a_constant_load_in_the_frame_of_a_body_shakes_as_that_turns() -> None:
-    scene = _loaded(Load("push", "crank", "B", Constant(10.0), frame="body"))
-    mass = SLIDER.links["crank"].mass_kg
-    by = 10.0 * STEP_RAD**2 / (mass * SPEED_RAD_S**2 * SLIDER.longest_m)
-    assert _loading(scene) == pytest.approx(by, rel=1e-3)
 
 
 def test_the_slope_is_that_of_the_stroke_on_which_the_load_acts() -> None:
@@ -285,7 +282,6 @@ def test_inertia_has_a_share_of_one_at_most() -> None:
 
 
 def _near(scene: Scene, steps: int = 360) -> list[int]:
-    """The samples that are beside a jump."""
     motion = _motion(scene, steps)
     motion = replace(motion, forces=forces(scene, motion, bound=False))
     return np.flatnonzero(near_jumps(scene, motion)).tolist()

@@ -29,8 +29,6 @@ def held(disturb: Callable[[Poses], Poses] = lambda poses: poses, **given: Any) 
 
 
 def changed(change: Callable[[BodyPose, Array], BodyPose], *names: str) -> Callable[[Poses], Poses]:
-    """Poses with some of the bodies changed, or all."""
-
     def disturb(poses: Poses) -> Poses:
         own = {name: poses.bodies[name] for name in names or poses.bodies}
         other = {name: change(body, poses.time_s) for name, body in own.items()}

@@ -290,7 +290,7 @@ def test_steps_of_a_line_are_named_each(cell: Make, run: Group) -> None:
     }.items():
         new = [cell(steps=n, angle=1e-3 * g) for n, g in zip(STEPS, growths, strict=True)]
         (line,) = lines(compare(old, run(*new)), "worse")
-        assert line.steps == wanted
+        assert line.cells["steps\na turn"] == wanted
     (told,) = left_out(reversed(old.cells.values()))
     assert told == "a, mujoco tuned, 90, 180, 360, 720 steps a turn"
 
@@ -301,7 +301,7 @@ def test_versions_are_told_once_or_with_each_row(cell: Make, run: Group) -> None
 
     for b, told in (("2", {""}), ("3", {" (1 -> 2)", " (1 -> 3)"})):
         found = lines(compare(made(1.0, "1", "1"), made(2.0, "2", b)), "worse")
-        assert {line.engine for line in found} == {f"mujoco tuned{each}" for each in told}
+        assert {line.cells["engine"] for line in found} == {f"mujoco tuned{each}" for each in told}
 
 
 def test_cells_that_failed_in_both_are_told(cell: Make, run: Group) -> None:

@@ -66,7 +66,6 @@ def drawn_free(free_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
 
 
 def figures(*asked: object) -> str:
-    """What is said as they are drawn."""
     said = io.StringIO()
     assert FiguresRequest(*asked).run(Console(file=said), Console()) == 0  # type: ignore[arg-type]
     return said.getvalue()
@@ -80,7 +79,6 @@ def chosen(store: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path,
 
 
 def texts(svg: bytes) -> str:
-    """What can be read in an SVG."""
     root = ET.fromstring(svg)
     return "\n".join("".join(t.itertext()) for t in root.iter("{http://www.w3.org/2000/svg}text"))
 

@@ -49,7 +49,6 @@ def boxes(figure: Figure) -> list[tuple[str, Bbox]]:
 
 
 def _undrawn(axes: Axes) -> Iterator[Text]:
-    """The labels of ticks beyond the ends of their axis."""
     for axis in (axes.xaxis, axes.yaxis):
         low, high = sorted(axis.get_view_interval())
         for tick in axis.get_major_ticks():

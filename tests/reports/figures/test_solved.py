@@ -139,9 +139,9 @@ def wanted() -> WantedFlywheel:
     return wanted_flywheel(TurningMachine.of(load_scene("engine-four-stroke")), 0.02)
 
 
-@pytest.mark.parametrize("name", REGULATION_FIGURES)
+@pytest.mark.parametrize("name", REGULATION_FIGURES.draws)
 def test_words_of_regulation_have_room(wanted: WantedFlywheel, name: str) -> None:
-    has_room(REGULATION_FIGURES[name], Regulated(wanted.cycle, wanted))
+    has_room(REGULATION_FIGURES.draws[name], Regulated(wanted.cycle, wanted))
 
 
 def test_tangents_touch_the_curve_and_do_not_cross_it(wanted: WantedFlywheel) -> None:
@@ -154,10 +154,10 @@ def test_tangents_touch_the_curve_and_do_not_cross_it(wanted: WantedFlywheel) ->
 
 
 def test_the_speed_has_a_panel_of_the_bare_machine_and_a_closer_one(wanted: WantedFlywheel) -> None:
-    figure = REGULATION_FIGURES["speed"](Regulated(wanted.cycle, wanted))
+    figure = REGULATION_FIGURES.draws["speed"](Regulated(wanted.cycle, wanted))
     far, near = (np.ptp(axes.get_ylim()) for axes in figure.axes)
     assert far > 20.0 * near
-    assert len(REGULATION_FIGURES["speed"](Regulated(wanted.cycle)).axes) == 1
+    assert len(REGULATION_FIGURES.draws["speed"](Regulated(wanted.cycle)).axes) == 1
 
 
 @pytest.fixture(scope="module")

@@ -97,7 +97,7 @@ def test_versions_are_installed_run_compared_and_kept(
     assert f"Results: {cache.resolve()}" in output.replace("- ", "-")
 
     folders: list[Path] = []
-    measure = "reports.requests.history.measure"
+    measure = "reports.history.verification.measure"
     monkeypatch.setattr(measure, lambda folder, *_: folders.append(folder))
     code, output, _ = history("3.7.0", again=True)
     assert len(folders) == 1
@@ -147,7 +147,7 @@ def measured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Path]:
         (folder / "verify.csv").write_text(f"{columns},gap_pure,pin_gap_m\n{row}\n")
         folders.append(folder)
 
-    monkeypatch.setattr("reports.requests.history.measure", measure)
+    monkeypatch.setattr("reports.history.verification.measure", measure)
     monkeypatch.setattr("reports.requests.history.ready", lambda *_: tmp_path / "python")
     return folders
 

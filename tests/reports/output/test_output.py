@@ -18,7 +18,7 @@ import pytest
 
 from models.errors import CrankcheckError
 from reports.output.formats import code, counted, folded, plain, table, workbook, write_frame
-from reports.output.write import check_file, check_folder, check_outputs, write
+from reports.output.write import Outputs, check_file, check_folder, write
 
 NOT_ROOT = pytest.mark.skipif(
     not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere"
@@ -73,7 +73,7 @@ def test_a_named_link_is_refused_and_one_in_a_folder_replaced(target: str, tmp_p
     link.symlink_to(tmp_path / target)
     refused(rf"--csv .*: a link, to .*{target}; name that", check_file, link, "--csv")
     check_folder(link.parent, "-o", [link.name])
-    check_outputs({}, link.parent, [link.name])
+    Outputs({}, link.parent, {link.name: ""}).check()
     write(link, "new")
     assert not link.is_symlink()
     assert (tmp_path / "other.csv").read_text() == "of another"
@@ -118,9 +118,9 @@ def test_what_the_shell_made_a_file_of_is_written_into(name: str, tmp_path: Path
     """In its turn: what the process prints there before and after stays."""
     script = f"""
 from pathlib import Path
-from reports.output.write import check_outputs, write
+from reports.output.write import Outputs, write
 print("before")
-check_outputs({{"--csv": Path("{name}"), "--json": Path("{name}")}})
+Outputs({{"--csv": Path("{name}"), "--json": Path("{name}")}}).check()
 write(Path("{name}"), "new\\n")
 write(Path("{name}"), "newer\\n")
 print("after")
@@ -207,9 +207,9 @@ def test_one_file_for_two_outputs_is_refused_unless_it_is_a_device(tmp_path: Pat
     out, link = tmp_path / "out", tmp_path / "link"
     link.symlink_to(tmp_path)
     twice = {"--csv": out, "--json": link / "out", "--junit": None}
-    refused("--csv and --json: both name", check_outputs, twice)
-    refused("--csv and -o: both name", check_outputs, {"--csv": out}, tmp_path, ["out"])
-    check_outputs({"--csv": Path("/dev/null"), "--json": Path("/dev/null")})
+    refused("--csv and --json: both name", Outputs(twice).check)
+    refused("--csv and -o: both name", Outputs({"--csv": out}, tmp_path, {"out": ""}).check)
+    Outputs({"--csv": Path("/dev/null"), "--json": Path("/dev/null")}).check()
 
 
 @NOT_ROOT

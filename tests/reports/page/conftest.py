@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, Page, sync_playwright
 
-from reports.page.build import page, stability_page
+from reports.page import build
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store
 from tests.reports.page import hard_runs
@@ -70,7 +70,6 @@ def small(small_folder: Path) -> Stored:
 
 
 def part_of(stored: Stored, keep: pd.Series) -> Stored:
-    """The store with some of its cells."""
     found = replace(stored, cells=stored.cells[keep].reset_index(drop=True))
     vars(found)["_traces"] = stored._traces
     return found
@@ -89,8 +88,6 @@ def tiny(small: Stored) -> Stored:
 
 @pytest.fixture(scope="session")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Write:
-    """Writes a page into a file of its own."""
-
     def write(text: str) -> Path:
         path = tmp_path_factory.mktemp("page") / "report.html"
         path.write_text(text, encoding="utf-8")
@@ -101,12 +98,12 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Write:
 
 @pytest.fixture(scope="session")
 def small_page(small: Stored, written: Write) -> Path:
-    return written(page(small))
+    return written(build.page(small))
 
 
 @pytest.fixture(scope="session")
 def evil_page(small: Stored, written: Write) -> Path:
-    return written(page(evil(small)))
+    return written(build.page(evil(small)))
 
 
 @pytest.fixture(scope="session")
@@ -117,24 +114,22 @@ def matrix() -> Matrix:
 
 @pytest.fixture(scope="session")
 def hard_page(matrix: Matrix, written: Write) -> Path:
-    return written(stability_page(matrix))
+    return written(build.stability_page(matrix))
 
 
 @pytest.fixture(scope="session")
 def tiny_page(tiny: Stored, written: Write) -> Path:
-    return written(page(tiny))
+    return written(build.page(tiny))
 
 
 @pytest.fixture(scope="session", params=["tiny", slowly("small", reason=FULL)])
 def paged(request: pytest.FixtureRequest) -> tuple[Stored, Path]:
-    """A store and its page, as a file."""
     return request.getfixturevalue(request.param), request.getfixturevalue(f"{request.param}_page")
 
 
 @pytest.fixture(scope="session")
 def both_page(paged: tuple[Stored, Path], matrix: Matrix, written: Write) -> Path:
-    """The page of that store with the hard cases beside it, as a file."""
-    return written(page(paged[0], matrix))
+    return written(build.page(paged[0], matrix))
 
 
 def chromium() -> str:
@@ -162,12 +157,19 @@ def tab(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Tab:
 
 
 @pytest.fixture
-def wide(tab: Tab) -> Tab:
-    """The tab on a computer: `open` or `visit` a page in it."""
-    return tab.on(WIDE)
+def wide(tab: Tab) -> Iterator[Tab]:
+    """The tab on a computer: `open` or `visit` a page in it, which is checked afterwards."""
+    yield tab.on(WIDE)
+    tab.check()
 
 
 @pytest.fixture
-def phone(tab: Tab) -> Tab:
-    """The tab on a phone."""
-    return tab.on(PHONE)
+def phone(tab: Tab) -> Iterator[Tab]:
+    yield tab.on(PHONE)
+    tab.check()
+
+
+@pytest.fixture
+def page(opened: Tab) -> Page:
+    """The page that the fixture of a file has opened."""
+    return opened.page

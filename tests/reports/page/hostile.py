@@ -77,7 +77,6 @@ def shown_and_not_read(text: str, scripts: int) -> None:
 
 
 def embedded_in(text: str, name: str) -> dict[str, Any]:
-    """What a section of a page carries for its scripts."""
     found = re.search(rf'id="embedded-{name}">(.*?)</script>', text, re.DOTALL)
     assert found
     return json.loads(found[1])

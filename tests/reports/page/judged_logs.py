@@ -22,7 +22,6 @@ TURN_S = 0.2 * np.pi
 
 
 def motion_of(scene: Scene = SCENE, turns: float = 1.0, samples: int = 361) -> Motion:
-    """The closed form at even times."""
     return solve(scene, np.linspace(0.0, turns * scene.driver.law.period_s, samples))
 
 
@@ -48,7 +47,6 @@ def angles(motion: Motion, **off: object) -> dict[str, Array]:
 
 
 def points(motion: Motion, *names: str) -> dict[str, Array]:
-    """The places of points as columns [mm]."""
     return {
         f"{name}.{axis}_mm": 1e3 * motion.points[name].position[:, at]
         for name in names

@@ -110,7 +110,6 @@ class Tab:
 
     @classmethod
     def of(cls, browser: Browser, folder: Path) -> Tab:
-        """A tab of a computer, and a folder for its file."""
         context = browser.new_context(offline=True, viewport=WIDE)
         context.set_default_timeout(LONG_MS)
         page = context.new_page()
@@ -132,9 +131,8 @@ class Tab:
 
     def open(self, path: Path, *sections: str, **media: object) -> Tab:
         """Open a page, and draw the diagrams of some of its sections."""
+        self.check()
         self._media(**media)
-        self.said.clear()
-        self.asked.clear()
         self.path = path
         self.file.write_text(aligned(path.read_text(encoding="utf-8")), encoding="utf-8")
         self.page.goto(self.file.as_uri())
@@ -151,11 +149,24 @@ class Tab:
         self.restore()
         return self
 
+    def check(self) -> None:
+        """The page had nothing to say, and asked for nothing but itself."""
+        said, asked = self.said[:], {url for url in self.asked if not url.startswith("data:")}
+        self.said.clear()
+        self.asked.clear()
+        assert said == []
+        assert asked <= {self.file.as_uri()}
+
+    def hostile_text_does_nothing(self, place: str) -> None:
+        """Though it is read at a place."""
+        assert self.page.evaluate("() => window.hacked") is None
+        assert self.page.locator("main img").count() == 0
+        assert "{{ 7 * 7 }}" in self.text(place)
+
     def _media(self, **media: object) -> None:
         self.page.emulate_media(**{"reduced_motion": "reduce", "color_scheme": "light", **media})
 
     def restore(self) -> None:
-        """Put all choices and switches back to where they stood."""
         self.page.evaluate(RESTORE, self.first)
 
     def show(self, *sections: str) -> None:
@@ -172,7 +183,6 @@ class Tab:
         self.page.evaluate("ms => window.elapse(ms)", ms)
 
     def slide(self, name: str, at: float) -> None:
-        """Put a slider to a place."""
         self.page.evaluate(
             """([name, at]) => { const slider = document.getElementById(name);
             slider.value = at; slider.dispatchEvent(new Event('input')); }""",
@@ -191,8 +201,7 @@ class Tab:
         for each in clicks:
             self.page.locator(each).click()
         self.restore()
-        assert self.said == []
-        assert [url for url in self.asked if not url.startswith(("file:", "data:"))] == []
+        self.check()
         assert shifted < 0.05, "what is read should stay where it is"
 
     def nothing_runs_out(self) -> None:
@@ -213,5 +222,4 @@ class Tab:
             assert self.page.evaluate(UNREACHED, CONTROLS) == []
 
     def text(self, place: str) -> str:
-        """What is read at a place."""
         return self.page.locator(place).inner_text()

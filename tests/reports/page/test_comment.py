@@ -29,7 +29,6 @@ def made(number: int, variant: str = "v", **other: object) -> Stored:
 
 
 def tables(text: str) -> list[list[str]]:
-    """The rows of each table."""
     return [block.split("\n") for block in re.findall(r"(?:^\|.*\n)*^\|.*", text, re.MULTILINE)]
 
 

@@ -5,10 +5,8 @@ import os
 import re
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from analytic.kinematics import solve
@@ -22,7 +20,6 @@ from reports.page.log_motion import stretches
 from reports.page.log_page import log_page, map_lines
 from tests.reports.page.hostile import EVIL, Outline, embedded_in, stands_alone
 from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
-from tests.worlds.command_line import crank
 
 MOTION = motion_of()
 TIME_S = MOTION.time_s
@@ -36,7 +33,6 @@ ONE = {"rocker_deg": angles(MOTION)["rocker_deg"]}
 
 
 def page(*asked: object, **more: object) -> str:
-    """The page of a log."""
     return log_page(judged(*asked, **more), FACTS)
 
 
@@ -199,11 +195,3 @@ def test_every_drive_and_a_moved_guide_have_a_page(drive: str) -> None:
     columns["F_slider_speed_m_s"] = motion.sliders["F"].speed
     found = page(motion.time_s, columns, scene, drive=drive)
     assert Outline(found).sections() == SECTIONS
-
-
-def test_the_command_writes_the_page_of_a_log(tmp_path: Path) -> None:
-    log, target = tmp_path / "log.csv", tmp_path / "page.html"
-    pd.DataFrame({"time_s": TIME_S, "rocker_deg": ONE["rocker_deg"] + 0.5}).to_csv(log, index=False)
-    ended = crank("judge", "fourbar-lecture-1", log, "--target", "1e-3", "-o", target)
-    assert ended.exit_code == 1
-    assert target.read_text(encoding="utf-8").startswith("<!doctype html>")

@@ -33,7 +33,6 @@ def only(columns: dict[str, object], motion: Motion = MOTION, *scene: Scene) -> 
 
 
 def mapped(**table: object) -> dict[str, Map]:
-    """The map of one channel, an angle [deg]."""
     return {"mapped": Map(channel=[ChannelTable(kind="angle", unit="deg", **table)])}
 
 
@@ -158,7 +157,6 @@ def test_a_short_log_is_whole_and_neither_missing_nor_infinite_samples_hide_a_sp
 def log_of(
     columns: Mapping[str, object], scene: Scene = SCENE, at: Array = AT, **asked: object
 ) -> LoggedBodies:
-    """What is drawn of a log at some of its instants."""
     time_s = motion_of(scene).time_s
     one = judged(time_s, columns, scene, **asked)
     return logged_bodies(one, truth_of_all(one), at if scene is SCENE else time_s[::36])

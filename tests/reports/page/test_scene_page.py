@@ -59,8 +59,6 @@ def moved(wide: Tab, places: tuple[int, int], shapes: str, told: str) -> tuple[l
         wide.slide("motion-slider", at)
         words.append(wide.text(told))
         drawn.append(wide.drawn(shapes))
-    assert not wide.said
-    assert wide.asked == [wide.file.as_uri()]
     assert drawn[0] != drawn[1]
     return words, drawn
 
@@ -108,8 +106,6 @@ def test_a_page_bends_its_links_by_the_factor_that_is_chosen(
     tab.slide("motion-slider", 60)
     assert "coupler -0.669" in tab.text("#motion-deflection")
     tab.needs_no_scrolling_aside()
-    assert not tab.said
-    assert tab.asked == [tab.file.as_uri()]
 
 
 def test_factors_have_the_chosen_one_among_them() -> None:
@@ -132,8 +128,6 @@ def test_polygons_move_and_are_drawn_step_by_step(wide: Tab, written: Write) -> 
     assert 0 < arrows.count() < whole
     assert "driver" in wide.text("#polygons-step-title")
     assert "one point, as omega is 0" in wide.text("#polygons-links")
-    assert not wide.said
-    assert wide.asked == [wide.file.as_uri()]
 
 
 @pytest.fixture(scope="module")
@@ -162,7 +156,6 @@ def test_keys_lead_from_step_to_step_and_through_the_positions(wide: Tab, three:
         assert page.locator(f"{PICTURE} .poses .met").count() == 1
         page.keyboard.press("ArrowRight")
     assert [words.split(", ")[1] for words in told] == [f"position {k} of 3" for k in (1, 2, 3)]
-    assert not wide.said
 
 
 def test_the_mechanism_covers_the_pose_that_it_is_in(wide: Tab, three: Path) -> None:
@@ -187,7 +180,6 @@ def test_buttons_the_slider_and_the_words_go_to_a_step(wide: Tab, rocker: Path) 
         assert wide.text(PLACE) == f"Step {step} of 5"
     wide.slide("construction-slider", float(page.get_attribute("#construction-slider", "max")))
     assert wide.text(PLACE).startswith("crank at")
-    assert not wide.said
 
 
 def test_those_who_want_no_motion_get_whole_steps(wide: Tab, rocker: Path) -> None:
@@ -217,7 +209,6 @@ def test_it_plays_by_itself_once_where_motion_is_welcome(wide: Tab, rocker: Path
     assert wide.text(PLAY) == "Pause"
     wide.elapse(17_000)
     assert wide.text(PLACE).startswith("crank at")
-    assert not wide.said
 
 
 @pytest.mark.parametrize(
@@ -244,5 +235,3 @@ def test_it_can_be_read_without_scrolling_aside(
     assert all(start - 1 < left and right < end + 1 for left, _, right, _ in letters)
     for (x0, y0, x1, y1), (left, top, right, bottom) in itertools.combinations(letters, 2):
         assert x0 + 3 >= right or left + 3 >= x1 or y0 + 5 >= bottom or top + 5 >= y1
-    assert not tab.said
-    assert all(asked.startswith("file:") for asked in tab.asked)

@@ -47,7 +47,6 @@ def report_of(*rows: list[Row]) -> Report:
 
 
 def sentences(*rows: list[Row]) -> dict[str, str]:
-    """The verdict and the sentence of each engine."""
     words = build_verdict(report_of(*rows)).words
     found = {engine: text for engine, _, text in words["sentences"]}
     return {"verdict": words["verdict"], "level": words["level"], **found}

@@ -1,7 +1,5 @@
 """Positions in which the motion is not determined are named, before any engine runs."""
 
-import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,26 +10,7 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene.laws import Oscillating
 from reports.plan.singular import passage_note, refuse_singular
-from tests.worlds.command_line import crank, refused
-
-Edit = Callable[..., str]
-
-
-@pytest.fixture
-def edited(tmp_path: Path) -> Edit:
-    """A shipped scene with some of its text changed, as a file."""
-
-    def edit(name: str, *changes: tuple[str, str]) -> str:
-        text = shipped()[name].read_text(encoding="utf-8")
-        for old, new in changes:
-            text, count = re.subn(old, new, text)
-            assert count
-        path = tmp_path / "edited.toml"
-        path.write_text(text, encoding="utf-8")
-        return str(path)
-
-    return edit
-
+from tests.worlds.command_line import crank, edited, refused
 
 RHOMBUS = (r"length_m = 0\.\d+", "length_m = 0.3")
 NEARLY = (r"(crank = .*length_m = )0\.3", r"\g<1>0.2999999999999")
@@ -40,30 +19,34 @@ NEARLY = (r"(crank = .*length_m = )0\.3", r"\g<1>0.2999999999999")
 
 @pytest.mark.parametrize("start", ["90.0", "90.137"])
 def test_verify_refuses_a_run_through_a_singular_position_also_between_two_samples(
-    edited: Edit, monkeypatch: pytest.MonkeyPatch, start: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, start: str
 ) -> None:
     monkeypatch.setattr("reports.requests.verify.check_all", None)  # no engine may run
     turned = ("start_deg = 90.0", f"start_deg = {start}")
-    path = edited("fourbar-lecture-1", RHOMBUS, NEARLY, turned)
+    path = edited(tmp_path, "fourbar-lecture-1", RHOMBUS, NEARLY, turned)
     words = ("fourbar-lecture-1", "driver 360 deg", "dyad of C", "not determined", "choose")
     refused(crank("verify", path, "--steps-per-turn", "360"), *words)
 
 
 def test_a_run_that_ends_before_the_singular_position_or_goes_near_it_is_free_to_go(
-    edited: Edit,
+    tmp_path: Path,
 ) -> None:
-    scene = load_scene(edited("fourbar-lecture-1", RHOMBUS, NEARLY))
+    scene = load_scene(edited(tmp_path, "fourbar-lecture-1", RHOMBUS, NEARLY))
     period = scene.driver.law.period_s
     refuse_singular(scene, 0.74 * period)
     with pytest.raises(CrankcheckError, match="driver 360 deg"):
         refuse_singular(scene, 0.76 * period)
-    near = load_scene(edited("slider-crank-excel-210", ("length_m = 2.1", "length_m = 2.0000001")))
+    near = load_scene(
+        edited(tmp_path, "slider-crank-excel-210", ("length_m = 2.1", "length_m = 2.0000001"))
+    )
     refuse_singular(near, near.driver.law.period_s)
 
 
-def test_a_swing_through_a_singular_position_or_to_a_limit_is_refused(edited: Edit) -> None:
+def test_a_swing_through_a_singular_position_or_to_a_limit_is_refused(tmp_path: Path) -> None:
     """The lines of the two blocks are parallel at 90 deg: the crossing runs to infinity."""
-    scene = load_scene(edited("tangent", ("amplitude_deg = 40.0", "amplitude_deg = 100.0")))
+    scene = load_scene(
+        edited(tmp_path, "tangent", ("amplitude_deg = 40.0", "amplitude_deg = 100.0"))
+    )
     with pytest.raises(CrankcheckError, match="90 deg the dyad of P"):
         refuse_singular(scene, scene.driver.law.period_s)
     rocker = load_scene("fourbar-double-rocker")
@@ -82,9 +65,9 @@ def test_a_swing_through_a_singular_position_or_to_a_limit_is_refused(edited: Ed
     ],
 )
 def test_a_run_through_change_points_is_let_go_and_told(
-    edited: Edit, name: str, change: tuple[str, str], places: str
+    tmp_path: Path, name: str, change: tuple[str, str], places: str
 ) -> None:
-    scene = load_scene(edited(name, change))
+    scene = load_scene(edited(tmp_path, name, change))
     period = scene.driver.law.period_s
     refuse_singular(scene, 3 * period)
     note = passage_note(scene, 3 * period)
@@ -92,8 +75,10 @@ def test_a_run_through_change_points_is_let_go_and_told(
     assert f"{places}; the reference continues the smooth branch" in note
 
 
-def test_a_note_tells_only_what_is_passed_and_verify_prints_it_once_and_runs(edited: Edit) -> None:
-    path = edited("fourbar-lecture-1", RHOMBUS)
+def test_a_note_tells_only_what_is_passed_and_verify_prints_it_once_and_runs(
+    tmp_path: Path,
+) -> None:
+    path = edited(tmp_path, "fourbar-lecture-1", RHOMBUS)
     scene = load_scene(path)  # starts at 90 deg
     period = scene.driver.law.period_s
     assert passage_note(scene, 0.24 * period) == ""
@@ -109,8 +94,10 @@ def test_no_shipped_scene_is_refused(name: str) -> None:
     refuse_singular(scene, 2 * scene.driver.law.period_s)
 
 
-def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(edited: Edit) -> None:
-    result = crank("solve", edited("fourbar-lecture-1", RHOMBUS, NEARLY))
+def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(
+    tmp_path: Path,
+) -> None:
+    result = crank("solve", edited(tmp_path, "fourbar-lecture-1", RHOMBUS, NEARLY))
     assert result.exit_code == 0
     assert "singular at 360 deg (C)" in result.output
     assert "rates are not determined there" in result.output
@@ -120,8 +107,8 @@ def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(ed
 
 
 @pytest.mark.parametrize("args", [[], ["--at-deg", "180"]])
-def test_solve_goes_through_a_change_point_and_says_so(edited: Edit, args: list[str]) -> None:
-    result = crank("solve", edited("fourbar-lecture-1", RHOMBUS), *args)
+def test_solve_goes_through_a_change_point_and_says_so(tmp_path: Path, args: list[str]) -> None:
+    result = crank("solve", edited(tmp_path, "fourbar-lecture-1", RHOMBUS), *args)
     assert result.exit_code == 0
     assert "continued smoothly through the change point" in result.output
     assert "singular at" not in result.output

@@ -130,7 +130,6 @@ def test_odd_arguments_are_errors_of_ours_told_at_the_call(
         (lambda: crankcheck.sweep(SCENE, __file__), "^folder .*.py is a file; name a folder"),
         (lambda: crankcheck.sweep(SCENE, "x", jobs=-1), "^jobs: found -1; give a whole number"),
         (lambda: crankcheck.sweep(SCENE, "x", settings={"iterations": 1}), "no engine and setting"),
-        (lambda: crankcheck.sweep(SCENE, "x", profiles="tund"), "profile 'tund': mujoco has none"),
         (lambda: crankcheck.report("nowhere"), "nowhere: no store of a sweep there"),
         (lambda: crankcheck.report("x", "a.pdf"), "^output a.pdf: found '.pdf'; use .html"),
     ],

@@ -164,13 +164,8 @@ def test_a_run_that_an_engine_can_not_do_is_told_and_drawn() -> None:
 def test_a_scene_that_is_let_go_runs_free_and_is_not_driven() -> None:
     done = crankcheck.run("fourbar-swing", engine="pymunk", dt_s=0.01, duration_s=0.2)
     assert (done.steps, done.drive) == (20, "free")
-    for name, asked, said in (
-        ("fourbar-swing", {"drive": "servo"}, "fourbar-swing is let go, and nothing drives it"),
-        ("fourbar-swing", {"turns": 0.02}, "turns: fourbar-swing is let go, and has no turns"),
-        ("shaper", {"duration_s": 0.2}, "duration_s: it is of runs that are let go"),
-    ):
-        with pytest.raises(crankcheck.CrankcheckError, match=said):
-            crankcheck.run(name, **asked)
+    with pytest.raises(crankcheck.CrankcheckError, match="-swing is let go, and nothing drives it"):
+        crankcheck.run("fourbar-swing", drive="servo")
 
 
 @pytest.fixture(scope="module")
@@ -242,7 +237,6 @@ def checked(model: Path) -> crankcheck.ModelVerdict:
 
 @pytest.fixture(scope="module")
 def verdict(model: Path) -> crankcheck.ModelVerdict:
-    """Read and run in this process."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.own_model.account.Isolated", Here)
         patch.setattr("reports.own_model.judged.Isolated", Here)
@@ -302,7 +296,6 @@ REFUSED = {
     "branch: found 3; give a dict": {"branch": 3},
     "branch C: found 2; it is 1 or -1": {"branch": {"C": 2}},
     "dt_s: found 'x'; give a number above 0": {"dt_s": "x"},
-    "dt_s and steps_per_turn: both set the step": {"dt_s": 1e-3, "steps_per_turn": 100},
     "tolerance 'angel': it is no quantity": {"tolerance": {"angel": 1.0}},
     "converge: found 1; give True or False": {"converge": 1},
     "limit_s 0: give a number above 0": {"limit_s": 0},

@@ -64,7 +64,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     study.write_text(STUDY, encoding="utf-8")
     quiet = Console(quiet=True)
     with in_this_process() as patch:
-        patch.setattr("reports.sweep.running.timed_in_turns", timed)
+        patch.setattr("reports.sweep.measured.timed_in_turns", timed)
         assert SweepRequest(folder / "sweep", study=study, jobs=1).run(quiet, quiet) == 0
     return read_store(folder / "sweep")
 

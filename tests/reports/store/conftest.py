@@ -42,5 +42,4 @@ def whole(swept: Sweep, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def store(whole: Path, tmp_path: Path) -> Path:
-    """A copy of it, to be damaged."""
     return shutil.copytree(whole, tmp_path / "store")

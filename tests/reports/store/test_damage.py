@@ -34,7 +34,6 @@ Sweep = Callable[..., int]
 
 
 def ended(call: Callable[..., int], *arguments: object) -> tuple[int, str]:
-    """The exit code of a command, and the message of one that was refused."""
     try:
         return call(*arguments), ""
     except CrankcheckError as error:
@@ -42,14 +41,12 @@ def ended(call: Callable[..., int], *arguments: object) -> tuple[int, str]:
 
 
 def refusal(call: Callable[..., object], *arguments: object) -> str:
-    """The message of a command that is refused."""
     with pytest.raises(CrankcheckError) as caught:
         call(*arguments)
     return str(caught.value)
 
 
 def differ(old: Path, new: Path) -> int:
-    """The exit code of a comparison."""
     return DiffRequest(old, new).run(paper(), paper())
 
 

@@ -137,7 +137,7 @@ def test_workers_with_other_packages_are_refused(
         yield 0, replace(found, row=row, crankcheck=change.get("crankcheck", found.crankcheck))
 
     dask(monkeypatch, Cluster())
-    monkeypatch.setattr("reports.sweep.running.on_cluster", there)
+    monkeypatch.setattr("reports.sweep.measured.on_cluster", there)
     options = ("--engine", "pymunk", "--profile", "tuned", "--no-timing", "-o", str(tmp_path / "s"))
     done = crank("sweep", GRID[0], "--steps-per-turn", "90", "--dask", "tcp://there:1", *options)
     assert done.exit_code == (2 if words else 0)
@@ -148,7 +148,6 @@ def test_workers_with_other_packages_are_refused(
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Where a scheduler with two workers is."""
     pytest.importorskip("distributed", reason="pip install 'crankcheck[dask]'")
     address, folder = nowhere(), tmp_path_factory.mktemp("cluster")
     wait = f"import distributed; distributed.Client({address!r}).wait_for_workers(2, 600)"
@@ -163,7 +162,6 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 def nowhere() -> str:
-    """An address at which nobody listens."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return f"tcp://127.0.0.1:{probe.getsockname()[1]}"

@@ -13,11 +13,11 @@ import pytest
 from filelock import FileLock
 
 from reports.store.reader import Stored, read_store, stored_keys
-from reports.sweep import running
+from reports.sweep import measured as measuring
 from reports.sweep.measured import MeasuredCell
 from reports.workers.signals import Stopped
 from tests.reports.store.test_damage import same
-from tests.worlds.command import COMMAND, PYTHON, script
+from tests.worlds.command import PYTHON, script
 from tests.worlds.command_line import crank, crank_alone, refused
 from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start, until
@@ -79,7 +79,7 @@ def counted(folder: Path, *options: str) -> tuple[int, ...]:
     """Cells in all, run now, and there before, and cells timed now of a sweep that is not
     disturbed."""
     with in_this_process() as patch:
-        patch.setattr("reports.sweep.running.timed_in_turns", times)
+        patch.setattr("reports.sweep.measured.timed_in_turns", times)
         done = crank("sweep", *GRID, *STEPS, "-o", folder, *options)
     assert done.exit_code == 0, done.output
     found = re.search(r"(\d+) cells: (\d+) run now, (\d+) were there; (\d+) timed", done.output)
@@ -150,7 +150,7 @@ def test_ctrl_c_keeps_the_timings_before(tmp_path: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setattr("reports.sweep.running.BLOCK", 3)
     with in_this_process() as patch:
-        patch.setattr("reports.sweep.running.timed_in_turns", second_stops)
+        patch.setattr("reports.sweep.measured.timed_in_turns", second_stops)
         done = crank("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
     assert (done.exit_code, done.stderr.splitlines()[-2:]) == (130, KEPT)
     assert blocks == [3, 3]
@@ -162,7 +162,7 @@ def test_ctrl_c_keeps_the_timings_before(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real, calls = running.measured, []
+    real, calls = measuring.measured, []
 
     def third_stops(*arguments: Any) -> MeasuredCell:
         calls.append(arguments)
@@ -170,11 +170,11 @@ def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.Monke
             raise Stopped(signal.SIGINT)
         return real(*arguments)
 
-    monkeypatch.setattr(running, "measured", third_stops)
+    monkeypatch.setattr(measuring, "measured", third_stops)
     done = crank_alone("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
     assert (done.exit_code, done.stderr.splitlines()[-2:]) == (130, KEPT)
     assert len(read_store(tmp_path / "store").cells) == 2
-    monkeypatch.setattr(running, "measured", real)
+    monkeypatch.setattr(measuring, "measured", real)
     assert counted(tmp_path / "store") == (NUMBER, NUMBER - 2, 2, NUMBER)
     assert not read_store(tmp_path / "store").cells.key.duplicated().any()
 
@@ -182,16 +182,3 @@ def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.Monke
 def test_a_folder_that_another_sweep_writes_to_is_refused(tmp_path: Path) -> None:
     with FileLock(tmp_path / ".lock"):
         refused(crank("sweep", *GRID, *STEPS, "-o", tmp_path), "another sweep writes there now")
-
-
-@slow("two processes: `make test` holds the lock by itself")
-def test_two_sweeps_into_one_folder_do_not_mix(programs: Start, tmp_path: Path) -> None:
-    first = begun(programs, tmp_path, (*CELLS, 1), signal.SIGSTOP)
-    until(lambda: psutil.Process(first.pid).status() == psutil.STATUS_STOPPED)
-    second = programs(COMMAND, "sweep", *GRID, *STEPS, "-o", tmp_path / "store")
-    _, err = second.communicate()
-    first.send_signal(signal.SIGTERM)
-    first.send_signal(signal.SIGCONT)
-    first.communicate()
-    assert (first.returncode, second.returncode) == (143, 2)
-    assert "another sweep writes there now" in err

@@ -56,7 +56,6 @@ def _asked(task: FunctionTask, output: float) -> design.Asked:
 
 
 def _draft(task: FunctionTask, generator: Generator, x: Array) -> Draft:
-    """Return the tables of the scene: lengths in m."""
     lengths = [task.scale_m * length for length in generator.lengths]
     links = {
         design.INPUT: bar(design.PIVOTS[0], design.PINS[0], lengths[0]),

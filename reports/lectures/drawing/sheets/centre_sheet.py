@@ -226,7 +226,6 @@ def _frame(
 
 
 def _boxes(paper: Paper) -> tuple[Box, Box]:
-    """The boxes of the drawing, and of the column on its right."""
     inner = inner_box(paper)
     wide = inner.width - COLUMN_MM - GAP
     left = inner.left + wide + GAP

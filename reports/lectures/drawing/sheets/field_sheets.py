@@ -144,7 +144,6 @@ def _is_enough(many: int, paper: Paper) -> bool:
 
 
 def _fields(many: int, paper: Paper) -> list[Box]:
-    """The fields of chains."""
     inner = inner_box(paper)
     columns = max(1, math.ceil(math.sqrt(many * inner.width / (inner.height * ASPECT))))
     return _grid(many, min(columns, many), inner)

@@ -19,7 +19,7 @@ from reports.lectures.drawing.sheets.graph_span import GraphSpan
 from reports.lectures.drawing.sheets.graph_words import NOTHING, share
 from reports.lectures.drawing.sheets.paper import Canvas, Paper, inner_box, write_head
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
-from reports.output.console import plain_table
+from reports.output.console import grid
 from reports.results.floor_fit import straight
 
 Whose = Literal["reference", "log", "its own part"]
@@ -110,10 +110,7 @@ def _lines(drawings: Sequence[DrawnGraphs]) -> list[ErrorLine]:
 
 def show_errors(console: Console, errors: GraphErrors) -> None:
     """Print the table, a row for each number of divisions, and the fitted orders under it."""
-    table = plain_table(gap=2)
-    table.add_column("\nparts", justify="right")
-    for each in errors.lines:
-        table.add_column(f"{each.of}\n{each.symbol}", justify="right")
+    table = grid(["\nparts:", *(f"{each.of}\n{each.symbol}:" for each in errors.lines)])
     for k, count in enumerate(errors.divisions):
         table.add_row(str(count), *(share(each.errors[k]) for each in errors.lines))
     if len(errors.divisions) > 1:

@@ -147,7 +147,6 @@ def draw_graph(
 def _draw_tangents(
     axes: Axes, sheet: GraphSheet, panel: Panel, graph: Plotted, slopes: Plotted, color: str
 ) -> None:
-    """Draw a piece of the tangent at each point that has one."""
     reach = TANGENT * (sheet.drawn.span.end - sheet.drawn.span.start) / sheet.drawn.parts
     for k, (x, y, slope) in enumerate(zip(slopes.x, graph.y[1:-1], slopes.y, strict=True)):
         ends = np.array([x - reach, x + reach])

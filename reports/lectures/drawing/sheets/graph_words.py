@@ -8,13 +8,12 @@ from rich.console import Console
 
 from analytic.lectures.drawings.graphical import ORDERS, ThreeGraphs
 from models.array import Array
-from models.errors import harmless
 from models.motion import Order
 from models.scene.driver import driver_unit
 from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, line, text
-from reports.output.console import plain_table
+from reports.output.console import grid, say_whole
 from reports.output.numbers import listed
 
 ROW_MM = 2.55
@@ -147,7 +146,6 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
 def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
     """Print the table: the read values at each division, and the drawn ones."""
     of = drawn.span
-    table = plain_table(gap=2)
     heads = ["no.", f"{of.scene.driver.name} {driver_unit(of.scene)}"]
     places = _places(drawn)
     columns = [[f"{each:g}" for each in numbers(drawn, places)], driver_column(drawn, places)]
@@ -160,11 +158,7 @@ def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
         elif order != READ[drawn.by]:
             heads.append("exact")
             columns.append(written(of.exact(order, places), drawn.sizes[order]))
-    for head in heads:
-        table.add_column(head, justify="right")
-    for row in zip(*columns, strict=True):
-        table.add_row(*row)
-    console.print(table)
+    console.print(grid((f"{head}:" for head in heads), zip(*columns, strict=True)))
 
 
 def _places(drawn: DrawnGraphs) -> Array:
@@ -184,4 +178,4 @@ def _cells(drawn: DrawnGraphs, graphs: ThreeGraphs, order: Order, places: Array)
 
 def tell(console: Console, line: str) -> None:
     """Print a sentence in one line, whatever its characters."""
-    console.print(harmless(line), highlight=False, markup=False, soft_wrap=True)
+    say_whole(console, line)

@@ -219,7 +219,6 @@ class Canvas:
 
 
 def _layered(svg: str) -> str:
-    """Mark the layers of an SVG for a drawing program."""
     marked = LAYER.sub(r'<g id="layer-\1" inkscape:groupmode="layer" inkscape:label="\1">', svg)
     return marked.replace("<svg ", f'<svg xmlns:inkscape="{INKSCAPE}" ', 1)
 

@@ -70,7 +70,6 @@ def _draw_vector(
 
 
 def _legend(axes: Axes, polygon: Polygon, box: paper.Box) -> None:
-    """Write the key of the colours of the vectors that occur."""
     there = {vector.kind for vector in polygon.vectors}
     words = [(WORDS[kind], colour) for kind, colour in COLOURS.items() if kind in there]
     x = box.left + 1.5

@@ -161,7 +161,6 @@ def turning_file(sheet: polygon_sheet.PolygonSheet, *, steady: bool = False) -> 
 
 
 def _picture(figure: Figure) -> Image.Image:
-    """A picture of the figure in its present state."""
     figure.set_dpi(DPI)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()  # type: ignore[no-untyped-call]  # matplotlib has no annotation here

@@ -155,7 +155,6 @@ def _loci(axes: Axes, sheet: PositionSheet) -> None:
 
 
 def _positions(axes: Axes, sheet: PositionSheet) -> None:
-    """Draw all positions of all links, faint."""
     for k in range(len(sheet.angles)):
         places = {name: sheet.at(at[k]) for name, at in sheet.points.items()}
         scheme.draw_outline(axes, sheet.scene.links.values(), places, FAINT, 0.5)

@@ -140,7 +140,6 @@ def draw_slots(
 
 
 def _within(corners: list[Array], place: Array) -> bool:
-    """True if a place is on a plate."""
     return len(corners) > 2 and bool(Path(np.array(corners)).contains_point(tuple(place)))
 
 
@@ -254,7 +253,6 @@ def _segments(corners: Array) -> Iterator[tuple[Array, Array]]:
 
 
 def _flat(corners: Array) -> bool:
-    """True if points lie on a line."""
     spread = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
     return bool(spread[1] < 1e-6 * spread[0])
 
@@ -280,7 +278,6 @@ def _hatched(axes: Axes, start: Array, end: Array) -> None:
 
 
 def _block(axes: Axes, place: Array, along: Array) -> None:
-    """Draw the block of a slider."""
     half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
     corners = [
         place + half + aside,

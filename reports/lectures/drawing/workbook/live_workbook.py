@@ -51,7 +51,6 @@ class Curves:
 
 
 def _on_one_page(sheet: Any) -> Any:
-    """Set the sheet to be printed on one page."""
     sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
     return sheet
 

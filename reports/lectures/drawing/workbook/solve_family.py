@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from rich.console import Console
 
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.describe.facts import describe_law
 from reports.figures.drawing import COLOURS, DASHES
@@ -34,6 +34,7 @@ from reports.lectures.drawing.workbook.live_workbook import (
     live_workbook,
     scene_family_workbook,
 )
+from reports.output.console import say_whole
 from reports.output.numbers import count
 from reports.output.write import crankcheck_version, write
 from reports.page.build import Head, assembled
@@ -79,12 +80,10 @@ def run_family(scene: Scene, request: SolveOptions, console: Console) -> None:
         )
     write(request.output, content)
     told = f"{request.output}: {len(values)} members of {scene.name}, {time_s.size} rows"
-    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+    say_whole(console, told)
 
 
 def _drawn(scene: Scene, path: Path, curves: FamilyCurves) -> bytes | str:
-    """The page or the drawing of a family."""
-
     ending = path.suffix.lower()
     if ending == solving.PAGE:
         return family_page_of(scene, curves)
@@ -160,7 +159,6 @@ def draw_family(
 
 
 def _mark_angles(axes: Any, curves: FamilyCurves) -> None:
-    """Limits of the axis of angles, and numbers at parts of a turn."""
     ends = [end for angle in curves.angles_deg for end in (np.min(angle), np.max(angle))]
     axes.set_xlim(min(ends), max(ends))
     axes.xaxis.set_major_locator(MaxNLocator(9, steps=TICKS_DEG))
@@ -236,6 +234,5 @@ def _title(scene: Scene, curves: FamilyCurves) -> str:
 
 
 def _notes(scene: Scene, curves: FamilyCurves) -> list[str]:
-    """The note on the source of the curves."""
     speed = "" if curves.name == "omega" else f"; {scene.driver.joint} {describe_law(scene)}"
     return [f"crankcheck {crankcheck_version()}, closed form{speed}."]
