@@ -21,7 +21,7 @@ from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array, beside, samples
 from models.errors import CrankcheckError, ReachError, StructureError
-from models.files.names import MOST_ASSEMBLIES
+from models.files.body_table import MOST_ASSEMBLIES
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed, Law

@@ -27,7 +27,7 @@ from analytic.structure.groups import Bridge, Triad
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array, Mask
 from models.errors import ReachError
-from models.files.names import MOST_ASSEMBLIES
+from models.files.body_table import MOST_ASSEMBLIES
 from models.motion import Motion
 from models.scene import GROUND, KEPT, Same, Scene
 

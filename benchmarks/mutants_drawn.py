@@ -32,6 +32,17 @@ CHANGED = {
         "load.direction_rad - lean",
         "(load.direction_rad + lean)",
     ),
+    5: (
+        "links=each_array(change, self.links),",
+        "each_array(change, self.links)",
+        "(each_array(self.links, change))",
+    ),
+    6: ("return toml_text(head, dict(_tables(scene, flywheels or {})))", "flywheels", "scene"),
+    7: (
+        "if isinstance(slider, str) and slider not in names.sliders:",
+        "slider not in names.sliders",
+        "(slider in names.sliders)",
+    ),
     13: (
         "return driver_course(self.scene, motion)",
         "return driver_course(self.scene, motion)",

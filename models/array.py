@@ -17,11 +17,8 @@ of its own unit."""
 def numbers(values: ArrayLike, what: str) -> Array:
     """Return the values as floats, in a new array that later changes by the caller do not reach.
 
-    Raises
-    ------
-    CrankcheckError
-        A masked array, whose numbers do not all count; text that is no number; lists of different
-        lengths; durations, dates and anything else that is no number.
+    Raises CrankcheckError for a masked array, whose numbers do not all count; text that is no
+    number; lists of different lengths; durations, dates and anything else that is no number.
     """
     if isinstance(values, np.ma.MaskedArray):
         raise _no_numbers(what, "a masked array", "give those that count: values.compressed()")

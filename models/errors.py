@@ -67,10 +67,8 @@ def listed(place: str, faults: Sequence[str]) -> str:
 
 
 class CrankcheckError(Exception):
-    """An error of the user's request; its text is the whole message.
-
-    The text may quote a file: nothing in it acts on the terminal.
-    """
+    """An error of the user's request; its text is the whole message. The text may quote a file:
+    nothing in it acts on the terminal."""
 
     def __str__(self) -> str:
         return harmless(cut(super().__str__(), LONGEST))

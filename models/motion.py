@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, TypeVar
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,23 +85,15 @@ class Forces:
             return np.zeros(self.time_s.size, np.bool_)
         return np.asarray(self.friction_solution.solutions == number)
 
-    def each_series(self, change: Callable[[Array], Array]) -> Forces:
-        """Return the forces without bound, every series changed; the instants stay."""
-        return replace(
-            self,
-            pins={
-                point: {body: change(force) for body, force in bodies.items()}
-                for point, bodies in self.pins.items()
-            },
-            sliders={
-                name: SliderForces(change(slider.normal), change(slider.moment))
-                for name, slider in self.sliders.items()
-            },
-            torque=change(self.torque),
-            bound=None,
-            friction={joint: change(series) for joint, series in self.friction.items()},
-            friction_solution=None,
-        )
+    def each_series(self, change: Callable[..., Array], *others: Forces | ForceBound) -> Forces:
+        """Return the forces without bound, every series changed, by those of ``others`` as further
+        arguments; the instants stay."""
+        every = (self, *others)
+        series = {
+            name: each_array(change, *(getattr(one, name) for one in every))
+            for name in ("pins", "sliders", "torque", "friction")
+        }
+        return replace(self, **series, bound=None, friction_solution=None)
 
     def stretch(self, kept: slice | NDArray[np.intp]) -> Forces:
         """Return some samples, a slice or by index, without bound."""
@@ -110,33 +102,12 @@ class Forces:
     @staticmethod
     def joined(parts: Sequence[Forces]) -> Forces:
         """Join stretches of samples one after the other."""
-        first = parts[0]
-        if len(parts) == 1:
+        first, *others = parts
+        if not others:
             return first
         return replace(
-            first,
-            time_s=np.concatenate([part.time_s for part in parts]),
-            pins={
-                point: {
-                    body: np.concatenate([part.pins[point][body] for part in parts])
-                    for body in bodies
-                }
-                for point, bodies in first.pins.items()
-            },
-            sliders={
-                name: SliderForces(
-                    np.concatenate([part.sliders[name].normal for part in parts]),
-                    np.concatenate([part.sliders[name].moment for part in parts]),
-                )
-                for name in first.sliders
-            },
-            torque=np.concatenate([part.torque for part in parts]),
-            bound=None,
-            friction={
-                joint: np.concatenate([part.friction[joint] for part in parts])
-                for joint in first.friction
-            },
-            friction_solution=None,
+            first.each_series(_one_after_the_other, *others),
+            time_s=_joined(parts, "time_s"),
             contradictions=tuple(text for part in parts for text in part.contradictions),
         )
 
@@ -147,11 +118,8 @@ Order = Literal[0, 1, 2]
 
 @dataclass(frozen=True)
 class LinkMotion:
-    """Angle ``theta`` [rad], ``omega`` [rad/s], ``alpha`` [rad/s^2].
-
-    The angle is continuous with the driver's, its whole turns counted from time 0, for any instants
-    in any order.
-    """
+    """Angle ``theta`` [rad], ``omega`` [rad/s], ``alpha`` [rad/s^2]. The angle is continuous with
+    the driver's, its whole turns counted from time 0, for any instants in any order."""
 
     theta: Array
     omega: Array
@@ -198,23 +166,11 @@ class Bound:
     points: Mapping[str, PointMotion]
     sliders: Mapping[str, SliderMotion]
 
-    @staticmethod
-    def joined(parts: Sequence[Bound]) -> Bound:
-        """Join bounds of motions one after the other."""
-        return Bound(
-            _joined([part.links for part in parts]),
-            _joined([part.points for part in parts]),
-            _joined([part.sliders for part in parts]),
-        )
-
 
 @dataclass(frozen=True)
 class Crossing:
-    """A change point that a motion passes through on the smooth branch.
-
-    ``dyad`` is named by its inner joint, as in the conditioning; ``driver_rad`` is the driver's
-    angle [rad], 0 to 2 pi.
-    """
+    """A change point that a motion passes through on the smooth branch. ``dyad`` is named by its
+    inner joint, as in the conditioning; ``driver_rad`` is the driver's angle [rad], 0 to 2 pi."""
 
     dyad: str
     driver_rad: float
@@ -243,39 +199,31 @@ class Motion:
 
     def each_series(self, change: Callable[[Array], Array]) -> Motion:
         """Return the motion with every series of its bodies changed; its instants stay."""
-        forces = self.forces and self.forces.each_series(change)
         return replace(
             self,
-            links=_each(self.links, change),
-            points=_each(self.points, change),
-            sliders=_each(self.sliders, change),
-            elastic=_each(self.elastic, change),
-            forces=forces,
+            links=each_array(change, self.links),
+            points=each_array(change, self.points),
+            sliders=each_array(change, self.sliders),
+            elastic=each_array(change, self.elastic),
+            forces=self.forces and self.forces.each_series(change),
         )
 
     @staticmethod
     def joined(parts: Sequence[Motion]) -> Motion:
         """Join motions one after the other; series that one of them lacks are left out."""
-        first = parts[0]
         if len(parts) == 1:
-            return first
-        bounds = [part.bound for part in parts if part.bound]
+            return parts[0]
         forces = [part.forces for part in parts if part.forces]
-        whole = len(parts)
         return Motion(
-            np.concatenate([part.time_s for part in parts]),
-            _joined([part.links for part in parts]),
-            _joined([part.points for part in parts]),
-            _joined([part.sliders for part in parts]),
-            {
-                dyad: np.concatenate([part.conditioning[dyad] for part in parts])
-                for dyad in first.conditioning
-                if all(dyad in part.conditioning for part in parts)
-            },
-            Bound.joined(bounds) if len(bounds) == whole else None,
+            _joined(parts, "time_s"),
+            _joined(parts, "links"),
+            _joined(parts, "points"),
+            _joined(parts, "sliders"),
+            _joined(parts, "conditioning"),
+            _joined(parts, "bound") if all(part.bound for part in parts) else None,
             tuple(dict.fromkeys(one for part in parts for one in part.crossings)),
-            Forces.joined(forces) if len(forces) == whole else None,
-            _joined([part.elastic for part in parts]),
+            Forces.joined(forces) if len(forces) == len(parts) else None,
+            _joined(parts, "elastic"),
         )
 
     def state(self, index: int = 0) -> State:
@@ -293,27 +241,24 @@ class Motion:
         )
 
 
-BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion, ElasticMotion)
+def each_array(change: Callable[..., Array], *series: Any) -> Any:
+    """Return the series, mappings or dataclasses of arrays in any depth, each array changed; of
+    several the arrays in the same place, which all of them have, are the arguments."""
+    first = series[0]
+    if isinstance(first, np.ndarray):
+        return change(*series)
+    if isinstance(first, Mapping):
+        shared = (key for key in first if all(key in one for one in series))
+        return {key: each_array(change, *(one[key] for one in series)) for key in shared}
+    return type(first)(**each_array(change, *map(vars, series)))
 
 
-def _each(
-    bodies: Mapping[str, BodyMotion], change: Callable[[Array], Array]
-) -> dict[str, BodyMotion]:
-    return {
-        name: type(body)(**{key: change(series) for key, series in vars(body).items()})
-        for name, body in bodies.items()
-    }
+def _joined(parts: Sequence[Forces] | Sequence[Motion], name: str) -> Any:
+    return each_array(_one_after_the_other, *(getattr(part, name) for part in parts))
 
 
-def _joined(parts: Sequence[Mapping[str, BodyMotion]]) -> dict[str, BodyMotion]:
-    """Join the series of the bodies that are in every part."""
-    return {
-        name: type(body)(
-            **{key: np.concatenate([vars(part[name])[key] for part in parts]) for key in vars(body)}
-        )
-        for name, body in parts[0].items()
-        if all(name in part for part in parts)
-    }
+def _one_after_the_other(*parts: Array) -> Array:
+    return np.concatenate(parts)
 
 
 @dataclass(frozen=True)
@@ -335,5 +280,4 @@ class State:
 
 
 def _pair(row: Array) -> Point:
-    """A row of two as plain floats."""
     return float(row[0]), float(row[1])

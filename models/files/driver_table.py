@@ -1,22 +1,20 @@
-"""Pydantic models of the driver's table, one for each law: of a link or a pin, and of a slider."""
+"""Table of the driver, a model for each law: of a link or a pin, and of a slider."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, model_validator
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, cut, few
 from models.files import schema
-from models.files.load_table import in_degrees
 from models.scene import GROUND, Driver, Link, Point, Slider
 from models.scene.driver import Controlled, Released
 from models.scene.joints import sliding_body
 from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-
-TinyChecked = AfterValidator(schema.not_tiny)
 
 
 class TurningDriver(schema.Table):
@@ -26,6 +24,7 @@ class TurningDriver(schema.Table):
     link: schema.Name | None = None
     pin: schema.Name | None = None
     links: tuple[schema.Name, schema.Name] | None = None
+    law: str
 
     @model_validator(mode="after")
     def _is_one_joint(self) -> TurningDriver:
@@ -42,6 +41,7 @@ class SlidingDriver(schema.Table):
     """A driven ``slider``, by its displacement."""
 
     slider: schema.Name
+    law: str
 
 
 class ConstantDriver(TurningDriver):
@@ -60,7 +60,7 @@ class ConstantSlide(SlidingDriver):
 class OscillatingDriver(TurningDriver):
     law: Literal["oscillating"]
     centre_deg: schema.Degrees
-    amplitude_deg: Annotated[schema.Degrees, TinyChecked]
+    amplitude_deg: Annotated[schema.Degrees, AfterValidator(schema.not_tiny)]
     frequency_rad_s: schema.RateNumber
     phase_deg: schema.Degrees = 0.0
 
@@ -137,19 +137,8 @@ class FreeDriver(TurningDriver):
         return self
 
 
-DriverTable = (
-    ConstantDriver
-    | OscillatingDriver
-    | FromRestDriver
-    | AcceleratingDriver
-    | ControlledDriver
-    | FreeDriver
-    | ConstantSlide
-    | OscillatingSlide
-    | FromRestSlide
-    | AcceleratingSlide
-)
-DRIVERS: dict[str, type[DriverTable]] = {
+DriverTable = TurningDriver | SlidingDriver
+DRIVERS: dict[str, type[TurningDriver]] = {
     "constant": ConstantDriver,
     "oscillating": OscillatingDriver,
     "from-rest": FromRestDriver,
@@ -157,13 +146,39 @@ DRIVERS: dict[str, type[DriverTable]] = {
     "controlled": ControlledDriver,
     "free": FreeDriver,
 }
-SLIDES: dict[str, type[DriverTable]] = {
+SLIDES: dict[str, type[SlidingDriver]] = {
     "constant": ConstantSlide,
     "oscillating": OscillatingSlide,
     "from-rest": FromRestSlide,
     "accelerating": AcceleratingSlide,
 }
 """Models of drivers that name a slider."""
+LawInFile = ConstantSpeed | Oscillating | FromRest | Accelerating | Released
+LAWS: dict[str, type[LawInFile]] = {
+    "constant": ConstantSpeed,
+    "oscillating": Oscillating,
+    "from-rest": FromRest,
+    "accelerating": Accelerating,
+    "controlled": Controlled,
+    "free": Released,
+}
+KEYS = {
+    "start_rad": ("start_deg", "start_m"),
+    "centre_rad": ("centre_deg", "centre_m"),
+    "amplitude_rad": ("amplitude_deg", "amplitude_m"),
+    "phase_rad": ("phase_deg", "phase_deg"),
+    "speed_rad_s": ("speed_rad_s", "speed_m_s"),
+    "acceleration_rad_s2": ("acceleration_rad_s2", "acceleration_m_s2"),
+    "travel_rad": ("", "travel_m"),
+}
+"""Keys of the fields of laws, for an angle and for a displacement, where they have another name;
+the travel of an angle is a turn, and has no key."""
+
+
+def _keys_of(law: type[LawInFile], *, slides: bool) -> Iterator[tuple[str, str]]:
+    for field in fields(law):
+        if key := KEYS.get(field.name, (field.name, field.name))[slides]:
+            yield field.name, key
 
 
 def driver_of(
@@ -173,56 +188,30 @@ def driver_of(
     sliders: Mapping[str, Slider],
 ) -> Driver:
     """Make the driver of a scene with such bodies. Raises ValueError for a driver at rest."""
+    law = _law_of(table)
     if isinstance(table, SlidingDriver):
         slider = sliders[table.slider]
-        return Driver(sliding_body(slider), _sliding(table), slider.on, slider=table.slider)
-    assert isinstance(table, TurningDriver)
-    law = _turning(table)
+        return Driver(sliding_body(slider), law, slider.on, slider=table.slider)
     if table.pin is None:
         assert table.link is not None
         return Driver(table.link, law)
-    joined = [GROUND] * (table.pin in ground)
-    joined += [name for name, link in links.items() if table.pin in link.points]
-    base, link = table.links or joined[:2]
+    points = {name: link.points for name, link in links.items()}
+    base, link = table.links or schema.bodies_at(table.pin, ground, points)[:2]
     if base == GROUND and next(p for p in links[link].points if p in ground) == table.pin:
         return Driver(link, law)
     return Driver(link, law, base, pin=table.pin)
 
 
-def _turning(table: DriverTable) -> Law:
-    """Make the law of an angle."""
-    if isinstance(table, OscillatingDriver):
-        return Oscillating(
-            math.radians(table.centre_deg),
-            math.radians(table.amplitude_deg),
-            table.frequency_rad_s,
-            schema.within_a_turn(table.phase_deg),
-        )
-    if isinstance(table, FromRestDriver):
-        return FromRest(math.radians(table.start_deg), table.speed_rad_s, table.rise_s)
-    assert isinstance(table, TurningDriver)
-    start_rad = math.radians(table.start_deg)
-    if isinstance(table, FreeDriver):
-        return Released(start_rad, table.speed_rad_s, table.duration_s)
-    if isinstance(table, AcceleratingDriver):
-        return Accelerating(start_rad, table.speed_rad_s, table.acceleration_rad_s2)
-    if isinstance(table, ControlledDriver):
-        return Controlled(start_rad, table.speed_rad_s, table.kp_n_m_rad, table.kd_n_m_s)
-    return ConstantSpeed(start_rad, table.speed_rad_s)
-
-
-def _sliding(table: DriverTable) -> Law:
-    """Make the law of a displacement."""
-    if isinstance(table, OscillatingSlide):
-        phase = schema.within_a_turn(table.phase_deg)
-        return Oscillating(table.centre_m, table.amplitude_m, table.frequency_rad_s, phase)
-    assert isinstance(table, ConstantSlide | FromRestSlide | AcceleratingSlide)
-    start, speed, travel = table.start_m, table.speed_m_s, table.travel_m
-    if isinstance(table, FromRestSlide):
-        return FromRest(start, speed, table.rise_s, travel_rad=travel)
-    if isinstance(table, AcceleratingSlide):
-        return Accelerating(start, speed, table.acceleration_m_s2, travel_rad=travel)
-    return ConstantSpeed(start, speed, travel_rad=travel)
+def _law_of(table: DriverTable) -> Law:
+    """Make the law, angles in radians, a phase without its whole turns."""
+    law = LAWS[table.law]
+    values = {}
+    for name, key in _keys_of(law, slides=isinstance(table, SlidingDriver)):
+        value = getattr(table, key)
+        if key.endswith("_deg"):
+            value = schema.within_a_turn(value) if name == "phase_rad" else math.radians(value)
+        values[name] = value
+    return law(**values)
 
 
 def driver_table(driver: Driver) -> Mapping[str, object]:
@@ -236,40 +225,61 @@ def driver_table(driver: Driver) -> Mapping[str, object]:
 
 
 def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
-    """Write the table of a law of an angle, or of a displacement."""
-    place, rate = ("m", "m_s") if slides else ("deg", "rad_s")
-    shown = (lambda size_m: size_m) if slides else in_degrees
-    if isinstance(law, Oscillating):
-        return {
-            "law": "oscillating",
-            f"centre_{place}": shown(law.centre_rad),
-            f"amplitude_{place}": shown(law.amplitude_rad),
-            "frequency_rad_s": law.frequency_rad_s,
-            "phase_deg": in_degrees(law.phase_rad),
-        }
-    law = _written(law)
-    start = {f"start_{place}": shown(law.start_rad), f"speed_{rate}": law.speed_rad_s}
-    if isinstance(law, Released):
-        if slides:
-            raise CrankcheckError(
-                "what is let go is told by a link: a scene file has no free slider"
+    kind, known = next((each for each in LAWS.items() if type(law) is each[1]), ("", None))
+    if known is None:
+        raise CrankcheckError(
+            f"law {type(law).__name__}: a scene file has no words for it; take another"
+        )
+    if slides and kind == "free":
+        raise CrankcheckError("what is let go is told by a link: a scene file has no free slider")
+    table: dict[str, object] = {} if kind == "constant" else {"law": kind}
+    for name, key in _keys_of(known, slides=slides):
+        value = getattr(law, name)
+        table[key] = schema.in_degrees(value) if key.endswith("_deg") else value
+    return table
+
+
+def faults_of_driver(driver: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
+    """Yield one line per fault of the raw table; wrong shapes are faults of the schema."""
+    link, pin, slider = driver.get("link"), driver.get("pin"), driver.get("slider")
+    if isinstance(link, str):
+        if link not in names.points:
+            links = few(map(cut, names.points), schema.LISTED)
+            yield f"driver.link: found {cut(link)}; use one of {links}"
+        elif not names.points[link] & names.ground:
+            yield (
+                f"driver.link: {cut(link)} has no ground pin to turn about; give it a ground "
+                "point, or drive the pin of two links: pin = ..., links = [..., ...]"
             )
-        return {"law": "free", **start, "duration_s": law.duration_s}
-    if slides:
-        start["travel_m"] = law.travel_rad
-    if isinstance(law, Controlled):
-        gains = {"kp_n_m_rad": law.kp_n_m_rad, "kd_n_m_s": law.kd_n_m_s}
-        return {"law": "controlled", **start, **gains}
-    if isinstance(law, FromRest):
-        return {"law": "from-rest", **start, "rise_s": law.rise_s}
-    if isinstance(law, Accelerating):
-        return {"law": "accelerating", **start, f"acceleration_{rate}2": law.acceleration_rad_s2}
-    return start
+    if isinstance(slider, str) and slider not in names.sliders:
+        yield f"driver.slider: found {cut(slider)}; {schema.use_one_of(names.sliders)}"
+    if isinstance(pin, str):
+        yield from _faults_of_pin(pin, driver.get("links"), names)
 
 
-def _written(law: Law) -> ConstantSpeed | FromRest | Accelerating | Released:
-    """Refuse a law that a scene file cannot express."""
-    if not isinstance(law, ConstantSpeed | FromRest | Accelerating | Released):
-        name = type(law).__name__
-        raise CrankcheckError(f"law {name}: a scene file has no words for it; take another")
-    return law
+def _faults_of_pin(pin: str, links: object, names: schema.NamesInTables) -> Iterator[str]:
+    joined = names.at(pin)
+    blocks = {point: name for name, point in names.blocks.items()}
+    if len(joined) == 1 and pin in blocks:
+        yield (
+            f"driver.pin: found {cut(pin)}, by which {joined[0]} turns against the block of slider "
+            f"{cut(blocks[pin])}; drive that slider, slider = {cut(blocks[pin])!r}, or a pin of "
+            "two links"
+        )
+        return
+    if len(joined) < 2:
+        what = f"it is a point of {joined[0]} alone" if joined else "no body has such a point"
+        yield f"driver.pin: found {cut(pin)}, and {what}; name a point that two bodies share"
+        return
+    both = few(map(cut, joined), schema.LISTED)
+    if links is None:
+        if len(joined) > 2:
+            yield f"driver.links: missing, and pin {cut(pin)} joins {both}; name two of them"
+        return
+    if not (isinstance(links, list) and all(isinstance(name, str) for name in links)):
+        return
+    for name in links:
+        if name not in joined:
+            yield f"driver.links: pin {cut(pin)} joins {both}, not {cut(name)}; name two of them"
+    if len(links) == 2 and links[0] == links[1]:
+        yield f"driver.links: found {cut(links[0])} twice; pin {cut(pin)} joins {both}"

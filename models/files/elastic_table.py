@@ -1,12 +1,17 @@
-"""Links and a start from tables `[elastic.LINK]` and `[start]` of a scene file; their faults."""
+"""Tables `[elastic.LINK]` and `[start]` of a scene file."""
+
+from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
 
 from models.errors import cut, few
-from models.files.schema import ElasticTable, SceneTable, StartTable
+from models.files import schema
+from models.files.schema import LARGEST, MOST_BODIES, Degrees, Name, Number, Positive
 from models.scene import Scene, Start
 from models.scene.cut_links import line_of
 from models.scene.driver import Controlled, Released
@@ -22,37 +27,115 @@ SLENDER = 10.0
 MOST_DAMPED = 1e3
 """Largest multiple of the damping at which the first mode of a link stops swinging: with more the
 link is rigid, and its creep takes turns without end."""
+SECTION = "width_m and height_m, or area_m2 and second_moment_m4"
+Section = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST**2, le=LARGEST)]
+"""Quantity that grows with squares of lengths, or their squares: a thin strip's is under 1e-15."""
 
 
-def elastic_of(table: SceneTable) -> dict[str, ElasticLink]:
-    """Make the elastic links of a scene whose tables have no fault."""
-    return {
-        name: ElasticLink(
+class ElasticTable(schema.Table):
+    """Stiffness of a link in bending, in stretching, or both: by its modulus and section, or by EI
+    and EA. A density with the section gives its mass, which otherwise is the mass of the link."""
+
+    modulus_pa: Positive | None = None
+    width_m: Positive | None = None
+    height_m: Positive | None = None
+    """Height of a rectangle, in the plane of the motion."""
+    area_m2: Section | None = None
+    second_moment_m4: Section | None = None
+    flexural_n_m2: Section | None = None
+    axial_n: Positive | None = None
+    density_kg_m3: Positive | None = None
+    damping_s: schema.NonNegative = 0.0
+    bends: bool = True
+    stretches: bool = False
+
+    @property
+    def area(self) -> float | None:
+        """Area of the section [m^2]."""
+        if self.width_m is not None and self.height_m is not None:
+            return self.width_m * self.height_m
+        return self.area_m2
+
+    @property
+    def second_moment(self) -> float | None:
+        """Second moment of area, about the axis across the plane [m^4]."""
+        if self.width_m is not None and self.height_m is not None:
+            return self.width_m * self.height_m**3 / 12.0
+        return self.second_moment_m4
+
+    @property
+    def flexural(self) -> float | None:
+        """EI [N m^2]."""
+        if self.modulus_pa is not None and self.second_moment is not None:
+            return self.modulus_pa * self.second_moment
+        return self.flexural_n_m2
+
+    @property
+    def axial(self) -> float | None:
+        """EA [N]."""
+        if self.modulus_pa is not None and self.area is not None:
+            return self.modulus_pa * self.area
+        return self.axial_n
+
+    @model_validator(mode="after")
+    def _has_one_section(self) -> ElasticTable:
+        rectangle, other = (self.width_m, self.height_m), (self.area_m2, self.second_moment_m4)
+        if self.width_m is not None and self.height_m is None:
+            raise ValueError("width_m goes with height_m, which is missing")
+        if None not in rectangle and any(each is not None for each in other):
+            raise ValueError(f"found two sections; give one: {SECTION}")
+        if self.modulus_pa is not None and (self.flexural_n_m2 or self.axial_n):
+            raise ValueError(
+                "modulus_pa with a section says flexural_n_m2 and axial_n too; give one of them"
+            )
+        if self.density_kg_m3 is not None and self.area is None:
+            raise ValueError(f"density_kg_m3 goes with a section: {SECTION}")
+        return self
+
+    @model_validator(mode="after")
+    def _gives_way(self) -> ElasticTable:
+        if not (self.bends or self.stretches):
+            raise ValueError("it neither bends nor stretches; leave the table out")
+        missing = [
+            f"{key} (or modulus_pa with {SECTION})"
+            for key, asked, value in (
+                ("flexural_n_m2", self.bends, self.flexural),
+                ("axial_n", self.stretches, self.axial),
+            )
+            if asked and value is None
+        ]
+        if missing:
+            raise ValueError(f"its stiffness is missing: give {' and '.join(missing)}")
+        return self
+
+    def mass_kg(self, length_m: float) -> float | None:
+        """Return the mass of a link by its section and density [kg]; None without them."""
+        if self.density_kg_m3 is None or self.area is None:
+            return None
+        return self.density_kg_m3 * self.area * length_m
+
+    def elastic_link(self, name: str) -> ElasticLink:
+        """Make the elastic link of a table without a fault."""
+        flexural, axial = self.flexural, self.axial
+        return ElasticLink(
             name,
-            _flexural(own),
-            _axial(own),
-            own.damping_s,
-            own.height_m,
+            flexural if self.bends and flexural is not None else math.inf,
+            axial if self.stretches and axial is not None else math.inf,
+            self.damping_s,
+            self.height_m,
         )
-        for name, own in table.elastic.items()
+
+
+def elastic_table(own: ElasticLink) -> Mapping[str, object]:
+    """Write the table of an elastic link."""
+    return {
+        "bends": own.bends,
+        "stretches": own.stretches,
+        **({"flexural_n_m2": own.flexural_n_m2} if own.bends else {}),
+        **({"axial_n": own.axial_n} if own.stretches else {}),
+        "damping_s": own.damping_s,
+        **({"height_m": own.height_m} if own.height_m is not None else {}),
     }
-
-
-def _flexural(own: ElasticTable) -> float:
-    found = own.flexural
-    return found if own.bends and found is not None else math.inf
-
-
-def _axial(own: ElasticTable) -> float:
-    found = own.axial
-    return found if own.stretches and found is not None else math.inf
-
-
-def mass_of(own: ElasticTable | None, length_m: float) -> float | None:
-    """Return the mass of a link by its section and density [kg]; None without them."""
-    if own is None or own.density_kg_m3 is None or own.area is None:
-        return None
-    return own.density_kg_m3 * own.area * length_m
 
 
 def faults_of_beams(scene: Scene) -> Iterator[str]:
@@ -90,7 +173,9 @@ def faults_of_beams(scene: Scene) -> Iterator[str]:
             f"friction.{next(iter(scene.friction))}: friction and elastic links do not go together "
             "here; leave one of them out"
         )
-    if scene.start.shape == "periodic" and not comes_back(scene.driver.law):
+    if scene.start.shape == "periodic" and not isinstance(
+        scene.driver.law, ConstantSpeed | Oscillating
+    ):
         yield (
             'start.shape: found "periodic"; that goes with a driver of constant speed, or one that '
             'oscillates; use "quasi-static" or "straight"'
@@ -116,83 +201,80 @@ def _faults_of_loads(scene: Scene) -> Iterator[str]:
             )
 
 
-def comes_back(law: object) -> bool:
-    """True if the speed of a driver repeats after a period."""
-    return isinstance(law, ConstantSpeed | Oscillating)
-
-
-def faults_of_elastic(
-    elastic: Mapping[str, Any],
-    ground: set[str],
-    points: Mapping[str, set[str]],
-    sliders: Mapping[str, Any],
-    driver: object,
-) -> Iterator[str]:
+def faults_of_elastic(elastic: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
     """Yield one line per raw table of a missing link, or of a link that cannot be elastic."""
     for name in elastic:
         key = f"elastic.{cut(name)}"
-        if name not in points:
-            yield f"{key}: no link of that name; use one of {few(map(cut, points), 12)}"
+        if name not in names.points:
+            links = few(map(cut, names.points), schema.LISTED)
+            yield f"{key}: no link of that name; use one of {links}"
             continue
-        if name == driver:
+        if name == names.driver:
             yield (
                 f"{key}: the driver is a rigid link here: its angle is told, and one that bends "
                 "has none of its own; drive a rigid crank that it is pinned to"
             )
         guided = [
             cut(slider)
-            for slider, own in sliders.items()
-            if isinstance(own, Mapping) and name in (own.get("on"), own.get("link"))
+            for _, slider, own in schema.each_of(names.sliders, "sliders")
+            if name in (own.get("on"), own.get("link"))
         ]
         if guided:
             yield (
                 f"{key}: slider {guided[0]} holds it by a moment, which an elastic link is not "
                 "given here; only links between two pins are"
             )
-        pins = sorted(_pins(name, ground, points, sliders))
+        others = (own for link, own in names.points.items() if link != name)
+        pinned = names.ground.union(names.blocks.values(), *others)
+        pins = sorted(names.points[name] & pinned)
         if len(pins) != 2 and not guided:
-            found = few(map(cut, pins), 12) if pins else "none"
+            found = few(map(cut, pins), schema.LISTED) if pins else "none"
             yield f"{key}: an elastic link lies between two pins; it has {len(pins)}: {found}"
 
 
-def _pins(
-    name: str, ground: set[str], points: Mapping[str, set[str]], sliders: Mapping[str, Any]
-) -> set[str]:
-    """Return the points of a link that other bodies are pinned to."""
-    others = ground.union(*(own for link, own in points.items() if link != name))
-    blocks = {
-        str(slider.get("point", block))
-        for block, slider in sliders.items()
-        if isinstance(slider, Mapping) and "link" not in slider
+class StartTable(schema.Table):
+    """Start of free motion beyond the driver, by link and by slider; and of elastic links."""
+
+    angles_deg: dict[Name, Degrees] = Field(default_factory=dict, max_length=MOST_BODIES)
+    rates_rad_s: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)
+    displacements_m: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)
+    speeds_m_s: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)
+    shape: Literal["quasi-static", "straight", "periodic"] | None = None
+
+    def start(self) -> Start:
+        """Make the start, angles in radians."""
+        return Start(
+            {link: math.radians(angle) for link, angle in self.angles_deg.items()},
+            dict(self.rates_rad_s),
+            dict(self.displacements_m),
+            dict(self.speeds_m_s),
+            self.shape,
+        )
+
+
+def start_table(start: Start) -> Mapping[str, object]:
+    """Write the table of a start."""
+    return {
+        "angles_deg": {n: schema.in_degrees(angle) for n, angle in start.angles_rad.items()},
+        "rates_rad_s": start.rates_rad_s,
+        "displacements_m": start.displacements_m,
+        "speeds_m_s": start.speeds_m_s,
+        **({"shape": start.shape} if start.shape else {}),
     }
-    return points[name] & (others | blocks)
 
 
-OF_LINKS, OF_SLIDERS = ("angles_deg", "rates_rad_s"), ("displacements_m", "speeds_m_s")
-
-
-def start_of(table: StartTable) -> Start:
-    """Make the start, angles in radians."""
-    return Start(
-        {link: math.radians(angle) for link, angle in table.angles_deg.items()},
-        dict(table.rates_rad_s),
-        dict(table.displacements_m),
-        dict(table.speeds_m_s),
-        table.shape,
-    )
-
-
-def faults_of_start(
-    start: Mapping[str, Any], links: Mapping[str, Any], sliders: Mapping[str, Any]
-) -> Iterator[str]:
+def faults_of_start(start: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
     """Yield one line per link or slider of the raw table that the scene lacks."""
-    for keys, known in ((OF_LINKS, links), (OF_SLIDERS, sliders)):
-        for key in keys:
-            table = start.get(key)
-            for name in table if isinstance(table, Mapping) else ():
-                if name not in known:
-                    have = f"use one of {few(map(cut, known), 12)}" if known else "there is none"
-                    yield f"start.{key}: found {cut(name)}; {have}"
+    for key, known in (
+        ("angles_deg", names.points),
+        ("rates_rad_s", names.points),
+        ("displacements_m", names.sliders),
+        ("speeds_m_s", names.sliders),
+    ):
+        for name in schema.raw_tables(start, key):
+            if name not in known:
+                have = schema.use_one_of(known, "there is none")
+                yield f"start.{key}: found {cut(name)}; {have}"
 
 
 def faults_of_free_motion(scene: Scene) -> Iterator[str]:

@@ -156,7 +156,6 @@ def tables(text: str) -> dict[str, object]:
 
 
 def _line(text: str, at: re.Match[str]) -> int:
-    """Return the line in which a match begins."""
     return text.count("\n", 0, at.start()) + 1
 
 

@@ -1,16 +1,19 @@
-"""Pydantic models of the tables `[loads.NAME]` of a scene file, one for each law of a load."""
+"""Tables `[loads.NAME]` of a scene file, a model for each law of a load."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Annotated, Literal
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from models.errors import CrankcheckError
-from models.files.schema import Degrees, Name, Number, Positive, Table, within_a_turn
+from models.errors import CrankcheckError, cut
+from models.files import schema
+from models.files.schema import Degrees, Name, Number, Positive, in_degrees
 from models.scene import Slider, characteristics
+from models.scene.characteristics import Characteristic
 from models.scene.joints import block_name
 from models.scene.loads import Load, Over, Stroke
 from models.scene.tabulated import Interpolation, Tabulated
@@ -29,7 +32,7 @@ Waves = Annotated[tuple[Number, ...], Field(max_length=200)]
 Powers = Annotated[tuple[Number, ...], Field(min_length=1, max_length=20)]
 
 
-class LoadTable(Table):
+class LoadTable(schema.Table):
     """Base of all load tables: the point or body of the load, and its direction."""
 
     link: Name | None = None
@@ -41,16 +44,30 @@ class LoadTable(Table):
     stroke: Stroke = "both"
 
     @property
-    def magnitude(self) -> tuple[object, object]:
-        """``force_n`` and ``torque_n_m``, of which one is given."""
-        return getattr(self, "force_n", None), getattr(self, "torque_n_m", None)
+    def force(self) -> Any:
+        """``force_n``: a number, or as many as the law has; None for a torque."""
+        return getattr(self, "force_n", None)
+
+    @property
+    def magnitude(self) -> Any:
+        """The force or the torque."""
+        return getattr(self, "torque_n_m", None) if self.force is None else self.force
+
+    @property
+    def argument(self) -> Over:
+        """Quantity that the magnitude follows."""
+        return getattr(self, "over", "time")
+
+    @abstractmethod
+    def characteristic(self) -> Characteristic:
+        """Make the course of the magnitude, angles in radians. Raises ValueError."""
 
     @model_validator(mode="after")
     def _acts_on_one_body(self) -> LoadTable:
         if (self.link is None) == (self.block is None):
             raise ValueError("name what it acts on: link, or block (a slider without a link)")
-        force, torque = self.magnitude
-        if (force is None) == (torque is None):
+        torque = getattr(self, "torque_n_m", None)
+        if (self.force is None) == (torque is None):
             raise ValueError("give force_n or torque_n_m, one of the two")
         if torque is not None:
             for key in ("point", "direction_deg", "frame"):
@@ -64,25 +81,40 @@ class LoadTable(Table):
 
     @model_validator(mode="after")
     def _follows_a_slider_where_it_says(self) -> LoadTable:
-        over = getattr(self, "over", None)
-        wanted = self.stroke != "both" or over in ("displacement", "speed")
+        wanted = self.stroke != "both" or self.argument in ("displacement", "speed")
         if wanted and self.slider is None:
             raise ValueError("over displacement or speed, or on one stroke, it needs slider = ...")
         if self.slider is not None and not wanted:
             raise ValueError('slider needs stroke = "forward", or over = "displacement" or "speed"')
-        if over == "omega" and self.link is None:
+        if self.argument == "omega" and self.link is None:
             raise ValueError('over = "omega" is the angular velocity of a link; name it by link')
         return self
 
-    def _in_unit(self, stem: str, over: Over) -> object:
+    def _in_unit(self, stem: str) -> Any:
         """Return the value of ``stem`` in the unit of the argument; other units are a fault."""
+        over = self.argument
         for other, unit in UNIT.items():
             if other != over and getattr(self, f"{stem}_{unit}", None) is not None:
                 raise ValueError(f'over = "{over}" takes {stem}_{UNIT[over]}; found {stem}_{unit}')
-        value: object = getattr(self, f"{stem}_{UNIT[over]}", None)
+        value = getattr(self, f"{stem}_{UNIT[over]}", None)
         if value is None:
             raise ValueError(f'over = "{over}" needs {stem}_{UNIT[over]}')
         return value
+
+
+class PeriodicLoad(LoadTable):
+    """A load with a period in the unit of its argument."""
+
+    @model_validator(mode="after")
+    def _has_its_period(self) -> PeriodicLoad:
+        self._in_unit("period")
+        return self
+
+    @property
+    def period(self) -> float:
+        """Period in s, rad or m."""
+        period = float(self._in_unit("period"))
+        return math.radians(period) if self.argument == "angle" else period
 
 
 class ConstantLoad(LoadTable):
@@ -90,8 +122,11 @@ class ConstantLoad(LoadTable):
     force_n: Number | None = None
     torque_n_m: Number | None = None
 
+    def characteristic(self) -> Characteristic:
+        return characteristics.Constant(float(self.magnitude))
 
-class SineLoad(LoadTable):
+
+class SineLoad(PeriodicLoad):
     """A sine; ``force_n`` or ``torque_n_m`` is the amplitude, the period the length of one wave."""
 
     law: Literal["sine"]
@@ -103,14 +138,9 @@ class SineLoad(LoadTable):
     period_m: Positive | None = None
     phase_deg: Degrees = 0.0
 
-    @model_validator(mode="after")
-    def _has_its_period(self) -> SineLoad:
-        self._in_unit("period", self.over)
-        return self
-
-    @property
-    def period(self) -> float:
-        return float(self._in_unit("period", self.over))  # type: ignore[arg-type]
+    def characteristic(self) -> Characteristic:
+        phase_rad = schema.within_a_turn(self.phase_deg)
+        return characteristics.Sine(float(self.magnitude), self.period, phase_rad)
 
 
 class PulseLoad(LoadTable):
@@ -122,6 +152,9 @@ class PulseLoad(LoadTable):
     period_s: Positive
     start_s: Number = 0.0
 
+    def characteristic(self) -> Characteristic:
+        return characteristics.Pulse(float(self.magnitude), self.period_s, self.start_s)
+
 
 class StepsLoad(LoadTable):
     """Levels over time, each from its instant on; 0 before the first."""
@@ -131,8 +164,11 @@ class StepsLoad(LoadTable):
     torque_n_m: Rows | None = None
     at_s: Rows
 
+    def characteristic(self) -> Characteristic:
+        return characteristics.Staircase(self.at_s, tuple(self.magnitude))
 
-class FourierLoad(LoadTable):
+
+class FourierLoad(PeriodicLoad):
     """A mean, and cosines and sines of one wave in a period, of two, of three and so on."""
 
     law: Literal["fourier"]
@@ -145,14 +181,11 @@ class FourierLoad(LoadTable):
     period_deg: Positive | None = None
     period_m: Positive | None = None
 
-    @model_validator(mode="after")
-    def _has_its_period(self) -> FourierLoad:
-        self._in_unit("period", self.over)
-        return self
-
-    @property
-    def period(self) -> float:
-        return float(self._in_unit("period", self.over))  # type: ignore[arg-type]
+    def characteristic(self) -> Characteristic:
+        both = (self.cosines, self.sines)
+        count = max(map(len, both))
+        cosines, sines = ((*waves, *[0.0] * (count - len(waves))) for waves in both)
+        return characteristics.FourierSum(float(self.magnitude), cosines, sines, self.period)
 
 
 class PolynomialLoad(LoadTable):
@@ -162,6 +195,9 @@ class PolynomialLoad(LoadTable):
     over: Over
     force_n: Powers | None = None
     torque_n_m: Powers | None = None
+
+    def characteristic(self) -> Characteristic:
+        return characteristics.Polynomial(tuple(self.magnitude))
 
 
 class TableLoad(LoadTable):
@@ -181,20 +217,21 @@ class TableLoad(LoadTable):
 
     @model_validator(mode="after")
     def _has_its_places(self) -> TableLoad:
-        self._in_unit("at", self.over)
+        self._in_unit("at")
         if self.period_deg is not None and self.over != "angle":
             raise ValueError('period_deg needs over = "angle"; other tables do not repeat')
         return self
 
-    @property
-    def places(self) -> tuple[float, ...]:
-        return tuple(self._in_unit("at", self.over))  # type: ignore[arg-type]
+    def characteristic(self) -> Characteristic:
+        places, values = tuple(self._in_unit("at")), tuple(self.magnitude)
+        if self.over != "angle":
+            return Tabulated(places, values, self.interpolation)
+        places = tuple(math.radians(place) for place in places)
+        period = math.radians(self.period_deg or 360.0)
+        return Tabulated(places, values, self.interpolation, period)
 
 
-LawOfLoad = (
-    ConstantLoad | SineLoad | PulseLoad | StepsLoad | FourierLoad | PolynomialLoad | TableLoad
-)
-LOADS: dict[str, type[LawOfLoad]] = {
+LOADS: dict[str, type[LoadTable]] = {
     "constant": ConstantLoad,
     "sine": SineLoad,
     "pulse": PulseLoad,
@@ -206,7 +243,7 @@ LOADS: dict[str, type[LawOfLoad]] = {
 
 
 def load_of(
-    name: str, table: LawOfLoad, sliders: Mapping[str, Slider], faults: list[str]
+    name: str, table: LoadTable, sliders: Mapping[str, Slider], faults: list[str]
 ) -> Load | None:
     """Make the load of a table; None, with the reason in ``faults``, without a magnitude."""
     body, point = table.link, table.point
@@ -215,51 +252,21 @@ def load_of(
         body, point = block_name(block), block.point
     assert body is not None
     try:
-        characteristic = _characteristic(table)
+        characteristic = table.characteristic()
     except ValueError as error:
         faults.append(f"loads.{name}: {error}")
         return None
     return Load(
         name=name,
         body=body,
-        point=None if table.magnitude[0] is None else point,
+        point=None if table.force is None else point,
         characteristic=characteristic,
-        over=getattr(table, "over", "time"),
+        over=table.argument,
         slider=table.slider,
         stroke=table.stroke,
-        direction_rad=within_a_turn(table.direction_deg or 0.0),
+        direction_rad=schema.within_a_turn(table.direction_deg or 0.0),
         frame=table.frame or "ground",
     )
-
-
-def _characteristic(table: LawOfLoad) -> characteristics.Characteristic:
-    """Make the characteristic of the magnitude, angles in radians. Raises ValueError."""
-    magnitude = table.force_n if table.force_n is not None else table.torque_n_m
-    if isinstance(table, PolynomialLoad):
-        return characteristics.Polynomial(tuple(magnitude))  # type: ignore[arg-type]
-    turning = getattr(table, "over", "time") == "angle"
-    if isinstance(table, SineLoad):
-        period = math.radians(table.period) if turning else table.period
-        return characteristics.Sine(float(magnitude), period, within_a_turn(table.phase_deg))  # type: ignore[arg-type]
-    if isinstance(table, PulseLoad):
-        return characteristics.Pulse(float(magnitude), table.period_s, table.start_s)  # type: ignore[arg-type]
-    if isinstance(table, StepsLoad):
-        return characteristics.Staircase(table.at_s, tuple(magnitude))  # type: ignore[arg-type]
-    if isinstance(table, FourierLoad):
-        period = math.radians(table.period) if turning else table.period
-        count = max(len(table.cosines), len(table.sines))
-        cosines, sines = (
-            (*waves, *[0.0] * (count - len(waves))) for waves in (table.cosines, table.sines)
-        )
-        return characteristics.FourierSum(float(magnitude), cosines, sines, period)  # type: ignore[arg-type]
-    if isinstance(table, TableLoad):
-        places, values = table.places, tuple(magnitude)  # type: ignore[arg-type]
-        if not turning:
-            return Tabulated(places, values, table.interpolation)
-        period = math.radians(table.period_deg or 360.0)
-        places = tuple(math.radians(place) for place in places)
-        return Tabulated(places, values, table.interpolation, period)
-    return characteristics.Constant(float(magnitude))  # type: ignore[arg-type]
 
 
 def load_table(load: Load) -> Mapping[str, object]:
@@ -278,13 +285,6 @@ def load_table(load: Load) -> Mapping[str, object]:
         table |= {"slider": load.slider, "stroke": load.stroke}
     key = "torque_n_m" if load.point is None else "force_n"
     return table | _law_table(load, key)
-
-
-def in_degrees(angle_rad: float) -> float:
-    """Convert an angle to degrees, rounded to twelve decimals where these read as the same angle:
-    10, and not 10.000000000000002."""
-    plain = round(math.degrees(angle_rad), 12)
-    return plain if math.radians(plain) == angle_rad else math.degrees(angle_rad)
 
 
 def _law_table(load: Load, key: str) -> dict[str, object]:
@@ -317,3 +317,19 @@ def _law_table(load: Load, key: str) -> dict[str, object]:
             return {**law, **rows, **own}
     kind = type(load.characteristic).__name__
     raise CrankcheckError(f"load {load.name}: a scene file has no words for a {kind}")
+
+
+def faults_of_loads(loads: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
+    """Yield faults of loads on, at or over missing things."""
+    everything = (("link", names.points), ("block", names.blocks), ("slider", names.sliders))
+    for key, _, load in schema.each_of(loads, "loads"):
+        for what, known in everything:
+            one = load.get(what)
+            if isinstance(one, str) and one not in known:
+                have = f"use one of {schema.first_of(known)}" if known else "the scene has none"
+                yield f"{key}.{what}: found {cut(one)}; {have}"
+        link, point = load.get("link"), load.get("point")
+        own = names.points.get(link) if isinstance(link, str) else None
+        if own is not None and isinstance(point, str) and point not in own:
+            has = schema.first_of(sorted(own))
+            yield f"{key}.point: {cut(str(link))} has no point {cut(point)}; it has {has}"

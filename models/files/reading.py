@@ -3,17 +3,15 @@
 from collections.abc import Iterable, Mapping
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
-from models.files.assemble import scene_from_table
+from models.files.assemble import SceneTable, faults_of_names, scene_from_table
 from models.files.driver_table import DRIVERS, SLIDES, DriverTable
 from models.files.inputs import UnreadableError, names_in, regular_text, tables
-from models.files.load_table import LOADS, LawOfLoad
-from models.files.names import faults_of_names
-from models.files.schema import ElasticTable, SceneTable
+from models.files.load_table import LOADS, LoadTable
 from models.scene import Scene
 from models.scene.driver import Controlled, Released
 
@@ -42,10 +40,7 @@ def every_shipped() -> dict[str, Path]:
 
 def names_of_scenes(names: str | Iterable[str]) -> list[str]:
     """Return names and paths of scenes, each once; the name of a kind stands for all its scenes
-    except `run_where_named`.
-
-    Raises CrankcheckError for other values than a name or several.
-    """
+    except `run_where_named`. Raises CrankcheckError for other values than a name or several."""
     known = kinds()
     written_out = (
         [one for one in shipped(name) if one not in run_where_named(name)]
@@ -66,16 +61,16 @@ def run_where_named(kind: str) -> list[str]:
     """List the shipped scenes of a kind that run only by their own name: scenes for the reference
     alone, and elastic links in free motion or with a controlled driver, whose reference takes
     longer than all others."""
-    scenes = _scenes_of(kind)
-    return [name for name in scenes if scenes[name].coulomb_joints or _is_loose(scenes[name])]
+    slow = Released | Controlled
+    return [
+        name
+        for name, scene in _scenes_of(kind).items()
+        if scene.coulomb_joints or (scene.elastic and isinstance(scene.driver.law, slow))
+    ]
 
 
 def _scenes_of(kind: str) -> dict[str, Scene]:
     return {name: read_scene(path) for name, path in shipped(kind).items()}
-
-
-def _is_loose(scene: Scene) -> bool:
-    return bool(scene.elastic) and isinstance(scene.driver.law, Released | Controlled)
 
 
 def load_scene(name_or_path: str | PathLike[str]) -> Scene:
@@ -144,9 +139,7 @@ def read_scene(path: Path) -> Scene:
 
 def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
     """Return the text of each scene's file, by the scene's own name; all of kinematics for none.
-
-    Raises CrankcheckError as `load_scene`.
-    """
+    Raises CrankcheckError as `load_scene`."""
     texts: dict[str, str] = {}
     for given in names_of_scenes(names) or shipped():
         path = find_scene(given)
@@ -180,7 +173,6 @@ def read_text(path: Path) -> str:
 
 
 def _driver(raw: object, faults: list[str]) -> DriverTable | None:
-    """Validate the driver table by the model of its law."""
     if isinstance(raw, list):
         faults.append(
             f"driver: found a list of {len(raw)}; a scene has one driver, one [driver] table"
@@ -200,9 +192,8 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
     return _validated(model, raw, "driver.", faults)
 
 
-def _loads(raw: object, faults: list[str]) -> dict[str, LawOfLoad]:
-    """Validate the tables of the loads by the models of their laws."""
-    loads: dict[str, LawOfLoad] = {}
+def _loads(raw: object, faults: list[str]) -> dict[str, LoadTable]:
+    loads: dict[str, LoadTable] = {}
     for name, table in (raw if isinstance(raw, Mapping) else {}).items():
         if not isinstance(table, Mapping):
             continue  # already a fault of SceneTable
@@ -242,7 +233,6 @@ def _line(
     message: str,
     found: object,
 ) -> str:
-    """Describe one fault in one line: key, value found, remedy."""
     parts = [str(part) for part in loc if part != "[key]"]
     key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
     if kind == "missing":
@@ -265,16 +255,7 @@ def _line(
 
 def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
     """List the valid keys of the table that holds the unknown key ``loc``."""
-    from models.files import schema
-
-    tables: dict[str, type[BaseModel]] = {
-        "ground": schema.GroundTable,
-        "links": schema.LinkTable,
-        "sliders": schema.SliderTable,
-        "friction": schema.FrictionTable,
-        "springs": schema.SpringTable,
-        "start": schema.StartTable,
-        "elastic": ElasticTable,
-    }
-    owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
-    return list(owner.model_fields)
+    if len(loc) > 1:  # in a table of the scene, or in one of its tables by name
+        kind = model.model_fields[str(loc[0])].annotation
+        model = (kind, *get_args(kind))[-1]
+    return list(model.model_fields)

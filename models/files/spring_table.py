@@ -1,92 +1,120 @@
-"""Springs from the tables `[springs.NAME]` of a scene file; faults of springs and of friction.
+"""Tables `[springs.NAME]` and `[friction.JOINT]` of a scene file."""
 
-Read from the raw tables, as `models.files.names` does.
-"""
+from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
-from typing import Any
+
+from pydantic import model_validator
 
 from models.errors import cut, few
-from models.files.schema import SceneTable, SpringTable
-from models.scene import GROUND
-from models.scene.loads import LineSpring, PinSpring, SlideSpring, Spring
-
-LISTED = 12
-"""Names that a message lists."""
+from models.files import schema
+from models.files.schema import LISTED, Name, NonNegative
+from models.scene import GROUND, Link, Point, loads
 
 
-def springs_of(table: SceneTable) -> dict[str, Spring]:
-    """Make the springs of a scene without faults (`faults_of_springs`)."""
-    return {name: _spring(name, spring, table) for name, spring in table.springs.items()}
+class SpringTable(schema.Table):
+    """A spring with a damper: between two ``points``, in a ``pin`` (between two ``bodies``), or
+    along a ``slider``."""
+
+    points: tuple[Name, Name] | None = None
+    pin: Name | None = None
+    bodies: tuple[Name, Name] | None = None
+    slider: Name | None = None
+    rate_n_m: NonNegative | None = None
+    damping_n_s_m: NonNegative | None = None
+    free_m: schema.Number | None = None
+    rate_n_m_rad: NonNegative | None = None
+    damping_n_m_s: NonNegative | None = None
+    free_deg: schema.Degrees | None = None
+
+    @model_validator(mode="after")
+    def _is_of_one_kind(self) -> SpringTable:
+        if sum(each is not None for each in (self.points, self.pin, self.slider)) != 1:
+            raise ValueError("name where it is: points = [...], pin = ..., or slider = ..., one")
+        along = {"rate_n_m": self.rate_n_m, "damping_n_s_m": self.damping_n_s_m}
+        turning = {"rate_n_m_rad": self.rate_n_m_rad, "damping_n_m_s": self.damping_n_m_s}
+        own, others = (turning, along) if self.pin is not None else (along, turning)
+        lengths = {"free_m": self.free_m, "free_deg": self.free_deg}
+        other_free = "free_m" if self.pin is not None else "free_deg"
+        wrong = [key for key, value in others.items() if value is not None]
+        wrong += [other_free] * (lengths[other_free] is not None)
+        if wrong:
+            where = "a pin" if self.pin is not None else "points, or a slider"
+            raise ValueError(f"{wrong[0]} does not go with {where}; give {' and '.join(own)}")
+        if not any(own.values()):
+            raise ValueError(f"a spring needs a rate or a damping above 0: {' or '.join(own)}")
+        if self.bodies is not None and self.pin is None:
+            raise ValueError("bodies belong to a spring in a pin; leave them out")
+        if self.points is not None and self.points[0] == self.points[1]:
+            raise ValueError(f"found {self.points[0]} twice; name two points")
+        if self.points is not None and self.free_m is not None and self.free_m < 0.0:
+            raise ValueError(f"free_m is {self.free_m:g}; a distance is 0 or more")
+        return self
+
+    def spring(
+        self, name: str, ground: Mapping[str, Point], links: Mapping[str, Link]
+    ) -> loads.Spring:
+        """Make the spring of a scene without faults (`faults_of_springs`)."""
+        if self.pin is not None:
+            points = {link: each.points for link, each in links.items()}
+            first, second = self.bodies or schema.bodies_at(self.pin, ground, points)
+            rate, damping = self.rate_n_m_rad or 0.0, self.damping_n_m_s or 0.0
+            free = math.radians(self.free_deg or 0.0)
+            return loads.PinSpring(name, rate, damping, free, self.pin, (first, second))
+        own = (name, self.rate_n_m or 0.0, self.damping_n_s_m or 0.0, self.free_m or 0.0)
+        if self.points is not None:
+            return loads.LineSpring(*own, self.points)
+        assert self.slider is not None
+        return loads.SlideSpring(*own, self.slider)
 
 
-def _spring(name: str, spring: SpringTable, table: SceneTable) -> Spring:
-    if spring.pin is not None:
-        bodies = spring.bodies or _at_pin(
-            spring.pin,
-            set(table.ground.points),
-            {link: set(one.bar or ()) | set(one.points) for link, one in table.links.items()},
-        )
-        rate, damping = spring.rate_n_m_rad or 0.0, spring.damping_n_m_s or 0.0
-        free = math.radians(spring.free_deg or 0.0)
-        return PinSpring(name, rate, damping, free, spring.pin, (bodies[0], bodies[1]))
-    rate, damping = spring.rate_n_m or 0.0, spring.damping_n_s_m or 0.0
-    own = (name, rate, damping, spring.free_m or 0.0)
-    if spring.points is not None:
-        return LineSpring(*own, spring.points)
-    assert spring.slider is not None
-    return SlideSpring(*own, spring.slider)
+def spring_table(spring: loads.Spring) -> Mapping[str, object]:
+    """Write the table of a spring."""
+    if isinstance(spring, loads.PinSpring):
+        return {
+            "pin": spring.point,
+            "bodies": spring.bodies,
+            "rate_n_m_rad": spring.rate,
+            "damping_n_m_s": spring.damping,
+            "free_deg": schema.in_degrees(spring.free),
+        }
+    own = {"rate_n_m": spring.rate, "damping_n_s_m": spring.damping, "free_m": spring.free}
+    if isinstance(spring, loads.LineSpring):
+        return {"points": spring.points, **own}
+    return {"slider": spring.slider, **own}
 
 
-def _at_pin(point: str, ground: set[str], points: Mapping[str, set[str]]) -> tuple[str, ...]:
-    """List the bodies of a point, the ground first, then links in the order of the file."""
-    links = [name for name, own in points.items() if point in own]
-    return (*([GROUND] if point in ground else []), *links)
-
-
-def faults_of_springs(
-    springs: Mapping[str, Any],
-    ground: set[str],
-    points: Mapping[str, set[str]],
-    sliders: Mapping[str, Any],
-) -> Iterator[str]:
+def faults_of_springs(springs: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
     """Yield one line per spring of the raw tables whose ends are missing or ambiguous."""
-    everywhere = sorted(ground.union(*points.values(), _blocks(sliders)))
-    for name, table in springs.items():
-        if not isinstance(table, Mapping):
-            continue
-        key, ends = f"springs.{cut(name)}", table.get("points")
+    sliders = schema.each_of(names.sliders, "sliders")
+    on_lines = (slider.get("point", name) for _, name, slider in sliders)
+    everywhere = sorted(names.of_bodies.union(p for p in on_lines if isinstance(p, str)))
+    for key, _, table in schema.each_of(springs, "springs"):
+        ends = table.get("points")
         both = [end for end in ends if isinstance(end, str)] if isinstance(ends, list) else []
         for point in both:
             if point not in everywhere:
-                yield f"{key}.points: no body has a point {cut(point)}; use {few(everywhere, 12)}"
-        for body, own in {GROUND: ground, **points}.items():
+                yield (
+                    f"{key}.points: no body has a point {cut(point)}; use {few(everywhere, LISTED)}"
+                )
+        for body, own in {GROUND: names.ground, **names.points}.items():
             if len(set(both)) == 2 and own.issuperset(both):
                 yield (
                     f"{key}.points: {' and '.join(both)} are points of {cut(body)}, which lie as "
                     "far apart as ever; name points of two bodies"
                 )
         slider = table.get("slider")
-        if isinstance(slider, str) and slider not in sliders:
-            have = f"use one of {few(map(cut, sliders), LISTED)}" if sliders else "there is none"
+        if isinstance(slider, str) and slider not in names.sliders:
+            have = schema.use_one_of(names.sliders, "there is none")
             yield f"{key}.slider: found {cut(slider)}; {have}"
         pin = table.get("pin")
         if isinstance(pin, str):
-            yield from _of_pin(key, pin, table.get("bodies"), _at_pin(pin, ground, points))
+            yield from _faults_of_pin(key, pin, table.get("bodies"), names.at(pin))
 
 
-def _blocks(sliders: Mapping[str, Any]) -> set[str]:
-    """Return the points of slider blocks."""
-    return {
-        point
-        for name, slider in sliders.items()
-        if isinstance(slider, Mapping) and isinstance(point := slider.get("point", name), str)
-    }
-
-
-def _of_pin(key: str, pin: str, bodies: object, met: tuple[str, ...]) -> Iterator[str]:
-    """Yield faults of a pin that is none, or leaves open the two bodies of the spring."""
+def _faults_of_pin(key: str, pin: str, bodies: object, met: list[str]) -> Iterator[str]:
     if len(met) < 2:
         yield f"{key}.pin: fewer than two links, or links and the ground, meet at {cut(pin)}"
     elif bodies is None and len(met) > 2:
@@ -98,67 +126,70 @@ def _of_pin(key: str, pin: str, bodies: object, met: tuple[str, ...]) -> Iterato
             yield f"{key}.bodies: {cut(body)} is not at {cut(pin)}; use two of {few(met, LISTED)}"
 
 
-def faults_of_friction(
-    friction: Mapping[str, Any],
-    ground: set[str],
-    points: Mapping[str, set[str]],
-    sliders: Mapping[str, Any],
-) -> Iterator[str]:
-    """Yield one line per friction that has no joint, or a joint of another kind.
+class FrictionTable(schema.Table):
+    """Friction in the joint that the table is named after; `faults_of_friction`, which knows the
+    joints, checks that its keys fit a pin or a slider."""
 
-    Parameters
-    ----------
-    friction, sliders : Mapping
-        The raw tables.
-    ground : set of str
-        The points of the ground.
-    points : Mapping
-        The points of each link.
-    """
-    counts: dict[str, int] = dict.fromkeys(ground, 1)
-    ends = [point for each in points.values() for point in each]
-    for point in [*ends, *_points_of_blocks(sliders)]:
-        counts[point] = counts.get(point, 0) + 1
+    mu: NonNegative | None = None
+    radius_m: schema.Positive | None = None
+    torque_n_m: NonNegative | None = None
+    force_n: NonNegative | None = None
+
+    @model_validator(mode="after")
+    def _rubs_in_one_way(self) -> FrictionTable:
+        kinds = [key for key in ("mu", "torque_n_m", "force_n") if getattr(self, key) is not None]
+        if self.radius_m is not None and self.mu is None:
+            raise ValueError("radius_m is that of a pin with mu, which is missing; add mu")
+        if len(kinds) != 1:
+            raise ValueError(
+                f"found {' and '.join(kinds) or 'none of them'}; give one of mu (with radius_m in "
+                "a pin), torque_n_m (a pin) and force_n (a slider)"
+            )
+        return self
+
+    def friction(self, joint: str) -> loads.Friction:
+        """Make the friction of a joint."""
+        if self.mu is not None:
+            return loads.CoulombFriction(joint, self.mu, self.radius_m or 0.0)
+        size = self.torque_n_m if self.force_n is None else self.force_n
+        assert size is not None
+        return loads.ConstantFriction(joint, size)
+
+
+def friction_table(friction: loads.Friction, *, slides: bool) -> Mapping[str, object]:
+    """Write the table of friction, in a slider or a pin."""
+    if isinstance(friction, loads.ConstantFriction):
+        return {"force_n" if slides else "torque_n_m": friction.size}
+    table = {"mu": friction.mu}
+    return table if slides else {**table, "radius_m": friction.radius_m}
+
+
+def faults_of_friction(friction: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
+    """Yield one line per friction that has no joint, or a joint of another kind."""
+    counts = Counter(names.ground)
+    for points in names.points.values():
+        counts.update(points)
+    counts.update(names.blocks.values())
     pins = [point for point, count in counts.items() if count == 2]
-    for joint, table in friction.items():
-        if not isinstance(table, Mapping):
-            continue
-        key = f"friction.{cut(joint)}"
-        if joint in sliders:
-            yield from _of_slider(key, joint, table)
-        elif counts.get(joint, 0) > 2:
+    for key, joint, table in schema.each_of(friction, "friction"):
+        if joint in names.sliders:
+            for what in ("radius_m", "torque_n_m"):
+                if what in table:
+                    yield (
+                        f"{key}.{what}: belongs to a pin, and {cut(joint)} is a slider; leave it "
+                        "out, or, where the pin of its block is meant, give the slider a name "
+                        "other than its point's"
+                    )
+        elif counts[joint] > 2:
             yield (
                 f"{key}: {counts[joint]} bodies meet at {cut(joint)}, and which of them rub on "
                 "which is open; give each two of them a pin of their own"
             )
         elif joint in pins:
-            yield from _of_rubbing_pin(key, table)
+            if "force_n" in table:
+                yield f"{key}.force_n: belongs to a slider, and this is a pin; use torque_n_m"
+            if "mu" in table and "radius_m" not in table:
+                yield f"{key}.radius_m: missing; mu of a pin acts at its radius: add it"
         else:
-            have = [*sorted(pins), *(name for name in sliders if name not in pins)]
-            known = few([cut(name) for name in have], LISTED)
-            yield f"{key}: no joint of two bodies has that name; " + (
-                f"use one of {known}" if have else "the scene has none"
-            )
-
-
-def _points_of_blocks(sliders: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the points of slider blocks, which are pinned there."""
-    for name, slider in sliders.items():
-        if isinstance(slider, Mapping) and "link" not in slider:
-            yield str(slider.get("point", name))
-
-
-def _of_slider(key: str, joint: str, table: Mapping[str, Any]) -> Iterator[str]:
-    for what in ("radius_m", "torque_n_m"):
-        if what in table:
-            yield (
-                f"{key}.{what}: belongs to a pin, and {cut(joint)} is a slider; leave it out, or, "
-                "where the pin of its block is meant, give the slider a name other than its point's"
-            )
-
-
-def _of_rubbing_pin(key: str, table: Mapping[str, Any]) -> Iterator[str]:
-    if "force_n" in table:
-        yield f"{key}.force_n: belongs to a slider, and this is a pin; use torque_n_m"
-    if "mu" in table and "radius_m" not in table:
-        yield f"{key}.radius_m: missing; mu of a pin acts at its radius: add it"
+            have = [*sorted(pins), *(name for name in names.sliders if name not in pins)]
+            yield f"{key}: no joint of two bodies has that name; {schema.use_one_of(have)}"

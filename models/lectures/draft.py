@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import cast
 
-from models.files.assemble import Table, toml_value
+from models.files.assemble import Table, toml_text
 from models.files.reading import parse_scene
 from models.scene import Scene
 
@@ -40,19 +40,14 @@ class Draft:
     def text(self) -> str:
         """Text of the file."""
         points = {name: (place.real, place.imag) for name, place in self.ground.items()}
-        heads: dict[str, Table] = {"ground": {"points": points}, "links": self.links}
-        if self.sliders:
-            heads["sliders"] = self.sliders
-        heads["driver"] = self.driver
-        if self.branch:
-            heads["branch"] = self.branch
-        if self.loads:
-            heads["loads"] = self.loads
-        lines = [f"name = {toml_value(self.name)}", f"source = {toml_value(self.source)}"]
-        lines += [f"note = {toml_value(self.note)}"] * bool(self.note)
-        for head, table in heads.items():
-            lines += ["", f"[{head}]", *(f"{key} = {toml_value(v)}" for key, v in table.items())]
-        return "\n".join(lines) + "\n"
+        head = {"name": self.name, "source": self.source}
+        if self.note:
+            head["note"] = self.note
+        tables: dict[str, Table] = {"ground": {"points": points}}
+        for name in ("links", "sliders", "driver", "branch", "loads"):
+            if table := getattr(self, name):
+                tables[name] = table
+        return toml_text(head, tables)
 
     @property
     def scene(self) -> Scene:

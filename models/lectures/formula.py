@@ -73,13 +73,8 @@ class Formula:
 
 
 def parse_formula(text: str) -> Formula:
-    """Parse a formula by the rules above.
-
-    Raises
-    ------
-    CrankcheckError
-        Text that is no formula: the message gives the character, its place and the expected tokens.
-    """
+    """Parse a formula by the rules above. Raises CrankcheckError for text that is none: the message
+    gives the character, its place and the expected tokens."""
     if len(text) > LONGEST_TEXT:
         raise CrankcheckError(
             f"a formula of {len(text)} characters was given; at most {LONGEST_TEXT} are read: "
@@ -117,7 +112,6 @@ class _Reader:
         return self.tokens[self.next]
 
     def _take(self, *texts: str) -> str | None:
-        """Take the next sign, if it is one of these."""
         token = self._look()
         if token.kind != "sign" or token.text not in texts:
             return None
@@ -167,7 +161,7 @@ class _Reader:
     def _named(self, token: _Token) -> Evaluation:
         self.next += 1
         if token.text == VARIABLE:
-            return _variable
+            return lambda x: x
         if token.text in CONSTANTS:
             return _constant(CONSTANTS[token.text])
         if token.text not in FUNCTIONS:
@@ -195,10 +189,6 @@ class _Reader:
             f"formula {cut(self.text)!r}: at character {token.place} stands {there}, where "
             f"{wanted} was expected"
         )
-
-
-def _variable(x: Array) -> Array:
-    return x
 
 
 def _constant(value: float) -> Evaluation:

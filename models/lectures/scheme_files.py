@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from models.errors import SceneError, suggestion
+from models.files.assemble import toml_text
 from models.files.schema import LARGEST, MOST_BODIES, Degrees, Name, Number, Table, Text
 from models.lectures.scheme import FREEDOMS, PLANAR, Place, Scheme, SchemeJoint
 from models.lectures.shipped_tables import find_table, read_table, shipped_in
@@ -140,7 +140,6 @@ class SchemeTable(Table):
 
 
 def _vectors(joint: JointTable) -> list[tuple[str, list[float]]]:
-    """Return the points and directions of a joint with their keys."""
     one = ((key, getattr(joint, key)) for key in ("at_m", "axis", "normal"))
     pairs = ((key, each) for key in ("axes", "centres_m") for each in getattr(joint, key) or ())
     return [(key, vector) for key, vector in (*one, *pairs) if vector is not None]
@@ -148,41 +147,37 @@ def _vectors(joint: JointTable) -> list[tuple[str, list[float]]]:
 
 def scheme_text(scheme: Scheme) -> str:
     """Write the TOML of a scheme, a joint a line."""
-    head = [("name", scheme.name), ("space", scheme.space), ("source", scheme.source)]
-    head += [("note", scheme.note)] if scheme.note else []
-    lines = [f"{key} = {_quoted(value)}" for key, value in head]
+    head: dict[str, object] = {"name": scheme.name, "space": scheme.space, "source": scheme.source}
+    if scheme.note:
+        head["note"] = scheme.note
     if scheme.mobility is not None:
-        lines.append(f"mobility = {scheme.mobility}")
-    lines += [f"links = [{', '.join(map(_quoted, scheme.links))}]", "", "[joints]"]
+        head["mobility"] = scheme.mobility
     size = 2 if scheme.space == PLANAR else 3
-    for joint in scheme.joints:
-        first, second = map(_quoted, joint.between)
-        keys = [f"between = [{first}, {second}]", f"kind = {_quoted(joint.kind)}"]
-        keys += [f"{key} = {value}" for key, value in _given(joint, size)]
-        lines.append(f"{joint.name} = {{ {', '.join(keys)} }}")
-    return "\n".join(lines) + "\n"
+    joints = {
+        joint.name: {"between": joint.between, "kind": joint.kind, **_given(joint, size)}
+        for joint in scheme.joints
+    }
+    return toml_text(head | {"links": scheme.links}, {"joints": joints})
 
 
-def _given(joint: SchemeJoint, size: int) -> Iterator[tuple[str, str]]:
-    """Yield the keys of a joint's kind with their values."""
-    axes = iter(joint.axes)
-    for key in NEEDS[joint.kind]:
-        if key == "at_m":
-            yield key, _numbers(joint.at[:size])
-        elif key in ("axis", "normal"):
-            yield key, _numbers(next(axes)[:size])
-        elif key == "axes":
-            yield key, f"[{', '.join(_numbers(axis[:size]) for axis in axes)}]"
-        elif key == "radii_m":
-            yield key, _numbers(joint.radii)
-        elif key == "lead_m":
-            yield key, repr(joint.lead)
-        elif key == "centres_m":
-            yield key, f"[{_numbers(joint.at[:size])}, {_numbers(_second_centre(joint)[:size])}]"
-    if "at_m" not in NEEDS[joint.kind] and joint.kind != "gear" and any(joint.at):
-        yield "at_m", _numbers(joint.at[:size])
+def _given(joint: SchemeJoint, size: int) -> dict[str, object]:
+    """Return the keys of a joint's kind with their values, vectors of a size."""
+    axes = [axis[:size] for axis in joint.axes]
+    at = joint.at[:size]
+    values: dict[str, object] = {
+        "at_m": at,
+        "axis": axes[0] if axes else (),
+        "normal": axes[-1] if axes else (),
+        "axes": axes,
+        "radii_m": joint.radii,
+        "lead_m": joint.lead,
+    }
     if joint.kind == "gear":
-        yield "pressure_deg", repr(math.degrees(joint.pressure))
+        values["centres_m"] = (at, _second_centre(joint)[:size])
+    given = {key: values[key] for key in NEEDS[joint.kind]}
+    if joint.kind == "gear":
+        return {**given, "pressure_deg": math.degrees(joint.pressure)}
+    return given | ({"at_m": at} if "at_m" not in given and any(joint.at) else {})
 
 
 def _second_centre(joint: SchemeJoint) -> Place:
@@ -190,16 +185,6 @@ def _second_centre(joint: SchemeJoint) -> Place:
     distance = abs(sum(joint.radii))
     x, y, z = (at + distance * along for at, along in zip(joint.at, joint.axes[0], strict=True))
     return (x, y, z)
-
-
-def _numbers(values: tuple[float, ...]) -> str:
-    return f"[{', '.join(map(repr, values))}]"
-
-
-def _quoted(text: str) -> str:
-    """Quote a text for TOML; names and sources hold no control characters."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-    return '"' + escaped.replace("\t", "\\t") + '"'
 
 
 SCHEMES = Path(__file__).parents[1] / "schemes"
@@ -220,15 +205,8 @@ def find_scheme(name_or_path: str) -> Path:
 
 
 def load_scheme(name_or_path: str) -> Scheme:
-    """Load a shipped scheme by name, or a scheme of a file.
-
-    Raises
-    ------
-    CrankcheckError
-        No such scheme.
-    SceneError
-        A file with faults, all in one message.
-    """
+    """Load a shipped scheme by name, or a scheme of a file. Raises CrankcheckError where there is
+    none, and SceneError for a file with faults, all in one message."""
     path = find_scheme(name_or_path)
     table = read_table(path, SchemeTable)
     faults: list[str] = []
@@ -255,7 +233,6 @@ def load_scheme(name_or_path: str) -> Scheme:
 
 
 def _faults(joint: JointTable, links: list[str]) -> list[str]:
-    """List the faults of a joint beyond its own table."""
     faults = [
         f"between: no link {each}; {suggestion(each, (GROUND, *links), 'there are')}"
         for each in joint.between
@@ -301,7 +278,6 @@ def _joint(name: str, table: JointTable) -> SchemeJoint:
 
 
 def _place(given: list[float] | tuple[float, ...]) -> Place:
-    """Extend two or three coordinates to three."""
     x, y, z = (*given, 0.0)[:3]
     return (x, y, z)
 
@@ -317,6 +293,5 @@ def _unit(vector: Place) -> Place:
 
 
 def _sine(a: Place, b: Place) -> float:
-    """Return the sine of the angle between two directions."""
     cross = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
     return _size(cross) / (_size(a) * _size(b))

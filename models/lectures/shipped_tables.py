@@ -22,10 +22,8 @@ def shipped_in(folder: Path) -> dict[str, Path]:
 
 
 def find_table(name_or_path: str, folder: Path, what: str, lists: str) -> Path:
-    """Find the file of a shipped name, or of a path. Raises CrankcheckError for neither.
-
-    ``what`` names the kind of table, ``lists`` the command that lists the names.
-    """
+    """Find the file of a shipped name, or of a path. Raises CrankcheckError for neither. ``what``
+    names the kind of table, ``lists`` the command that lists the names."""
     known = shipped_in(folder)
     if name_or_path in known:
         return known[name_or_path]
@@ -60,7 +58,6 @@ def table_of(raw: dict[str, object], model: type[M], place: str) -> M:
 
 
 def _line(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
-    """Describe one fault in one line: key, value found, remedy."""
     key = ".".join(cut(str(part)) for part in loc if part != "[key]")
     if kind == "missing":
         return f"{key}: missing; add it"

@@ -16,26 +16,8 @@ tendons (`models.mjcf.forces`).
 from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError
-from models.mjcf.forces import (
-    friction_of,
-    load_actuators,
-    load_sites,
-    load_sizes,
-    planned,
-    spring_points,
-    spring_tendons,
-    tendon_lines,
-)
-from models.mjcf.options import (
-    AttributeRow,
-    Attributes,
-    Writing,
-    armature,
-    attributes,
-    commentable,
-    exact,
-    has_control,
-)
+from models.mjcf import forces, options
+from models.mjcf.options import AttributeRow, Attributes, Writing, attributes
 from models.mjcf.tree import Limb, Tree, driven_freedom
 from models.motion import State
 from models.scene import GROUND, Scene
@@ -54,26 +36,23 @@ def build(
     The default ``writing`` is `exact`, which runs as it is in any MuJoCo at constant speed; another
     law needs its control at each step. ``tree`` is a tree planned before.
 
-    Raises
-    ------
-    EngineError
-        A body without mass, a controlled driver, a slider that needs a mass, or a pin in ``close``
-        that closes no loop; a load or friction that MuJoCo cannot have there.
+    Raises EngineError for a body without mass, a controlled driver, a slider that needs a mass, or
+    a pin in ``close`` that closes no loop; a load or friction that MuJoCo cannot have there.
     """
     _check_masses(scene)
     _check_driver(scene)
-    writing = exact(scene) if writing is None else writing
-    tree = tree or planned(scene, state, writing)
+    writing = options.exact(scene) if writing is None else writing
+    tree = tree or forces.planned(scene, state, writing)
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
-        f"  <!-- {commentable(scene.source)} -->",
+        f"  <!-- {options.commentable(scene.source)} -->",
         "  <!-- Planar: in the x-y plane, hinges turn about z. SI units, angles in rad. -->",
         '  <compiler angle="radian" inertiafromgeom="false"/>',
         *_options(scene, writing),
         *_defaults(scene, writing),
         *_world(scene, tree, writing),
         *_equality(tree),
-        *tendon_lines(scene, spring_tendons(scene, state, tree)),
+        *forces.tendon_lines(scene, forces.spring_tendons(scene, state, tree)),
         *_actuator(scene, tree, writing),
         *_keyframe(scene, state, tree, writing),
         "</mujoco>",
@@ -82,7 +61,6 @@ def build(
 
 
 def _check_masses(scene: Scene) -> None:
-    """Refuse bodies that MuJoCo cannot move."""
     for body in bodies(scene):
         mass, inertia = mass_of(scene, body)
         if mass < LEAST_MASS or inertia < LEAST_MASS:
@@ -139,7 +117,6 @@ def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
 
 
 def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str) -> list[str]:
-    """Write the child bodies of ``parent``."""
     lines: list[str] = []
     for limb in (limb for limb in tree.limbs if limb.parent == parent):
         place: AttributeRow = {"name": limb.body, "pos": (*limb.offset, 0.0)}
@@ -165,18 +142,15 @@ def _freedoms(scene: Scene, tree: Tree, limb: Limb, writing: Writing, pad: str) 
             row |= {"type": "hinge", "pos": (*freedom.anchor, 0.0)}
         row["ref"] = freedom.ref
         if freedom.name == driven and writing.flywheel:
-            row["armature"] = armature(scene, writing)
-        row |= friction_of(scene, limb, freedom, writing)
+            row["armature"] = options.armature(scene, writing)
+        row |= forces.friction_of(scene, limb, freedom, writing)
         lines.append(f"{pad}<joint{attributes(row)}/>")
     return lines
 
 
 def _matter(scene: Scene, body: str, pad: str) -> list[str]:
-    """Write the mass, and capsules to look at.
-
-    All three moments of inertia equal the one about z: only it matters in the plane, and MuJoCo
-    refuses the flat bodies that would be exact.
-    """
+    """Write the mass, and capsules to look at. All three moments of inertia equal the one about z:
+    only it matters in the plane, and MuJoCo refuses the flat bodies that would be exact."""
     mass, inertia = mass_of(scene, body)
     row: AttributeRow = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
     row["diaginertia"] = (inertia, inertia, inertia)
@@ -193,16 +167,15 @@ def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
     """Write the sites of a body for loop closures and spring ends, each at the body's own
     coordinates of the point, and for loads."""
     closing = [c.point for c in tree.closures if body in c.bodies]
-    points = dict.fromkeys([*closing, *spring_points(scene, body)])
+    points = dict.fromkeys([*closing, *forces.spring_points(scene, body)])
     rows: list[AttributeRow] = [
         {"name": f"{body}.{point}", "pos": (*local_point(scene, body, point), 0.0)}
         for point in points
     ]
-    return [f"{pad}<site{attributes(row)}/>" for row in [*rows, *load_sites(scene, body)]]
+    return [f"{pad}<site{attributes(row)}/>" for row in [*rows, *forces.load_sites(scene, body)]]
 
 
 def _equality(tree: Tree) -> list[str]:
-    """Write one connect per pin that closes a loop."""
     rows = [
         {"name": f"{c.point}: {c.bodies[0]} to {c.bodies[1]}"}
         | {f"site{i}": f"{body}.{c.point}" for i, body in enumerate(c.bodies, start=1)}
@@ -217,13 +190,12 @@ def _equality(tree: Tree) -> list[str]:
 
 def _actuator(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """Write the servo, or the motor for a law other than constant speed; then the loads."""
-    lines = [*_drive(scene, tree, writing), *load_actuators(scene)]
+    lines = [*_drive(scene, tree, writing), *forces.load_actuators(scene)]
     return ["  <actuator>", *lines, "  </actuator>"] if lines else []
 
 
 def _drive(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
-    """Write the actuator of the crank, if any."""
-    if not has_control(scene, writing):
+    if not options.has_control(scene, writing):
         return []
     driven, sense = driven_freedom(scene, tree.limbs)
     joint: AttributeRow = {"name": "drive", "joint": driven}
@@ -242,7 +214,7 @@ def _drive(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
         "    <!-- The driver's law is not in this file: it comes as the control of each -->",
         f"    <!-- step, the {what[0]} [{what[1]}]. Without it the -->",
         "    <!-- crank keeps the acceleration of the start and may leave its range. -->",
-        f"    <motor{attributes(joint | {'gear': sense * armature(scene, writing)})}/>",
+        f"    <motor{attributes(joint | {'gear': sense * options.armature(scene, writing)})}/>",
     ]
 
 
@@ -254,8 +226,8 @@ def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[
         "qpos": tuple(f.ref for f in freedoms),
         "qvel": tuple(f.rate for f in freedoms),
     }
-    controls = load_sizes(scene, state)
-    if has_control(scene, writing):
+    controls = forces.load_sizes(scene, state)
+    if options.has_control(scene, writing):
         speed, acceleration = driver_rates(scene, state)
         servo = writing.servo_gain is not None
         controls = (speed if servo else acceleration, *controls)

@@ -6,20 +6,9 @@ from models.errors import EngineError
 from models.mjcf.options import AttributeRow, Writing, attributes, commentable
 from models.mjcf.tree import Freedom, Limb, Tree, closings, plan
 from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Point, Scene, joints
 from models.scene.characteristics import Constant
 from models.scene.driver import driver_place_in
-from models.scene.joints import (
-    Slot,
-    block_name,
-    centre_of,
-    joints,
-    line_ends,
-    local_point,
-    riding_body,
-    turned,
-    whole_turns,
-)
 from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, Spring
 
 AXES = "ground axes"
@@ -39,24 +28,19 @@ class PointOfApplication:
 
 def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
     """Return the point of a load. A block without mass is no body: it transfers a force to the body
-    pinned to it, and a torque to its guide.
-
-    Raises
-    ------
-    EngineError
-        A force on a block without mass, along a moving guide.
-    """
+    pinned to it, and a torque to its guide. Raises EngineError for a force on a block without mass,
+    along a moving guide."""
     slot = _block_without_mass(scene, load.body)
     if slot is None:
         if load.point is None:
-            return PointOfApplication(load.body, centre_of(scene, load.body))
-        place = local_point(scene, load.body, load.point)
+            return PointOfApplication(load.body, joints.centre_of(scene, load.body))
+        place = joints.local_point(scene, load.body, load.point)
         return PointOfApplication(load.body, place, load.direction_rad, load.frame == "body")
     slider = slot.slider
     if load.point is None:
         return PointOfApplication(slider.on, slider.through_m)
-    carrier = riding_body(slot)
-    place, direction = local_point(scene, carrier, slider.point), load.direction_rad
+    carrier = joints.riding_body(slot)
+    place, direction = joints.local_point(scene, carrier, slider.point), load.direction_rad
     if load.frame == "body":
         if slider.on != GROUND:
             raise EngineError(
@@ -68,10 +52,9 @@ def point_of_application(scene: Scene, load: Load) -> PointOfApplication:
     return PointOfApplication(carrier, place, direction)
 
 
-def _block_without_mass(scene: Scene, body: str) -> Slot | None:
-    """Return the slot of a block without mass; None for other bodies."""
-    slots = joints(scene).slots
-    return next((slot for slot in slots if block_name(slot.slider) == body), None)
+def _block_without_mass(scene: Scene, body: str) -> joints.Slot | None:
+    slots = joints.joints(scene).slots
+    return next((slot for slot in slots if joints.block_name(slot.slider) == body), None)
 
 
 def load_sites(scene: Scene, body: str) -> list[AttributeRow]:
@@ -117,7 +100,7 @@ def load_actuators(scene: Scene) -> list[str]:
         else:
             if _needs_axes(load, at):
                 row["refsite"] = AXES
-            row["gear"] = (*turned((1.0, 0.0), at.direction_rad), 0, 0, 0, 0)
+            row["gear"] = (*joints.turned((1.0, 0.0), at.direction_rad), 0, 0, 0, 0)
         lines.append(f"    <motor{attributes(row)}/>")
     return lines
 
@@ -187,15 +170,15 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
         signs = {name: 1 for name in second if name not in first}
         signs |= {name: -1 for name in first if name not in second}
         start, end = (0.0 if b == GROUND else state.theta[b] for b in spring.bodies)
-        shift = after - before + whole_turns(spring, end - start)
+        shift = after - before + joints.whole_turns(spring, end - start)
     else:
         signs, shift = {_sliding(tree, spring.slider): 1}, 0.0
     if not signs:  # they never turn against each other; a tendon asks for a joint all the same
         signs = {next(freedom.name for limb in tree.limbs for freedom in limb.freedoms): 0}
     slack = spring.free - shift
     sense = -1 if slack < 0.0 else 1
-    joints = tuple((name, sense * sign) for name, sign in signs.items())
-    return SpringTendon(spring, joints, shift, sense)
+    signed = tuple((name, sense * sign) for name, sign in signs.items())
+    return SpringTendon(spring, signed, shift, sense)
 
 
 def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
@@ -214,12 +197,10 @@ def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
 
 def _sliding(tree: Tree, slider: str) -> str:
     """Return the joint for the displacement of a slider; all slides are in the tree."""
-
-    def slides(limb: Limb) -> bool:
-        return limb.slider is not None and limb.slider.name == slider
-
-    limb = next(limb for limb in tree.limbs if slides(limb))
-    return next(freedom.name for freedom in limb.freedoms if freedom.kind == "slide")
+    freedoms = next(
+        limb.freedoms for limb in tree.limbs if limb.slider and limb.slider.name == slider
+    )
+    return next(freedom.name for freedom in freedoms if freedom.kind == "slide")
 
 
 def spring_points(scene: Scene, body: str) -> list[str]:
@@ -228,7 +209,7 @@ def spring_points(scene: Scene, body: str) -> list[str]:
         point
         for spring in scene.springs.values()
         if isinstance(spring, LineSpring)
-        for point, (carrier, _) in zip(spring.points, line_ends(scene, spring), strict=True)
+        for point, (carrier, _) in zip(spring.points, joints.line_ends(scene, spring), strict=True)
         if carrier == body
     ]
 
@@ -247,13 +228,12 @@ def tendon_lines(scene: Scene, tendons: tuple[SpringTendon, ...]) -> list[str]:
 
 
 def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
-    """Write the element of a tendon with its sites or joints."""
     spring = tendon.spring
     row: AttributeRow = {"name": tendon.name, "stiffness": spring.rate, "damping": spring.damping}
     row["springlength"] = tendon.slack_length
     if isinstance(spring, LineSpring):
         kind, part = "spatial", "site"
-        ends = zip(spring.points, line_ends(scene, spring), strict=True)
+        ends = zip(spring.points, joints.line_ends(scene, spring), strict=True)
         parts: list[AttributeRow] = [{"site": f"{body}.{point}"} for point, (body, _) in ends]
     else:
         kind, part = "fixed", "joint"
@@ -268,13 +248,9 @@ def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
 def planned(scene: Scene, state: State, writing: Writing) -> Tree:
     """Plan the tree of a scene, with all joints with friction in it.
 
-    Raises
-    ------
-    EngineError
-        As `models.mjcf.tree.plan`; where every way to close the loops takes a pin with friction.
-
     MuJoCo has constant friction (``frictionloss``) in hinges and slides of the tree; a connect,
-    which closes a loop, has none. So loops close at pins without friction.
+    which closes a loop, has none. So loops close at pins without friction. Raises EngineError as
+    `models.mjcf.tree.plan`, and where every way to close the loops takes a pin with friction.
     """
     tree = plan(scene, state, writing.close, delay_s=writing.delay_s)
     rubbing = [one.joint for one in scene.friction.values() if one.joint not in scene.sliders]
@@ -308,12 +284,7 @@ def rubbing_freedom(scene: Scene, limb: Limb, joint: str) -> Freedom | None:
 
 def friction_of(scene: Scene, limb: Limb, freedom: Freedom, writing: Writing) -> AttributeRow:
     """Return the attributes of a joint with friction, as stiff as the step allows; else none.
-
-    Raises
-    ------
-    EngineError
-        Coulomb's friction, which MuJoCo has in contacts only.
-    """
+    Raises EngineError for Coulomb's friction, which MuJoCo has in contacts only."""
     for name, one in scene.friction.items():
         if rubbing_freedom(scene, limb, one.joint) is not freedom:
             continue

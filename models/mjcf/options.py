@@ -97,7 +97,6 @@ def attributes(row: Attributes) -> str:
 
 
 def _text(value: AttributeValue) -> str:
-    """Format a value as MJCF text."""
     if isinstance(value, str):
         return value
     if isinstance(value, int | float):

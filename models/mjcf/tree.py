@@ -16,20 +16,7 @@ from typing import Literal
 from models.errors import EngineError
 from models.files.inputs import names_in
 from models.motion import State
-from models.scene import GROUND, Point, Scene, Slider
-from models.scene.joints import (
-    Frame,
-    Prism,
-    Slot,
-    along,
-    bodies,
-    frames,
-    joints,
-    local_point,
-    mass_of,
-    mass_ratio,
-    turned,
-)
+from models.scene import GROUND, Point, Scene, Slider, joints
 
 UNEQUAL = 25.0
 """Least ratio of the heaviest body to the lightest at which loops close between heavy bodies. Below
@@ -56,7 +43,7 @@ class Freedom:
     @property
     def axis(self) -> Point:
         """Direction of a slide in the frame of the body, exact along the axes."""
-        return turned((1.0, 0.0), self.axis_rad)
+        return joints.turned((1.0, 0.0), self.axis_rad)
 
 
 @dataclass(frozen=True)
@@ -131,11 +118,8 @@ def plan(
 
     The rates of the coordinates belong to ``delay_s`` later (see `models.scene.joints.frames`).
 
-    Raises
-    ------
-    EngineError
-        A pin in ``close`` that does not exist or cannot close a loop; a slider that would have to
-        close a loop and so needs a mass; an unconnected body.
+    Raises EngineError for a pin in ``close`` that does not exist or cannot close a loop; a slider
+    that would have to close a loop and so needs a mass; an unconnected body.
     """
     close = names_in(close, "close")
     _check_close(scene, close)
@@ -153,12 +137,12 @@ def plan(
     for point in close:
         if point not in {c.point for c in closures}:
             raise EngineError(f"close = {point}: no loop of {scene.name} closes there")
-    return Tree(_limbs(scene, frames(scene, state, delay_s), edges), closures)
+    return Tree(_limbs(scene, joints.frames(scene, state, delay_s), edges), closures)
 
 
 def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
     """Yield the joints by priority; each entry lists equally good ways to hold one joint."""
-    driver, ties = scene.driver, joints(scene)
+    driver, ties = scene.driver, joints.joints(scene)
     if driver.slider is None:
         yield [_Edge(driver.base, driver.link, scene.driver_pivot)]
     for slide in sorted(ties.slides, key=lambda slide: slide.slider.name != driver.slider):
@@ -182,21 +166,20 @@ def _lightness(scene: Scene) -> Callable[[_Edge], float]:
     masses; at a pin of heavy bodies as much as if all were alike. Nothing moves the ground and the
     driver.
     """
-    if mass_ratio(scene) <= UNEQUAL:
+    if joints.mass_ratio(scene) <= UNEQUAL:
         return lambda edge: 0.0
     firm = (GROUND, scene.driver.link)
 
     def lightness(edge: _Edge) -> float:
-        masses = (mass_of(scene, body)[0] for body in (edge.a, edge.b) if body not in firm)
+        masses = (joints.mass_of(scene, body)[0] for body in (edge.a, edge.b) if body not in firm)
         return sum(1.0 / mass if mass else math.inf for mass in masses)
 
     return lightness
 
 
-def _slides(slide: Prism | Slot) -> list[_Edge]:
-    """Return the ways to hold a slide."""
+def _slides(slide: joints.Prism | joints.Slot) -> list[_Edge]:
     slider = slide.slider
-    if isinstance(slide, Prism):
+    if isinstance(slide, joints.Prism):
         return [_Edge(slider.on, slide.body, slider.point, slider, turns=False)]
     if not slide.bodies:
         raise EngineError(_needs_mass(slider))
@@ -204,7 +187,6 @@ def _slides(slide: Prism | Slot) -> list[_Edge]:
 
 
 def _needs_mass(slider: Slider) -> str:
-    """Return the remedy for a slide that would have to close a loop."""
     return (
         f"slider {slider.name}: a massless block cannot be held here, as MuJoCo closes loops only "
         f"at pins; give sliders.{slider.name} a mass_kg above 0"
@@ -212,8 +194,7 @@ def _needs_mass(slider: Slider) -> str:
 
 
 def _check_close(scene: Scene, close: Sequence[str]) -> None:
-    """Refuse closing points that are not pins, and the driver's own."""
-    pins = [pin.point for pin in joints(scene).pins]
+    pins = [pin.point for pin in joints.joints(scene).pins]
     for point in close:
         if point not in pins or point == scene.driver_pivot:
             able = ", ".join(p for p in pins if p != scene.driver_pivot)
@@ -223,7 +204,7 @@ def _check_close(scene: Scene, close: Sequence[str]) -> None:
 def _closures(scene: Scene, at_point: _Groups) -> tuple[LoopPin, ...]:
     """Return the pins outside the tree: one closure between each two groups at a point."""
     closures: list[LoopPin] = []
-    for pin in joints(scene).pins:
+    for pin in joints.joints(scene).pins:
         first = pin.bodies[0]
         closures += [
             LoopPin(pin.point, (first, body))
@@ -233,12 +214,12 @@ def _closures(scene: Scene, at_point: _Groups) -> tuple[LoopPin, ...]:
     return tuple(closures)
 
 
-def _limbs(scene: Scene, where: dict[str, Frame], edges: Sequence[_Edge]) -> tuple[Limb, ...]:
-    """Make the limbs, from the ground outwards."""
+def _limbs(
+    scene: Scene, where: dict[str, joints.Frame], edges: Sequence[_Edge]
+) -> tuple[Limb, ...]:
     placed = [GROUND]
 
     def grown(parent: str) -> list[Limb]:
-        """Return the child limbs of ``parent``, each followed by its own."""
         limbs: list[Limb] = []
         for edge in edges:
             child = {edge.a: edge.b, edge.b: edge.a}.get(parent)
@@ -248,32 +229,33 @@ def _limbs(scene: Scene, where: dict[str, Frame], edges: Sequence[_Edge]) -> tup
         return limbs
 
     limbs = tuple(grown(GROUND))
-    loose = [body for body in bodies(scene) if body not in placed]
+    loose = [body for body in joints.bodies(scene) if body not in placed]
     if loose:
         raise EngineError(f"{scene.name}: {', '.join(loose)} hangs on nothing; pin it to a link")
     return limbs
 
 
-def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child: str) -> Limb:
+def _limb(
+    scene: Scene, where: dict[str, joints.Frame], edge: _Edge, parent: str, child: str
+) -> Limb:
     """Place one body against its parent, its joint written as one or two coordinates."""
     base, body = where[parent], where[child]
     angle = body.theta - base.theta
     rate = body.omega - base.omega
 
     def hinge(anchor: Point) -> Freedom:
-        """Make the hinge about a point of the child."""
         return Freedom(f"{child}.{edge.point}", "hinge", anchor, 0.0, angle, rate)
 
     if edge.slider is None:
-        anchor = local_point(scene, child, edge.point)
-        arm = turned(anchor, angle)
-        pivot = local_point(scene, parent, edge.point)
+        anchor = joints.local_point(scene, child, edge.point)
+        arm = joints.turned(anchor, angle)
+        pivot = joints.local_point(scene, parent, edge.point)
         offset = (pivot[0] - arm[0], pivot[1] - arm[1])
         return Limb(child, parent, offset, angle, (hinge(anchor),), edge.point)
     slider, guide = edge.slider, where[edge.slider.on]
     rider = edge.b
-    place = where[rider].at(local_point(scene, rider, edge.point))
-    ref, speed = along(slider, guide, place, where[rider].velocity_at(place))
+    place = where[rider].at(joints.local_point(scene, rider, edge.point))
+    ref, speed = joints.along(slider, guide, place, where[rider].velocity_at(place))
     rides = child == rider  # else the child is the guide, and moves backwards under the rider
     axis = slider.direction_rad + (-angle if rides else math.pi)
     slide = Freedom(f"{child}.{slider.name}.slide", "slide", (0.0, 0.0), axis, ref, speed)
@@ -286,13 +268,11 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
 
 
 def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
-    """Yield values of ``close`` in `plan` that close other pins than the default.
-
-    The fewest pins first; each choice of closures once. Raises EngineError as `plan` does.
-    """
+    """Yield values of ``close`` in `plan` that close other pins than the default. The fewest pins
+    first; each choice of closures once. Raises EngineError as `plan` does."""
     default = plan(scene, state).closures
     seen = {frozenset(default)}
-    pins = [pin.point for pin in joints(scene).pins if pin.point != scene.driver_pivot]
+    pins = [pin.point for pin in joints.joints(scene).pins if pin.point != scene.driver_pivot]
     for count in range(1, len(default) + 1):
         for close in itertools.combinations(pins, count):
             try:
@@ -306,28 +286,15 @@ def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
 
 def driven_freedom(scene: Scene, limbs: Sequence[Limb]) -> tuple[str, float]:
     """Return the name of the driven freedom, and 1.0 if it reads as the driver's own coordinate, or
-    -1.0 if the driven link carries its base.
-
-    Raises
-    ------
-    EngineError
-        The driven joint is not in the tree.
-    """
+    -1.0 if the driven link carries its base. Raises EngineError where the driven joint is not in
+    the tree."""
     driver = scene.driver
     if driver.is_crank:
         return f"{driver.link}.{scene.driver_pivot}", 1.0
     for limb in limbs:
-        slides = limb.slider is not None
-        if slides and limb.slider.name == driver.slider:  # type: ignore[union-attr]  # it has one
-            return next(f.name for f in limb.freedoms if f.kind == "slide"), 1.0
-        if (
-            not slides
-            and limb.point == driver.pin
-            and {limb.body, limb.parent}
-            == {
-                driver.base,
-                driver.link,
-            }
-        ):
+        if limb.slider is not None:
+            if limb.slider.name == driver.slider:
+                return next(f.name for f in limb.freedoms if f.kind == "slide"), 1.0
+        elif limb.point == driver.pin and {limb.body, limb.parent} == {driver.base, driver.link}:
             return limb.freedoms[0].name, 1.0 if limb.body == driver.link else -1.0
     raise EngineError(f"{scene.name}: the tree closes a loop at {driver.joint}, which is driven")

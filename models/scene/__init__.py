@@ -42,6 +42,13 @@ class FixedMapping(dict[K, V]):
         return FixedMapping, (dict(self),)
 
 
+def _fix_mappings(made: object) -> None:
+    """Make every mapping of a frozen dataclass one that cannot be changed, a copy."""
+    for name, value in vars(made).items():
+        if isinstance(value, Mapping):
+            object.__setattr__(made, name, FixedMapping(value))
+
+
 @dataclass(frozen=True)
 class Start:
     """Angles [rad] and angular velocities [rad/s] of links, displacements [m] and speeds [m/s] of
@@ -58,8 +65,7 @@ class Start:
     shape: Shape | None = None
 
     def __post_init__(self) -> None:
-        for name in ("angles_rad", "rates_rad_s", "displacements_m", "speeds_m_s"):
-            object.__setattr__(self, name, FixedMapping(getattr(self, name)))
+        _fix_mappings(self)
 
     def __bool__(self) -> bool:
         return any(vars(self).values())
@@ -73,11 +79,8 @@ KEPT = 64
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid link.
-
-    ``points`` and ``centre_m`` (the centre of mass) are in the link's own frame; ``inertia_kg_m2``
-    is about the centre of mass.
-    """
+    """A rigid link. ``points`` and ``centre_m`` (the centre of mass) are in the link's own frame;
+    ``inertia_kg_m2`` is about the centre of mass."""
 
     name: str
     points: Mapping[str, Point]
@@ -86,7 +89,7 @@ class Link:
     inertia_kg_m2: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "points", FixedMapping(self.points))
+        _fix_mappings(self)
 
 
 @dataclass(frozen=True)
@@ -199,11 +202,7 @@ class Scene:
     beams: Mapping[str, Beam] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in (
-            "ground", "links", "sliders", "branch", "tolerance", "loads", "friction", "springs",
-            "elastic", "beams",
-        ):  # fmt: skip
-            object.__setattr__(self, name, FixedMapping(getattr(self, name)))
+        _fix_mappings(self)
 
     @cached_property
     def pins(self) -> Mapping[str, tuple[str, ...]]:

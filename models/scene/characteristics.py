@@ -16,10 +16,7 @@ EPS = float(np.finfo(np.float64).eps)
 
 class Characteristic(ABC):
     """The magnitude of a load [N or N m] over time [s], driver angle [rad], displacement [m] or
-    speed [m/s or rad/s].
-
-    Raises ValueError for numbers that give no magnitude.
-    """
+    speed [m/s or rad/s]. Raises ValueError for numbers that give no magnitude."""
 
     @abstractmethod
     def at(self, x: Array) -> Array:
@@ -52,9 +49,9 @@ class Characteristic(ABC):
     def steepest(self, x: Array, by: Array | float) -> Array | float:
         """Return a bound on the slope within ``by`` of ``x``."""
 
-    @abstractmethod
     def rounding(self, x: Array) -> Array | float:
         """Return a bound on the rounding error of `at`."""
+        return 0.0
 
     @abstractmethod
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Characteristic:
@@ -75,9 +72,6 @@ class Constant(Characteristic):
         return float(self.value)
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
-        return 0.0
-
-    def rounding(self, x: Array) -> Array | float:
         return 0.0
 
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Constant:
@@ -157,11 +151,8 @@ class Polynomial(Characteristic):
 
 @dataclass(frozen=True)
 class Staircase(Characteristic):
-    """``values[k]`` from ``places[k]`` on, up to the next place; 0 before the first.
-
-    The new value holds in the place itself. The slope is unbounded there: `steepest` gives
-    infinity.
-    """
+    """``values[k]`` from ``places[k]`` on, up to the next place; 0 before the first. The new value
+    holds in the place itself. The slope is unbounded there: `steepest` gives infinity."""
 
     places: tuple[float, ...]
     values: tuple[float, ...]
@@ -192,9 +183,6 @@ class Staircase(Characteristic):
         high = np.searchsorted(self.places, np.asarray(x) + by, side="right")
         return np.where((high > low) & (np.asarray(by) > 0.0), np.inf, 0.0)
 
-    def rounding(self, x: Array) -> Array | float:
-        return 0.0
-
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Staircase:
         if stretch < 0.0:
             raise ValueError("steps have no mirror image: what is on for ever would have been so")
@@ -205,9 +193,7 @@ class Staircase(Characteristic):
 @dataclass(frozen=True)
 class Pulse(Characteristic):
     """amplitude sin(2 pi (x - start) / period) for one period from ``start`` on, and 0 beside it.
-
-    Source: the thesis on elastic mechanisms (torque on the crank).
-    """
+    Source: the thesis on elastic mechanisms (torque on the crank)."""
 
     amplitude: float
     period: float

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -61,12 +61,17 @@ class CutScene(ABC):
     def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
         """Return the index of the body that carries a place of the link, and the place in it."""
 
+    def _carry(self, link: Link, line: LinkLine, points: Sequence[dict[str, Point]]) -> None:
+        """Add the points of a link, but for its pins, to those of the bodies that carry them."""
+        for name, place in link.points.items():
+            if name not in line.pins:
+                body, there = self._carried(line, place)
+                points[body][name] = there
+
     def _springs(self, link: str) -> Mapping[str, Spring]:
-        """Springs between these bodies."""
         return {}
 
     def _beam(self, link: str) -> Beam | None:
-        """Beam that joins them."""
         return None
 
     def nodes(self, link: str) -> tuple[str, ...]:
@@ -107,7 +112,6 @@ class CutScene(ABC):
         return self.bodies(body)[piece], line.lean_rad
 
     def _put(self, load: Load) -> Load:
-        """Move a load to the body that carries its point."""
         if load.point is None:
             return load
         body, lean = self._carrier(load.body, load.point)
@@ -158,7 +162,6 @@ class CutScene(ABC):
         return LinkMotion(theta, omega, alpha)
 
     def _shape(self, motion: Motion, link: str) -> ElasticMotion:
-        """Return its deflection and extension."""
         first, last = (motion.points[pin].position for pin in line_of(self.scene, link).pins)
         way = last - first
         far = np.hypot(way[:, 0], way[:, 1])

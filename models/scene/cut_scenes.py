@@ -78,10 +78,7 @@ class SegmentedScene(CutScene):
         points: list[dict[str, Point]] = [
             {nodes[i]: (0.0, 0.0), nodes[i + 1]: (piece, 0.0)} for i in range(self.count)
         ]
-        for name, place in link.points.items():
-            if name not in line.pins:
-                i, there = self._carried(line, place)
-                points[i][name] = there
+        self._carry(link, line, points)
         mass = line.density_kg_m * piece
         return {
             name: Link(name, points[i], mass, (0.5 * piece, 0.0), mass * piece**2 / 12.0)
@@ -89,7 +86,6 @@ class SegmentedScene(CutScene):
         }
 
     def _springs(self, link: str) -> dict[str, SegmentSpring]:
-        """Make the springs in all pins between segments."""
         own, line = self.scene.elastic[link], line_of(self.scene, link)
         names, nodes = self.segments(link), self.nodes(link)
         rate = segment_spring(own, line.length_m, self.count, corrected=self.corrected)
@@ -165,10 +161,7 @@ class BeamedScene(CutScene):
     def _links(self, link: Link, line: LinkLine) -> dict[str, Link]:
         """Make the nodes, each with its point and half of the mass of the adjacent elements."""
         points: list[dict[str, Point]] = [{node: (0.0, 0.0)} for node in self.nodes(link.name)]
-        for name, place in link.points.items():
-            if name not in line.pins:
-                i, there = self._carried(line, place)
-                points[i][name] = there
+        self._carry(link, line, points)
         mass = line.density_kg_m * line.length_m / self.count
         masses = [0.5 * mass, *[mass] * (self.count - 1), 0.5 * mass]
         return {

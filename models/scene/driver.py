@@ -84,14 +84,9 @@ TURNS = 10.0
 
 
 def let_go(scene: Scene, duration_s: float | None = None) -> Scene:
-    """Return the scene with its driver released, at the angle and speed of its law at time 0.
-
-    Parameters
-    ----------
-    duration_s : float or None
-        Duration [s]; None keeps the duration of a released driver, and takes the time of 10 turns
-        of a driver that follows a law.
-    """
+    """Return the scene with its driver released, at the angle and speed of its law at time 0, for a
+    duration [s]; None keeps that of a released driver, and takes the time of 10 turns of a driver
+    that follows a law."""
     law = scene.driver.law
     if isinstance(law, Released):
         return (
@@ -239,10 +234,8 @@ def passing(
     oscillating driver is taken counter-clockwise and an accelerating driver at its first passage;
     ``clockwise`` takes the way of falling angle. A driver of constant speed is then turned round.
 
-    Raises
-    ------
-    ValueError
-        The law does not reach that angle, or not that way; the message names a remedy.
+    Raises ValueError where the law does not reach that angle, or not that way; the message names a
+    remedy.
     """
     if isinstance(law, Oscillating):
         return _swinging(law, theta_rad, clockwise=clockwise, slides=slides)

@@ -29,17 +29,10 @@ def fourbar(
     start_deg: float = START_DEG,
     speed_rad_s: float = SPEED_RAD_S,
 ) -> Scene:
-    """A four-bar A B C D with A at the origin and D on the x-axis, all lengths in m.
-
-    C lies to the left of the line from B to D.
-    """
-    return _scene(
-        name,
-        source,
-        f"A = [0.0, 0.0], D = [{ground_m!r}, 0.0]",
-        _fourbar_links(crank_m, coupler_m, rocker_m),
-        _turning(start_deg, speed_rad_s),
-    )
+    """A four-bar A B C D with A at the origin and D on the x-axis, all lengths in m. C lies to the
+    left of the line from B to D."""
+    lengths_m = (crank_m, coupler_m, rocker_m, ground_m)
+    return _fourbar(name, source, lengths_m, _turning(start_deg, speed_rad_s))
 
 
 def fourbar_by_coupler(
@@ -54,40 +47,25 @@ def fourbar_by_coupler(
     amplitude_deg: float,
 ) -> Scene:
     """The four-bar of `fourbar`, driven at B: the angle from the crank to the coupler swings."""
-    return _scene(
-        name,
-        source,
-        f"A = [0.0, 0.0], D = [{ground_m!r}, 0.0]",
-        _fourbar_links(crank_m, coupler_m, rocker_m),
-        _swinging('pin = "B"\nlinks = ["crank", "coupler"]', "deg", centre_deg, amplitude_deg),
-    )
+    lengths_m = (crank_m, coupler_m, rocker_m, ground_m)
+    joint = 'pin = "B"\nlinks = ["crank", "coupler"]'
+    driver = _swinging(joint, "deg", centre_deg, amplitude_deg)
+    return _fourbar(name, source, lengths_m, driver)
 
 
 def slider_crank(name: str, crank_m: float, rod_m: float, *, source: str) -> Scene:
     """A central slider-crank A B C along the x-axis, with a block of half a kilogram per metre of
     the crank."""
-    return _scene(
-        name,
-        source,
-        "A = [0.0, 0.0]",
-        _slider_crank_bodies(crank_m, rod_m),
-    )
+    return _scene(name, source, "A = [0.0, 0.0]", _slider_crank_bodies(crank_m, rod_m))
 
 
 def slider_crank_by_piston(
     name: str, crank_m: float, rod_m: float, *, source: str, amplitude_m: float
 ) -> Scene:
-    """The slider-crank of `slider_crank`, whose block is driven to and fro about mid-stroke.
-
-    B lies to the left of the line from A to C.
-    """
-    return _scene(
-        name,
-        source,
-        "A = [0.0, 0.0]",
-        _slider_crank_bodies(crank_m, rod_m),
-        _swinging('slider = "C"', "m", rod_m, amplitude_m),
-    )
+    """The slider-crank of `slider_crank`, whose block is driven to and fro about mid-stroke. B lies
+    to the left of the line from A to C."""
+    driver = _swinging('slider = "C"', "m", rod_m, amplitude_m)
+    return _scene(name, source, "A = [0.0, 0.0]", _slider_crank_bodies(crank_m, rod_m), driver)
 
 
 def triad_platform(name: str, crank_m: float, *, source: str) -> Scene:
@@ -109,69 +87,50 @@ def slotted_lever(name: str, crank_m: float, pivots_m: float, *, source: str) ->
     The lever swings where the crank is shorter than the distance of the pivots, and turns fully
     (Whitworth) where it is longer.
     """
-    return _scene(
-        name,
-        source,
-        f"A = [0.0, {pivots_m!r}], C = [0.0, 0.0]",
-        f"""
-[links]
-crank = {{ bar = ["A", "B"], length_m = {crank_m!r} }}
-lever = {{ bar = ["C", "E"], length_m = {1.5 * (crank_m + pivots_m)!r} }}
-[sliders.B]
-on = "lever"
-""",
-    )
+    rods = _rods(crank=("AB", crank_m), lever=("CE", 1.5 * (crank_m + pivots_m)))
+    ground = f"A = [0.0, {pivots_m!r}], C = [0.0, 0.0]"
+    return _scene(name, source, ground, f'{rods}[sliders.B]\non = "lever"\n')
 
 
 def double_parallelogram(name: str, *, source: str) -> Scene:
     """A parallelogram with a third rocker: it moves, although its mobility by count is 0."""
-    return _scene(
-        name,
-        source,
-        "A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.0]",
-        """
-[links]
-crank = { bar = ["A", "B"], length_m = 0.1 }
-coupler = { points = { B = [0.0, 0.0], C = [0.3, 0.0], F = [0.6, 0.0] }, mass_kg = 0.6 }
-rocker = { bar = ["D", "C"], length_m = 0.1 }
-third = { bar = ["G", "F"], length_m = 0.1 }
-""",
-    )
+    coupler = "points = { B = [0.0, 0.0], C = [0.3, 0.0], F = [0.6, 0.0] }, mass_kg = 0.6"
+    rods = _rods(crank=("AB", 0.1), coupler=coupler, rocker=("DC", 0.1), third=("GF", 0.1))
+    return _scene(name, source, "A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.0]", rods)
 
 
-def _fourbar_links(crank_m: float, coupler_m: float, rocker_m: float) -> str:
-    return f"""
-[links]
-crank = {{ bar = ["A", "B"], length_m = {crank_m!r} }}
-coupler = {{ bar = ["B", "C"], length_m = {coupler_m!r} }}
-rocker = {{ bar = ["D", "C"], length_m = {rocker_m!r} }}
-"""
+def _fourbar(
+    name: str, source: str, lengths_m: tuple[float, float, float, float], driver: str
+) -> Scene:
+    crank_m, coupler_m, rocker_m, ground_m = lengths_m
+    rods = _rods(crank=("AB", crank_m), coupler=("BC", coupler_m), rocker=("DC", rocker_m))
+    return _scene(name, source, f"A = [0.0, 0.0], D = [{ground_m!r}, 0.0]", rods, driver)
 
 
 def _slider_crank_bodies(crank_m: float, rod_m: float) -> str:
-    return f"""
-[links]
-crank = {{ bar = ["A", "B"], length_m = {crank_m!r} }}
-rod = {{ bar = ["B", "C"], length_m = {rod_m!r} }}
-[sliders.C]
-on = "ground"
-mass_kg = {0.5 * crank_m!r}
-"""
+    rods = _rods(crank=("AB", crank_m), rod=("BC", rod_m))
+    return f'{rods}[sliders.C]\non = "ground"\nmass_kg = {0.5 * crank_m!r}\n'
 
 
 def _platform_bodies(crank_m: float) -> str:
-    return f"""
-[links]
-crank = {{ bar = ["A", "B"], length_m = {crank_m!r} }}
-leg1 = {{ bar = ["B", "C"], length_m = 0.3 }}
-leg2 = {{ bar = ["D", "E"], length_m = 0.3 }}
-leg3 = {{ bar = ["G", "F"], length_m = 0.3 }}
-plate = {{ points = {{ C = [0.0, 0.0], E = [0.25, -0.05], F = [0.12, 0.18] }} }}
-"""
+    legs = {"leg1": ("BC", 0.3), "leg2": ("DE", 0.3), "leg3": ("GF", 0.3)}
+    plate = "points = { C = [0.0, 0.0], E = [0.25, -0.05], F = [0.12, 0.18] }"
+    return _rods(crank=("AB", crank_m), **legs, plate=plate)
+
+
+def _rods(**links: tuple[str, float] | str) -> str:
+    """Text of links, each a rod between two points with its length [m], or a table of its own."""
+    lines = ["[links]"]
+    for name, table in links.items():
+        text = table
+        if not isinstance(table, str):
+            ends, length_m = table
+            text = f'bar = ["{ends[0]}", "{ends[1]}"], length_m = {length_m!r}'
+        lines.append(f"{name} = {{ {text} }}")
+    return "\n".join(lines) + "\n"
 
 
 def _turning(start_deg: float = START_DEG, speed_rad_s: float = SPEED_RAD_S) -> str:
-    """Text of a turning crank for a scene file."""
     return f"""
 link = "crank"
 speed_rad_s = {speed_rad_s!r}
@@ -191,7 +150,6 @@ frequency_rad_s = {SPEED_RAD_S!r}
 
 
 def _scene(name: str, source: str, ground: str, bodies: str, driver: str = _turning()) -> Scene:
-    """Scene of a driver and of bodies in the text of a scene file."""
     return parse_scene(
         f"""
 name = "{name}"
@@ -286,7 +244,6 @@ class WindowChain:
         )
 
     def _rod(self, name: str, start: str, end: str) -> Link:
-        """A uniform slender rod from one point to another."""
         length, mass = self.length_m, self.mass_kg
         ends: dict[str, Point] = {start: (0.0, 0.0), end: (length, 0.0)}
         return Link(name, ends, mass, (0.5 * length, 0.0), mass * length**2 / 12)

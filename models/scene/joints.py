@@ -99,10 +99,8 @@ def joined_at(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def has_loops(scene: Scene) -> bool:
-    """True if some joint closes a loop: there are more pairs than bodies.
-
-    An open chain is placed by its joint coordinates, and an engine with these solves no constraint.
-    """
+    """True if some joint closes a loop: there are more pairs than bodies. An open chain is placed
+    by its joint coordinates, and an engine with these solves no constraint."""
     pairs = sum(len(names) - 1 for names in joined_at(scene).values()) + len(scene.sliders)
     count = len(scene.links) + sum(slider.link is None for slider in scene.sliders.values())
     return pairs > count
@@ -178,9 +176,7 @@ End = tuple[str, Point]
 
 def line_ends(scene: Scene, spring: LineSpring) -> tuple[End, End]:
     """The two ends of a spring between points, each on the first body that carries the point.
-
-    Raises EngineError for a point that only a slider block without mass (no body) has.
-    """
+    Raises EngineError for a point that only a slider block without mass (no body) has."""
     first, second = spring.points
     return _end(scene, spring, first), _end(scene, spring, second)
 

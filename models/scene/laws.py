@@ -78,11 +78,8 @@ class Law(ABC):
 
 @dataclass(frozen=True)
 class _ToSpeed(Law):
-    """A law that starts at an angle and reaches one speed.
-
-    ``travel_rad`` is the travel that counts as one "turn" of a run: a whole turn, except for a
-    driven slider, which has none.
-    """
+    """A law that starts at an angle and reaches one speed. ``travel_rad`` is the travel that counts
+    as one "turn" of a run: a whole turn, except for a driven slider, which has none."""
 
     start_rad: float
     speed_rad_s: float
@@ -172,9 +169,7 @@ class Oscillating(Law):
 @dataclass(frozen=True)
 class FromRest(_ToSpeed):
     """From rest to a constant speed by a cycloidal ramp of ``rise_s``; acceleration is continuous.
-
-    Within the ramp, with tau = t / rise: omega = speed (tau - sin(2 pi tau) / (2 pi)).
-    """
+    Within the ramp, with tau = t / rise: omega = speed (tau - sin(2 pi tau) / (2 pi))."""
 
     rise_s: float
 

@@ -46,20 +46,12 @@ class Load:
     frame: Literal["ground", "body"] = "ground"
 
     def magnitude(self, x: Array, speed: Array | None = None) -> Array:
-        """The force [N] or the torque [N m].
+        """Return the force [N] or the torque [N m].
 
-        Parameters
-        ----------
-        x : Array
-            Times [s], driver angles [rad], displacements of the slider [m], its speeds [m/s] or
-            angular velocities of the body [rad/s], as ``over`` says.
-        speed : Array or None
-            Speeds of the slider [m/s], for a load on one stroke only.
-
-        Raises
-        ------
-        CrankcheckError
-            ``x`` beyond the end of a table.
+        ``x`` are times [s], driver angles [rad], displacements of the slider [m], its speeds [m/s]
+        or angular velocities of the body [rad/s], as ``over`` says; ``speed`` those of the slider
+        [m/s], for a load on one stroke only. Raises CrankcheckError for ``x`` beyond the end of a
+        table.
         """
         try:
             magnitude = self.characteristic.at(x)
@@ -100,7 +92,6 @@ class Load:
             raise self._beyond(error) from None
 
     def _beyond(self, error: ValueError) -> CrankcheckError:
-        """Error of a place beyond the characteristic."""
         return CrankcheckError(
             f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
         )

@@ -241,10 +241,8 @@ def spline(x: Array, knots: Array, values: Array, slope: Array) -> Array:
 
 
 def largest_near(knots: Array, of_intervals: Array, x: Array, by: Array | float) -> Array:
-    """Return the largest of the intervals' numbers (n - 1,) within ``by`` of ``x``.
-
-    Before the first row and after the last the interval there counts.
-    """
+    """Return the largest of the intervals' numbers (n - 1,) within ``by`` of ``x``. Before the
+    first row and after the last the interval there counts."""
     count = len(of_intervals)
     first = np.clip(np.searchsorted(knots, x - by, side="right") - 1, 0, count - 1)
     last = np.clip(np.searchsorted(knots, x + by, side="left") - 1, 0, count - 1)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.table import Table
@@ -25,10 +24,6 @@ from models.scene.elastic import Shape
 from reports.describe.elastic_words import described
 from reports.describe.motion_tables import Columns, tables_over_time
 from reports.output.console import plain_table
-
-if TYPE_CHECKING:
-    pass
-
 
 SHARES = np.linspace(0.0, 1.0, 41)
 """Points of an elastic link at which its shape is computed, over its length; with the middle."""
@@ -244,10 +239,9 @@ def _extreme(
 def extremes_table(scene: Scene, rows: list[DeflectionExtreme]) -> Table:
     """Return a table of `extremes`."""
     table = plain_table(gap=2)
-    table.add_column("largest", no_wrap=True)
-    table.add_column("", justify="right", no_wrap=True)
-    table.add_column("", no_wrap=True)
-    table.add_column(f"{scene.driver.link} at", justify="right", no_wrap=True)
+    for name, number in (("largest", ""), ("", f"{scene.driver.link} at")):
+        table.add_column(name, no_wrap=True)
+        table.add_column(number, justify="right", no_wrap=True)
     table.add_column("", overflow="fold")
     for row in rows:
         value = "-" if math.isnan(row.value) else f"{row.value:.6g}"

@@ -7,14 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.elastic.discretisation import (
-    Discretisation,
-    ElasticDoubt,
-    Elements,
-    Modes,
-    Polynomials,
-    Segments,
-)
+from analytic.elastic.discretisation import Discretisation, ElasticDoubt, Elements, Modes, Segments
 from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.released import ReleasedElasticMotion
 from models.array import Array
@@ -44,31 +37,22 @@ STARTS: dict[Shape, str] = {
 def elastic_facts(scene: Scene, by: Discretisation, *, stiffened: bool) -> list[str]:
     """Return one line per elastic link, and one on the description of all of them."""
     lines = [_link(scene, own) for own in scene.elastic.values()]
-    short = "with the shortening of bent links" if stiffened else (
-        "without the shortening of bent links (linear, as in the thesis)"
-    )  # fmt: skip
-    return [*lines, f"elastic links by {described(scene, by)} each, {short}"]
+    line = f"elastic links by {described(scene, by)} each, "
+    line += "with" if stiffened else "without"
+    line += " the shortening of bent links"
+    return [*lines, line if stiffened else f"{line} (linear, as in the thesis)"]
 
 
 def described(scene: Scene, by: Discretisation) -> str:
     """Return the description of elastic links, such as 5 sines across and 2 sines along."""
-    bends, stretches = (
-        any(getattr(own, kind) for own in scene.elastic.values()) for kind in ("bends", "stretches")
-    )
-    if isinstance(by, Modes):
-        return listed(_across_and_along(by, "sine", bends=bends, stretches=stretches))
-    if isinstance(by, Polynomials):
-        return listed(_across_and_along(by, "polynomial", bends=bends, stretches=stretches))
     if isinstance(by, Elements):
         return count(by.count, "beam element")
-    return count(by.count, "rigid segment")
-
-
-def _across_and_along(
-    by: Modes | Polynomials, noun: str, *, bends: bool, stretches: bool
-) -> list[str]:
-    across, along = count(by.across, noun), count(by.along, noun)
-    return [f"{across} across"] * bends + [f"{along} along"] * stretches
+    if isinstance(by, Segments):
+        return count(by.count, "rigid segment")
+    noun, links = "sine" if isinstance(by, Modes) else "polynomial", scene.elastic.values()
+    across = [f"{count(by.across, noun)} across"] * any(own.bends for own in links)
+    along = [f"{count(by.along, noun)} along"] * any(own.stretches for own in links)
+    return listed([*across, *along])
 
 
 def _link(scene: Scene, own: ElasticLink) -> str:
@@ -87,7 +71,6 @@ def _link(scene: Scene, own: ElasticLink) -> str:
 
 
 def _ratio(scene: Scene, first_rad_s: float) -> str:
-    """Return a frequency, and its ratio to the driver's speed where that is constant."""
     words = f"{first_rad_s:.6g} rad/s on"
     law = scene.driver.law
     if isinstance(law, ConstantSpeed):

@@ -123,7 +123,6 @@ def _travels(scene: Scene, along: Sequence[Along]) -> Iterator[str]:
 
 
 def _is_driver(scene: Scene, output: Output) -> bool:
-    """True if it is described as the driver."""
     driver = scene.driver
     return output == (driver.link if driver.is_crank else driver.slider)
 
@@ -133,7 +132,6 @@ def _outputs(scene: Scene, along: Sequence[Along]) -> list[Output]:
 
 
 def _turns(scene: Scene, output: Output) -> bool:
-    """True if its coordinate is an angle."""
     return isinstance(output, str) and output in scene.links
 
 

@@ -13,30 +13,31 @@ from models.errors import CrankcheckError
 from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.driver import driver_course, driver_place, driver_shown, driver_unit
-from reports.describe.motion_tables import Columns, acted_on, digits, head_table, tables_over_time
+from reports.describe.motion_tables import (
+    Columns,
+    acted_on,
+    add_numbers,
+    head_table,
+    tables_over_time,
+)
 from reports.output.console import plain_table
 from reports.output.numbers import listed
 
 
 def position_friction_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:
     """Return tables at one position: power of the drive with its loss; and friction of each joint.
-
-    None without friction.
-    """
+    None without friction."""
     flow = flow_of(scene, motion, acting)
     if flow is None:
         return []
     drive = head_table("power of", ("drive W", "friction W", "efficiency "))
-    numbers = (flow.put_in, -flow.lost, flow.efficiency)
-    drive.add_row(scene.driver.joint, *(digits(float(each[0])) for each in numbers))
+    add_numbers(drive, scene.driver.joint, flow.put_in[0], -flow.lost[0], flow.efficiency[0])
     joints = head_table("friction on", ("from ", "couple N m", "force N", "power W"))
     watts = friction_power(scene, motion, acting.friction)
     for joint, series in acting.friction.items():
         first, second = _bodies(scene, joint)
-        is_slider = joint in scene.sliders
-        pair = (math.nan, float(series[0])) if is_slider else (float(series[0]), math.nan)
-        row = (first, *map(digits, (*pair, float(watts[joint][0]))))
-        joints.add_row(f"{joint} {second}", *row)
+        pair = (math.nan, series[0]) if joint in scene.sliders else (series[0], math.nan)
+        add_numbers(joints, f"{joint} {second}", first, *pair, watts[joint][0])
     return [drive, joints]
 
 
@@ -45,16 +46,11 @@ def friction_over_time(scene: Scene, motion: Motion, acting: Forces) -> list[tup
     flow = flow_of(scene, motion, acting)
     if flow is None:
         return []
-    columns: list[tuple[str, Columns]] = [
-        (
-            "power",
-            [("drive\nW", flow.put_in), ("lost\nW", flow.lost), ("effi-\nciency", flow.efficiency)],
-        )
-    ]
+    power = [("drive\nW", flow.put_in), ("lost\nW", flow.lost), ("effi-\nciency", flow.efficiency)]
+    columns: list[tuple[str, Columns]] = [("power", power)]
     for joint, series in acting.friction.items():
-        columns.append(
-            (friction_name(scene, joint), [(f"friction\n{unit_of(scene, joint)}", series)])
-        )
+        head = f"friction\n{unit_of(scene, joint)}"
+        columns.append((friction_name(scene, joint), [(head, series)]))
     return columns
 
 
@@ -126,23 +122,20 @@ def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[
     one position; of a guide also the distance along its line from the slider's point at which the
     normal force acts alone."""
     drive = head_table("drive on", (_effort(scene), "power W"))
-    torque = float(acting.torque[0])
     power = math.nan
     if driver_place(scene, motion) is not None:
-        power = torque * float(driver_course(scene, motion)[1][0])
-    drive.add_row(scene.driver.joint, digits(torque), digits(power))
+        power = acting.torque[0] * driver_course(scene, motion)[1][0]
+    add_numbers(drive, scene.driver.joint, acting.torque[0], power)
     pins = head_table("pin, force on", ("from ", "x N", "y N", "size N", "direction deg"))
     for point, body, source, force in acted_on(acting):
-        x, y = (float(each) for each in force[0])
-        numbers = (x, y, math.hypot(x, y), _direction(x, y))
-        pins.add_row(f"{point} {body}", source, *map(digits, numbers))
+        x, y = force[0]
+        add_numbers(pins, f"{point} {body}", source, x, y, math.hypot(x, y), _direction(x, y))
     guides = head_table("slider, force on", ("from ", "normal N", "moment N m", "offset m"))
-    for name, slider in acting.sliders.items():
-        normal, moment = float(slider.normal[0]), float(slider.moment[0])
-        at = moment / normal if normal else math.nan
-        body = scene.sliders[name].link or "block"
-        row = (f"{name} {body}", scene.sliders[name].on, *map(digits, (normal, moment, at)))
-        guides.add_row(*row)
+    for name, reaction in acting.sliders.items():
+        slider, normal, moment = scene.sliders[name], reaction.normal[0], reaction.moment[0]
+        offset = moment / normal if normal else math.nan
+        label = f"{name} {slider.link or 'block'}"
+        add_numbers(guides, label, slider.on, normal, moment, offset)
     tables = [table for table in (drive, pins, guides) if table.row_count]
     return tables + position_friction_tables(scene, motion, acting)
 
@@ -164,7 +157,6 @@ def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int
 
 
 def _effort(scene: Scene) -> str:
-    """Return the drive's effort, with its unit."""
     return f"{scene.driver.effort} {scene.driver.effort_unit}"
 
 
@@ -216,11 +208,8 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
 def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
     """Return a table of `largest_of`."""
     table = plain_table(gap=2)
-    table.add_column("over a turn", no_wrap=True)
-    table.add_column("largest", justify="right", no_wrap=True)
-    table.add_column("", no_wrap=True)
-    table.add_column(f"{scene.driver.joint} at", justify="right", no_wrap=True)
-    table.add_column("mean", justify="right", no_wrap=True)
+    for k, head in enumerate(("over a turn", "largest", "", f"{scene.driver.joint} at", "mean")):
+        table.add_column(head, justify="right" if k and head else "left", no_wrap=True)
     for row in largest_of(scene, turn, acting):
         at = "-" if math.isnan(row.at) else f"{row.at:.4g} {driver_unit(scene)}"
         mean = "-" if math.isnan(row.mean) else f"{row.mean:.6g}"

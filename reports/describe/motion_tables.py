@@ -12,7 +12,7 @@ from rich.table import Table
 
 from analytic.mechanism.travel import coriolis
 from models.array import Array
-from models.motion import BodyMotion, Forces, Motion
+from models.motion import Forces, Motion, each_array
 from models.scene import Scene
 from models.scene.driver import driver_place
 from reports.describe.facts import SpeedFacts
@@ -37,28 +37,23 @@ def position_tables(scene: Scene, motion: Motion) -> list[Table]:
     Coriolis component on a moving guide, where there is any."""
     links = head_table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
     for name, link in motion.links.items():
-        theta = float(link.theta[0])
-        numbers = (math.degrees(theta), theta, float(link.omega[0]), float(link.alpha[0]))
-        links.add_row(name, *map(digits, numbers))
+        theta = link.theta[0]
+        add_numbers(links, name, math.degrees(theta), theta, link.omega[0], link.alpha[0])
     places = head_table("point", ("x m", "y m", "vx m/s", "vy m/s", "v m/s"))
     rates = head_table("point", ("ax m/s^2", "ay m/s^2", "a m/s^2"))
     for name, point in motion.points.items():
         v, a = point.velocity[0], point.acceleration[0]
-        row = [*point.position[0], *v, np.hypot(*v)]
-        places.add_row(name, *(digits(float(value)) for value in row))
-        rates.add_row(name, *(digits(float(value)) for value in (*a, np.hypot(*a))))
-    tables = [table for table in (links, places, rates) if table.row_count]
-    if motion.sliders:
-        whole = motion.sliders.keys() == scene.sliders.keys() and motion.links
-        turned = coriolis(scene, motion) if whole else {}
-        heads = ("displacement m", "speed m/s", "acceleration m/s^2")
-        sliders = head_table("slider", (*heads, "Coriolis m/s^2") if turned else heads)
-        for name, slider in motion.sliders.items():
-            row = [slider.displacement[0], slider.speed[0], slider.acceleration[0]]
-            row += [turned[name][0] if name in turned else 0.0] if turned else []
-            sliders.add_row(name, *(digits(float(value)) for value in row))
-        tables.append(sliders)
-    return tables
+        add_numbers(places, name, *point.position[0], *v, np.hypot(*v))
+        add_numbers(rates, name, *a, np.hypot(*a))
+    whole = motion.sliders.keys() == scene.sliders.keys() and motion.links
+    turned = coriolis(scene, motion) if motion.sliders and whole else {}
+    heads = ("displacement m", "speed m/s", "acceleration m/s^2")
+    sliders = head_table("slider", (*heads, *["Coriolis m/s^2"] * bool(turned)))
+    for name, slider in motion.sliders.items():
+        row = [slider.displacement[0], slider.speed[0], slider.acceleration[0]]
+        row += [turned[name][0] if name in turned else 0.0] * bool(turned)
+        add_numbers(sliders, name, *row)
+    return [table for table in (links, places, rates, sliders) if table.row_count]
 
 
 def speed_table(speeds: SpeedFacts) -> Table:
@@ -134,6 +129,11 @@ def head_table(head: str, columns: Sequence[str]) -> Table:
     return table
 
 
+def add_numbers(table: Table, name: str, *row: str | float) -> None:
+    """Add a row of numbers, or words, to a table."""
+    table.add_row(name, *(each if isinstance(each, str) else digits(float(each)) for each in row))
+
+
 def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
     """Return one row per sample: each link, point and slider with its rates, vectors also by
     length; middle deflection and extension of elastic links; and the forces, where there are any
@@ -200,25 +200,21 @@ def run_frame(run: Run) -> pd.DataFrame:
 def cleaned(motion: Motion) -> Motion:
     """Return the motion for readers: numbers that are 0 within their own bound are 0, and those
     with an infinite bound NaN."""
-    if motion.bound is None:
+    bound = motion.bound
+    if bound is None:
         return motion
-    links, points, sliders = motion.bound.links, motion.bound.points, motion.bound.sliders
+
+    def clean(values: Array, limit: Array) -> Array:
+        """Clean a series (T,) or (T, 2) by its bound (T,)."""
+        shown = np.where(np.abs(values.T) <= limit, 0.0, values.T)
+        return np.where(np.isfinite(limit), shown, np.nan).T
+
     return replace(
         motion,
-        links={n: _cleaned(m, links[n]) for n, m in motion.links.items()},
-        points={n: _cleaned(m, points[n]) for n, m in motion.points.items()},
-        sliders={n: _cleaned(m, sliders[n]) for n, m in motion.sliders.items()},
+        links=each_array(clean, motion.links, bound.links),
+        points=each_array(clean, motion.points, bound.points),
+        sliders=each_array(clean, motion.sliders, bound.sliders),
     )
-
-
-def _cleaned(body: BodyMotion, bound: BodyMotion) -> BodyMotion:
-    """Return one body's arrays; a bound is per sample, also for vectors."""
-    fields = {}
-    for name, values in vars(body).items():
-        limit = vars(bound)[name]
-        shown = np.where(np.abs(values.T) <= limit, 0.0, values.T)
-        fields[name] = np.where(np.isfinite(limit), shown, np.nan).T
-    return type(body)(**fields)
 
 
 def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:

@@ -12,7 +12,7 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Forces, Motion, SliderForces
+from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.driver import driver_place, driver_shown, driver_unit
@@ -33,11 +33,8 @@ def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: boo
     ``by_law`` is True if its times are instants of the driver's law, which determine the forces;
     else the whole motion itself is taken.
 
-    Raises
-    ------
-    CrankcheckError
-        As `analytic.forces.kinetostatics.forces`, for dead points only where all samples are in
-        one; a load over time on a motion whose times are mere labels.
+    Raises CrankcheckError as `analytic.forces.kinetostatics.forces`, for dead points only where all
+    samples are in one; and for a load over time on a motion whose times are mere labels.
     """
     if not by_law:
         _refuse_loads_over_time(scene)
@@ -93,7 +90,6 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
 
 
 def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
-    """Return the driver's angles at samples in words."""
     if driver_place(scene, motion) is None:
         return count(samples.size, "instant")
     places, unit = driver_shown(scene, motion)[samples], driver_unit(scene)
@@ -165,20 +161,8 @@ def cleaned_forces(acting: Forces) -> Forces:
     def clean(series: Array, limit: Array) -> Array:
         return _cleaned(series, np.where(jams, 0.0, limit))
 
-    pins = {
-        point: {body: clean(force, bound.pins[point][body]) for body, force in bodies.items()}
-        for point, bodies in acting.pins.items()
-    }
-    sliders = {
-        name: SliderForces(
-            clean(slider.normal, bound.sliders[name].normal),
-            clean(slider.moment, bound.sliders[name].moment),
-        )
-        for name, slider in acting.sliders.items()
-    }
-    friction = {n: clean(series, bound.friction[n]) for n, series in acting.friction.items()}
-    torque = clean(acting.torque, bound.torque)
-    return replace(acting, pins=pins, sliders=sliders, torque=torque, friction=friction)
+    clear = acting.each_series(clean, bound)
+    return replace(clear, bound=bound, friction_solution=acting.friction_solution)
 
 
 def _cleaned(series: Array, limit: Array) -> Array:

@@ -14,7 +14,7 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.joints import block_name
-from reports.drawing.moving import packed
+from reports.drawing.moving import packed, rounded
 from reports.drawing.shape import MARGIN, box_of, guide_direction, size_of_motion
 
 LONGEST = 0.34
@@ -56,6 +56,11 @@ class Arrow:
         across = np.array([-along[1], along[0]])
         foot = self.tip - length * along
         return np.array([self.tip, foot + half * across, foot - half * across])
+
+    def line(self, size: float) -> Array:
+        """Return both ends of the line, up to the head if there is one, (2, 2)."""
+        end = self.head(size)[1:].mean(axis=0) if self.is_whole else self.tip
+        return np.array([self.tail, end])
 
 
 @dataclass(frozen=True)
@@ -145,14 +150,7 @@ def force_arrows(scene: Scene, path: Motion) -> ForceArrows:
     return ForceArrows(scene, LONGEST * size / largest, size, rounded(0.7 * largest))
 
 
-def rounded(value: float) -> float:
-    """Return the next of 1, 2, 5, 10, ... below."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1 + 1e-9)) * power
-
-
 def _acting(scene: Scene, motion: Motion, index: int) -> Iterator[_Force]:
-    """Yield every force that is drawn at a sample."""
     acting = motion.forces
     if acting is None:
         return

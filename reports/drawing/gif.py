@@ -33,10 +33,9 @@ def draw_arrows(axes: Axes, arrows: ForceArrows, motion: Motion, index: int) -> 
     """Draw the forces at a sample, each in the colour of the body that it acts on."""
     colours = shape.colours_of(arrows.scene)
     for arrow in arrows.at(motion, index):
-        colour = colours.get(arrow.body, INK)
-        end = arrow.head(arrows.size)[1:].mean(axis=0) if arrow.is_whole else arrow.tip
-        axes.plot(*np.array([arrow.tail, end]).T, color="white", linewidth=3.2, zorder=6)
-        axes.plot(*np.array([arrow.tail, end]).T, color=colour, linewidth=1.6, zorder=6)
+        colour, line = colours.get(arrow.body, INK), arrow.line(arrows.size).T
+        axes.plot(*line, color="white", linewidth=3.2, zorder=6)
+        axes.plot(*line, color=colour, linewidth=1.6, zorder=6)
         if arrow.is_whole:
             look: dict[str, Any] = {"facecolor": colour, "edgecolor": "white", "linewidth": 0.5}
             axes.fill(*arrow.head(arrows.size).T, zorder=7, **look)
@@ -153,7 +152,6 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
 
 
 def _legend(figure: Figure, turn: _Turn) -> None:
-    """Draw the links by colour, below everything that moves."""
     colours = shape.colours_of(turn.scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
     if turn.arrows is not None:
@@ -166,7 +164,6 @@ def _legend(figure: Figure, turn: _Turn) -> None:
 
 
 def _draw(axes: Axes, turn: _Turn, index: int) -> None:
-    """Draw one position with the paths of the points behind it."""
     scene, motion = turn.scene, turn.motion
     low, high = turn.box
     axes.set_xlim(low[0], high[0])
@@ -219,9 +216,7 @@ def draw_bodies(
     for name, point in motion.points.items():
         place = point.position[index]
         if name in scene.ground:  # on a triangle
-            foot = 0.035 * size
-            corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
-            axes.fill(*corners.T, color=INK, alpha=0.75, linewidth=0, zorder=2)
+            axes.fill(*shape.foot_of(place, size).T, color=INK, alpha=0.75, linewidth=0, zorder=2)
         axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
     return size
 

@@ -66,7 +66,7 @@ def packed(rows: Array) -> dict[str, object]:
     return {
         "samples": rows.shape[1],
         "scales": scales,
-        "base64": base64.b64encode(whole.tobytes()).decode("ascii"),
+        "base64": _base64(whole.tobytes()),
     }
 
 
@@ -75,7 +75,11 @@ def singles(row: Array) -> dict[str, object]:
     read to their last digits; samples that are not finite stay so."""
     with np.errstate(over="ignore"):  # beyond 3.4e38 it has no end
         numbers = np.asarray(row, dtype=np.float64).astype("<f4")
-    return {"samples": numbers.size, "singles": base64.b64encode(numbers.tobytes()).decode("ascii")}
+    return {"samples": numbers.size, "singles": _base64(numbers.tobytes())}
+
+
+def _base64(raw: bytes) -> str:
+    return base64.b64encode(raw).decode("ascii")
 
 
 def size_of(series: int, samples: int) -> int:
@@ -85,18 +89,13 @@ def size_of(series: int, samples: int) -> int:
 
 def policy(scripts: list[str]) -> str:
     """Return the content security policy of a page that runs only these scripts and loads nothing.
-
-    Plotly writes styles as it draws, and makes pictures of diagrams out of blobs.
-    """
-    hashes = " ".join(f"'sha256-{_hash(script)}'" for script in scripts)
+    Plotly writes styles as it draws, and makes pictures of diagrams out of blobs."""
+    digests = (_base64(hashlib.sha256(script.encode()).digest()) for script in scripts)
+    hashes = " ".join(f"'sha256-{digest}'" for digest in digests)
     return (
         f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; "
         "img-src data: blob:; media-src data:; base-uri 'none'; form-action 'none'"
     )
-
-
-def _hash(script: str) -> str:
-    return base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
 
 
 INSTANTS = 91
@@ -185,7 +184,6 @@ def displacements(
 
 
 def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
-    """Return a slider: its point and guide, the guide's angle there, and its travel."""
     slider = scene.sliders[name]
     travel = motion.sliders[name].displacement
     return {
@@ -213,7 +211,6 @@ def first_turn(angle_rad: Array) -> Array:
 
 
 def _rows(vectors: Iterable[Array], samples: int) -> Array:
-    """Return vectors (T, 2) as rows: x and y of each."""
     return _stacked([row for vector in vectors for row in vector.T], samples)
 
 
@@ -243,9 +240,13 @@ def magnification(
     largest = float(max([*moved, *(np.abs(each).max() for each in bent.values())]))
     if not largest > 0.0:
         return 1.0
-    wanted = SHOWN * size_m / largest
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return max(1.0, power * max(x for x in (1.0, 2.0, 5.0) if x * power <= wanted * (1.0 + 1e-9)))
+    return max(1.0, rounded(SHOWN * size_m / largest))
+
+
+def rounded(value: float) -> float:
+    """Return the next of 1, 2, 5, 10, ... below."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1 + 1e-9)) * power
 
 
 @dataclass(frozen=True)

@@ -67,6 +67,13 @@ def size_of_motion(path: Motion) -> float:
     return float(np.max(high - low)) / (1 + 2 * MARGIN)
 
 
+def foot_of(place: Array, size: float) -> Array:
+    """Return the corners of the foot below a pin of the ground [m], (3, 2)."""
+    foot = 0.035 * size
+    corners = np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+    return np.asarray(place + corners)
+
+
 def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
     """Return the unit vector along a guide at a sample."""
     angle = slider.direction_rad
@@ -75,10 +82,10 @@ def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
     return np.array([math.cos(angle), math.sin(angle)])
 
 
-def colours_of(scene: Scene) -> dict[str, str]:
+def colours_of(scene: Scene, colours: Sequence[str] = COLOURS) -> dict[str, str]:
     """Return a colour for every link, the driver's first."""
     names = sorted(scene.links, key=lambda name: name != scene.driver.link)
-    return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
+    return dict(zip(names, itertools.cycle(colours), strict=False))
 
 
 def clear_of_locking(acting: Forces) -> Forces:
@@ -127,13 +134,9 @@ def place(
 ) -> list[tuple[float, float]]:
     """Return the centre of each label [inch], in the order given; earlier ones choose first.
 
-    Parameters
-    ----------
-    heavy, light : Array
-        Points that no label may cover, and points that it should not, shape (n, 3) and (m, 2); the
-        third number is a radius [inch].
-    frame : tuple
-        Width and height of the drawing [inch]; all is measured from its lower left corner.
+    No label may cover ``heavy`` points, (n, 3), the third number a radius [inch], nor should it
+    ``light`` ones, (m, 2). ``frame`` is the width and height of the drawing [inch]; all is measured
+    from its lower left corner.
     """
     centres: list[tuple[float, float]] = []
     boxes: list[tuple[float, float, float, float]] = []
@@ -167,7 +170,6 @@ def _costs(
     boxes: Sequence[tuple[float, float, float, float]],
     frame: tuple[float, float],
 ) -> Array:
-    """Return the cost of each place (k, 2), shape (k,)."""
     half = np.array(label.size) / 2
     room = np.min(_distance(heavy[:, :2], centres, half) - heavy[:, 2], axis=1, initial=CLEAR)
     for x, y, width, height in boxes:
@@ -254,9 +256,7 @@ def names(
     """
     blocks = {slider.point for slider in scene.sliders.values()}
     spots = {
-        name: _Spot(
-            (point.position[at] - sheet.low) * sheet.per_m, sheet.block if name in blocks else PIN
-        )
+        name: _Spot(sheet.place(point.position[at]), sheet.block if name in blocks else PIN)
         for name, point in path.points.items()
     }
     bars = {
@@ -301,7 +301,6 @@ def _middle(sides: Sequence[Side]) -> Array:
 
 
 def _sampled(a: Array, b: Array) -> Array:
-    """Return points along a side, closely."""
     return np.linspace(a, b, max(int(np.linalg.norm(b - a) / BAR), 1) + 1)
 
 

@@ -64,7 +64,7 @@ def svg(
     wide, tall = (float(each) * per_m for each in high - low)
     paper = _Paper(float(low[0]), float(high[1]), per_m)
     size = shape.size_of_motion(path)
-    colours = colours_of(scene)
+    colours = shape.colours_of(scene, COLOURS)
     spare_m = 0.08 * size
     sheet = shape.Sheet(
         low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH
@@ -91,14 +91,7 @@ def svg(
     )
 
 
-def colours_of(scene: Scene) -> dict[str, str]:
-    """Return a colour for every link, the driver's first."""
-    order = sorted(scene.links, key=lambda name: name != scene.driver.link)
-    return {name: COLOURS[index % len(COLOURS)] for index, name in enumerate(order)}
-
-
 def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[str]:
-    """Yield the paths of the moving points, as far as they are finite."""
     for name, point in motion.points.items():
         places = point.position[np.isfinite(point.position).all(axis=1)]
         few = places[:: max(1, len(places) // SAMPLES)]
@@ -109,7 +102,6 @@ def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[s
 def _guides(
     scene: Scene, path: Motion, at: int, paper: _Paper, spare_m: float, colours: dict[str, str]
 ) -> Iterable[str]:
-    """Yield the lines of sliders, as far as they run on them."""
     for slider in scene.sliders.values():
         ends = shape.rail(slider, path, at, spare_m)[[0, -1]]
         colour = "currentColor" if slider.on == GROUND else colours[slider.on]
@@ -131,7 +123,6 @@ def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: 
 
 
 def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
-    """Return the block of a slider, along its line."""
     direction = shape.guide_direction(slider, path, at)
     across = np.array([-direction[1], direction[0]])
     half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * BLOCK / paper.per_m
@@ -143,9 +134,7 @@ def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
 
 
 def _feet(place: Array, paper: _Paper, size: float) -> str:
-    """Return the foot of a pin of the ground."""
-    foot = 0.035 * size
-    corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+    corners = shape.foot_of(place, size)
     return (
         f'<polygon points="{_points(paper.at(corners))}" fill="currentColor" opacity="0.55" '
         'stroke="none"/>'
@@ -160,12 +149,10 @@ def _pin(place: Array, paper: _Paper) -> str:
 def _arrow(arrow: Arrow, paper: _Paper, size: float, colours: dict[str, str]) -> str:
     """Return a force in the colour of the body that it acts on; on a block in the text colour."""
     colour = colours.get(arrow.body, "currentColor")
-    head = arrow.head(size)
-    ends = np.array([arrow.tail, head[1:].mean(axis=0) if arrow.is_whole else arrow.tip])
-    corners = f'<polygon points="{_points(paper.at(head))}" fill="{colour}" stroke="none"/>'
+    head, line = (_points(paper.at(each)) for each in (arrow.head(size), arrow.line(size)))
+    corners = f'<polygon points="{head}" fill="{colour}" stroke="none"/>'
     return (
-        f'<polyline points="{_points(paper.at(ends))}" stroke="{colour}" stroke-width="2"/>'
-        f"{corners * arrow.is_whole}"
+        f'<polyline points="{line}" stroke="{colour}" stroke-width="2"/>{corners * arrow.is_whole}'
     )
 
 
@@ -199,5 +186,4 @@ def _size(text: str, is_point: bool) -> tuple[float, float]:
 
 
 def _points(places: Sequence[Array] | Array) -> str:
-    """Return corners in SVG format."""
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in places)

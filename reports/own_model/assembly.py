@@ -13,7 +13,7 @@ import numpy as np
 from analytic.kinematics import in_assembly, reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError, few
-from models.files.names import MOST_ASSEMBLIES
+from models.files.body_table import MOST_ASSEMBLIES
 from models.scene import Driver, Scene
 from models.scene.joints import Frame, frames
 from models.scene.laws import ConstantSpeed

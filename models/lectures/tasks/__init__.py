@@ -40,13 +40,6 @@ def find_task(kind: str, name_or_path: str) -> Path:
 
 
 def load_task(kind: str, name_or_path: str) -> TaskTable:
-    """Load a shipped task by name, or a task of a file.
-
-    Raises
-    ------
-    CrankcheckError
-        An unknown kind, or no such task.
-    SceneError
-        A file with faults, all in one message.
-    """
+    """Load a shipped task by name, or a task of a file. Raises CrankcheckError for an unknown kind
+    or task, and SceneError for a file with faults, all in one message."""
     return read_table(find_task(kind, name_or_path), KINDS[kind])

@@ -64,9 +64,6 @@ class FunctionTable(TaskTable):
         return self
 
 
-LEAST_POINTS, MOST_POINTS = 4, 50
-
-
 class PathTable(TaskTable):
     """A path: ``points_m`` in their order; with ``crank_deg``, timing: the crank's angles in them,
     of which only the differences count. A ``closed`` path returns to its first point, listed once.
@@ -75,7 +72,7 @@ class PathTable(TaskTable):
     limits the search. Mechanisms below ``least_transmission_deg`` are not taken.
     """
 
-    points_m: Annotated[list[Coordinates], Field(min_length=LEAST_POINTS, max_length=MOST_POINTS)]
+    points_m: Annotated[list[Coordinates], Field(min_length=4, max_length=50)]
     crank_deg: list[Degrees] | None = None
     closed: bool = False
     starts: Annotated[StrictInt, Field(ge=1, le=1000)] = 48

@@ -16,7 +16,7 @@ from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMecha
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
 from models.errors import CrankcheckError, ReachError, StructureError
-from models.files.names import MOST_ASSEMBLIES
+from models.files.body_table import MOST_ASSEMBLIES
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from models.scene.cut_links import with_rigid_links

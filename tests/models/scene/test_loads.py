@@ -103,63 +103,6 @@ def test_a_characteristic_of_another_kind_has_no_words() -> None:
         scene_text(replace(scene, loads={"x": Load("x", "crank", None, Own())}))
 
 
-FAULTS = {
-    "no body": ('block = "C"\n', "", "loads.work: name what it acts on: link, or block"),
-    "two bodies": ('block = "C"', 'block = "C"\nlink = "rod"', "loads.work: name what it acts"),
-    "other link": ('link = "rod"', 'link = "rad"', "loads.gas.link: found rad; use one of crank"),
-    "other block": ('block = "C"', 'block = "B"', "loads.work.block: found B; use one of C"),
-    "other point": ('point = "B"', 'point = "D"', "loads.hum.point: rod has no point D; it has B"),
-    "other slider": ('slider = "C"', 'slider = "B"', "loads.work.slider: found B; use one of C"),
-    "no slider": ('slider = "C"\nstroke', "stroke", "loads.work: over displacement or speed, or"),
-    "idle slider": ('stroke = "forward"', "", "loads.work: slider needs stroke = "),
-    "no point": ('point = "B"\n', "", "loads.hum: a force on link rod needs the point"),
-    "point of a block": ("force_n = 500.0", 'force_n = 5.0\npoint = "C"', "leave point out"),
-    "no magnitude": ("force_n = 500.0", "", "loads.work: give force_n or torque_n_m, one"),
-    "two magnitudes": ("force_n = 500.0", "force_n = 5.0\ntorque_n_m = 1.0", "one of the two"),
-    "torque with a point": (
-        "torque_n_m = [0.0", 'point = "B"\ntorque_n_m = [0.0', "point belongs to a force"),
-    "other law": ('law = "sine"', 'law = "saw"', "loads.hum.law: found 'saw'; use one of constant"),
-    "unknown key": ("phase_deg", "fase_deg", "loads.hum.fase_deg: unknown key; did you mean phase"),
-    "number as text": ("force_n = 3.0", 'force_n = "3"', "loads.hum.force_n: found '3'"),
-    "other unit": ("at_m", "at_s", 'loads.gas: over = "displacement" takes at_m; found at_s'),
-    "no places": ("at_m = [0.15, 0.2, 0.45]", "", 'loads.gas: over = "displacement" needs at_m'),
-    "other period": ("period_s", "period_m", 'loads.hum: over = "time" takes period_s; found'),
-    "period of no angle": (
-        "at_m = [0.15", "period_deg = 90.0\nat_m = [0.15", 'period_deg needs over = "angle"'),
-    "no interpolation": ('interpolation = "pchip"', "", "loads.gas.interpolation: missing"),
-    "falling places": (
-        "0.2, 0.45]", "0.1, 0.45]", "loads.gas: found 0.1 after 0.15; the places of a table have"),
-    "equal places": ("0.2, 0.45]", "0.15, 0.45]", "loads.gas: found 0.15 after 0.15"),
-    "one row": (
-        "[0.15, 0.2, 0.45]\nforce_n = [900.0, 300.0, 0.0]", "[0.15]\nforce_n = [900.0]",
-        "loads.gas: found 1 rows; a table needs two or more"),
-    "a rise beyond numbers": (
-        "0.15, 0.2, 0.45]", "0.0, 5e-324, 0.45]", "in rows 4.94e-324 apart, a rise beyond all"),
-    "not a number": ("force_n = 500.0", "force_n = nan", "loads.work.force_n: found nan"),
-    "the ground": ('link = "rod"\npoint = "C"', 'link = "ground"\npoint = "A"', "found ground;"),
-    "a row too many": (
-        "[0.15, 0.2, 0.45]", f"[{', '.join(f'{k}.0' for k in range(10_001))}]", "at most 10000"),
-    "an odd name": ("[loads.hum]", '[loads."hum \\u202e"]', "loads.hum \\u202e: found 'hum "),
-    "a row too few": ("300.0, 0.0]", "300.0]", "loads.gas: found 3 places and 2 values"),
-    "longer than the period": ("720.0", "180.0", "loads.valve: found rows over 4.71239, more than"),
-    "a period that does not close": (
-        "period_deg = 720.0", "period_deg = 270.0", "found 0 in the first row and -1 in the last"),
-    "a slider without a block": (
-        "mass_kg = 0.5", 'link = "rod"', "loads.work.block: found C; the scene has none"),
-    "a list": ('[loads.hum]\nlink = "rod"', '[[loads.hum]]\nlink = "rod"', "loads.hum: found"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("fault", FAULTS)
-def test_fault_of_a_load_is_named(fault: str) -> None:
-    old, new, words = FAULTS[fault]
-    assert old in PRESS
-    with pytest.raises(SceneError) as caught:
-        parse_scene(PRESS.replace(old, new, 1), "press")
-    assert words in str(caught.value)
-    assert len(caught.value.faults) == 1
-
-
 def test_a_list_of_loads_is_refused() -> None:
     with pytest.raises(SceneError, match="loads: found"):
         parse_scene(PRESS.partition("[loads.work]")[0] + '[[loads]]\nlink = "rod"\n', "press")
@@ -332,42 +275,6 @@ def test_friction_reads_back_as_itself(of_slider: str) -> None:
     again = parse_scene(scene_text(scene), "again")
     assert again == scene
     assert list(again.friction) == list(scene.friction)
-
-
-RUBBING_FAULTS = {
-    "negative": ("mu = 0.1", "mu = -0.1", "friction.B.mu: found -0.1; use a number of at least 0"),
-    "not a number": ("mu = 0.1", "mu = nan", "friction.B.mu: found nan"),
-    "endless": ("mu = 0.1", "mu = inf", "friction.B.mu: found inf"),
-    "text": ("mu = 0.1", 'mu = "0.1"', "friction.B.mu: found '0.1'"),
-    "no radius": ("radius_m = 0.01", "", "friction.B.radius_m: missing; mu of a pin acts at its"),
-    "radius of 0": ("radius_m = 0.01", "radius_m = 0.0", "friction.B.radius_m: found 0.0"),
-    "radius alone": ("mu = 0.1\n", "", "friction.B: radius_m is that of a pin with mu, which is"),
-    "two kinds": ("mu = 0.1", "mu = 0.1\ntorque_n_m = 1.0", "friction.B: found mu and torque_n_m"),
-    "no kind": ("torque_n_m = 0.2", "", "friction.A: found none of them; give one of mu"),
-    "negative torque": ("torque_n_m = 0.2", "torque_n_m = -1.0", "friction.A.torque_n_m: found -1"),
-    "no joint": (
-        "friction.B", "friction.Q",
-        "friction.Q: no joint of two bodies has that name; use one of A, B, C, piston"),
-    "force in a pin": ("torque_n_m = 0.2", "force_n = 0.2", "friction.A.force_n: belongs to a sl"),
-    "torque in a slider": (
-        "force_n = 3.0", "torque_n_m = 3.0", "friction.piston.torque_n_m: belongs to a pin"),
-    "radius in a slider": (
-        "force_n = 3.0", "mu = 0.1\nradius_m = 0.01", "friction.piston.radius_m: belongs to a pin"),
-    "unknown key": ("radius_m", "radus_m", "friction.B.radus_m: unknown key; did you mean r"),
-    "no table": ("[friction.A]\ntorque_n_m = 0.2", "[friction]\nA = 0.2", "friction.A: found 0.2"),
-    "a pin of three": (
-        "[sliders", 'door = { bar = ["B", "E"], length_m = 0.3 }\n[sliders',
-        "friction.B: 3 bodies meet at B"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("fault", RUBBING_FAULTS)
-def test_friction_that_can_not_be_is_refused(fault: str) -> None:
-    old, new, words = RUBBING_FAULTS[fault]
-    text = RUBBING.replace(old, new, 1)
-    with pytest.raises(SceneError) as error:
-        parse_scene(text, "rubbing.toml")
-    assert words in str(error.value)
 
 
 def test_all_faults_of_friction_are_told_at_once() -> None:

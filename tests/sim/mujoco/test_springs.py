@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from analytic.free.release import release
-from models.array import Array
 from models.errors import EngineError
 from models.files.reading import load_scene, parse_scene
 from models.mjcf.document import build
