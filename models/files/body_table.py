@@ -80,12 +80,12 @@ class LinkTable(schema.Table):
                 "mass_kg, centre_m and inertia_kg_m2, or a second point"
             )
 
-    def link(self, name: str, elastic: ElasticTable | None, faults: list[str]) -> Link:
+    def link(self, name: str, section: ElasticTable | None, faults: list[str]) -> Link:
         """Make the link; missing mass data default to those of its elastic section, or to a uniform
         slender rod on its longest span."""
         length, a, b = longest_of(self.every_point)
         own = self.mass_kg
-        of_section = None if elastic is None else elastic.mass_kg(length)
+        of_section = None if section is None else section.mass_kg(length)
         if of_section is not None and own is not None:
             faults.append(
                 f"links.{name}: mass_kg is {own:g}, and its section and density_kg_m3 give "

@@ -230,7 +230,7 @@ def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
         raise CrankcheckError(
             f"law {type(law).__name__}: a scene file has no words for it; take another"
         )
-    if slides and kind == "free":
+    if slides and known is Released:
         raise CrankcheckError("what is let go is told by a link: a scene file has no free slider")
     table: dict[str, object] = {} if kind == "constant" else {"law": kind}
     for name, key in _keys_of(known, slides=slides):

@@ -62,9 +62,9 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
     to their curves, by their numbers among those ``drawn``."""
     numbers = {curve.column: number for number, curve in enumerate(drawn)}
     rows = sorted(table.shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
-    unused, unexplained = judged.log.unused, ""
-    if judged.failures and not judged.scene.is_free:  # where causes are not searched
-        unexplained = sentence_text(few(table.unexplained(judged), 6))
+    unused = judged.log.unused
+    searched = judged.failures and not judged.scene.is_free  # causes of free motion are not
+    unexplained = sentence_text(few(table.unexplained(judged), 6)) if searched else ""
     return Section(
         anchor="verdict",
         title="Verdict",

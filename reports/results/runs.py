@@ -116,12 +116,12 @@ class StoredRun:
     def holds(self) -> str:
         """Content to compare, in a sentence."""
         names = list(self.cells)
-        driven, free = ([name for name in names if name.clock is each] for each in (TURNS, SECONDS))
+        turning, timed = ([n for n in names if n.clock is each] for each in (TURNS, SECONDS))
         parts = [
             f"{count(len(names), 'cell')}: scenes {each_once(name.scene for name in names)}",
             each_once(f"{name.engine} {name.variant}" for name in names),
-            *([steps_told(driven), f"{_each_long(driven)} turns"] if driven else []),
-            *([f"let go {steps_told(free)}", f"for {_each_long(free)} s"] if free else []),
+            *([steps_told(turning), f"{_each_long(turning)} turns"] if turning else []),
+            *([f"let go {steps_told(timed)}", f"for {_each_long(timed)} s"] if timed else []),
             f"drive {each_once(name.drive for name in names)}",
         ]
         return f"{self.label} holds {'; '.join(parts)}"

@@ -116,11 +116,8 @@ def _legend(matrix: Matrix) -> str:
     within = {case.within: case.group for case in matrix.cases}
     usual = f"{WITHIN:g}"
     classes = ", ".join([usual, *(f"{w:g} ({g})" for w, g in within.items() if w != WITHIN)])
-    forces = (
-        "Forces: the worst error of a reaction or the torque, over the largest; not graded.\n"
-        if with_forces(matrix)
-        else ""
-    )
+    forces = "Forces: the worst error of a reaction or the torque, over the largest; not graded.\n"
+    forces *= with_forces(matrix)
     return (
         f"Numbers: the worst error of {'; of '.join(errors)}; easy to hard from left to right; "
         "held is "

@@ -23,8 +23,7 @@ from sim.engine import Drive, Poses, Settings
 from sim.engine import drive as drives
 from sim.engine.measure import body_paths, directions, motion
 from sim.engine.momentum_balance import JointPushes, forces_by_body
-from sim.engine.refusals import refuse_driver_angle
-from sim.engine.ties import Hinge
+from sim.engine.ties import Hinge, refuse_driver_angle
 from sim.exudyn.passive import against, still_rad_s
 from sim.exudyn.solver import Multipliers
 from sim.exudyn.system import ANGLE, Index, PlaneSystem, items

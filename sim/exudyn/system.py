@@ -25,8 +25,7 @@ from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from models.scene.elastic import Beam
 from models.scene.joints import Frame
-from sim.engine.refusals import refuse_massless
-from sim.engine.ties import Hinge, hinges
+from sim.engine.ties import Hinge, hinges, refuse_massless
 
 SAID = re.compile(r"Python WARNING|Python ERROR")
 """Beginning of each of exudyn's messages about a run."""

@@ -27,8 +27,7 @@ from models.scene import GROUND, Point, Scene, span
 from models.scene import joints as pairs
 from models.scene.joints import Prism, Slot, less, turned
 from sim.engine import Drive
-from sim.engine.refusals import refuse_driver_angle, refuse_massless
-from sim.engine.ties import Hinge, hinges
+from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 from sim.pymunk import native
 from sim.pymunk.native import SpaceBodies, moves_freely
 
