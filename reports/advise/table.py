@@ -113,7 +113,6 @@ def _table(advice: Advice, width: int) -> Table:
 
 
 def _row(advice: Advice, offer: Offer) -> list[Text]:
-    """Return the row of one choice."""
     reached, target = offer.reached, advice.demand.target
     said = word(reached.at_frame, target)
     best = "bold" if any(offer is each for each in advice.best) else ""
@@ -135,7 +134,6 @@ def _row(advice: Advice, offer: Offer) -> list[Text]:
 
 
 def _error(worst: Worst | None) -> str:
-    """Return the error with few digits; a dash where there is none."""
     if worst is None or not math.isfinite(worst.error):
         return "-"
     return (ABOUT if worst.seen.studied else "") + short(worst.error)
@@ -176,7 +174,6 @@ def footer(advice: Advice) -> str:
 
 
 def _of_scenes(advice: Advice) -> Iterator[str]:
-    """Yield the scope of the promise, where no scene was named."""
     if not advice.named:
         yield (
             "Another mechanism may need other numbers: crankcheck advise SCENE ... takes your own."
@@ -184,7 +181,6 @@ def _of_scenes(advice: Advice) -> Iterator[str]:
 
 
 def _of_study(advice: Advice) -> Iterator[str]:
-    """Yield the parts of the study that were used, and those that were not."""
     known, folder = advice.known, harmless(str(advice.known.folder))
     if known.measured:
         yield (
@@ -222,7 +218,6 @@ def _of(advice: Advice, offer: Offer) -> Iterator[str]:
 
 
 def _unsteady(reached: SearchResult) -> str:
-    """Say that some numbers reached the target by luck."""
     if not reached.unsteady:
         return ""
     numbers = few((str(n) for n in reached.unsteady), SHOWN)
@@ -230,7 +225,6 @@ def _unsteady(reached: SearchResult) -> str:
 
 
 def _growth(worst: Worst | None) -> str:
-    """Say how an error grows."""
     if worst is None or not worst.seen.grows:
         return ""
     return (
@@ -269,7 +263,6 @@ def document(advice: Advice) -> str:
 
 
 def _offer(advice: Advice, offer: Offer) -> Mapping[str, object]:
-    """Return one choice."""
     reached, demand = offer.reached, advice.demand
     choice, price = reached.choice, offer.price
     return {

@@ -53,7 +53,6 @@ def _grid(console: Console, word: str, rows: Sequence[words.PrintedRow]) -> None
 
 
 def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
-    """Print the cells of one run only."""
     texts = words.left_out(cells)
     if not texts:
         return
@@ -100,7 +99,6 @@ def _rows(rows: Sequence[words.PrintedRow], room: int) -> str:
 
 
 def _fitted(texts: Iterable[str], room: int) -> str:
-    """Return as many lines as there is room for, then the number of the rest."""
     return "\n".join(counted(texts, room, "lines"))
 
 
@@ -123,7 +121,6 @@ def suite(diff: Diff, strict: bool = False) -> Element:
 
 
 def _compared(pair: CellPair) -> Element:
-    """Return the case of a cell of both runs."""
     case = _case(pair.name)
     if pair.word == "worse":
         versions = f"{pair.name.engine} {pair.old.version} -> {pair.new.version}"
@@ -141,7 +138,6 @@ def _compared(pair: CellPair) -> Element:
 
 
 def _uncompared(cells: Sequence[StoredCell], tag: str, why: str) -> list[Element]:
-    """Return the cases of cells that there is nothing to compare with."""
     cases = [_case(cell.name) for cell in cells]
     for case in cases:
         remark(case, tag, message=why)

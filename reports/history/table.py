@@ -54,7 +54,6 @@ def _versions(console: Console, results: Sequence[VersionResult]) -> None:
 
 
 def _headlines(console: Console, results: Sequence[VersionResult]) -> None:
-    """Print the headlines between the versions."""
     styles = {True: "green", False: "bold red", None: ""}
     lines = [line for step in steps(results) for line in headlines(step)]
     lines.sort(key=lambda line: line.good is not False)  # changes for the worse go first
@@ -110,7 +109,6 @@ def ranking(names: Sequence[CellName], changes: Sequence[FollowedChange]) -> lis
 def _part(
     shown: Sequence[CellName], ranked: Sequence[CellName], changes: Sequence[FollowedChange]
 ) -> str:
-    """Say which of the scenes a table shows."""
     if len(shown) == len(ranked):
         return "largest errors"
     by = "changed most" if any(change.changed for change in changes) else "have the largest errors"
@@ -120,7 +118,6 @@ def _part(
 def _row(
     cell: StoredCell | None, changes: Sequence[FollowedChange], heads: Sequence[str], later: bool
 ) -> list[Text]:
-    """Return the numbers of a version, changed ones coloured, and the largest change in words."""
     if cell is None:
         return [Text("-")] * len(heads) + [Text("")]
     errors, numbers = errors_of(cell), []
@@ -147,7 +144,6 @@ def compared(changes: Sequence[FollowedChange]) -> Text:
 
 
 def _style(change: FollowedChange | None) -> str:
-    """Return green or red for a change that stands out."""
     if change is None or not change.stands_out:
         return ""
     return "green" if change.word() == "better" else "bold red"
@@ -194,7 +190,6 @@ def table_text(results: Sequence[VersionResult]) -> str:
 
 
 def _lines(cell: StoredCell, changes: Sequence[FollowedChange]) -> Iterator[dict[str, object]]:
-    """Yield the columns of each error of one cell."""
     errors = errors_of(cell)
     changed = {change.quantity: change for change in changes}
     for name in (name for name in FOLLOWED if name in errors or name in changed):

@@ -38,7 +38,6 @@ def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
 
 
 def _failures(console: Console, judged: JudgedLog) -> None:
-    """Print failures, rule by rule, and their causes."""
     if not judged.failures:
         return
     console.print(
@@ -59,7 +58,6 @@ ADVICE = ("advice",)
 
 
 def _late(console: Console, judged: JudgedLog) -> None:
-    """Print notes on a log within tolerance."""
     if judged.failures:
         return
     for cause in judged.causes:
@@ -83,7 +81,6 @@ def cause_text(cause: Cause) -> str:
 
 
 def _keys(correction: Mapping[str, object]) -> str:
-    """Return keys and values of the map."""
     return ", ".join(f"{key} = {_toml(value)}" for key, value in correction.items())
 
 
@@ -120,7 +117,6 @@ def _table(rows: Sequence[LogRow], width: int) -> Table:
 
 
 def _texts(row: LogRow) -> tuple[str, ...]:
-    """Return the columns, the meaning, and the numbers of a row."""
     pure = f"{error_text(row.error.pure)} {share(row.error)}"
     limit = short(row.limit.number)
     return row.names, row.what, row.size, pure, limit, taken_text(row.taken)
@@ -152,7 +148,6 @@ def taken_text(taken: float) -> str:
 
 
 def _rest(console: Console, judged: JudgedLog) -> None:
-    """Print the drive, quantities not judged, unused columns, and notes."""
     if judged.fit:
         hanging(console, "drive: ", fit_text(judged))
     if text := rest_text(judged):

@@ -48,7 +48,6 @@ def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> Non
 
 
 def _failures(console: Console, judged: JudgedModel) -> None:
-    """Print the failures of the model as written, rule by rule."""
     if not judged.failures:
         return
     head = f"{MARKS[judged.verdict].plain}  {judged.account.request.path}, as written"
@@ -62,7 +61,6 @@ def _failures(console: Console, judged: JudgedModel) -> None:
 
 
 def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
-    """Print sentences under a title, each beside its head."""
     console.print(Text(harmless(title), "bold"))
     for head, text in told.items():
         hanging(console, f"  {head}: ", harmless(text))
@@ -83,7 +81,6 @@ def _table(judged: JudgedModel, width: int) -> Table:
 
 
 def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> None:
-    """Add a line, and its gain below it."""
     columns = len(table.columns) - 2
     steps = len(sentences.step_heads(judged))
     table.add_row(mark(one), one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
@@ -96,7 +93,6 @@ def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> 
 
 
 def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
-    """Return one row, from its numbers on."""
     if one.errors is None:
         reason = Text(harmless(f"{one.status}: {one.reason}"), "red")
         return [*["-"] * steps, *(["-", reason] if wide else [reason])]
@@ -112,7 +108,6 @@ def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
 
 
 def _disturbing(console: Console, judged: JudgedModel) -> None:
-    """Print possible disturbances of the comparison, a paragraph for each kind."""
     found = sentences.groups(judged)
     if found:
         console.print("can disturb it:")
@@ -123,7 +118,6 @@ def _disturbing(console: Console, judged: JudgedModel) -> None:
 
 
 def _recommended(console: Console, judged: JudgedModel) -> None:
-    """Print the recommended settings, or why there are none."""
     console.print(Text(sentences.recommended_head(judged), "bold"))
     console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
 

@@ -63,14 +63,12 @@ def summary(stored: Stored) -> str:
 
 
 def _ended(report: Report) -> str:
-    """Say how many runs ended well."""
     number, bad = len(report.cells), int((report.cells["status"] != "ok").sum())
     rest = f"{bad} did not end well" if bad else "none failed to end well"
     return f"Of all {count(number, 'cell')}, whatever the settings, {rest}."
 
 
 def _damaged(report: Report) -> Iterator[str]:
-    """Yield the parts of the store that can not be read."""
     kept, left = fitted(report.stored.notice, ROOM["damage"])
     if kept:
         yield "### State of the store"
@@ -97,7 +95,6 @@ def _outside(report: Report) -> Iterator[str]:
 
 
 def _rule(name: str) -> str:
-    """Return the number and title of a rule."""
     return f"{name} {RULES[name].title}" if name in RULES else name
 
 
@@ -119,7 +116,6 @@ def _recommended(report: Report) -> str:
 
 
 def _recommendation(one: Recommendation) -> tuple[str, ...]:
-    """Return the row of a recommendation."""
     target, best = short_target(one.target), one.best
     if one.reason:
         return (target, best.engine, "none", *[""] * 5)
@@ -131,7 +127,6 @@ def _recommendation(one: Recommendation) -> tuple[str, ...]:
 
 
 def _remark(one: Recommendation) -> str:
-    """Return the remark on a recommendation; empty where there is none."""
     which = f"{one.best.engine}, {short_target(one.target)}"
     if one.reason:
         return f"{which}: none; {one.reason}"
@@ -202,7 +197,6 @@ def _fits(report: Report) -> str:
 
 
 def _finest(line: Line) -> tuple[str, str]:
-    """Return the error at the finest step that ended well, and its steps per turn."""
     if not line.fit.runs:
         return "", ""
     dt_s, error = line.fit.runs[0]
@@ -238,7 +232,6 @@ def _failures(report: Report) -> Iterator[str]:
 
 
 def _footer(report: Report) -> str:
-    """Return versions, processor, study, noise, and all settings."""
     lines = report.lines
     texts = [f"{versions(report, lines)}.", f"{made(report, report.timed)}.", f"{study(lines)}."]
     texts += [noise_line(report.stored)]

@@ -87,7 +87,6 @@ def _kind(request: SelftestRequest) -> RunKind:
 
 
 def _settings(verdicts: Sequence[trial.Verdict]) -> dict[str, object]:
-    """Lengths and steps of the runs; free runs by their scene."""
     kinds = {one.fault.kind for one in verdicts}
     own = (runs.settings.items() for kind, runs in trial.RUNS.items() if kind in kinds)
     return {"profile": PROFILE, **{name: value for items in own for name, value in items}}

@@ -51,7 +51,6 @@ def total(verdicts: Sequence[Verdict]) -> Text:
 
 
 def _without(one: Checked) -> Text:
-    """Return the line of a run without any fault."""
     place = f"no fault: {one.cell.scene.name}, {one.cell.engine}: "
     if passes(one):
         return Text(f"{place}all {len(one.findings)} rules pass", "green")
@@ -60,7 +59,6 @@ def _without(one: Checked) -> Text:
 
 
 def _told(console: Console, verdict: Verdict) -> None:
-    """Print a fault with the texts of the rules, place by place."""
     fault, rule = verdict.fault, RULES[verdict.fault.rule]
     head = "caught" if verdict.caught else "ESCAPES"
     style = "bold green" if verdict.caught else "bold red"
@@ -85,7 +83,6 @@ def _told(console: Console, verdict: Verdict) -> None:
 
 
 def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> Table:
-    """Return one row a fault, in groups."""
     wide = width >= WIDE
     heads = ["", "fault", *["what is wrong"] * wide, "planted size", "caught\nby"]
     heads += [f"from on,\n{engine}:" for engine in engines]
@@ -99,7 +96,6 @@ def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> T
 
 
 def _unseen(passed: Sequence[Passed]) -> Table:
-    """Return the deviations that are not seen, and the reason."""
     table = grid(("", "planted", "why it need not be seen"), gap=1)
     for one in passed:
         failed = dict.fromkeys(rule for rules in one.failed.values() for rule in rules)
@@ -113,7 +109,6 @@ def _unseen(passed: Sequence[Passed]) -> Table:
 
 
 def _cells(one: Verdict, engines: Sequence[str], wide: bool) -> list[Text]:
-    """Return the row of a fault."""
     fault = one.fault
     mark = Text("ok", "green") if one.caught else Text("OUT", "bold red")
     size = "" if fault.size is None else fault.words(fault.size)
@@ -128,7 +123,6 @@ def _cells(one: Verdict, engines: Sequence[str], wide: bool) -> list[Text]:
 
 
 def _from(one: Verdict, engine: str) -> Text:
-    """Return the smallest size that is caught in an engine."""
     places = [place for place in one.places if place.engine == engine]
     if not one.fault.possible(engine):
         return Text("-")
@@ -148,7 +142,6 @@ def least_words(fault: Fault, least: float) -> str:
 
 
 def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
-    """Return rules, units, settings and versions."""
     named = {one.fault.rule for one in verdicts}
     rules = ", ".join(f"{name} {rule.title}" for name, rule in RULES.items() if name in named)
     refused = any(one.fault.refused for one in verdicts)
@@ -168,7 +161,6 @@ def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
 
 
 def _spans(verdicts: Sequence[Verdict]) -> str:
-    """Return length and step of the runs."""
     kinds = {one.fault.kind for one in verdicts}
     scenes = dict.fromkeys(scene for one in verdicts for scene in one.fault.scenes)
     words = (text for kind, runs in RUNS.items() if kind in kinds for text in runs.words(scenes))

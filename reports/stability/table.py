@@ -82,7 +82,6 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
 
 
 def _cell(case: CaseFacts, run: Graded | None) -> Text:
-    """Return the error of a run, short, after the letter of its outcome."""
     if run is None:
         return Text("")
     letter = LETTERS[run.outcome]
@@ -93,14 +92,12 @@ def _cell(case: CaseFacts, run: Graded | None) -> Text:
 
 
 def _force(run: Graded | None) -> Text:
-    """Return the error of the forces of a run, short."""
     if run is None or math.isnan(run.force):
         return Text("")
     return Text(short(run.force, 1).removesuffix("e0"), "dim")
 
 
 def _style(case: CaseFacts, outcome: Outcome) -> str:
-    """Return the colour of an outcome of a case."""
     return "green" if outcome in case.good else STYLES.get(outcome, "red")
 
 

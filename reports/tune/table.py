@@ -54,7 +54,6 @@ def show(console: Console, goal: Goal, space: SearchSpace, sides: Sequence[Side]
 
 
 def _lines(goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> list[tuple[str, list[str]]]:
-    """Return labels and cells."""
     lines = [
         (knob.name, [value_text(side.attempt.settings[knob.targets[0]]) for side in sides])
         for knob in space.knobs
@@ -74,7 +73,6 @@ def _lines(goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> list[tuple[
 
 
 def _ratio(sides: Sequence[Side]) -> str:
-    """Return the cost of the last side over the first, with the noise of the comparison."""
     first, last = sides[0], sides[-1]
     if first is last or not (first.attempt.reached and last.attempt.reached):
         return ""
@@ -99,7 +97,6 @@ def _worst(rows: Sequence[Row], column: str) -> str:
 
 
 def _error(attempt: Attempt, target: float) -> str:
-    """Return the error, and whether it is too large."""
     if math.isinf(attempt.error):
         return "none"
     return f"{attempt.error:.2e}" + ("" if attempt.reached else " OVER")

@@ -113,7 +113,6 @@ def _share(checked: Checked, rule: str) -> float:
 
 
 def _of_limit(after: float, before: float) -> str:
-    """Return two shares in words."""
     instead = f" instead of {before:.2g}" if math.isfinite(before) else ""
     return f"{after:.2g} of its limit{instead}"
 

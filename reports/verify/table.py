@@ -127,12 +127,10 @@ def halved(one: Checked, convergence: Convergence | None) -> str:
 
 
 def _number(error: Error | None) -> str:
-    """Return a pure number, or a dash where nothing of the kind was reported."""
     return "-" if error is None else f"{error.pure:.1e}" if error.finite else "nan"
 
 
 def _share(findings: Sequence[Finding]) -> Text:
-    """Return the largest error as a share of its limit, with its name."""
     shares = [
         (finding.number / finding.limit, SHORT[finding.rule])
         for finding in findings
@@ -262,7 +260,6 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
 
 
 def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
-    """Return the verdict in one line."""
     gated = [one for one in checked if one.cell.gated]
     scenes = len({one.cell.scene.name for one in gated})
     engines = len({one.cell.engine for one in gated})
@@ -287,7 +284,6 @@ def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
 
 
 def _case(one: Checked) -> Element:
-    """Return the test case of one cell."""
     cell = one.cell
     case = case_of(f"{cell.engine}.{cell.profile}", cell.scene.name, f"{one.wall_s:.3f}")
     text = "\n".join(_line(finding) for finding in one.failures)
@@ -304,7 +300,6 @@ def _case(one: Checked) -> Element:
 
 
 def _line(finding: Finding) -> str:
-    """Return a finding with its rule and cure."""
     rule = RULES[finding.rule]
     return f"{rule.id} {rule.title}: {finding.text}" + (
         f"\n  cure: {finding.cure}" if finding.cure else ""
