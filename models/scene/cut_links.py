@@ -138,7 +138,6 @@ class CutScene(ABC):
 
     @property
     def _named(self) -> tuple[str, ...]:
-        """Points of the scene itself."""
         own = {point: None for link in self.scene.links.values() for point in link.points}
         own |= dict.fromkeys(self.scene.ground)
         own |= {slider.point: None for slider in self.scene.sliders.values()}

@@ -86,7 +86,6 @@ def _price(offer: Offer) -> str:
 
 
 def _nothing(advice: Advice) -> str:
-    """Return the text for a target that nothing reaches."""
     most, nearest = advice.demand.most, advice.nearest
     text = f"NOTHING REACHES {advice.demand.target:g} with up to {count(most, 'sub-step')} a frame"
     if nearest is None or nearest.reached.nearest is None:
@@ -144,7 +143,6 @@ def _percent(share: float) -> str:
 
 
 def _times(advice: Advice, offer: Offer) -> str:
-    """Return the price over the least."""
     first = advice.promises[0]
     return "1" if advice.equal(offer, first) else f"{offer.s_per_s / first.s_per_s:.2g}"
 

@@ -6,16 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.output.numbers import count
+from reports.results import runs
 from reports.results.changes import CellPair, Diff, ErrorChange, Word, other_settings
 from reports.results.cost import equal, noise_of
-from reports.results.runs import (
-    CellName,
-    StoredCell,
-    StoredRun,
-    each_once,
-    grouped,
-    steps_told,
-)
 
 REASON = 120
 """Characters of an engine's reason for its ending."""
@@ -50,8 +43,8 @@ def verdict(diff: Diff, strict: bool = False) -> str:
 
 def lines(diff: Diff, word: Word) -> list[PrintedRow]:
     """Return the cells that are worse, or better, one row for those that differ in step only."""
-    compared = grouped((pair.name.line, pair.name.steps_per_turn) for pair in diff.pairs)
-    groups = grouped((pair.name.line, pair) for pair in diff.those(word))
+    compared = runs.grouped((pair.name.line, pair.name.steps_per_turn) for pair in diff.pairs)
+    groups = runs.grouped((pair.name.line, pair) for pair in diff.those(word))
     several = _several(diff)
     return [
         _line(members, compared[line], _engine(members[0], several))
@@ -59,10 +52,10 @@ def lines(diff: Diff, word: Word) -> list[PrintedRow]:
     ]
 
 
-def left_out(cells: Iterable[StoredCell]) -> list[str]:
+def left_out(cells: Iterable[runs.StoredCell]) -> list[str]:
     """Return the cells of one run, one text for those that differ in step only."""
-    groups = grouped((cell.name.line, cell.name) for cell in cells).values()
-    return [f"{names[0].scene}, {_called(names[0])}, {steps_told(names)}" for names in groups]
+    groups = runs.grouped((cell.name.line, cell.name) for cell in cells).values()
+    return [f"{names[0].scene}, {_called(names[0])}, {runs.steps_told(names)}" for names in groups]
 
 
 def remarks(diff: Diff) -> list[str]:
@@ -72,12 +65,14 @@ def remarks(diff: Diff) -> list[str]:
     scenes = list(dict.fromkeys(cell.name.scene for cell in diff.other_scene))
     if scenes:
         number = count(len(diff.other_scene), "cell")
-        texts.append(f"the text of {each_once(scenes, 10)} changed: {number} not compared")
+        texts.append(f"the text of {runs.each_once(scenes, 10)} changed: {number} not compared")
     failed = [pair.new.status for pair in diff.pairs if pair.failed]
     if failed:
-        texts.append(f"{len(failed)} of the equal ones failed in both ({each_once(failed)})")
+        texts.append(f"{len(failed)} of the equal ones failed in both ({runs.each_once(failed)})")
     for (engine, variant), changed in other_settings(diff.pairs).items():
-        texts.append(f"settings of {engine} {variant} differ: {each_once(changed.values(), 6)}")
+        texts.append(
+            f"settings of {engine} {variant} differ: {runs.each_once(changed.values(), 6)}"
+        )
     return [text for text in (*texts, cost_text(diff)) if text]
 
 
@@ -93,7 +88,7 @@ def footer(diff: Diff) -> list[str]:
     ]
 
 
-def origin(run: StoredRun) -> str:
+def origin(run: runs.StoredRun) -> str:
     """Return the origin of a run."""
     names = ("crankcheck", "processor", "made")
     facts = [f"{name} {run.facts[name]}" for name in names if run.facts.get(name)]
@@ -102,8 +97,8 @@ def origin(run: StoredRun) -> str:
 
 def versions(diff: Diff) -> str:
     """Return the versions of every engine, old and new, each pair once."""
-    by_engine = grouped((pair.name.engine, _versions(pair)) for pair in diff.pairs)
-    return "; ".join(f"{engine} {each_once(each)}" for engine, each in by_engine.items())
+    by_engine = runs.grouped((pair.name.engine, _versions(pair)) for pair in diff.pairs)
+    return "; ".join(f"{engine} {runs.each_once(each)}" for engine, each in by_engine.items())
 
 
 def told(pair: CellPair) -> str:
@@ -163,7 +158,7 @@ def _engine(pair: CellPair, several: frozenset[str]) -> str:
     return f"{called} ({_versions(pair)})" if pair.name.engine in several else called
 
 
-def _called(name: CellName, turns: bool = False) -> str:
+def _called(name: runs.CellName, turns: bool = False) -> str:
     parts = [f"{name.engine} {name.variant}"]
     parts += [f"drive {name.drive}"] if name.drive != "prescribed" else []
     parts += [f"{name.turns:g} {name.clock.unit}"] if turns else []
@@ -229,4 +224,4 @@ def cost_text(diff: Diff) -> str:
     if not unequal:
         return f"time of a step, as advice: equal {rest}"
     others = f"; the others equal {rest}" if len(unequal) < len(costs) else ""
-    return f"time of a step, new over old, as advice: {each_once(unequal, 6)}{others}"
+    return f"time of a step, new over old, as advice: {runs.each_once(unequal, 6)}{others}"

@@ -117,7 +117,6 @@ def measure(
 
 
 def _not_run(ended: Ended) -> str:
-    """Say how a verification ended that left no result."""
     lines = [line.strip() for line in ended.complaint.splitlines() if line.strip()]
     if ended.code < 0:
         return f"not run: the process was ended by signal {-ended.code}"
@@ -289,7 +288,6 @@ def _row(result: VersionResult, profiles: Sequence[str]) -> list[str]:
 
 
 def _worst(cells: Sequence[StoredCell]) -> str:
-    """Return the largest gap, over the longest link."""
     gaps = [error for cell in cells for name, error in errors_of(cell).items() if name in GAPS]
     return f"{max(gaps):.1e} L" if gaps else "-"
 

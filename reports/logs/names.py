@@ -228,7 +228,6 @@ class SceneNames:
         return re.sub(rf"(?<![A-Za-z0-9])([va]?[xy])({points})(?![A-Za-z0-9])", r"\1 \2", text)
 
     def _apart(self, text: str) -> tuple[list[str], list[str]]:
-        """Return the bodies of a text, and its other words."""
         places: list[tuple[int, str]] = []
         for name in self.bodies:
             flags = 0 if len(name) <= SHORT else re.IGNORECASE

@@ -119,7 +119,6 @@ def _remarks(lines: Sequence[str]) -> list[str]:
 
 
 def _are_units(fields: Sequence[str]) -> bool:
-    """True if fields are units, or signs for none."""
     bare = [field.strip("[]() ") for field in fields]
     return any(map(spelled_unit, bare)) and all(f in UNITLESS or spelled_unit(f) for f in bare)
 

@@ -126,6 +126,17 @@ def grid(
     return shown
 
 
+def show_failed(
+    console: Console, head: str, findings: Iterable[tuple[str, str]], remedy: str = ""
+) -> None:
+    """Print failures under a head, each a rule and its finding, and the tried remedy, if any."""
+    console.print(Text(harmless(head), "bold red"))
+    for rule, text in findings:
+        hanging(console, f"  {rule} ", harmless(text))
+    if remedy:
+        hanging(console, "  cure: ", remedy, style="cyan")
+
+
 def hanging(console: Console, head: str, text: str, style: str = "") -> None:
     """Print a paragraph whose later lines stand below its text."""
     grid = Table.grid(padding=0)

@@ -11,9 +11,9 @@ from rich.text import Text
 
 from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
-from reports.judge.rules import RULES
+from reports.judge.rules import RULES, titled
 from reports.judge.rules.rule import share
-from reports.output.console import grid, hanging
+from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, folded, plain, remark, suite_of, table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
@@ -40,11 +40,8 @@ def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
 def _failures(console: Console, judged: JudgedLog) -> None:
     if not judged.failures:
         return
-    console.print(
-        Text(f"OUT  {harmless(judged.log.source)}, scene {judged.scene.name}", "bold red")
-    )
-    for finding in judged.failures:
-        hanging(console, f"  {finding.rule} ", f"{RULES[finding.rule].title}: {finding.text}")
+    head = f"OUT  {judged.log.source}, scene {judged.scene.name}"
+    show_failed(console, head, titled(judged.failures))
     for cause in judged.causes:
         if cause.name not in ADVICE:
             hanging(console, "  cause: ", cause_text(cause), style="cyan")

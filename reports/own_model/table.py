@@ -12,8 +12,8 @@ from models.errors import harmless
 from models.files.assemble import scene_text
 from reports.judge.halving import worst_place
 from reports.judge.rows import cell_row, error_row
-from reports.judge.rules import RULES
-from reports.output.console import grid, hanging
+from reports.judge.rules import titled
+from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import json_text
 from reports.output.numbers import short
 from reports.own_model import sentences
@@ -51,12 +51,7 @@ def _failures(console: Console, judged: JudgedModel) -> None:
     if not judged.failures:
         return
     head = f"{MARKS[judged.verdict].plain}  {judged.account.request.path}, as written"
-    console.print(Text(harmless(head), "bold red"))
-    for finding in judged.failures:
-        rule = RULES[finding.rule]
-        hanging(console, f"  {rule.id} ", harmless(f"{rule.title}: {finding.text}"))
-    if judged.own.remedy:
-        hanging(console, "  cure: ", judged.own.remedy, style="cyan")
+    show_failed(console, head, titled(judged.failures), judged.own.remedy)
     console.print()
 
 

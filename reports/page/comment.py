@@ -99,7 +99,6 @@ def _rule(name: str) -> str:
 
 
 def _recommended(report: Report) -> str:
-    """Return the cheapest settings per target and engine."""
     rows = [_recommendation(one) for one in report.recommendations]
     scenes = count(len(report.scenes), "scene")
     words = (

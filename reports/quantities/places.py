@@ -9,18 +9,10 @@ from models.motion import Motion
 from models.scene import Scene
 from models.scene.driver import driver_place
 from models.scene.joints import joints
-from reports.quantities.quantity import (
-    BodyKind,
-    Criterion,
-    Measure,
-    Quantity,
-    Series,
-    Tolerance,
-    moving,
-)
+from reports.quantities import quantity
 
 EPSILON = float(np.finfo(np.float64).eps)
-WITHIN_A_STEP = Tolerance(
+WITHIN_A_STEP = quantity.Tolerance(
     "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
     "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle. To close it "
     "an engine sets its bodies off by the jolt times step^2; twice that where it is more.",
@@ -32,7 +24,7 @@ WITHIN_A_STEP = Tolerance(
 )
 
 
-FREE_PLACE = Tolerance(
+FREE_PLACE = quantity.Tolerance(
     "As the phase, which the mechanism passes on to its places as their rates say, and the arc of "
     "a step.",
     cap=0.1,
@@ -44,23 +36,23 @@ FREE_PLACE = Tolerance(
 )
 
 
-def _commanded(scene: Scene, reference: Motion) -> Series:
+def _commanded(scene: Scene, reference: Motion) -> quantity.Series:
     """Return its angle; for a slider its displacement over the longest length."""
     commanded = scene.driver.law.at(reference.time_s)[0]
     return {scene.driver.name: commanded / scene.driver_arm_m}
 
 
-def driver_series(scene: Scene, motion: Motion | None) -> Series:
+def driver_series(scene: Scene, motion: Motion | None) -> quantity.Series:
     """Return the coordinate of the driver, that of a slider over the longest length."""
     course = driver_place(scene, motion) if motion else None
     return {} if course is None else {scene.driver.name: course / scene.driver_arm_m}
 
 
-DRIVE = Quantity(
+DRIVE = quantity.Quantity(
     name="drive",
     role="drive",
     measures=(
-        Measure(
+        quantity.Measure(
             body_kind="driver",
             column="drive_error_rad",
             unit="rad",
@@ -74,7 +66,7 @@ DRIVE = Quantity(
         ),
     ),
     criteria=(
-        Criterion(
+        quantity.Criterion(
             "CC102",
             "drive",
             "Everything is compared at the commanded time: a crank that lags or leads spoils "
@@ -82,7 +74,7 @@ DRIVE = Quantity(
             "Drive with --drive prescribed; a servo needs a higher gain, or a shorter step.",
             short="drive",
             diagram="drive: the crank's angle",
-            tolerance=Tolerance(
+            tolerance=quantity.Tolerance(
                 "Prescribed means prescribed: what rounding makes of an angle that is added up "
                 "step by step, and room for a flywheel that the mechanism slows by a part in 1e12.",
                 floor=1e-9,
@@ -93,18 +85,24 @@ DRIVE = Quantity(
 
 
 def _place(
-    name: str, measure: Measure, head: str, rule: str, short: str, explanation: str, cure: str
-) -> Quantity:
+    name: str,
+    measure: quantity.Measure,
+    head: str,
+    rule: str,
+    short: str,
+    explanation: str,
+    cure: str,
+) -> quantity.Quantity:
     """Return a quantity of the positions of one kind of bodies; its rule has its name."""
-    criterion = Criterion(
+    criterion = quantity.Criterion(
         rule, name, explanation, cure, short, WITHIN_A_STEP, free_motion=FREE_PLACE
     )
-    return Quantity(name, "place", (measure,), (criterion,), head)
+    return quantity.Quantity(name, "place", (measure,), (criterion,), head)
 
 
 ANGLE = _place(
     "angle",
-    moving("link", 0, "angle_error_rad"),
+    quantity.moving("link", 0, "angle_error_rad"),
     "angle\nrad",
     "CC103",
     "ang",
@@ -114,7 +112,7 @@ ANGLE = _place(
 )
 DISPLACEMENT = _place(
     "displacement",
-    moving("slider", 0, "displacement_error_m"),
+    quantity.moving("slider", 0, "displacement_error_m"),
     "place\n/ L",
     "CC104",
     "disp",
@@ -123,7 +121,7 @@ DISPLACEMENT = _place(
 )
 POSITION = _place(
     "position",
-    moving("point", 0, "position_error_m"),
+    quantity.moving("point", 0, "position_error_m"),
     "place\n/ L",
     "CC113",
     "pos",
@@ -132,15 +130,15 @@ POSITION = _place(
 )
 
 
-def _gap(kind: BodyKind, column: str) -> Measure:
+def _gap(kind: quantity.BodyKind, column: str) -> quantity.Measure:
     """Return the measure of the gap at a shared pin or slider, which is 0 in the reference."""
 
-    def truth(scene: Scene, reference: Motion) -> Series:
+    def truth(scene: Scene, reference: Motion) -> quantity.Series:
         shared = (*(pin.point for pin in joints(scene).pins), *scene.sliders)
         chosen = (name for name in shared if (name in scene.sliders) == (kind == "slider"))
         return dict.fromkeys(chosen, np.zeros_like(reference.time_s))
 
-    return Measure(
+    return quantity.Measure(
         body_kind=kind,
         column=column,
         unit="m",
@@ -151,13 +149,13 @@ def _gap(kind: BodyKind, column: str) -> Measure:
     )
 
 
-GAP = Quantity(
+GAP = quantity.Quantity(
     name="gap",
     role="closure",
     head="gap\n/ L",
     measures=(_gap("point", "pin_gap_m"), _gap("slider", "slider_gap_m")),
     criteria=(
-        Criterion(
+        quantity.Criterion(
             "CC105",
             "pin gap",
             "Two bodies that share a pin or a slider must not come apart: an open loop is "
@@ -183,7 +181,7 @@ OPEN_SHARE = 1e-3
 LOAD_SHARE = 5e-3
 """Twice the observed response of MuJoCo's tuned constraints, of three steps' time constant, to the
 change of loads on their bodies from step to step: 0.7e-3 to 2.5e-3, at 90 to 1440 steps a turn."""
-SECOND_ORDER = Tolerance(
+SECOND_ORDER = quantity.Tolerance(
     "Second order, with the third derivative of the motion, about curvature^1.5; as reported, "
     "with the share of an acceleration that soft constraints keep open, over a step.",
     cap=5e-2,  # a twentieth of the driver's speed; twice the worst at 90 steps a turn
@@ -196,7 +194,7 @@ SECOND_ORDER = Tolerance(
     rate=1,
     jump=1.0,
 )
-TWICE_DERIVED = Tolerance(
+TWICE_DERIVED = quantity.Tolerance(
     "Second order, with the fourth derivative of the motion, about curvature^2; as reported, "
     "engines with soft constraints keep a share of it open at every step.",
     cap=0.5,  # twice the worst at 90 steps a turn, where second differences are coarse
@@ -208,7 +206,7 @@ TWICE_DERIVED = Tolerance(
     rate=2,
     parts=True,
 )
-FREE_RATE = Tolerance(
+FREE_RATE = quantity.Tolerance(
     "As the phase, which the mechanism passes on to its velocities as their rates say.",
     cap=0.2,
     coefficient=14.0,
@@ -221,18 +219,18 @@ FREE_RATE = Tolerance(
     rate=1,
     jump=1.0,
 )
-VELOCITY = Quantity(
+VELOCITY = quantity.Quantity(
     name="velocity",
     role="derived",
     head="veloc.\n/ w",
     measures=(
-        moving("link", 1, "angular_velocity_error_rad_s"),
-        moving("slider", 1, "slider_speed_error_m_s"),
-        moving("point", 1, "velocity_error_m_s"),
+        quantity.moving("link", 1, "angular_velocity_error_rad_s"),
+        quantity.moving("slider", 1, "slider_speed_error_m_s"),
+        quantity.moving("point", 1, "velocity_error_m_s"),
     ),
     instants=lambda run: run.velocity_time_s,
     criteria=(
-        Criterion(
+        quantity.Criterion(
             "CC106",
             "velocity, reported",
             "The velocities that the engine reports, against the closed form at the instants "
@@ -243,7 +241,7 @@ VELOCITY = Quantity(
             tolerance=SECOND_ORDER,
             free_motion=FREE_RATE,
         ),
-        Criterion(
+        quantity.Criterion(
             "CC107",
             "velocity, differenced",
             "The error of the velocities that central differences of the logged positions give.",
@@ -262,19 +260,19 @@ VELOCITY = Quantity(
         ),
     ),
 )
-ACCELERATION = Quantity(
+ACCELERATION = quantity.Quantity(
     name="acceleration",
     role="derived",
     head="accel.\n/ w^2",
     measures=(
-        moving("link", 2, "angular_acceleration_error_rad_s2"),
-        moving("slider", 2, "slider_acceleration_error_m_s2"),
-        moving("point", 2, "acceleration_error_m_s2"),
+        quantity.moving("link", 2, "angular_acceleration_error_rad_s2"),
+        quantity.moving("slider", 2, "slider_acceleration_error_m_s2"),
+        quantity.moving("point", 2, "acceleration_error_m_s2"),
     ),
     instants=lambda run: run.acceleration_time_s,
     silent=lambda run: not run.reports_accelerations,
     criteria=(
-        Criterion(
+        quantity.Criterion(
             "CC108",
             "acceleration, reported",
             "The accelerations that the engine reports, against the closed form at the instants "
@@ -284,7 +282,7 @@ ACCELERATION = Quantity(
             diagram="acceleration, as reported",
             tolerance=TWICE_DERIVED,
         ),
-        Criterion(
+        quantity.Criterion(
             "CC114",
             "acceleration, differenced",
             "The error of the accelerations that second differences of the logged positions give.",

@@ -32,8 +32,6 @@ USUAL_SCENES = ("fourbar-lecture-1", "slider-crank-central")
 
 @dataclass(frozen=True)
 class AdviseRequest:
-    """Arguments of `advise`, as given."""
-
     dt_s: Annotated[
         float, option("Frame time of your program, as 1/60.", "--dt SECONDS", parser=seconds)
     ]

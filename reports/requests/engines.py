@@ -17,8 +17,6 @@ from sim.registry import available, brought, engine
 
 @dataclass(frozen=True)
 class EnginesRequest:
-    """Arguments of `engines`, as given."""
-
     settings: bool = False
 
     def run(self, console: Console, progress: Console) -> int:
@@ -46,8 +44,6 @@ MEMORY_GB = 4.0
 
 @dataclass(frozen=True)
 class EngineCheckRequest:
-    """Arguments of `engines check`, as given."""
-
     name: Annotated[str, argument("ENGINE", "A name, or one of your own, package.module:ENGINE.")]
     clauses: Annotated[
         Sequence[str], option("Clause; may be repeated; all if none.", "--clause ID")

@@ -34,8 +34,6 @@ from sim.run import check_steps
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """Arguments of `export`, as given."""
-
     scene: SceneName
     output: Annotated[Path | None, output_option("Write an .xml file.")] = None
     close: Annotated[
@@ -62,8 +60,6 @@ class ExportRequest:
 
 @dataclass(frozen=True)
 class ForceRecipeRequest:
-    """Arguments of `recipe forces`, as given."""
-
     engine: Annotated[str, "Engine."]
     scene: Annotated[str, option("A shipped name, or a scene file.", "SCENE")] = "fourbar-lecture-1"
     profile: Annotated[str, "Profile of the engine."] = "tuned"
@@ -98,8 +94,6 @@ PICTURES = (".gif", ".png")
 
 @dataclass(frozen=True)
 class ViewRequest:
-    """Arguments of `view`, as given."""
-
     scene: SceneName
     output: Annotated[
         Path | None, output_option("Draw into a .gif or .png in place of the viewer.")

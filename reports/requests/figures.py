@@ -35,8 +35,6 @@ Drawn = Callable[[], Figure | None]
 
 @dataclass(frozen=True)
 class FiguresRequest:
-    """Arguments of `figures`, as given."""
-
     folder: Annotated[Path, argument("DIR", "Folder of a sweep.")]
     output: Annotated[Path, output_option("Folder for the figures.")]
     scene: Annotated[Sequence[str], "Scene to draw; may be repeated; all if none."] = ()

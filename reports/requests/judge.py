@@ -213,8 +213,6 @@ FORMATS = ("text", "md")
 
 @dataclass(frozen=True)
 class JudgeRequest:
-    """Arguments of `judge`, as given."""
-
     scene: options.SceneName
     log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
     map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None

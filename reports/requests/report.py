@@ -88,8 +88,6 @@ def format_of(text: str) -> Format:
 
 @dataclass(frozen=True)
 class ReportRequest:
-    """Arguments of `report`, as given."""
-
     folder: Annotated[Path, argument("DIR", "Folder of a sweep, or of hard cases.")]
     output: Annotated[
         Path | None, output_option("File to write (default report.html; md: none).")

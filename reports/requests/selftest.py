@@ -27,8 +27,6 @@ IN_FOLDER = {"selftest.csv": "--csv", "selftest.json": "--json"}
 
 @dataclass(frozen=True)
 class SelftestRequest:
-    """Arguments of `selftest`, as given."""
-
     engines: Annotated[
         Sequence[str], option("Engine; may be repeated; all if none.", "--engine")
     ] = ()

@@ -18,13 +18,8 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.driver import driver_place
+from reports.describe import force_tables
 from reports.describe.facts import describe_law, facts, speed_facts
-from reports.describe.force_tables import (
-    friction_words,
-    largest_table,
-    motion_force_tables,
-    position_force_tables,
-)
 from reports.describe.motion_tables import (
     certainty,
     cleaned,
@@ -140,7 +135,7 @@ def show_solution(
         if acting:
             _show_largest(console, scene)
     if acting:
-        for words in friction_words(scene):
+        for words in force_tables.friction_words(scene):
             say(console, words)
     if more:
         say(console, more, "dim")
@@ -174,7 +169,9 @@ def _show_position(console: Console, scene: Scene, motion: Motion) -> None:
     told = [certainty(motion)]
     if motion.forces is not None:
         told.append(force_certainty(scene, motion.forces))
-        for table in position_force_tables(scene, motion, cleaned_forces(motion.forces)):
+        for table in force_tables.position_force_tables(
+            scene, motion, cleaned_forces(motion.forces)
+        ):
             console.print(table, "")
     say(console, "\n".join(filter(None, told)), "dim")
 
@@ -184,7 +181,7 @@ def _show_motion(console: Console, scene: Scene, motion: Motion) -> None:
         console.print(table, "")
     if motion.forces is not None:
         acting = cleaned_forces(motion.forces)
-        for table in motion_force_tables(scene, motion, acting, console.width):
+        for table in force_tables.motion_force_tables(scene, motion, acting, console.width):
             console.print(table, "")
 
 
@@ -196,6 +193,6 @@ def _show_largest(console: Console, scene: Scene) -> None:
     except CrankcheckError:
         return
     assert turn.forces is not None
-    console.print(largest_table(scene, turn, cleaned_forces(turn.forces)), "")
+    console.print(force_tables.largest_table(scene, turn, cleaned_forces(turn.forces)), "")
     for note in left_out_notes(scene, turn):
         say(console, note, "yellow")

@@ -150,8 +150,6 @@ def solve_driven(
 
 @dataclass(frozen=True)
 class SolveRequest(SolveOptions):
-    """Arguments of `solve`, as given."""
-
     def run(self, console: Console, progress: Console) -> int:
         """Show or write the reference. Raises CrankcheckError for a faulty request."""
         if self.output is not None:

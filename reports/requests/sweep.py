@@ -174,8 +174,6 @@ def sweep(
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """Arguments of `sweep`, as given."""
-
     folder: Annotated[Path, output_option("Folder of the results.")]
     scenes: Annotated[
         Sequence[str], argument("SCENE", "Shipped names or scene files; those of the study.")

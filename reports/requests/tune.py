@@ -42,8 +42,6 @@ MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
 
 @dataclass(frozen=True)
 class TuneRequest:
-    """Arguments of `tune`, as given."""
-
     scenes: Annotated[Sequence[str], argument("SCENE", "Shipped names or scene files.")]
     engine: Annotated[str, "Engine whose settings are searched."]
     target: Annotated[float, "Error to reach, as a pure number: rad, lengths over L."]

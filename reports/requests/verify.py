@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class VerifyRequest(VerifyOptions):
-    """Arguments of `verify`, as given."""
-
     @property
     def names(self) -> Sequence[str]:
         """The scenes by name; with ``free`` the scenes of free motion where none is named."""

@@ -17,10 +17,10 @@ from rich.text import Text
 
 from reports.compare.errors import Error, largest
 from reports.judge.cell import Checked
-from reports.judge.rules import FORCES, RULES
+from reports.judge.rules import FORCES, RULES, titled
 from reports.judge.rules.rule import Finding
 from reports.judge.three_steps import Convergence
-from reports.output.console import grid, hanging
+from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, remark, suite_of
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES, named
@@ -218,12 +218,8 @@ def _failures(console: Console, failed: Sequence[Checked]) -> None:
     """Print the failures, cell by cell and with the tried remedies, then the cures of the others,
     rule by rule."""
     for one in failed:
-        console.print(Text(f"{mark(one).plain}  {one.cell.label}", "bold red"))
-        for finding in one.failures:
-            rule = RULES[finding.rule]
-            hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
-        if one.remedy:
-            hanging(console, "  cure: ", one.remedy, style="cyan")
+        head = f"{mark(one).plain}  {one.cell.label}"
+        show_failed(console, head, titled(one.failures), one.remedy)
     cures = {(f.rule, f.cure) for one in failed for f in one.failures if f.cure != one.remedy}
     for rule_id, cure in sorted(cures):
         if cure:

@@ -200,7 +200,6 @@ _AXES = np.array([1.0, 1j])
 
 
 def _matter(scene: Scene, body: str) -> tuple[float, float]:
-    """Return mass and inertia; a block may be without."""
     massless = [block_name(s) for s in scene.sliders.values() if s.mass_kg == 0.0]
     return (0.0, 0.0) if body in massless else mass_of(scene, body)
 

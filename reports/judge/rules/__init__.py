@@ -64,3 +64,8 @@ def _cure(finding: Finding, evidence: Evidence) -> str:
     if evidence.profile not in ("", "tuned"):
         return f"{cure} Or use profile tuned."
     return cure
+
+
+def titled(findings: Iterable[Finding]) -> list[tuple[str, str]]:
+    """Return rules and texts of findings, each text behind the title of its rule."""
+    return [(each.rule, f"{RULES[each.rule].title}: {each.text}") for each in findings]
