@@ -22,16 +22,20 @@ import numpy as np
 
 from analytic.lectures.synthesis.design import (
     INPUT,
-    PIVOTS,
     AskedPlace,
     Dot,
     DrawingStep,
-    DrawnCurve,
     PrecisionPosition,
     Proposal,
     Segment,
+    numbered,
 )
-from analytic.lectures.synthesis.path.candidate import POINT, drafted
+from analytic.lectures.synthesis.path.candidate import (
+    at_places,
+    drafted,
+    drawn_curve,
+    drawn_links,
+)
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
 from analytic.lectures.synthesis.straight_part import StraightPart, measured, on_line
 from models.array import Array
@@ -78,11 +82,8 @@ def placed(
     turn = cmath.phase(by)
     own = measured(four_bar, part.crank_rad[0] + turn, part.crank_rad[1] + turn)
     # The ends of the part as well: between them the point is as near as stated.
-    angles = sorted({own.crank_rad[0], *on_line(four_bar, own), own.crank_rad[1]})
-    positions = tuple(
-        PrecisionPosition(angle, (AskedPlace(POINT, complex(place)),))
-        for angle, place in zip(angles, four_bar.at(np.array(angles)), strict=True)
-    )
+    angles = np.array(sorted({own.crank_rad[0], *on_line(four_bar, own), own.crank_rad[1]}))
+    positions = at_places(angles, four_bar.at(angles).tolist())
     draft = drafted(f"straight-line-{kind}", source, four_bar)
     chosen = {
         "deviation from the line": f"{own.deviation_m:.3g} m over {own.length_m:.6g} m",
@@ -93,34 +94,15 @@ def placed(
     return StraightLinkage(four_bar, own, proposal)
 
 
-def _steps(
-    four_bar: CouplerCurve, part: StraightPart, angles: list[float]
-) -> tuple[DrawingStep, ...]:
+def _steps(four_bar: CouplerCurve, part: StraightPart, angles: Array) -> tuple[DrawingStep, ...]:
     """Return the line, the linkage in its first position, and the curve with all positions."""
     end = part.start + part.length_m * part.along
-    first = np.array(angles[:1])
-    a, b = (complex(pin[0]) for pin in four_bar.pins(first))
-    p = complex(four_bar.at(first)[0])
-    low, high = part.crank_rad
-    spread = np.linspace(low, low + math.tau if four_bar.family != "limited" else high, DRAWN)
-    met = tuple(
-        Dot(complex(place), str(k + 1)) for k, place in enumerate(four_bar.at(np.array(angles)))
-    )
-    pairs = ((four_bar.o2, a), (a, b), (four_bar.o4, b), (a, p), (b, p))
+    curve = drawn_curve(four_bar, part.crank_rad, DRAWN)
+    on_curve = numbered("", four_bar.at(angles).tolist())
     return (
         DrawingStep("the line, and its length", (Segment(part.start, end, "given"),)),
-        DrawingStep(
-            "the linkage in the textbook's proportions",
-            (
-                *(Segment(*pair, "result") for pair in pairs),
-                Dot(four_bar.o2, PIVOTS[0], "result", fixed=True),
-                Dot(four_bar.o4, PIVOTS[1], "result", fixed=True),
-            ),
-        ),
-        DrawingStep(
-            "its coupler curve, and where this is on the line",
-            (DrawnCurve((tuple(four_bar.at(spread).tolist()),)), *met),
-        ),
+        DrawingStep("the linkage in the textbook's proportions", drawn_links(four_bar, angles[:1])),
+        DrawingStep("its coupler curve, and where this is on the line", (curve, *on_curve)),
     )
 
 
@@ -160,7 +142,8 @@ def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 
     # The crank turns by twice the lean of O4-A, and P moves by the tangent of the lean.
     ways = np.linspace(-1.0, 1.0, POSITIONS)
     places = (middle + 0.5 * length_m * ways * turn).tolist()
-    cranks = [o2 + CIRCLE * scale * inward * cmath.exp(2j * lean) for lean in _leans(ways)]
+    leans: list[float] = np.arctan(ways * math.tan(LEAN)).tolist()
+    cranks = [o2 + CIRCLE * scale * inward * cmath.exp(2j * lean) for lean in leans]
     corners = [_corner(a, p, scale) for a, p in zip(cranks, places, strict=True)]
     # The place of B selects the assembly, as B and C may be exchanged.
     positions = tuple(
@@ -188,12 +171,6 @@ def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 
     return Proposal(draft, CRANK, positions, chosen, steps)
 
 
-def _leans(ways: Array) -> list[float]:
-    """Return the lean of O4-A [rad] with P at shares of half its way."""
-    leans: list[float] = np.arctan(ways * math.tan(LEAN)).tolist()
-    return leans
-
-
 def _corner(a: complex, p: complex, scale: float) -> complex:
     """Return the corner B of the rhombus over A and P: to the left of the way from A to P."""
     half = 0.5 * (p - a)
@@ -205,7 +182,7 @@ def _exact_steps(points: tuple[complex, ...], places: list[complex]) -> tuple[Dr
     o2, o4, a, b, p = points
     c = a + p - b
     pairs = ((o2, a), (o4, b), (o4, c), (a, b), (a, c), (b, p), (c, p))
-    dots = tuple(Dot(place, str(k + 1), "given") for k, place in enumerate(places))
+    dots = numbered("", places, "given")
     pivots = Dot(o2, "O2", "result", fixed=True), Dot(o4, "O4", "result", fixed=True)
     links = tuple(Segment(*pair, "result") for pair in pairs)
     return (
