@@ -99,8 +99,8 @@ def _steps(
     frame += () if pivot is None else (design.Dot(pivot, design.PIVOTS[1], "given", fixed=True),)
     k1, k2, k3 = generator.k
     first_in, first_out = places[0]
-    links = [design.Segment(0j, first_in, "result"), design.Segment(first_in, first_out, "result")]
-    links += [] if pivot is None else [design.Segment(pivot, first_out, "result")]
+    links = design.chained(0j, first_in, first_out)
+    links += [] if pivot is None else design.chained(pivot, first_out)
     unit = f"{abs(task.output_range):.6g} m" if slides else _degrees(task.output_range)
     return (
         design.DrawingStep(

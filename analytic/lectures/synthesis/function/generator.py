@@ -117,10 +117,9 @@ class Generator(ABC):
         best, signs = self, self.signs(turns, ways)
         error = best.error(turns, ways, signs)
         for _ in range(POLISHES):
+            gradient = best.gradient(turns, signs, varied)
             try:
-                step = np.asarray(
-                    np.linalg.solve(best.gradient(turns, signs, varied), -error), float
-                )
+                step = np.asarray(np.linalg.solve(gradient, -error), float)
             except np.linalg.LinAlgError:
                 break
             nearer = best.moved(step, varied)
@@ -308,8 +307,5 @@ def _error(proposal: FunctionProposal, scene: Scene, x: Array) -> Array:
         raise ReachError(
             f"the mechanism does not close over the whole range of x: {fault}"
         ) from None
-    asked = proposal.asked(x)
-    if not turns:
-        return np.asarray(asked - motion.sliders[PINS[1]].displacement)
-    off = asked - motion.links[OUTPUT].theta
-    return np.asarray(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
+    actual = motion.links[OUTPUT].theta if turns else motion.sliders[PINS[1]].displacement
+    return proposal.generator.apart(proposal.asked(x), actual)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -106,16 +106,9 @@ def real_size(fit: Fitted) -> tuple[CouplerCurve, Array]:
     angles = fit.phi + turn
     if not fit.mirrored:
         return own, angles
-    mirror = CouplerCurve(
-        own.o2.conjugate(),
-        own.o4.conjugate(),
-        own.crank,
-        own.coupler,
-        own.rocker,
-        own.arm.conjugate(),
-        -1,
-    )
-    return mirror, -angles
+    places = {"o2": own.o2, "o4": own.o4, "arm": own.arm}
+    mirrored = {name: place.conjugate() for name, place in places.items()}
+    return replace(own, **mirrored, sign=-1), -angles
 
 
 def assembled(
