@@ -131,9 +131,9 @@ class _Table:
             velocity += _laid("velocity", still, [whole])
             acceleration += _laid("acceleration", still, parts)
             nodes[point] = place + arm
-        title = f"driver {link}"
-        self._add("velocity", title, velocity, nodes)
-        self._add("acceleration", title, acceleration, nodes)
+        for quantity, vectors in zip(QUANTITIES, (velocity, acceleration), strict=True):
+            ends = {name: end_of(self.rates[link], at, quantity) for name, at in nodes.items()}
+            self.steps[quantity].append(PolygonStep(f"driver {link}", tuple(vectors), ends))
 
     def draw(self, part: Group | Bridge) -> str:
         """Draw a group or a redundant link; return the reason where it can not be drawn."""
@@ -212,13 +212,6 @@ class _Table:
             float(across @ (other.acceleration - one.acceleration)) / size,
         )
 
-    def _add(
-        self, quantity: Quantity, title: str, vectors: list[Vector], places: Mapping[str, Array]
-    ) -> None:
-        body = self.rates[self.placement.scene.driver.link]
-        nodes = {name: end_of(body, at, quantity) for name, at in places.items()}
-        self.steps[quantity].append(PolygonStep(title, tuple(vectors), nodes))
-
 
 def _laid(quantity: Quantity, start: Array, terms: Iterable[Term]) -> list[Vector]:
     """Return vectors end to end."""
@@ -259,7 +252,8 @@ class Similarity:
 
 def similarity(drawn: DrawnPolygons, link: str, quantity: Quantity) -> Similarity:
     """Return the map of a drawn link's velocities or accelerations."""
-    factor = _factor(drawn.rates[link], quantity)
+    body = drawn.rates[link]  # its places being x + iy
+    factor = 1j * body.omega if quantity == "velocity" else 1j * body.alpha - body.omega**2
     if _is_rounding(drawn, link, quantity, abs(factor)):
         return Similarity(0.0, 0.0)
     return Similarity(abs(factor), cmath.phase(factor))
@@ -268,12 +262,9 @@ def similarity(drawn: DrawnPolygons, link: str, quantity: Quantity) -> Similarit
 def link_rates(drawn: DrawnPolygons, link: str) -> tuple[float, float]:
     """Return omega [rad/s] and alpha [rad/s^2] of a drawn link, 0 where they are rounding."""
     body = drawn.rates[link]
-    rates: tuple[tuple[float, Quantity], ...] = (
-        (body.omega, "velocity"),
-        (body.alpha, "acceleration"),
-    )
     omega, alpha = (
-        0.0 if _is_rounding(drawn, link, quantity, abs(rate)) else rate for rate, quantity in rates
+        0.0 if _is_rounding(drawn, link, quantity, abs(rate)) else rate
+        for rate, quantity in zip((body.omega, body.alpha), QUANTITIES, strict=True)
     )
     return omega, alpha
 
@@ -284,10 +275,3 @@ def _is_rounding(drawn: DrawnPolygons, link: str, quantity: Quantity, scale: flo
     places = np.array([*drawn.placement.scene.links[link].points.values()])
     reach = float(np.hypot(*np.ptp(places, axis=0)))
     return scale * reach <= POINT * polygon.largest
-
-
-def _factor(body: BodyRates, quantity: Quantity) -> complex:
-    """Return the factor of the link, x + iy being its places."""
-    if quantity == "velocity":
-        return 1j * body.omega
-    return 1j * body.alpha - body.omega**2

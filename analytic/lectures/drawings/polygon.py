@@ -15,7 +15,7 @@ vector has a known direction u and an unknown length::
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -55,10 +55,9 @@ class Term:
 
 @dataclass(frozen=True)
 class EquationSide:
-    """Side of the equation: from the point ``base`` of the polygon at ``start`` (2,) over ``known``
-    vectors, and on along the direction of ``unknown``, whose value is a unit vector."""
+    """Side of the equation: from ``start`` (2,) in the polygon over ``known`` vectors, and on along
+    the direction of ``unknown``, whose value is a unit vector."""
 
-    base: str
     start: Array
     known: Sequence[Term]
     unknown: Term
@@ -70,11 +69,7 @@ class EquationSide:
 
     def with_length(self, length: float) -> tuple[Term, ...]:
         """Return all vectors of the way, the unknown one with its length, which may be below 0."""
-        last = self.unknown
-        return (
-            *self.known,
-            Term(last.subscript, last.kind, length * last.value, last.direction),
-        )
+        return (*self.known, replace(self.unknown, value=length * self.unknown.value))
 
 
 def sine_between(one: EquationSide, other: EquationSide) -> float:
