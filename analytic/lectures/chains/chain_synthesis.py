@@ -159,10 +159,8 @@ def _rows(chain: Chain, joint: Joint, draw: np.random.Generator) -> tuple[Array,
     (x, y), angle = draw.uniform(-1.0, 1.0, 2), draw.uniform(0.0, np.pi)
     places = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])  # velocity there of what moves so
     turn = np.array([0.0, 0.0, 1.0])
-    along, across = (
-        np.array([np.cos(angle), np.sin(angle)]),
-        np.array([-np.sin(angle), np.cos(angle)]),
-    )
+    along = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-np.sin(angle), np.cos(angle)])
     held = [across @ places, turn] if joint in chain.sliders else list(places)
     free = along @ places if joint in chain.sliders else turn
     constraints, freedom = np.zeros((2, 3 * chain.links)), np.zeros(3 * chain.links)

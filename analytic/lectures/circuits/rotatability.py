@@ -4,9 +4,8 @@ All is over the mechanism's own branch. Where the driver turns fully, whole turn
 certainty (`analytic.change_points.turns`); else a link goes to and fro with the driver, between its
 extremes over the branch, each followed to rounding.
 
-Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions).
-
-Source: R. L. Norton, Design of Machinery, section 4.10 (limit positions, toggle).
+Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions,
+toggle).
 """
 
 from __future__ import annotations
@@ -119,10 +118,7 @@ class _Follower:
 
     def rotation(self, link: str, against: str) -> Rotation:
         relative = self.angles[link] - self.angles[against]
-        turns = 0
-        if self.arc.low is None:
-            turns = round((relative[-1] - relative[0]) / math.tau)
-            turns = self._certain(link, against, turns)
+        turns = 0 if self.arc.low is not None else self._turns(link, against)
         low = self._extreme(link, against, relative, -1.0)
         high = self._extreme(link, against, relative, 1.0)
         shift = math.tau * math.floor((0.5 * (low[0] + high[0]) + math.pi) / math.tau)
@@ -130,17 +126,16 @@ class _Follower:
             link, against, turns, low[0] - shift, high[0] - shift, low[1], high[1], self.period
         )
 
-    def _certain(self, link: str, against: str, seen: int) -> int:
-        """Return the turns counted with certainty; links that keep an angle to the driver or to the
-        ground follow these."""
-        gains = prepared(self.scene).turns.gains
-        cycle = self.period / math.tau
-        own = {GROUND: 0.0, **gains}
+    def _turns(self, link: str, against: str) -> int:
+        """Return the turns counted with certainty, or else the followed ones; links that keep an
+        angle to the driver or to the ground follow these."""
+        own = {GROUND: 0.0, **prepared(self.scene).turns.gains}
         if self.scene.driver.is_crank:
-            own[self.scene.driver.link] = cycle
-        if link not in own or against not in own:
-            return seen
-        return round(own[link] - own[against])
+            own[self.scene.driver.link] = self.period / math.tau
+        if link in own and against in own:
+            return round(own[link] - own[against])
+        relative = self.angles[link] - self.angles[against]
+        return round((relative[-1] - relative[0]) / math.tau)
 
     def _extreme(
         self, link: str, against: str, relative: Array, sense: float

@@ -9,7 +9,7 @@ Mean speed is (w_max + w_min) / 2, that of the coefficient of fluctuation.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,7 +40,7 @@ class PeriodicSolution:
     cells: AngleCells
     flywheel: float
     inertia: Array
-    inertia_at_borders: Array
+
     energy: Array
     at_borders: Array
     torque: Array
@@ -136,14 +136,10 @@ class _Newton:
         last = np.inf
         for _ in range(MOST_STEPS):
             full = self._step(solution)
-            change = max(
-                float(np.max(np.abs(full.energy - solution.energy))),
-                float(np.max(np.abs(full.at_borders - solution.at_borders))),
-            ) / float(np.max(np.abs(solution.energy)))
-            least = min(
-                float(np.min(full.energy / solution.energy)),
-                float(np.min(full.at_borders / solution.at_borders)),
-            )
+            pairs = (full.energy, solution.energy), (full.at_borders, solution.at_borders)
+            change = max(float(np.max(np.abs(new - old))) for new, old in pairs)
+            change /= float(np.max(np.abs(solution.energy)))
+            least = min(float(np.min(new / old)) for new, old in pairs)
             if least >= LEFT:
                 if change <= DONE or (change < 1e-9 and change >= 0.5 * last):
                     if self._holds(full):
@@ -181,7 +177,7 @@ class _Newton:
             speed = np.sqrt(2.0 * energy / self.inertia)
             torque = torque + self.machine.rated_torque(self.cells.nodes, speed)
         return PeriodicSolution(
-            self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
+            self.machine, self.cells, self.flywheel, self.inertia,
             energy, at_borders, torque, drive, gain,
         )  # fmt: skip
 
@@ -234,15 +230,12 @@ class _Newton:
         known = np.array([first, 1.0, drive])
         borders = start @ known
         energy = within[:, :, 0] * borders[:-1, None] + within[:, :, 1] + drive * within[:, :, 2]
-        torque = (
-            torques[:, :, 0] * borders[:-1, None]
-            + torques[:, :, 1]
-            + drive * (torques[:, :, 2] - 1.0)
+        torque = torques[:, :, 0] * borders[:-1, None] + torques[:, :, 1]
+        torque = torque + drive * (torques[:, :, 2] - 1.0)
+        gain = float(start[-1, 0])
+        return replace(
+            solution, energy=energy, at_borders=borders, torque=torque, drive=drive, gain=gain
         )
-        return PeriodicSolution(
-            self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
-            energy, borders, torque, drive, float(start[-1, 0]),
-        )  # fmt: skip
 
     def _open(
         self, solution: PeriodicSolution, start: Array, torques: Array

@@ -8,7 +8,8 @@ The angle u counts along the motion, and so do torques: positive ones drive::
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -143,19 +144,21 @@ class TurningMachine:
     way: float
     start_rad: float
     cycle_rad: float
-    _steady: Scene = field(init=False, repr=False)
-    _rated: Scene = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        scene = self.scene
-        fast = {n: load for n, load in scene.loads.items() if follows_speed(load)}
-        slow = {n: load for n, load in scene.loads.items() if n not in fast}
-        dampers = {n: replace(s, rate=0.0) for n, s in scene.springs.items() if s.damping}
-        springs = {n: replace(s, damping=0.0) for n, s in scene.springs.items() if s.rate}
-        steady = replace(scene, loads=slow, springs=springs)
-        rated = replace(scene, loads=fast, springs=dampers, friction={}, gravity_m_s2=(0.0, 0.0))
-        object.__setattr__(self, "_steady", steady)
-        object.__setattr__(self, "_rated", rated)
+    @cached_property
+    def _steady(self) -> Scene:
+        """Scene with the forces that do not follow the speed."""
+        slow = {n: load for n, load in self.scene.loads.items() if not follows_speed(load)}
+        springs = {n: replace(s, damping=0.0) for n, s in self.scene.springs.items() if s.rate}
+        return replace(self.scene, loads=slow, springs=springs)
+
+    @cached_property
+    def _rated(self) -> Scene:
+        """Scene with the forces that follow the speed."""
+        fast = {n: load for n, load in self.scene.loads.items() if follows_speed(load)}
+        dampers = {n: replace(s, rate=0.0) for n, s in self.scene.springs.items() if s.damping}
+        bare = replace(self.scene, friction={}, gravity_m_s2=(0.0, 0.0))
+        return replace(bare, loads=fast, springs=dampers)
 
     @staticmethod
     def of(scene: Scene) -> TurningMachine:
@@ -181,7 +184,7 @@ class TurningMachine:
 
     def inertia(self, u: Array) -> tuple[Array, Array]:
         """Return J and dJ/du [kg m^2]. Raises CrankcheckError where J has no bound."""
-        pair = inertia_and_slope(self.scene, self._unit(u.ravel()))
+        pair = inertia_and_slope(self.scene, self.mechanism(u.ravel()))
         inertia, slope = (each.reshape(u.shape) for each in pair)
         if (off := ~(np.isfinite(inertia) & np.isfinite(slope))).any():
             where = math.degrees(self.theta(u)[off].ravel()[0]) % 360.0
@@ -193,7 +196,7 @@ class TurningMachine:
 
     def mechanism(self, u: Array) -> Chunk:
         """Return the positions (T,), with rates and accelerations per unit of the driver's rate."""
-        return self._unit(u)
+        return unit_chunk(self.scene, self.theta(u), bound=False)
 
     def steady_torque(self, u: Array) -> Array:
         """Return the torque of all forces that do not follow the speed [N m]."""
@@ -223,9 +226,6 @@ class TurningMachine:
             parts["weights"] = replace(bare, gravity_m_s2=scene.gravity_m_s2)
         return {name: self._torque(part, u, speed) for name, part in parts.items()}
 
-    def _unit(self, u: Array) -> Chunk:
-        return unit_chunk(self.scene, self.theta(u), bound=False)
-
     def _torque(self, part: Scene, u: Array, speed: Array | float) -> Array:
         """Return the torque of ``part``, the same mechanism with some of its forces."""
         flat = u.ravel()
@@ -237,7 +237,7 @@ class TurningMachine:
             displaced = {name: Bounded(one.s, None) for name, one in chunk.sliders.items()}
             joints = rubbing_joints(part, analyse(self.scene), chunk, free, displaced)
             put_constant_friction(joints, free)
-        found = -self.way * np.asarray(torque_by_power(free, self._unit(flat), chunk).value)
+        found = -self.way * np.asarray(torque_by_power(free, self.mechanism(flat), chunk).value)
         return np.broadcast_to(found, flat.shape).reshape(u.shape)
 
 
