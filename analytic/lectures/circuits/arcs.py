@@ -211,9 +211,6 @@ def _later(end: ArcEnd) -> ArcEnd:
     return ArcEnd(end.angle_rad + math.tau, end.dyad)
 
 
-"""Samples of a turn of the driver."""
-
-
 def own_arc(scene: Scene) -> Arc:
     """Return the driver's range about its start [rad]; for a slider, places over the driver's
     scale. Raises ReachError where the scene can not be assembled at its start.

@@ -135,7 +135,7 @@ class _Follower:
         if link in own and against in own:
             return round(own[link] - own[against])
         relative = self.angles[link] - self.angles[against]
-        return round((relative[-1] - relative[0]) / math.tau)
+        return round(float(relative[-1] - relative[0]) / math.tau)
 
     def _extreme(
         self, link: str, against: str, relative: Array, sense: float

@@ -82,7 +82,6 @@ def _centre(known: _KnownCentres, size: float) -> Centre:
 
 
 def _of_joints(placement: PlacedMechanism, size: float) -> dict[Pair, _KnownCentres]:
-    """Return the centres of pins and sliders."""
     found: dict[Pair, _KnownCentres] = {}
     for point, bodies in placement.structure.pins.items():
         at = _KnownCentres(_unit(np.array([*placement.points[point] / size, 1.0])))

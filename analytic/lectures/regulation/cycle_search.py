@@ -6,6 +6,7 @@ follow the speed settle it, else they have to balance, and the speed of its star
 """
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 
@@ -96,7 +97,6 @@ class MeanBalance:
         return np.array(kept), np.array(own)
 
     def _never(self, speeds: Array, works: Array, first: int) -> str:
-        """Return the reason for the lack of a steady cycle."""
         scene, gains = self.machine.scene, works[first] > 0.0
         end = -1 if gains else 0
         comes = "goes faster and faster" if gains else "comes to rest"
@@ -112,11 +112,6 @@ class MeanBalance:
             f"{abs(works[first]):.4g} to {abs(works[end]):.4g} J a cycle, so that it {comes}; "
             f"give {cure}"
         )
-
-
-def other_way(machine: TurningMachine) -> TurningMachine:
-    """Return the machine turning to the other side."""
-    return replace(machine, way=-machine.way)
 
 
 CLOSED = 1e-6
@@ -206,7 +201,6 @@ def _pull(solution: PeriodicSolution, u: Array) -> Array:
 
 
 def _check_closed(solution: PeriodicSolution) -> None:
-    """Refuse loads that follow no speed and do not balance over the cycle."""
     machine = solution.machine
     whole = machine.cycle_rad
     put_in = solution.cells.integral(np.maximum(solution.torque, 0.0))
@@ -229,8 +223,6 @@ def cycle_of(machine: TurningMachine) -> SteadyCycle:
     except CrankcheckError:
         if machine.scene.driver.law.at(np.zeros(1))[1][0] != 0.0:
             raise
-        try:
-            return steady_cycle(other_way(machine))
-        except CrankcheckError:
-            pass
+        with suppress(CrankcheckError):
+            return steady_cycle(replace(machine, way=-machine.way))
         raise

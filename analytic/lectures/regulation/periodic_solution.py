@@ -277,7 +277,6 @@ class _Newton:
         return list(zip(u.tolist(), energy.tolist(), inertia.tolist(), strict=True))
 
     def _stalled(self, solution: PeriodicSolution) -> str:
-        """Return the text of the place where the energy runs out."""
         scene, worst = self.machine.scene, int(np.argmin(solution.energy / self.inertia))
         where = np.degrees(self.machine.theta(self.cells.nodes.ravel()[worst])) % 360.0
         mean = self.wanted.mean_rad_s

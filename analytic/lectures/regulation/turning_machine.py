@@ -14,13 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.forces import force_elements
 from analytic.forces.bounded import Bounded
-from analytic.forces.force_elements import (
-    apply_springs,
-    put_constant_friction,
-    rubbing_joints,
-    spring_lengths,
-)
 from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
 from analytic.kinematics import driven_chunk, reach, repeats_after, unit_chunk
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
@@ -74,7 +69,6 @@ def cycle_angle(scene: Scene) -> float:
 
 
 def _check_turns(scene: Scene) -> None:
-    """Refuse a driver without a repeated cycle, or whose speed is no body's own."""
     refuse_other_than_cranked(scene, "a cycle of speed")
     if not (scene.is_free or isinstance(scene.driver.law, ConstantSpeed)):
         raise CrankcheckError(
@@ -111,7 +105,6 @@ def _period(scene: Scene, load: Load) -> float | None:
 
 
 def _check_periods(scene: Scene, whole_rad: float) -> None:
-    """Refuse loads that repeat too often in a cycle."""
     for load in scene.loads.values():
         period = _period(scene, load)
         if period is not None and whole_rad / period > MOST_PERIODS:
@@ -123,10 +116,9 @@ def _check_periods(scene: Scene, whole_rad: float) -> None:
 
 
 def _check_springs(scene: Scene, whole_rad: float) -> None:
-    """Refuse springs that are wound up cycle by cycle."""
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     chunk = unit_chunk(scene, start + np.array([0.0, whole_rad]), bound=False)
-    for spring, q, _ in spring_lengths(scene, chunk, counted=True):
+    for spring, q, _ in force_elements.spring_lengths(scene, chunk, counted=True):
         if spring.rate and abs(q[1] - q[0]) > 1.0:  # a turn or more: lengths come back
             raise CrankcheckError(
                 f"{scene.name}: springs.{spring.name} is wound up by "
@@ -232,11 +224,13 @@ class TurningMachine:
         rate = self.way * np.broadcast_to(speed, u.shape).ravel()
         chunk = driven_chunk(self.scene, self.theta(flat), rate)
         free = loaded_bodies(part, chunk, np.zeros_like(flat))
-        apply_springs(part, chunk, free)
+        force_elements.apply_springs(part, chunk, free)
         if part.friction:
             displaced = {name: Bounded(one.s, None) for name, one in chunk.sliders.items()}
-            joints = rubbing_joints(part, analyse(self.scene), chunk, free, displaced)
-            put_constant_friction(joints, free)
+            joints = force_elements.rubbing_joints(
+                part, analyse(self.scene), chunk, free, displaced
+            )
+            force_elements.put_constant_friction(joints, free)
         found = -self.way * np.asarray(torque_by_power(free, self.mechanism(flat), chunk).value)
         return np.broadcast_to(found, flat.shape).reshape(u.shape)
 

@@ -22,20 +22,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.lectures.schemes import screws
 from analytic.lectures.schemes.scheme_loops import (
     IN_PLANE,
     DrawingFrame,
     Loops,
     Neighbourhood,
     neighbourhood,
-)
-from analytic.lectures.schemes.screws import (
-    DEPENDENT,
-    axis_in_words,
-    kernel,
-    named_twists,
-    rank,
-    reciprocal,
 )
 from models.array import Array
 from models.lectures.scheme import Scheme, SchemeJoint
@@ -92,7 +85,7 @@ def _far(joint: SchemeJoint, links: tuple[str, ...]) -> str:
 
 def _common(twists: Mapping[str, Array], joints: list[SchemeJoint]) -> Array:
     """Return the motions (6, d) that all of some joints leave."""
-    return kernel(np.vstack([reciprocal(twists[joint.name]) for joint in joints]))
+    return screws.kernel(np.vstack([screws.reciprocal(twists[joint.name]) for joint in joints]))
 
 
 def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: DrawingFrame) -> str:
@@ -102,13 +95,13 @@ def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: Drawi
     twist = motions[:, 0]
     places = [frame.at(joint.at) for joint in outer]
     omega, v = twist[:3], twist[3:]
-    stays = [np.abs(v + np.cross(omega, place)).max() < DEPENDENT for place in places]
+    stays = [np.abs(v + np.cross(omega, place)).max() < screws.DEPENDENT for place in places]
     names = [joint.name for joint in outer]
-    if len(outer) == 2 and all(stays) and np.ptp(places, axis=0).max() > DEPENDENT:
+    if len(outer) == 2 and all(stays) and np.ptp(places, axis=0).max() > screws.DEPENDENT:
         return f"turns about the line through {names[0]} and {names[1]}"
-    if np.abs(omega[:2]).max() < DEPENDENT and any(stays):
+    if np.abs(omega[:2]).max() < screws.DEPENDENT and any(stays):
         return f"turns about {names[stays.index(True)]}"
-    return axis_in_words(frame.in_drawing(twist))
+    return screws.axis_in_words(frame.in_drawing(twist))
 
 
 @dataclass(frozen=True)
@@ -198,16 +191,16 @@ def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
     planar = loops.scheme.dimension == 3
     rows = IN_PLANE if planar else list(range(6))
     used = 0
-    spare = slope.shape[0] - rank(slope)
+    spare = slope.shape[0] - screws.rank(slope)
     for joint in loops.scheme.joints:
         if used == spare:
             return
         effect = effect_of(loops, joint)
         at = links[joint.between[0]].pose @ np.r_[loops.frame.at(joint.at), 1.0]
-        for name, twist in named_twists(at[:3], planar).items():
+        for name, twist in screws.named_twists(at[:3], planar).items():
             column = (effect @ twist[rows])[:, None]
             wider = np.hstack([slope, column])
-            if used < spare and rank(wider) > rank(slope):
+            if used < spare and screws.rank(wider) > screws.rank(slope):
                 slope, used = wider, used + 1
                 yield joint.name, name
 

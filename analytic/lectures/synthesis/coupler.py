@@ -108,7 +108,7 @@ def links(body: CarriedBody, pair: Pair) -> DrawingStep:
     """Draw the four-bar in its first position."""
     first, second = (body.poses[0].at(dyad.moving) for dyad in pair)
     a, b = (f"{body.letter(dyad.moving, which)}1" for which, dyad in enumerate(pair))
-    elements = (
+    elements: tuple[Element, ...] = (
         *chained(pair[0].fixed, first, second, pair[1].fixed),
         Dot(first, a, "result"),
         Dot(second, b, "result"),

@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.pose import PlanePose, PoseDyad
 from models.array import Array
-from models.files.assemble import Table
 from models.lectures.draft import SPEED_RAD_S, Draft, bar, plate
-from models.lectures.shipped_tables import TaskTable
 from models.motion import Motion
 from models.scene import Scene
 
@@ -212,18 +210,14 @@ class Proposal:
 
 
 def to_and_fro(
-    task: TaskTable,
-    tables: tuple[Mapping[str, complex], Mapping[str, Table], Mapping[str, Table]],
+    draft: Draft,
     angles: Iterable[float],
     asked: Iterable[tuple[Asked, ...]],
     chosen: Mapping[str, str],
     steps: Iterable[DrawingStep],
     turns_back: str,
 ) -> Proposal:
-    """Return the mechanism of a task whose crank has two angles [rad] at the limits of a link or
-    slider; ``tables`` are those of its ground, links and sliders."""
-    ground, links, sliders = tables
-    draft = Draft(task.name, task.source, ground, links, {}, sliders=sliders)
+    """Return the mechanism whose crank has two angles [rad] at the limits of a link or slider."""
     positions = tuple(map(PrecisionPosition, angles, asked))
     return Proposal(draft, "crank", positions, chosen, tuple(steps), turns_back=turns_back)
 

@@ -198,7 +198,6 @@ def _place_of(circuits: Circuits, position: PrecisionPosition) -> Position:
 
 
 def _at(circuits: Circuits, place: Position) -> Scene:
-    """Return the scene that starts at a position."""
     scene = circuits.signed.with_signs(place.signs)
     law = ConstantSpeed(place.driver_rad, SPEED_RAD_S)
     return replace(scene, driver=replace(scene.driver, law=law))

@@ -34,7 +34,7 @@ from analytic.lectures.synthesis.rocker import Swung, by_angle
 from analytic.lectures.synthesis.slider_crank_strokes import circle_step, lag_of
 from models.errors import CrankcheckError
 from models.files.assemble import Table
-from models.lectures.draft import bar
+from models.lectures.draft import Draft, bar
 from models.lectures.tasks.positions import QuickReturnTask
 
 PLACES = 24
@@ -73,7 +73,7 @@ def _crank_rocker(
         "coupler": bar(PIN, END, coupler),
         "rocker": bar(O4, END, task.rocker_m),
     }
-    tables = {O2: pivot, O4: 0j}, links, {}
+    draft = Draft(task.name, task.source, {O2: pivot, O4: 0j}, links, {})
     asked = [(design.AskedAngle("rocker", pose.angle),) for pose in swung.poses]
     told = {"crank": f"{crank:.6g} m", "coupler": f"{coupler:.6g} m"}
     pin = pivot + cmath.rect(crank, turned[0])
@@ -88,7 +88,7 @@ def _crank_rocker(
         ),
     )
     steps = (*swung.steps, circle_step(lag_of(task.time_ratio), seen, pivot), lengths)
-    return design.to_and_fro(task, tables, turned, asked, told, steps, "rocker")
+    return design.to_and_fro(draft, turned, asked, told, steps, "rocker")
 
 
 O2, O4, PIN, END, RAM = "O2", "O4", "A", "B", "C"
@@ -132,8 +132,8 @@ def _slotted_lever(task: QuickReturnTask, lag: float) -> design.Proposal:
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "swing": _degrees(lag)}
     steps = _steps(1j * pivots, crank, angles, ends, lag)
     goes = "lever" if task.stroke_m is None else RAM
-    tables = {O2: 1j * pivots, O4: 0j}, links, sliders
-    return design.to_and_fro(task, tables, angles, asked, told, steps, goes)
+    draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
+    return design.to_and_fro(draft, angles, asked, told, steps, goes)
 
 
 def _whitworth(task: QuickReturnTask, lag: float) -> design.Proposal:
@@ -159,8 +159,8 @@ def _whitworth(task: QuickReturnTask, lag: float) -> design.Proposal:
     asked = zip(levels, slides, strict=True)
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "stroke": f"{2.0 * arm:.6g} m"}
     steps = _steps(1j * pivots, crank, angles, ends, lag)
-    tables = {O2: 1j * pivots, O4: 0j}, links, sliders
-    return design.to_and_fro(task, tables, angles, asked, told, steps, RAM)
+    draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
+    return design.to_and_fro(draft, angles, asked, told, steps, RAM)
 
 
 def _add_ram(

@@ -15,7 +15,7 @@ from analytic.lectures.synthesis.pose import (
     turn_between,
 )
 from models.errors import CrankcheckError
-from models.lectures.draft import bar, plate
+from models.lectures.draft import Draft, bar, plate
 from models.lectures.tasks.positions import RockerTask
 
 O2, O4 = "O2", "O4"
@@ -116,7 +116,6 @@ def _by_positions(task: RockerTask) -> Swung:
 def _pole_steps(
     places: tuple[PlanePose, PlanePose], own: Mapping[str, complex], pivot: complex
 ) -> Iterator[design.DrawingStep]:
-    """Yield the body in its positions, and the bisectors that meet in the pole."""
     elements: list[design.Element] = [
         design.Dot(pose.at(each), f"{name}{number}", "given")
         for number, pose in enumerate(places, 1)
@@ -167,13 +166,13 @@ def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) ->
         "coupler": bar(crank_pin, rocker_pin, found.coupler_m),
         "rocker": plate(own) if swung.points else bar(O4, rocker_pin, radius),
     }
-    tables = {O2: found.pivot, O4: swung.pivot}, links, {}
+    draft = Draft(task.name, task.source, {O2: found.pivot, O4: swung.pivot}, links, {})
     asked = [_asked(swung, pose) for pose in swung.poses]
     rocker = design.DrawingStep("the rocker", (*design.chained(swung.pivot, swung.ends[0]),))
     construction = found.steps(swung.ends, (O2, crank_pin, rocker_pin))
     steps = (*swung.steps, *construction, rocker)
     told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"{rocker_pin}{beyond}"}
-    return design.to_and_fro(task, tables, found.angles, asked, told, steps, "rocker")
+    return design.to_and_fro(draft, found.angles, asked, told, steps, "rocker")
 
 
 def _asked(swung: Swung, pose: PlanePose) -> tuple[design.Asked, ...]:

@@ -28,7 +28,7 @@ import numpy as np
 
 from analytic.lectures.synthesis import design
 from models.errors import CrankcheckError
-from models.lectures.draft import bar
+from models.lectures.draft import Draft, bar
 from models.lectures.tasks.positions import StrokeTask
 
 O2, PIN, SLIDER = "O2", "A", "B"
@@ -181,11 +181,11 @@ def _proposal(task: StrokeTask, ends: Ends) -> design.Proposal:
     through = [ends.first.real, ends.first.imag]
     links = {"crank": bar(O2, PIN, ends.crank), "rod": bar(PIN, SLIDER, ends.rod)}
     slider = {"on": "ground", "through_m": through, "direction_deg": 0.0}
-    tables = {O2: 0j}, links, {SLIDER: slider}
+    draft = Draft(task.name, task.source, {O2: 0j}, links, {}, sliders={SLIDER: slider})
     asked = [(design.AskedSlide(SLIDER, at),) for at in (0.0, task.stroke_m)]
     lengths = {"crank": ends.crank, "rod": ends.rod, "offset": ends.offset}
     told = {name: f"{length:.6g} m" for name, length in lengths.items()}
-    return design.to_and_fro(task, tables, ends.angles, asked, told, _steps(task, ends), SLIDER)
+    return design.to_and_fro(draft, ends.angles, asked, told, _steps(task, ends), SLIDER)
 
 
 def _steps(task: StrokeTask, ends: Ends) -> Iterator[design.DrawingStep]:

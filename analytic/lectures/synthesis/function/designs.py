@@ -92,7 +92,6 @@ def _places(
 def _steps(
     task: FunctionTask, generator: Generator, x: Array, places: list[tuple[complex, complex]]
 ) -> tuple[design.DrawingStep, ...]:
-    """Return the steps: maps, required input and output of the points, resulting links."""
     slides = isinstance(generator, SliderCrankGenerator)
     pivot = None if slides else complex(task.ground_m)
     frame: tuple[design.Element, ...] = (design.Dot(0j, design.PIVOTS[0], "given", fixed=True),)

@@ -221,10 +221,6 @@ class FunctionProposal(Proposal):
     generator: Generator
     x_points: tuple[float, ...]
 
-    def input_rad(self, x: Array) -> Array:
-        """Return the angle of the driver at x [rad], (T,)."""
-        return np.asarray(self.generator.input_start + self.task.input_turn(x))
-
     def asked(self, x: Array) -> Array:
         """Return the required output [rad or m], (T,)."""
         start = self.generator.output_start * self.task.output_scale
@@ -295,7 +291,7 @@ def _error(proposal: FunctionProposal, scene: Scene, x: Array) -> Array:
     try:
         motion = solve_driven(
             scene,
-            proposal.input_rad(x),
+            proposal.generator.input_start + proposal.task.input_turn(x),
             np.ones(1),
             np.zeros(1),
             links=(OUTPUT,) if turns else (),

@@ -74,13 +74,6 @@ class GivenFunction:
             raise CrankcheckError(f"{name}: {fault}") from None
         return GivenFunction(name, table.at, (places[0], places[-1]))
 
-    @staticmethod
-    def of_callable(function: Callable[[float], float], name: str = "y = f(x)") -> GivenFunction:
-        """Make it from a Python function of one number, which may raise where it is not defined."""
-        return GivenFunction(
-            name, lambda x: np.array([_value(function, one) for one in x.tolist()])
-        )
-
     def extremes(self, low: float, high: float) -> tuple[float, float]:
         """Return the least and the largest y between two x.
 
@@ -147,15 +140,6 @@ class GivenFunction:
             best = max(best, values[k])
             low, high = looks[max(k - 1, 0)], looks[min(k + 1, 64)]
         return float(sign * best)
-
-
-def _value(function: Callable[[float], float], x: float) -> float:
-    """Return a Python function's value; nan at arithmetic errors, or without a real number."""
-    try:
-        y = function(x)
-        return float("nan") if isinstance(y, complex) else float(y)
-    except (ArithmeticError, ValueError):
-        return float("nan")
 
 
 MechanismKind = Literal["fourbar", "slider-crank"]

@@ -176,7 +176,6 @@ def at_places(crank_rad: Array, places: Iterable[complex]) -> tuple[design.Preci
 
 
 def _steps(candidate: FourBarCandidate, task: PathTask) -> tuple[design.DrawingStep, ...]:
-    """Return the points, the curve through them, and the links that draw it."""
     four_bar, angles = candidate.four_bar, candidate.crank_rad
     dots = tuple(design.numbered("", task.points, "given"))
     curve = drawn_curve(four_bar, (float(np.min(angles)), float(np.max(angles))), LOOKS + 1)

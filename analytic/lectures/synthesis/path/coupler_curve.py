@@ -106,9 +106,8 @@ def real_size(fit: Fitted) -> tuple[CouplerCurve, Array]:
     angles = fit.phi + turn
     if not fit.mirrored:
         return own, angles
-    places = {"o2": own.o2, "o4": own.o4, "arm": own.arm}
-    mirrored = {name: place.conjugate() for name, place in places.items()}
-    return replace(own, **mirrored, sign=-1), -angles
+    o2, o4, arm = (place.conjugate() for place in (own.o2, own.o4, own.arm))
+    return replace(own, o2=o2, o4=o4, arm=arm, sign=-1), -angles
 
 
 def assembled(

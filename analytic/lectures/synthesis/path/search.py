@@ -23,7 +23,6 @@ from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.examine import Examined, examine
 from analytic.lectures.synthesis.path.atlas import between, closed_starts, spread
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, candidates, proposed
-from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
 from analytic.lectures.synthesis.path.fit import (
     LARGEST,
     Fitted,
@@ -124,14 +123,9 @@ OWN = 0.7
 
 
 @dataclass(frozen=True)
-class PathFit:
-    """Four-bar of a path: its crank's angles in the points [rad], its distances from them [m], and
-    its examination by the reference."""
+class PathFit(FourBarCandidate):
+    """Four-bar of a path, with its examination by the reference."""
 
-    four_bar: CouplerCurve
-    crank_rad: Array
-    rms_m: float
-    largest_m: float
     examined: Examined
 
     @property
@@ -259,5 +253,4 @@ def _examined(name: str, candidate: FourBarCandidate, task: PathTask) -> PathFit
         return str(error)  # such as a point on a pin, or a change point
     if examined.defects:
         return ", ".join(examined.defects)
-    off = candidate.rms_m, candidate.largest_m
-    return PathFit(candidate.four_bar, candidate.crank_rad, *off, examined)
+    return PathFit(candidate.four_bar, candidate.crank_rad, candidate.off_m, examined)
