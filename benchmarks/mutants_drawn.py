@@ -33,10 +33,20 @@ CHANGED = {
         "(load.direction_rad + lean)",
     ),
     24: ("if error is not None:", "error is not None", "(not (error is not None))"),
+    36: (
+        "m = (x * d[1] - y * d[0]) / det",
+        "(x * d[1] - y * d[0]) / det",
+        "((x * d[1] - y * d[0]) * det)",
+    ),
     38: (
         "(-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned",
         "-k2",
         "k2",
+    ),
+    39: (
+        "drawn = shares(curves(family, x[:, None], book.arm[k : k + 1]))",
+        "k + 1",
+        "(k + 1 + 1)",
     ),
     40: ("off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)", "rng", "path"),
     61: ("graph_words.tell(console, told)", "(console, told)", "(told, console)"),

@@ -45,11 +45,6 @@ class Labelled:
         }
         return sorted(set(own.values()))
 
-    @property
-    def symmetries(self) -> int:
-        """Number of symmetries, with the identity."""
-        return len(self.labellings)
-
 
 def canonical(corners: int, edges: Mapping[Edge, int], colours: Sequence[int]) -> Labelled:
     """Return the canonical labelling of a graph with coloured corners and kinds of edges."""

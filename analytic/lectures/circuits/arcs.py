@@ -15,7 +15,7 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS
-from analytic.dyads.steps import Step, stretched
+from analytic.dyads.steps import stretched
 from analytic.prepared import Prepared, prepared, shortage, with_valleys
 from analytic.structure.mobility import analyse
 from models.array import Array
@@ -125,11 +125,7 @@ class SignedScene:
     def chunk(self, signs: Signs, theta: Array) -> Chunk:
         """Return the mechanism with these signs at driver angles [rad], open dyads stretched."""
         padded = signs + (1,) * (len(self.dyads) - len(signs))
-        return stretched(self.with_signs(padded), self._steps, theta)
-
-    @property
-    def _steps(self) -> tuple[Step, ...]:
-        return tuple(prepared(self.scene).steps)
+        return stretched(self.with_signs(padded), tuple(prepared(self.scene).steps), theta)
 
     def shortage(self, signs: Signs, theta: Array) -> Array:
         """Return the shortage of the last dyad with a given sign [m], <= 0 closes."""

@@ -231,7 +231,7 @@ class FunctionProposal(Proposal):
 class StructuralError:
     """Required less actual output at x [rad, for a slider m], and in units of y, (T,).
 
-    ``largest`` is its largest size, at ``x_largest``; ``rms`` its root mean square over x.
+    ``largest`` is its largest size, ``rms`` its root mean square over x.
     ``y_scale`` is the change of y per rad or m of the output.
     """
 
@@ -239,7 +239,7 @@ class StructuralError:
     asked: Array
     error: Array
     largest: float
-    x_largest: float
+
     rms: float
     y_scale: float
 
@@ -270,19 +270,16 @@ def structural_error(
     x = np.linspace(task.x_low, task.x_high, count)
     error = _error(proposal, examined.scene, x)
     k = int(np.argmax(np.abs(error)))
-    x_largest, largest = x[k], abs(error[k])
+    largest = abs(error[k])
     low, high = x[max(k - 1, 0)], x[min(k + 1, count - 1)]
     for _ in range(ZOOMS):
         looks = np.linspace(low, high, FINER)
         sizes = np.abs(_error(proposal, examined.scene, looks))
         j = int(np.argmax(sizes))
-        if sizes[j] > largest:
-            x_largest, largest = looks[j], sizes[j]
+        largest = max(largest, sizes[j])
         low, high = looks[max(j - 1, 0)], looks[min(j + 1, FINER - 1)]
     rms = float(np.sqrt(np.trapezoid(error**2, x) / (x[-1] - x[0])))
-    return StructuralError(
-        x, proposal.asked(x), error, float(largest), float(x_largest), rms, task.y_scale
-    )
+    return StructuralError(x, proposal.asked(x), error, float(largest), rms, task.y_scale)
 
 
 def _error(proposal: FunctionProposal, scene: Scene, x: Array) -> Array:
