@@ -190,17 +190,16 @@ def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadP
     ground could not drive the mechanism where it turns back: the dead points of that input.
     """
     scene, (_, arc) = circuits.signed.scene, circuits.own
-    found = []
-    for end in (arc.low, arc.high):
-        if end is not None:
-            where = at_limit(scene, end.dyad)
-            found.append(DeadPoint(scene.driver.link, end.angle_rad, where))
+    found = [
+        DeadPoint(scene.driver.link, end.angle_rad, at_limit(scene, end.dyad))
+        for end in (arc.low, arc.high)
+        if end is not None
+    ]
     limits = {point.driver_rad for point in found}
     for one in rotations:
-        grounded = scene.links[one.link].points.keys() & scene.ground.keys()
         if one.against != GROUND or one.word != "swings" or one.link == scene.driver.link:
             continue
-        if grounded:
+        if scene.links[one.link].points.keys() & scene.ground.keys():
             found += [
                 DeadPoint(one.link, at, _in_line(circuits, at))
                 for at in (one.low_at_rad, one.high_at_rad)

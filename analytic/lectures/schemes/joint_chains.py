@@ -80,12 +80,8 @@ def _contact(joint: SchemeJoint) -> list[Array]:
 
 
 def _gear(joint: SchemeJoint) -> list[Array]:
-    first, second = gear_centres(joint)
-    return [
-        screws.rotation(first, UP),
-        screws.translation(joint.axes[0]),
-        screws.rotation(second, UP),
-    ]
+    first, second = (screws.rotation(centre, UP) for centre in gear_centres(joint))
+    return [first, screws.translation(joint.axes[0]), second]
 
 
 def _turns(joint: SchemeJoint) -> list[Array]:
@@ -156,10 +152,8 @@ def teeth_centres(joint: SchemeJoint) -> tuple[Array, Array]:
     pitch = first + joint.radii[0] * outward
     tangent = np.cross((0.0, 0.0, 1.0), along)
     action = np.cos(joint.pressure) * tangent + np.sin(joint.pressure) * along
-    return (
-        pitch + ((first - pitch) @ action) * action,
-        pitch + ((second - pitch) @ action) * action,
-    )
+    one, other = (pitch + ((centre - pitch) @ action) * action for centre in (first, second))
+    return one, other
 
 
 def _pairs(joint: SchemeJoint, link: str, scheme: Scheme) -> list[SchemeJoint]:
@@ -186,9 +180,8 @@ def _place(point: Array) -> Place:
 
 def _unused(name: str, names: list[str] | tuple[str, ...]) -> str:
     """Return an unused name, of at most 40 characters."""
-    name = name[-36:]
+    fresh = name = name[-36:]
     number = 2
-    fresh = name
     while fresh in names:
         fresh, number = f"{name}-{number}", number + 1
     return fresh
@@ -225,25 +218,17 @@ class JointAnalysis:
 
 def analyse_joint(touching: Touching) -> JointAnalysis:
     """Find class and freedoms of a joint, its contacts taken as closed."""
-    size = _size(touching)
+    away = [np.subtract(contact.at, touching.at) for contact in touching.contacts]
+    size = float(max(np.abs(each).max() for each in away)) or 1.0  # about the joint's point [m]
     loads = {
-        contact: np.array(
-            _LOADS[contact.kind](contact, _contact_place(contact, touching, size), size)
-        )
-        for contact in touching.contacts
+        contact: np.array(_LOADS[contact.kind](contact, np.asarray(each / size), size))
+        for contact, each in zip(touching.contacts, away, strict=True)
     }
     rows = np.vstack(list(loads.values()))
-    twists = screws.named_twists()
-    guided = {
-        name: _class_of(
-            np.vstack(
-                [rows, screws.reciprocal(np.array([twists[each] for each in guide.leaves]).T)]
-            ),
-            touching,
-            size,
-        )
-        for name, guide in touching.guides.items()
-    }
+    twists, guided = screws.named_twists(), {}
+    for name, guide in touching.guides.items():
+        held = screws.reciprocal(np.array([twists[each] for each in guide.leaves]).T)
+        guided[name] = _class_of(np.vstack([rows, held]), touching, size)
     return JointAnalysis(touching, _class_of(rows, touching, size), guided, _is_kept(loads))
 
 
@@ -275,16 +260,6 @@ def _is_kept(loads: Mapping[Contact, Array]) -> bool:
         bounds=[(None, None)] * 6 + [(0.0, 1.0)] * count,
     )
     return bool(-answer.fun < OPENS)
-
-
-def _size(touching: Touching) -> float:
-    """Return the largest distance of contacts from the joint's point [m]; 1 if there is none."""
-    far = [np.abs(np.subtract(contact.at, touching.at)).max() for contact in touching.contacts]
-    return float(max(far)) or 1.0
-
-
-def _contact_place(contact: Contact, touching: Touching, size: float) -> Array:
-    return np.asarray(np.subtract(contact.at, touching.at) / size)
 
 
 def _line(contact: Contact, at: Array, size: float) -> list[Array]:

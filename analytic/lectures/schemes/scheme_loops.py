@@ -138,16 +138,13 @@ class Loops:
 
     def joint_twists(self, q: Array) -> dict[str, Array]:
         """Return the freedoms of each joint at ``q``, as twists (6, f of the joint)."""
-        links = self.placed(q)
-        return {
-            joint.name: self._beyond(
-                joint,
-                joint.between[0],
-                PlacedLink(links[joint.between[0]].pose, 0 * links[GROUND].twists),
-                q,
-            ).twists[:, self.columns[joint.name]]
-            for joint in self.scheme.joints
-        }
+        links, found = self.placed(q), {}
+        for joint in self.scheme.joints:
+            first = joint.between[0]
+            still = PlacedLink(links[first].pose, np.zeros((6, self.freedoms)))
+            twists = self._beyond(joint, first, still, q).twists
+            found[joint.name] = twists[:, self.columns[joint.name]]
+        return found
 
     def part(self, scheme: Scheme, q: Array) -> tuple[Loops, Array]:
         """Return the loops of a scheme with fewer joints, and their part of ``q``."""

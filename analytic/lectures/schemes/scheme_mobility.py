@@ -210,13 +210,8 @@ def effect_of(loops: Loops, joint: SchemeJoint) -> Array:
     size = loops.scheme.dimension
     blocks = [np.zeros((0, size))]
     for closing in loops.closing:
-        sign = (
-            1
-            if closing is joint
-            else _passes(loops, joint, closing.between[0])
-            - _passes(loops, joint, closing.between[1])
-        )
-        blocks.append(sign * np.eye(size))
+        first, second = (_passes(loops, joint, link) for link in closing.between)
+        blocks.append((1 if closing is joint else first - second) * np.eye(size))
     return np.vstack(blocks)
 
 
