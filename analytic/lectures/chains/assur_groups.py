@@ -129,10 +129,8 @@ class ClassedGroup:
 
 @dataclass(frozen=True)
 class StructureByDriver:
-    """Groups in solving order with one joint driven.
-
-    ``left`` are links in no group: the joint can not move then, or leaves them loose.
-    """
+    """Groups in solving order with one joint driven. ``left`` are links in no group: the joint can
+    not move then, or leaves them loose."""
 
     joint: DrivenChainJoint
     groups: tuple[ClassedGroup, ...]

@@ -107,9 +107,7 @@ NAMES_OF_LINKS = {2: "binary", 3: "ternary", 4: "quaternary", 5: "quinary", 6: "
 @dataclass(frozen=True)
 class Chain:
     """Links, ``links`` in number from 0 on, and their simple ``joints``, two links in each.
-
-    ``sliders`` holds the joints that are prismatic; the others are pins.
-    """
+    ``sliders`` holds the joints that are prismatic; the others are pins."""
 
     links: int
     joints: tuple[Joint, ...]

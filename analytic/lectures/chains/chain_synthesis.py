@@ -38,11 +38,8 @@ WATT, STEPHENSON = "Watt", "Stephenson"
 @cache
 def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
     """Return all distinct chains with pins of two links each, without a rigid part and without a
-    link whose loss would part them, by assortment.
-
-    Raises CrankcheckError where no count of joints gives the mobility, and for more links than are
-    enumerated.
-    """
+    link whose loss would part them, by assortment. Raises CrankcheckError where no count of joints
+    gives the mobility, and for more links than are enumerated."""
     joints = _joints_that_give(links, mobility)
     level = {Chain.of(n, _ring(n)).relabelled() for n in range(3, links + 1)}
     for loop in range(1, joints - links + 2):

@@ -77,10 +77,8 @@ class Circuits:
 
     def defect(self, positions: Sequence[Position]) -> Defect:
         """Return the defect that keeps the driver from the positions in their order: they lie on
-        several circuits, on several branches of one, or are met in another order.
-
-        A driver that turns fully may have either sense.
-        """
+        several circuits, on several branches of one, or are met in another order. A driver that
+        turns fully may have either sense."""
         places = [self.place(position) for position in positions]
         if len({number for number, _ in places}) > 1:
             return "circuit"
@@ -101,15 +99,9 @@ def _in_order(arc: Arc, positions: Sequence[Position]) -> bool:
 
 
 def circuits_of(scene: Scene) -> Circuits:
-    """Find the circuits of a mechanism whose driver is a crank.
-
-    Raises
-    ------
-    StructureError
-        Another driver; a group other than a dyad; too many dyads.
-    CrankcheckError
-        A limit position whose two sides do not fit together: as good as a change point.
-    """
+    """Find the circuits of a mechanism whose driver is a crank. Raises StructureError for another
+    driver; a group other than a dyad; too many dyads; CrankcheckError for a limit position whose
+    two sides do not fit together: as good as a change point."""
     signed = SignedScene.of(scene)
     every = arcs(signed)
     joined = list(range(len(every)))

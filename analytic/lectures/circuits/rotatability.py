@@ -34,11 +34,9 @@ STILL_RAD = 1e-9
 @dataclass(frozen=True)
 class Rotation:
     """Rotation of ``link`` against ``against`` over a cycle of ``period_rad`` of the driver.
-
     ``turns`` are the whole turns that it gains, counter-clockwise; without any it swings from
     ``low_rad`` to ``high_rad``, of which ``low_at_rad`` and ``high_at_rad`` are driver angles: its
-    limit positions.
-    """
+    limit positions."""
 
     link: str
     against: str
@@ -78,13 +76,8 @@ def neighbours(scene: Scene) -> list[tuple[str, str]]:
 
 def rotations(scene: Scene, arc: Arc) -> list[Rotation]:
     """Return the rotation of every link against the ground and its neighbours, over the scene's
-    branch ``arc``.
-
-    Raises
-    ------
-    CrankcheckError
-        A link can not be followed, as its angle runs through infinity or a singular position.
-    """
+    branch ``arc``. Raises CrankcheckError where a link can not be followed, as its angle runs
+    through infinity or a singular position."""
     follow = _Follower.of(scene, arc)
     return [follow.rotation(link, against) for link, against in neighbours(scene)]
 

@@ -38,10 +38,8 @@ QUANTITIES: tuple[polygon.Quantity, polygon.Quantity] = ("velocity", "accelerati
 @dataclass(frozen=True)
 class DrawnPolygons:
     """Polygons of a mechanism in ``placement``, and the resulting rates of its bodies.
-
     ``undetermined`` names the groups that could not be drawn, with reasons; ``flat`` those whose
-    directions hardly cross, with angles.
-    """
+    directions hardly cross, with angles."""
 
     placement: PlacedMechanism
     velocity: polygon.Polygon

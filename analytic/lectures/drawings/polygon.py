@@ -98,11 +98,9 @@ UNITS: Mapping[Quantity, str] = {"velocity": "m/s", "acceleration": "m/s^2"}
 
 @dataclass(frozen=True)
 class Vector:
-    """Drawn vector from ``start`` to ``end`` (2,) [m/s or m/s^2], the pole at the origin.
-
-    ``name`` is as in books (v_CB, a^n_CB); ``direction`` names the line that it is parallel or
-    perpendicular to if a crossing gave its length, and is empty if it was known before.
-    """
+    """Drawn vector from ``start`` to ``end`` (2,) [m/s or m/s^2], the pole at the origin. ``name``
+    is as in books (v_CB, a^n_CB); ``direction`` names the line that it is parallel or perpendicular
+    to if a crossing gave its length, and is empty if it was known before."""
 
     name: str
     kind: Kind
@@ -131,12 +129,9 @@ class PolygonStep:
 
 @dataclass(frozen=True)
 class Polygon:
-    """Polygon, steps in the order of drawing.
-
-    ``images`` holds for every moving link the ends of the vectors of its points, by name (2,):
-    similar to the link, and turned. ``undetermined`` names groups that could not be drawn, with
-    reasons.
-    """
+    """Polygon, steps in the order of drawing. ``images`` holds for every moving link the ends of
+    the vectors of its points, by name (2,): similar to the link, and turned. ``undetermined`` names
+    groups that could not be drawn, with reasons."""
 
     quantity: Quantity
     steps: tuple[PolygonStep, ...]

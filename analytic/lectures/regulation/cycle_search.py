@@ -55,10 +55,8 @@ class MeanBalance:
 
     def settled(self, start: float) -> float:
         """Return the speed at which the work is 0, from the machine's start [rad/s]: upwards where
-        it gains there, downwards where it loses.
-
-        Raises CrankcheckError where there is none, or for a table that does not reach its start.
-        """
+        it gains there, downwards where it loses. Raises CrankcheckError where there is none, or for
+        a table that does not reach its start."""
         start = max(start, SLOWEST)
         self.machine.rated_torque(self.cells.nodes, np.full_like(self.cells.nodes, start))
         speeds = np.unique(np.append(np.geomspace(SLOWEST, FASTEST, SPEEDS), start))
@@ -126,15 +124,9 @@ STILL = 1e-11
 
 
 def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> SteadyCycle:
-    """Find the cycle that a machine repeats with an added flywheel on its driver.
-
-    Raises
-    ------
-    StallError
-        Its masses hold too little energy to carry it round.
-    CrankcheckError
-        Loads that do not balance at any speed, or have tables that end before.
-    """
+    """Find the cycle that a machine repeats with an added flywheel on its driver. Raises StallError
+    where its masses hold too little energy to carry it round; CrankcheckError for loads that do not
+    balance at any speed, or have tables that end before."""
     cells = AngleCells.of(machine.cycle_rad, breaks(machine))
     scene = machine.scene
     law_speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))

@@ -106,14 +106,9 @@ class WantedFlywheel:
 
 
 def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywheel:
-    """Find the flywheel for a coefficient of fluctuation.
-
-    Raises
-    ------
-    CrankcheckError
-        An invalid coefficient, or one that the machine keeps without a flywheel; no steady cycle
-        with any flywheel.
-    """
+    """Find the flywheel for a coefficient of fluctuation. Raises CrankcheckError for an invalid
+    coefficient, or one that the machine keeps without a flywheel; no steady cycle with any
+    flywheel."""
     _check(delta)
     machine, bare = scene_machine, None
     with suppress(StallError):

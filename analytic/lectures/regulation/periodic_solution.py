@@ -105,12 +105,9 @@ def repeated(
     guess: PeriodicSolution | float,
     wanted: WantedSpeed,
 ) -> PeriodicSolution:
-    """Find the solution that the machine repeats.
-
-    ``guess`` is a speed [rad/s] to begin with, or a solution, in cells of its own. Raises
-    StallError where the energy runs out on the way, CrankcheckError for tables of loads that end
-    before.
-    """
+    """Find the solution that the machine repeats. ``guess`` is a speed [rad/s] to begin with, or a
+    solution, in cells of its own. Raises StallError where the energy runs out on the way,
+    CrankcheckError for tables of loads that end before."""
     return _Newton(machine, cells, flywheel, wanted).solved(guess)
 
 
@@ -295,10 +292,8 @@ hundredth; most halvings of cells for it, and most cells."""
 
 def resolved(solution: PeriodicSolution, wanted: WantedSpeed) -> PeriodicSolution:
     """Refine the cells until their polynomials follow the solution: a machine that comes quickly to
-    the speed of its motor, or a load of short waves, takes narrower ones.
-
-    Raises CrankcheckError where no cells are narrow enough.
-    """
+    the speed of its motor, or a load of short waves, takes narrower ones. Raises CrankcheckError
+    where no cells are narrow enough."""
     machine = solution.machine
     for _ in range(MOST_HALVINGS):
         rough = np.flatnonzero(solution.roughness > RESOLVED)

@@ -37,14 +37,9 @@ CLOSE = 1e-9
 
 def cycle_angle(scene: Scene) -> float:
     """Return the angle of the driver after which the machine repeats [rad]: a turn, two for a
-    four-stroke engine.
-
-    Raises
-    ------
-    CrankcheckError
-        A driver that does not turn round, or speeds up by its law; friction that follows the
-        reactions; a load over time, or over the angle without a period; a spring that winds up.
-    """
+    four-stroke engine. Raises CrankcheckError for a driver that does not turn round, or speeds up
+    by its law; friction that follows the reactions; a load over time, or over the angle without a
+    period; a spring that winds up."""
     _check_turns(scene)
     if scene.coulomb_joints:
         raise CrankcheckError(

@@ -116,15 +116,9 @@ _KINDS: Mapping[str, Callable[[SchemeJoint], list[Array]]] = {
 
 def replaced(scheme: Scheme) -> Scheme:
     """Return the scheme with every contact and every pair of teeth replaced by a link or a block.
-
-    It has the count, the velocities and (but for teeth on centres that move against each other)
-    the accelerations of the given one, in this position.
-
-    Raises
-    ------
-    StructureError
-        A spatial scheme: a link between centres of curvature replaces a contact in the plane only.
-    """
+    It has the count, the velocities and (but for teeth on centres that move against each other) the
+    accelerations of the given one, in this position. Raises StructureError for a spatial scheme: a
+    link between centres of curvature replaces a contact in the plane only."""
     if scheme.space != PLANAR:
         raise StructureError(
             f"{scheme.name}: a spatial scheme; higher pairs are replaced in planar ones"
@@ -141,11 +135,9 @@ def replaced(scheme: Scheme) -> Scheme:
 
 
 def teeth_centres(joint: SchemeJoint) -> tuple[Array, Array]:
-    """Return the centres of curvature of two teeth that touch at the pitch point.
-
-    They are the feet of the perpendiculars from both wheels' centres on the line of action, which
-    goes through the pitch point, at the pressure angle from the common tangent.
-    """
+    """Return the centres of curvature of two teeth that touch at the pitch point. They are the feet
+    of the perpendiculars from both wheels' centres on the line of action, which goes through the
+    pitch point, at the pressure angle from the common tangent."""
     first, second = gear_centres(joint)
     along = np.array(joint.axes[0])
     outward = np.sign(sum(joint.radii)) * along  # out of the first wheel where they touch
@@ -206,9 +198,7 @@ class JointClass:
 @dataclass(frozen=True)
 class JointAnalysis:
     """Analysis of a joint by its contacts alone, and with the guidance of neighbouring joints.
-
-    ``kept`` is True if its form keeps the two together; else a force must.
-    """
+    ``kept`` is True if its form keeps the two together; else a force must."""
 
     touching: Touching
     alone: JointClass

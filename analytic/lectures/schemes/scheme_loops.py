@@ -204,12 +204,10 @@ SEED = 18
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """Motions of a scheme at the drawn position and next to it.
-
-    ``at`` (f,) is the position next to the drawn one, ``moves`` (f, d) are all motions that the
-    equations leave there, ``finite`` is the number of real motions among them; ``here`` is the
-    number that the equations leave at the drawn position.
-    """
+    """Motions of a scheme at the drawn position and next to it. ``at`` (f,) is the position next to
+    the drawn one, ``moves`` (f, d) are all motions that the equations leave there, ``finite`` is
+    the number of real motions among them; ``here`` is the number that the equations leave at the
+    drawn position."""
 
     here: int
     at: Array

@@ -107,9 +107,7 @@ def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: Drawi
 @dataclass(frozen=True)
 class Passive:
     """Parts that may be left out: links with their joints, joints, and other single constraints.
-
-    ``also`` are links that might each be left out instead of one of ``links``.
-    """
+    ``also`` are links that might each be left out instead of one of ``links``."""
 
     links: tuple[str, ...] = ()
     also: tuple[str, ...] = ()
@@ -181,11 +179,9 @@ def _same_moves(loops: Loops, q: Array, fewer: Scheme, idle: int) -> tuple[Loops
 
 
 def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
-    """Yield single constraints of joints, each named by the motion that it takes.
-
-    A motion more in a joint is a column more: if it is outside the span of the others, the loops
-    still leave no motion more, so the constraint is passive.
-    """
+    """Yield single constraints of joints, each named by the motion that it takes. A motion more in
+    a joint is a column more: if it is outside the span of the others, the loops still leave no
+    motion more, so the constraint is passive."""
     slope = loops.closure(q)[1]
     links = loops.placed(q)
     planar = loops.scheme.dimension == 3

@@ -140,14 +140,9 @@ FALLEN_BACK = 3
 
 
 def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
-    """Return the four-bars of a task, and the number of pairs of cranks considered.
-
-    Raises
-    ------
-    CrankcheckError
-        Positions that coincide; a point that stays, or runs on a line; no crank that holds the
-        body in all positions.
-    """
+    """Return the four-bars of a task, and the number of pairs of cranks considered. Raises
+    CrankcheckError for positions that coincide; a point that stays, or runs on a line; no crank
+    that holds the body in all positions."""
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     body = CarriedBody(task.name, task.source, poses, task.own_points)
     size = max(abs(b.point - a.point) for a, b in itertools.combinations(body.poses, 2))

@@ -96,12 +96,7 @@ def names_of(positions: Sequence[PrecisionPosition]) -> tuple[list[str], list[st
 
 def asked_motion(scene: Scene, positions: Sequence[PrecisionPosition]) -> Motion:
     """Solve the scene at the driver's angles of positions (P,), for required quantities alone.
-
-    Raises
-    ------
-    ReachError
-        An angle at which it can not be assembled.
-    """
+    Raises ReachError for an angle at which it can not be assembled."""
     links, points, sliders = names_of(positions)
     return solve_driven(
         scene,

@@ -107,13 +107,9 @@ def ranked(every: Sequence[Examined]) -> list[Examined]:
 
 
 def examine(proposal: Proposal) -> Examined:
-    """Assemble a proposal in its first position and examine the way of its driver.
-
-    Raises
-    ------
-    CrankcheckError
-        Lengths that make no mechanism, or one that can not be assembled in its first position.
-    """
+    """Assemble a proposal in its first position and examine the way of its driver. Raises
+    CrankcheckError for lengths that make no mechanism, or one that can not be assembled in its
+    first position."""
     first, speed = proposal.positions[0].driver_rad, proposal.speed_rad_s
     circuits = circuits_of(proposal.draft.driven(_turning(proposal.driver, first, speed)).scene)
     places = [_place_of(circuits, each) for each in proposal.positions]

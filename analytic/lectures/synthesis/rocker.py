@@ -35,13 +35,8 @@ class Swung:
 
 
 def rocker_proposals(task: RockerTask) -> list[design.Proposal]:
-    """Return the crank-rockers of a task.
-
-    Raises
-    ------
-    CrankcheckError
-        Positions that coincide, or whose pole is at infinity; a crank's pivot between the ends.
-    """
+    """Return the crank-rockers of a task. Raises CrankcheckError for positions that coincide, or
+    whose pole is at infinity; a crank's pivot between the ends."""
     if task.positions:
         swung = _by_positions(task)
     else:

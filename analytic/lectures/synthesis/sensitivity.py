@@ -94,13 +94,8 @@ class Spread:
 
 
 def sensitivity(examined: Examined) -> Sensitivity:
-    """Compute the slopes of a mechanism that meets its positions.
-
-    Raises
-    ------
-    CrankcheckError
-        A mechanism that passes a change point, or a dead point: next to it there are no slopes.
-    """
+    """Compute the slopes of a mechanism that meets its positions. Raises CrankcheckError for a
+    mechanism that passes a change point, or a dead point: next to it there are no slopes."""
     if examined.least_sine < SINGULAR:
         raise CrankcheckError(
             f"{examined.scene.name}: it passes a position in which links are in line, where a "

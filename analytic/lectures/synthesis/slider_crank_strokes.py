@@ -112,13 +112,8 @@ def _ends(task: StrokeTask) -> Iterator[Ends]:
 
 def crank_of(stroke: float, rod: float, offset: float) -> float:
     """Return the crank [m] of a stroke: with u, v = sqrt((l +- r)^2 - e^2) and u - v = s, u + v is
-    4 l r / s, and r^2 = s^2 (4 l^2 - 4 e^2 - s^2) / (4 (4 l^2 - s^2)).
-
-    Raises
-    ------
-    CrankcheckError
-        A rod that is too short for it.
-    """
+    4 l r / s, and r^2 = s^2 (4 l^2 - 4 e^2 - s^2) / (4 (4 l^2 - s^2)). Raises CrankcheckError for a
+    rod that is too short for it."""
     least = 0.5 * stroke + offset
     square = stroke**2 * (4.0 * rod**2 - 4.0 * offset**2 - stroke**2)
     below = 4.0 * (4.0 * rod**2 - stroke**2)

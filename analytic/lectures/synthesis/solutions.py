@@ -156,12 +156,7 @@ class Solutions:
 
 def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions:
     """Propose and examine; a search calls ``progress`` with the finished share and its distance.
-
-    Raises
-    ------
-    CrankcheckError
-        A task without any mechanism.
-    """
+    Raises CrankcheckError for a task without any mechanism."""
     proposals, looked = _proposals(task, progress)
     examined, refused = [], []
     for number, proposal in enumerate(proposals, 1):

@@ -127,10 +127,8 @@ def _solved(
     form: ReducedForm, linear: LinearForm, period_s: float
 ) -> tuple[Array, floquet.Stability, natural.FrequencySensitivity]:
     """Return coefficients at the instants of linearised equations (N, m), stability, sensitivity.
-
     Windows have matrices of their own: the one large matrix of harmonic balance
-    (`periodic.linear_motion`) takes ten times as long where processors are busy.
-    """
+    (`periodic.linear_motion`) takes ten times as long where processors are busy."""
     count = len(linear.force)
     modes = natural.natural_modes(linear.mass, linear.stiffness)
     each = math.ceil(floquet.window_count(modes, period_s, HIGHEST) / count)
@@ -145,13 +143,8 @@ def _solved(
 
 
 def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
-    """Compute the vibration at ascending speeds [rad/s], (S,), all above 0.
-
-    Raises
-    ------
-    CrankcheckError
-        Loads that do not repeat each turn at these speeds; joints that can not be closed.
-    """
+    """Compute the vibration at ascending speeds [rad/s], (S,), all above 0. Raises CrankcheckError
+    for loads that do not repeat each turn at these speeds; joints that can not be closed."""
     every = AnySpeed(scene, by, float(speeds[0]), float(speeds[-1]))
     form, lowest = every.form(float(speeds[0])), natural.lowest_rad_s(scene)
     found = []
@@ -202,13 +195,8 @@ class InertiaMap:
 
 
 def with_inertia(scene: Scene, body: str, factor: float) -> Scene:
-    """Return the scene with a rigid link, or the block of a slider, so many times as heavy.
-
-    Raises
-    ------
-    CrankcheckError
-        No such body; one that is elastic, or the driver, or without mass.
-    """
+    """Return the scene with a rigid link, or the block of a slider, so many times as heavy. Raises
+    CrankcheckError for no such body; one that is elastic, or the driver, or without mass."""
     links = {
         name: own
         for name, own in scene.links.items()

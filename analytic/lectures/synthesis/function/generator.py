@@ -38,12 +38,10 @@ POLISHES = 4
 
 @dataclass(frozen=True)
 class Generator(ABC):
-    """Mechanism in units of its scale; a search may lead through negative lengths.
-
-    ``input_start`` [rad] and ``output_start`` [rad, or scales] are the input and the output at the
-    start of their ranges. ``turned`` names the starts that a negative length turned by 180 degrees:
-    a link of length -a at an angle is one of length a at the opposite angle.
-    """
+    """Mechanism in units of its scale; a search may lead through negative lengths. ``input_start``
+    [rad] and ``output_start`` [rad, or scales] are the input and the output at the start of their
+    ranges. ``turned`` names the starts that a negative length turned by 180 degrees: a link of
+    length -a at an angle is one of length a at the opposite angle."""
 
     k: tuple[float, float, float]
     input_start: float
@@ -161,13 +159,8 @@ def one_vector(equations: Array) -> Array:
 
 def vectors_of(equations: Array, form: Form, degree: int) -> list[Array]:
     """Return all vectors, up to their length, that n equations (n, n + 2) leave and at which a
-    homogeneous form of a degree vanishes: at most as many as the degree.
-
-    Raises
-    ------
-    CrankcheckError
-        Coincident equations, or a form that vanishes at every vector.
-    """
+    homogeneous form of a degree vanishes: at most as many as the degree. Raises CrankcheckError for
+    coincident equations, or a form that vanishes at every vector."""
     p, q = _null_space(equations, 2)
     turns = np.pi * np.arange(LOOKS) / LOOKS
     sizes = np.array([abs(form(np.cos(t) * p + np.sin(t) * q)) for t in turns])
@@ -229,11 +222,9 @@ class FunctionProposal(Proposal):
 
 @dataclass(frozen=True)
 class StructuralError:
-    """Required less actual output at x [rad, for a slider m], and in units of y, (T,).
-
-    ``largest`` is its largest size, ``rms`` its root mean square over x.
-    ``y_scale`` is the change of y per rad or m of the output.
-    """
+    """Required less actual output at x [rad, for a slider m], and in units of y, (T,). ``largest``
+    is its largest size, ``rms`` its root mean square over x. ``y_scale`` is the change of y per rad
+    or m of the output."""
 
     x: Array
     asked: Array

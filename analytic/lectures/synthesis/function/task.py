@@ -43,10 +43,8 @@ FLAT = 1e-12
 
 @dataclass(frozen=True)
 class GivenFunction:
-    """Function by its name; ``at`` gives its values (T,) at x (T,), NaN where it has none.
-
-    ``rows`` is the range of x of a table.
-    """
+    """Function by its name; ``at`` gives its values (T,) at x (T,), NaN where it has none. ``rows``
+    is the range of x of a table."""
 
     name: str
     at: Callable[[Array], Array]
@@ -61,10 +59,8 @@ class GivenFunction:
     @staticmethod
     def of_table(x: Sequence[float], y: Sequence[float], name: str = "a table") -> GivenFunction:
         """Make the function of rows, with cubics between them that rise and fall as the rows do.
-
         Raises CrankcheckError for fewer than two rows, places that do not increase, and values that
-        are no numbers.
-        """
+        are no numbers."""
         places, values = tuple(map(float, x)), tuple(map(float, y))
         if not np.isfinite([*places, *values]).all():
             raise CrankcheckError(f"{name}: the rows of a function have to be finite numbers")
@@ -75,13 +71,8 @@ class GivenFunction:
         return GivenFunction(name, table.at, (places[0], places[-1]))
 
     def extremes(self, low: float, high: float) -> tuple[float, float]:
-        """Return the least and the largest y between two x.
-
-        Raises
-        ------
-        CrankcheckError
-            An invalid range; one on which the function is not defined, jumps or is constant.
-        """
+        """Return the least and the largest y between two x. Raises CrankcheckError for an invalid
+        range; one on which the function is not defined, jumps or is constant."""
         if not (np.isfinite([low, high]).all() and low < high):
             raise CrankcheckError(
                 f"{self.name}: a range of x from {low:g} to {high:g} was asked for; give two "

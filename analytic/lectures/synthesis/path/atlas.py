@@ -57,9 +57,7 @@ def shares(curves: Complexes) -> Array:
 
 def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complexes | Array:
     """Interpolate values (E, M) at their own shares to wanted shares (E, W), each within 0 to 1.
-
-    All rows at once: each is moved by its number, so that they follow each other on one axis.
-    """
+    All rows at once: each is moved by its number, so that they follow each other on one axis."""
     rows = 2.0 * np.arange(len(share))[:, None]
     flat = (share + rows).ravel()
     upper = np.searchsorted(flat, (wanted + rows).ravel(), side="right").reshape(wanted.shape)
@@ -73,11 +71,9 @@ def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complex
 
 
 def smooth(points: Complexes, closed: bool) -> tuple[Complexes, Array]:
-    """Return a fine curve through points, in order, and the shares of its length in them, (N,).
-
-    It is a cubic spline over the length of the chords; a closed curve ends where it starts, and
-    the shares are below 1.
-    """
+    """Return a fine curve through points, in order, and the shares of its length in them, (N,). It
+    is a cubic spline over the length of the chords; a closed curve ends where it starts, and the
+    shares are below 1."""
     knots = np.append(points, points[0]) if closed else points
     at = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(knots)))])
     spline = CubicSpline(at, knots, bc_type="periodic" if closed else "not-a-knot")

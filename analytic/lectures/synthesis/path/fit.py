@@ -39,11 +39,8 @@ BOXED = slice(0, 9)
 @dataclass(frozen=True)
 class Fitted:
     """Four-bar near the points of a unit path: numbers of its shape, placing numbers O, G, Q, and
-    the crank's angles [rad] from the ground on.
-
-    ``cost`` is the mean square of the distances, ``mirrored`` is True for the mirror image of the
-    points.
-    """
+    the crank's angles [rad] from the ground on. ``cost`` is the mean square of the distances,
+    ``mirrored`` is True for the mirror image of the points."""
 
     family: unit_four_bar.Family
     x: Array

@@ -67,9 +67,7 @@ def _angles(ends: Array) -> Array:
 
 def _within_limits(shape: tuple[Array, Array, Array], share: Array) -> Array:
     """Return ends of pieces between the limits of cranks, (2, E); two equal ones where none closes.
-
-    A is |1 - a exp(i phi)| from O4, by the cosine of phi, and has to be within |b - c| to b + c.
-    """
+    A is |1 - a exp(i phi)| from O4, by the cosine of phi, and has to be within |b - c| to b + c."""
     a, b, c = shape
     high, low = (
         np.clip((1.0 + a**2 - far**2) / (2.0 * a), -1.0, 1.0) for far in (np.abs(b - c), b + c)
