@@ -54,10 +54,20 @@ CHANGED = {
         "(number != k)",
     ),
     24: ("if error is not None:", "error is not None", "(not (error is not None))"),
+    36: (
+        "m = (x * d[1] - y * d[0]) / det",
+        "(x * d[1] - y * d[0]) / det",
+        "((x * d[1] - y * d[0]) * det)",
+    ),
     38: (
         "(-k1, -k2, k3), generator.opposite(self.input_start), self.output_start, turned",
         "-k2",
         "k2",
+    ),
+    39: (
+        "drawn = shares(curves(family, x[:, None], book.arm[k : k + 1]))",
+        "k + 1",
+        "(k + 1 + 1)",
     ),
     40: ("off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)", "rng", "path"),
     45: ("*(comment(redundant) if by_need else []),", "by_need", "(not (by_need))"),

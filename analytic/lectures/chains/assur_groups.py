@@ -129,10 +129,8 @@ class ClassedGroup:
 
 @dataclass(frozen=True)
 class StructureByDriver:
-    """Groups in solving order with one joint driven.
-
-    ``left`` are links in no group: the joint can not move then, or leaves them loose.
-    """
+    """Groups in solving order with one joint driven. ``left`` are links in no group: the joint can
+    not move then, or leaves them loose."""
 
     joint: DrivenChainJoint
     groups: tuple[ClassedGroup, ...]
@@ -149,9 +147,8 @@ class StructureByDriver:
 
 def classed(part: Group | Triad) -> ClassedGroup:
     """Return a group with its class and order."""
-    if isinstance(part, Triad):
-        return ClassedGroup(part.kind, part.bodies, 3, 3)
-    return ClassedGroup(part.kind, part.bodies, 2, 2)
+    number = 3 if isinstance(part, Triad) else 2
+    return ClassedGroup(part.kind, part.bodies, number, number)
 
 
 def by_drivers(scene: Scene, structure: Structure) -> list[StructureByDriver]:
@@ -182,13 +179,11 @@ def _driven(scene: Scene, structure: Structure, joint: DrivenChainJoint) -> Stru
     order, left = decompose(units, frozenset(known), pairs)
     groups = [classed(part) for part in order if isinstance(part, Group | Triad)]
     groups, left = _with_larger(groups, left, ends, set(units) | known)
-    is_own = joint.slider == scene.driver.slider and (
-        joint.slider is not None
-        or (
-            {joint.base, joint.body} == {scene.driver.base, scene.driver.link}
-            and joint.pin == scene.driver_pivot
-        )
-    )
+    driver = scene.driver
+    is_own = joint.slider == driver.slider
+    if joint.slider is None:
+        is_own &= {joint.base, joint.body} == {driver.base, driver.link}
+        is_own &= joint.pin == scene.driver_pivot
     return StructureByDriver(joint, tuple(groups), tuple(left), is_own)
 
 
@@ -238,7 +233,8 @@ class Mechanism:
 
     def classes(self) -> dict[int, int]:
         """Return the class of the mechanism for each driving link at the ground; of mobility 1."""
-        return {link: mechanism_class(self.chain, self.ground, link) for link in self.drivers()}
+        orders = {link: assur_groups(self.chain, self.ground, link) for link in self.drivers()}
+        return {link: max(one.class_number for one in order) for link, order in orders.items()}
 
 
 def inversions(chain: Chain, name: str) -> list[Mechanism]:
@@ -272,8 +268,3 @@ def assur_groups(chain: Chain, ground: int, driver: int) -> list[AssurGroup[int]
         order.append(group)
         placed.update(group.links)
     return order
-
-
-def mechanism_class(chain: Chain, ground: int, driver: int) -> int:
-    """Return the highest class of its groups."""
-    return max(group.class_number for group in assur_groups(chain, ground, driver))

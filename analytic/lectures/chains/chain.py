@@ -16,6 +16,7 @@ Symmetries of the graph relate the labellings that give the least form.
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -43,11 +44,6 @@ class Labelled:
             for corner in corner_at.values()
         }
         return sorted(set(own.values()))
-
-    @property
-    def symmetries(self) -> int:
-        """Number of symmetries, with the identity."""
-        return len(self.labellings)
 
 
 def canonical(corners: int, edges: Mapping[Edge, int], colours: Sequence[int]) -> Labelled:
@@ -96,10 +92,7 @@ def _refined(beside: list[dict[int, int]], colours: list[int]) -> list[int]:
             (colours[corner], sorted((kind, colours[other]) for other, kind in own.items()))
             for corner, own in enumerate(beside)
         ]
-        rank: list[tuple[int, list[tuple[int, int]]]] = []
-        for one in sorted(told):
-            if not rank or rank[-1] != one:
-                rank.append(one)
+        rank = [one for one, _ in itertools.groupby(sorted(told))]
         refined = [rank.index(one) for one in told]
         if len(rank) == len(set(colours)):
             return refined
@@ -114,9 +107,7 @@ NAMES_OF_LINKS = {2: "binary", 3: "ternary", 4: "quaternary", 5: "quinary", 6: "
 @dataclass(frozen=True)
 class Chain:
     """Links, ``links`` in number from 0 on, and their simple ``joints``, two links in each.
-
-    ``sliders`` holds the joints that are prismatic; the others are pins.
-    """
+    ``sliders`` holds the joints that are prismatic; the others are pins."""
 
     links: int
     joints: tuple[Joint, ...]
@@ -171,11 +162,8 @@ class Chain:
     def relabelled(self) -> Chain:
         """Return the chain with its links in canonical order: isomorphic chains become equal."""
         place = self.labelled().labellings[0]
-        return Chain.of(
-            self.links,
-            [(place[a], place[b]) for a, b in self.joints],
-            [(place[a], place[b]) for a, b in self.sliders],
-        )
+        moved = ([(place[a], place[b]) for a, b in own] for own in (self.joints, self.sliders))
+        return Chain.of(self.links, *moved)
 
 
 def mobility_by_count(links: int, joints: int) -> int:
@@ -218,11 +206,8 @@ def _split(links: int, ends: int, most: int) -> list[tuple[int, ...]]:
 
 def assortment_in_words(counts: tuple[int, ...]) -> str:
     """Return the counts in words: 4 binary, 2 ternary."""
-    return ", ".join(
-        f"{count} {NAMES_OF_LINKS.get(k, f'{k}-joint')}"
-        for k, count in enumerate(counts, 2)
-        if count
-    )
+    names = [NAMES_OF_LINKS.get(k, f"{k}-joint") for k in range(2, len(counts) + 2)]
+    return ", ".join(f"{count} {name}" for count, name in zip(counts, names, strict=True) if count)
 
 
 def has_rigid_part(chain: Chain) -> bool:

@@ -38,11 +38,8 @@ WATT, STEPHENSON = "Watt", "Stephenson"
 @cache
 def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
     """Return all distinct chains with pins of two links each, without a rigid part and without a
-    link whose loss would part them, by assortment.
-
-    Raises CrankcheckError where no count of joints gives the mobility, and for more links than are
-    enumerated.
-    """
+    link whose loss would part them, by assortment. Raises CrankcheckError where no count of joints
+    gives the mobility, and for more links than are enumerated."""
     joints = _joints_that_give(links, mobility)
     level = {Chain.of(n, _ring(n)).relabelled() for n in range(3, links + 1)}
     for loop in range(1, joints - links + 2):
@@ -159,10 +156,8 @@ def _rows(chain: Chain, joint: Joint, draw: np.random.Generator) -> tuple[Array,
     (x, y), angle = draw.uniform(-1.0, 1.0, 2), draw.uniform(0.0, np.pi)
     places = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])  # velocity there of what moves so
     turn = np.array([0.0, 0.0, 1.0])
-    along, across = (
-        np.array([np.cos(angle), np.sin(angle)]),
-        np.array([-np.sin(angle), np.cos(angle)]),
-    )
+    along = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-np.sin(angle), np.cos(angle)])
     held = [across @ places, turn] if joint in chain.sliders else list(places)
     free = along @ places if joint in chain.sliders else turn
     constraints, freedom = np.zeros((2, 3 * chain.links)), np.zeros(3 * chain.links)

@@ -15,7 +15,7 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS
-from analytic.dyads.steps import Step, stretched
+from analytic.dyads.steps import stretched
 from analytic.prepared import Prepared, prepared, shortage, with_valleys
 from analytic.structure.mobility import analyse
 from models.array import Array
@@ -125,11 +125,7 @@ class SignedScene:
     def chunk(self, signs: Signs, theta: Array) -> Chunk:
         """Return the mechanism with these signs at driver angles [rad], open dyads stretched."""
         padded = signs + (1,) * (len(self.dyads) - len(signs))
-        return stretched(self.with_signs(padded), self._steps, theta)
-
-    @property
-    def _steps(self) -> tuple[Step, ...]:
-        return tuple(prepared(self.scene).steps)
+        return stretched(self.with_signs(padded), tuple(prepared(self.scene).steps), theta)
 
     def shortage(self, signs: Signs, theta: Array) -> Array:
         """Return the shortage of the last dyad with a given sign [m], <= 0 closes."""
@@ -209,9 +205,6 @@ def _merged(arc: Arc, opens: list[ArcEnd], shuts: list[ArcEnd]) -> Iterator[Arc]
 def _later(end: ArcEnd) -> ArcEnd:
     """Return an end a turn of the driver later."""
     return ArcEnd(end.angle_rad + math.tau, end.dyad)
-
-
-"""Samples of a turn of the driver."""
 
 
 def own_arc(scene: Scene) -> Arc:

@@ -14,7 +14,7 @@ linkages, Journal of Mechanical Design 115 (1993), pages 223 to 230, whose words
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -77,10 +77,8 @@ class Circuits:
 
     def defect(self, positions: Sequence[Position]) -> Defect:
         """Return the defect that keeps the driver from the positions in their order: they lie on
-        several circuits, on several branches of one, or are met in another order.
-
-        A driver that turns fully may have either sense.
-        """
+        several circuits, on several branches of one, or are met in another order. A driver that
+        turns fully may have either sense."""
         places = [self.place(position) for position in positions]
         if len({number for number, _ in places}) > 1:
             return "circuit"
@@ -101,15 +99,9 @@ def _in_order(arc: Arc, positions: Sequence[Position]) -> bool:
 
 
 def circuits_of(scene: Scene) -> Circuits:
-    """Find the circuits of a mechanism whose driver is a crank.
-
-    Raises
-    ------
-    StructureError
-        Another driver; a group other than a dyad; too many dyads.
-    CrankcheckError
-        A limit position whose two sides do not fit together: as good as a change point.
-    """
+    """Find the circuits of a mechanism whose driver is a crank. Raises StructureError for another
+    driver; a group other than a dyad; too many dyads; CrankcheckError for a limit position whose
+    two sides do not fit together: as good as a change point."""
     signed = SignedScene.of(scene)
     every = arcs(signed)
     joined = list(range(len(every)))
@@ -216,12 +208,9 @@ def transmissions(circuits: Circuits) -> tuple[list[Transmission], AngleExtreme]
     found = []
     for group in groups:
         least = _extreme(circuits, group, _sine, -1.0)
-        if group.kind == "RRR":
-            small = _extreme(circuits, group, _angle, -1.0)
-            large = _extreme(circuits, group, _angle, 1.0)
-            found.append(Transmission(group.branch_key, group.kind, least, small, large))
-        else:
-            found.append(Transmission(group.branch_key, group.kind, least))
+        senses = (-1.0, 1.0) if group.kind == "RRR" else ()
+        angles = [_extreme(circuits, group, _angle, sense) for sense in senses]
+        found.append(Transmission(group.branch_key, group.kind, least, *angles))
     merit = _extreme(circuits, groups[0], _merit, -1.0) if groups else AngleExtreme(1.0, 0.0)
     return found, merit
 
@@ -248,9 +237,10 @@ def _angle(chunk: Chunk, group: Group) -> Array:
     return np.array(np.broadcast_to(angle, chunk.theta.shape))
 
 
-def _extreme(circuits: Circuits, group: Group, of: object, sense: float) -> AngleExtreme:
+def _extreme(
+    circuits: Circuits, group: Group, of: Callable[[Chunk, Group], Array], sense: float
+) -> AngleExtreme:
     """Return the largest (``sense`` 1) or smallest value over the branch."""
-    assert callable(of)
     ready, (_, arc) = prepared(circuits.signed.scene), circuits.own
     looks = arc.angles(LOOKS + 1)
     best = AngleExtreme(-sense * math.inf, 0.0)

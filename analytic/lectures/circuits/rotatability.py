@@ -4,9 +4,8 @@ All is over the mechanism's own branch. Where the driver turns fully, whole turn
 certainty (`analytic.change_points.turns`); else a link goes to and fro with the driver, between its
 extremes over the branch, each followed to rounding.
 
-Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions).
-
-Source: R. L. Norton, Design of Machinery, section 4.10 (limit positions, toggle).
+Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions,
+toggle).
 """
 
 from __future__ import annotations
@@ -35,11 +34,9 @@ STILL_RAD = 1e-9
 @dataclass(frozen=True)
 class Rotation:
     """Rotation of ``link`` against ``against`` over a cycle of ``period_rad`` of the driver.
-
     ``turns`` are the whole turns that it gains, counter-clockwise; without any it swings from
     ``low_rad`` to ``high_rad``, of which ``low_at_rad`` and ``high_at_rad`` are driver angles: its
-    limit positions.
-    """
+    limit positions."""
 
     link: str
     against: str
@@ -79,13 +76,8 @@ def neighbours(scene: Scene) -> list[tuple[str, str]]:
 
 def rotations(scene: Scene, arc: Arc) -> list[Rotation]:
     """Return the rotation of every link against the ground and its neighbours, over the scene's
-    branch ``arc``.
-
-    Raises
-    ------
-    CrankcheckError
-        A link can not be followed, as its angle runs through infinity or a singular position.
-    """
+    branch ``arc``. Raises CrankcheckError where a link can not be followed, as its angle runs
+    through infinity or a singular position."""
     follow = _Follower.of(scene, arc)
     return [follow.rotation(link, against) for link, against in neighbours(scene)]
 
@@ -119,10 +111,7 @@ class _Follower:
 
     def rotation(self, link: str, against: str) -> Rotation:
         relative = self.angles[link] - self.angles[against]
-        turns = 0
-        if self.arc.low is None:
-            turns = round((relative[-1] - relative[0]) / math.tau)
-            turns = self._certain(link, against, turns)
+        turns = 0 if self.arc.low is not None else self._turns(link, against)
         low = self._extreme(link, against, relative, -1.0)
         high = self._extreme(link, against, relative, 1.0)
         shift = math.tau * math.floor((0.5 * (low[0] + high[0]) + math.pi) / math.tau)
@@ -130,17 +119,16 @@ class _Follower:
             link, against, turns, low[0] - shift, high[0] - shift, low[1], high[1], self.period
         )
 
-    def _certain(self, link: str, against: str, seen: int) -> int:
-        """Return the turns counted with certainty; links that keep an angle to the driver or to the
-        ground follow these."""
-        gains = prepared(self.scene).turns.gains
-        cycle = self.period / math.tau
-        own = {GROUND: 0.0, **gains}
+    def _turns(self, link: str, against: str) -> int:
+        """Return the turns counted with certainty, or else the followed ones; links that keep an
+        angle to the driver or to the ground follow these."""
+        own = {GROUND: 0.0, **prepared(self.scene).turns.gains}
         if self.scene.driver.is_crank:
-            own[self.scene.driver.link] = cycle
-        if link not in own or against not in own:
-            return seen
-        return round(own[link] - own[against])
+            own[self.scene.driver.link] = self.period / math.tau
+        if link in own and against in own:
+            return round(own[link] - own[against])
+        relative = self.angles[link] - self.angles[against]
+        return round(float(relative[-1] - relative[0]) / math.tau)
 
     def _extreme(
         self, link: str, against: str, relative: Array, sense: float
@@ -195,17 +183,16 @@ def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadP
     ground could not drive the mechanism where it turns back: the dead points of that input.
     """
     scene, (_, arc) = circuits.signed.scene, circuits.own
-    found = []
-    for end in (arc.low, arc.high):
-        if end is not None:
-            where = at_limit(scene, end.dyad)
-            found.append(DeadPoint(scene.driver.link, end.angle_rad, where))
+    found = [
+        DeadPoint(scene.driver.link, end.angle_rad, at_limit(scene, end.dyad))
+        for end in (arc.low, arc.high)
+        if end is not None
+    ]
     limits = {point.driver_rad for point in found}
     for one in rotations:
-        grounded = scene.links[one.link].points.keys() & scene.ground.keys()
         if one.against != GROUND or one.word != "swings" or one.link == scene.driver.link:
             continue
-        if grounded:
+        if scene.links[one.link].points.keys() & scene.ground.keys():
             found += [
                 DeadPoint(one.link, at, _in_line(circuits, at))
                 for at in (one.low_at_rad, one.high_at_rad)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from analytic.lectures.drawings import polygon
 from analytic.lectures.drawings.dyad_polygon import (
     DyadPolygon,
     Known,
@@ -26,40 +27,23 @@ from analytic.lectures.drawings.placed_mechanism import (
     PlacedMechanism,
     quarter_turn,
 )
-from analytic.lectures.drawings.polygon import (
-    FLAT,
-    EquationSide,
-    ParallelError,
-    Polygon,
-    PolygonStep,
-    Quantity,
-    Term,
-    Vector,
-    crossing,
-    end_of,
-    images_of,
-    name_of,
-    sine_between,
-)
 from analytic.structure.groups import Bridge, Group, Triad
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.scene import GROUND, Scene
 
-QUANTITIES: tuple[Quantity, Quantity] = ("velocity", "acceleration")
+QUANTITIES: tuple[polygon.Quantity, polygon.Quantity] = ("velocity", "acceleration")
 
 
 @dataclass(frozen=True)
 class DrawnPolygons:
     """Polygons of a mechanism in ``placement``, and the resulting rates of its bodies.
-
     ``undetermined`` names the groups that could not be drawn, with reasons; ``flat`` those whose
-    directions hardly cross, with angles.
-    """
+    directions hardly cross, with angles."""
 
     placement: PlacedMechanism
-    velocity: Polygon
-    acceleration: Polygon
+    velocity: polygon.Polygon
+    acceleration: polygon.Polygon
     rates: Mapping[str, BodyRates]
     flat: tuple[str, ...] = ()
 
@@ -89,10 +73,10 @@ def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
         if not isinstance(part, Triad) and (said := table.draw(part))
     ]
     velocity, acceleration = (
-        Polygon(
+        polygon.Polygon(
             quantity,
             tuple(table.steps[quantity]),
-            images_of(placement, table.rates, quantity),
+            polygon.images_of(placement, table.rates, quantity),
             tuple(undetermined),
         )
         for quantity in QUANTITIES
@@ -106,7 +90,7 @@ class _Table:
 
     placement: PlacedMechanism
     rates: dict[str, BodyRates] = field(default_factory=lambda: {GROUND: STILL})
-    steps: dict[Quantity, list[PolygonStep]] = field(
+    steps: dict[polygon.Quantity, list[polygon.PolygonStep]] = field(
         default_factory=lambda: {q: [] for q in QUANTITIES}
     )
     flat: list[str] = field(default_factory=list)
@@ -124,16 +108,18 @@ class _Table:
                 continue
             arm = self.placement.points[point] - place
             subscript = point + pivot
-            whole = Term(subscript, "rotation", state.omega * quarter_turn(arm))
-            parts = [Term(subscript, "normal", -(state.omega**2) * arm)]
+            whole = polygon.Term(subscript, "rotation", state.omega * quarter_turn(arm))
+            parts = [polygon.Term(subscript, "normal", -(state.omega**2) * arm)]
             if state.alpha:
-                parts.append(Term(subscript, "tangential", state.alpha * quarter_turn(arm)))
+                parts.append(polygon.Term(subscript, "tangential", state.alpha * quarter_turn(arm)))
             velocity += _laid("velocity", still, [whole])
             acceleration += _laid("acceleration", still, parts)
             nodes[point] = place + arm
-        title = f"driver {link}"
-        self._add("velocity", title, velocity, nodes)
-        self._add("acceleration", title, acceleration, nodes)
+        for quantity, vectors in zip(QUANTITIES, (velocity, acceleration), strict=True):
+            ends = {
+                name: polygon.end_of(self.rates[link], at, quantity) for name, at in nodes.items()
+            }
+            self.steps[quantity].append(polygon.PolygonStep(f"driver {link}", tuple(vectors), ends))
 
     def draw(self, part: Group | Bridge) -> str:
         """Draw a group or a redundant link; return the reason where it can not be drawn."""
@@ -145,7 +131,7 @@ class _Table:
         dyad = dyad_polygon(self.placement, self.rates, part)
         try:
             self._draw_dyad(dyad)
-        except ParallelError:
+        except polygon.ParallelError:
             told = " and ".join(arm.velocity_way().unknown.direction for arm in dyad.arms)
             return f"{_title(part)}: both directions ({told}) are parallel"
         return ""
@@ -155,32 +141,33 @@ class _Table:
         velocity, drawn_v = self._crossed("velocity", ways, dyad)
         ways = [arm.acceleration_way(velocity) for arm in dyad.arms]
         acceleration, drawn_a = self._crossed("acceleration", ways, dyad)
-        title, node = _title(dyad.group), {dyad.node: velocity}
-        if abs(sine := sine_between(*ways)) < FLAT:
+        title = _title(dyad.group)
+        if abs(sine := polygon.sine_between(*ways)) < polygon.FLAT:
             told = f"{math.degrees(math.asin(abs(sine))):.2g} deg"
             self.flat.append(f"{title}: its directions cross at {told}, near a limit position")
-        self.steps["velocity"].append(PolygonStep(title, drawn_v[0], drawn_v[1] | node))
-        node = {dyad.node: acceleration}
-        self.steps["acceleration"].append(PolygonStep(title, drawn_a[0], drawn_a[1] | node))
+        both = ((drawn_v, velocity), (drawn_a, acceleration))
+        for quantity, ((vectors, begun), node) in zip(QUANTITIES, both, strict=True):
+            step = polygon.PolygonStep(title, vectors, begun | {dyad.node: node})
+            self.steps[quantity].append(step)
         self.rates |= dyad.rates(self.placement, NodeMotion(velocity, acceleration))
 
     def _crossed(
-        self, quantity: Quantity, ways: list[EquationSide], dyad: DyadPolygon
-    ) -> tuple[Array, tuple[tuple[Vector, ...], dict[str, Array]]]:
+        self, quantity: polygon.Quantity, ways: list[polygon.EquationSide], dyad: DyadPolygon
+    ) -> tuple[Array, tuple[tuple[polygon.Vector, ...], dict[str, Array]]]:
         """Return the node, and the vectors to it with their new origins."""
-        lengths = crossing(*ways)
-        vectors: list[Vector] = []
+        lengths = polygon.crossing(*ways)
+        vectors: list[polygon.Vector] = []
         begun: dict[str, Array] = {}
         for way, length, arm in zip(ways, lengths, dyad.arms, strict=True):
             if self._is_new(quantity, arm.origin) and arm.origin.name not in begun:
                 begun[arm.origin.name] = way.start
-                whole = Term(arm.origin.name, "whole", way.start)
+                whole = polygon.Term(arm.origin.name, "whole", way.start)
                 vectors += _laid(quantity, np.zeros(2), [whole])
             vectors += _laid(quantity, way.start, way.with_length(length))
         one = ways[0]
         return one.before + lengths[0] * one.unknown.value, (tuple(vectors), begun)
 
-    def _is_new(self, quantity: Quantity, origin: Origin) -> bool:
+    def _is_new(self, quantity: polygon.Quantity, origin: Origin) -> bool:
         """True if a point has no image yet; the ground's is the pole."""
         drawn = any(origin.name in step.nodes for step in self.steps[quantity])
         return not drawn and origin.body is not STILL
@@ -212,27 +199,21 @@ class _Table:
             float(across @ (other.acceleration - one.acceleration)) / size,
         )
 
-    def _add(
-        self, quantity: Quantity, title: str, vectors: list[Vector], places: Mapping[str, Array]
-    ) -> None:
-        body = self.rates[self.placement.scene.driver.link]
-        nodes = {name: end_of(body, at, quantity) for name, at in places.items()}
-        self.steps[quantity].append(PolygonStep(title, tuple(vectors), nodes))
 
-
-def _laid(quantity: Quantity, start: Array, terms: Iterable[Term]) -> list[Vector]:
+def _laid(
+    quantity: polygon.Quantity, start: Array, terms: Iterable[polygon.Term]
+) -> list[polygon.Vector]:
     """Return vectors end to end."""
     vectors = []
     for term in terms:
         end = np.asarray(start + term.value)
-        name = name_of(quantity, term.kind, term.subscript)
-        vectors.append(Vector(name, term.kind, start, end, term.direction))
+        name = polygon.name_of(quantity, term.kind, term.subscript)
+        vectors.append(polygon.Vector(name, term.kind, start, end, term.direction))
         start = end
     return vectors
 
 
 def _title(part: Group | Bridge) -> str:
-    """Return the title of a group on the sheet."""
     if isinstance(part, Bridge):
         return f"redundant link {part.link}"
     return f"{part.kind} ({part.first}, {part.second})"
@@ -257,9 +238,10 @@ class Similarity:
         return self.scale == 0.0
 
 
-def similarity(drawn: DrawnPolygons, link: str, quantity: Quantity) -> Similarity:
+def similarity(drawn: DrawnPolygons, link: str, quantity: polygon.Quantity) -> Similarity:
     """Return the map of a drawn link's velocities or accelerations."""
-    factor = _factor(drawn.rates[link], quantity)
+    body = drawn.rates[link]  # its places being x + iy
+    factor = 1j * body.omega if quantity == "velocity" else 1j * body.alpha - body.omega**2
     if _is_rounding(drawn, link, quantity, abs(factor)):
         return Similarity(0.0, 0.0)
     return Similarity(abs(factor), cmath.phase(factor))
@@ -268,26 +250,16 @@ def similarity(drawn: DrawnPolygons, link: str, quantity: Quantity) -> Similarit
 def link_rates(drawn: DrawnPolygons, link: str) -> tuple[float, float]:
     """Return omega [rad/s] and alpha [rad/s^2] of a drawn link, 0 where they are rounding."""
     body = drawn.rates[link]
-    rates: tuple[tuple[float, Quantity], ...] = (
-        (body.omega, "velocity"),
-        (body.alpha, "acceleration"),
-    )
     omega, alpha = (
-        0.0 if _is_rounding(drawn, link, quantity, abs(rate)) else rate for rate, quantity in rates
+        0.0 if _is_rounding(drawn, link, quantity, abs(rate)) else rate
+        for rate, quantity in zip((body.omega, body.alpha), QUANTITIES, strict=True)
     )
     return omega, alpha
 
 
-def _is_rounding(drawn: DrawnPolygons, link: str, quantity: Quantity, scale: float) -> bool:
+def _is_rounding(drawn: DrawnPolygons, link: str, quantity: polygon.Quantity, scale: float) -> bool:
     """True if an image of the link at a scale [1/s or 1/s^2] is as small as the rounding."""
-    polygon = drawn.velocity if quantity == "velocity" else drawn.acceleration
+    whole = drawn.velocity if quantity == "velocity" else drawn.acceleration
     places = np.array([*drawn.placement.scene.links[link].points.values()])
     reach = float(np.hypot(*np.ptp(places, axis=0)))
-    return scale * reach <= POINT * polygon.largest
-
-
-def _factor(body: BodyRates, quantity: Quantity) -> complex:
-    """Return the factor of the link, x + iy being its places."""
-    if quantity == "velocity":
-        return 1j * body.omega
-    return 1j * body.alpha - body.omega**2
+    return scale * reach <= POINT * whole.largest

@@ -54,6 +54,12 @@ class Origin:
     def acceleration(self) -> Array:
         return self.body.acceleration_at(self.place)
 
+    def on(self, rates: BodyRates) -> BodyRates:
+        """Return the rates of a body that turns as another one, and is pinned here."""
+        return replace(
+            rates, place=self.place, velocity=self.velocity, acceleration=self.acceleration
+        )
+
 
 @dataclass(frozen=True)
 class RotatingArm:
@@ -64,15 +70,13 @@ class RotatingArm:
     place: Array
 
     def velocity_way(self) -> EquationSide:
-        return EquationSide(self.origin.name, self.origin.velocity, (), self._turning("rotation"))
+        return EquationSide(self.origin.velocity, (), self._turning("rotation"))
 
     def acceleration_way(self, velocity: Array) -> EquationSide:
         """Return the way for the velocity of the node [m/s], (2,)."""
         towards = -(self.omega(velocity) ** 2) * self._arm
         normal = Term(self.node + self.origin.name, "normal", towards)
-        return EquationSide(
-            self.origin.name, self.origin.acceleration, (normal,), self._turning("tangential")
-        )
+        return EquationSide(self.origin.acceleration, (normal,), self._turning("tangential"))
 
     def omega(self, velocity: Array) -> float:
         """Return the rate of the link [rad/s]."""
@@ -110,23 +114,26 @@ class SlidingArm:
     frame: BodyRates | RotatingArm
 
     def velocity_way(self) -> EquationSide:
-        return EquationSide(self.origin.name, self.origin.velocity, (), self._sliding())
+        return EquationSide(self.origin.velocity, (), self._sliding())
 
     def acceleration_way(self, velocity: Array) -> EquationSide:
         """Return the way for the velocity of the node [m/s], (2,)."""
         omega = self.omega(velocity)
         turned = 2.0 * omega * quarter_turn(velocity - self.origin.velocity)
         known = (Term(self.node + self.origin.name, "coriolis", turned),) if omega else ()
-        return EquationSide(self.origin.name, self.origin.acceleration, known, self._sliding())
+        return EquationSide(self.origin.acceleration, known, self._sliding())
 
     def omega(self, velocity: Array) -> float:
         """Return the rate of the line [rad/s]."""
         frame = self.frame
         return frame.omega if isinstance(frame, BodyRates) else frame.omega(velocity)
 
-    def turning(self, node: NodeMotion) -> BodyRates:
-        """Return the rates of the line."""
-        return self.frame if isinstance(self.frame, BodyRates) else self.frame.rates(node)
+    def rates(self, node: NodeMotion) -> BodyRates:
+        """Return the rates of a body that turns as the line does, by its point at the node."""
+        frame = self.frame if isinstance(self.frame, BodyRates) else self.frame.rates(node)
+        return replace(
+            frame, place=self.origin.place, velocity=node.velocity, acceleration=node.acceleration
+        )
 
     def _sliding(self) -> Term:
         told = f"parallel to the line of {self.slider}"
@@ -149,7 +156,14 @@ class DyadPolygon:
 
     def rates(self, placement: PlacedMechanism, node: NodeMotion) -> dict[str, BodyRates]:
         """Return the rates of the group's bodies."""
-        return _RATES[self.group.kind](self, placement, node)
+        group, (one, other) = self.group, self.arms
+        first, second = one.rates(node), other.rates(node)
+        if group.kind == "RPR":
+            slider = placement.scene.sliders[group.inner]
+            return {slider.on: first, sliding_body(slider): other.origin.on(first)}
+        if group.kind == "RPP":
+            first = one.origin.on(second)
+        return {group.first: first, group.second: second}
 
 
 class Known:
@@ -172,9 +186,7 @@ class Known:
         ends = self.placement.structure.prismatics[slider]
         body = next(b for b in ends if b in self.rates)
         rates = self.rates[body]
-        name = (
-            "" if body == GROUND else f"{point}({body})"
-        )  # the ground's has its image in the pole
+        name = "" if body == GROUND else f"{point}({body})"  # the ground's image is the pole
         return Origin(name, self.placement.points[point], rates), rates
 
     def rotating(self, outer: str, inner: str) -> RotatingArm:
@@ -190,28 +202,26 @@ def dyad_polygon(
     placement: PlacedMechanism, rates: Mapping[str, BodyRates], group: Group
 ) -> DyadPolygon:
     """Return the group with its arms, from the known ``rates`` of its supports."""
-    return DyadPolygon(group, _ARMS[group.kind](Known(placement, rates), group))
-
-
-def _rrr(known: Known, g: Group) -> tuple[Arm, Arm]:
-    return known.rotating(g.outer1, g.inner), known.rotating(g.outer2, g.inner)
-
-
-def _rrp(known: Known, g: Group) -> tuple[Arm, Arm]:
-    return known.rotating(g.outer1, g.inner), known.sliding(g.inner, g.outer2)
-
-
-def _prp(known: Known, g: Group) -> tuple[Arm, Arm]:
-    return known.sliding(g.inner, g.outer1), known.sliding(g.inner, g.outer2)
+    known = Known(placement, rates)
+    if group.kind == "RPR":
+        return DyadPolygon(group, _rpr(known, group))
+    if group.kind == "RPP":
+        return DyadPolygon(group, _rpp(known, group))
+    one, other = (
+        known.rotating(outer, group.inner) if kind == "R" else known.sliding(group.inner, outer)
+        for kind, outer in zip(group.kind[::2], (group.outer1, group.outer2), strict=True)
+    )
+    return DyadPolygon(group, (one, other))
 
 
 def _rpr(known: Known, g: Group) -> tuple[Arm, Arm]:
-    guide, pin, pivot = _guide_of(known.placement, g)
+    """Return the arms from the guide's own pin, and from the pin of the body that slides on it."""
+    guide = known.placement.scene.sliders[g.inner].on
+    pin, pivot = (g.outer1, g.outer2) if guide == g.second else (g.outer2, g.outer1)
     origin = known.pin(pin)
     node = f"{pin}({guide})"
     about = RotatingArm(known.pin(pivot), node, origin.place)
-    along = known.placement.along(g.inner)
-    return about, SlidingArm(origin, node, along, g.inner, about)
+    return about, SlidingArm(origin, node, known.placement.along(g.inner), g.inner, about)
 
 
 def _rpp(known: Known, g: Group) -> tuple[Arm, Arm]:
@@ -219,74 +229,3 @@ def _rpp(known: Known, g: Group) -> tuple[Arm, Arm]:
     outer = known.sliding(g.outer1, g.outer2, node)
     along = known.placement.along(g.inner)
     return SlidingArm(known.pin(g.outer1), node, along, g.inner, outer.frame), outer
-
-
-def _guide_of(placement: PlacedMechanism, g: Group) -> tuple[str, str, str]:
-    """Return the guide of an RPR group, the pin of the sliding body, and the guide's own pin."""
-    guide = placement.scene.sliders[g.inner].on
-    pins = (g.outer1, g.outer2) if guide == g.second else (g.outer2, g.outer1)
-    return guide, *pins
-
-
-def _rates_rrr(d: DyadPolygon, _: PlacedMechanism, node: NodeMotion) -> dict[str, BodyRates]:
-    one, other = d.arms
-    assert isinstance(one, RotatingArm)
-    assert isinstance(other, RotatingArm)
-    return {d.group.first: one.rates(node), d.group.second: other.rates(node)}
-
-
-def _rates_rrp(
-    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
-) -> dict[str, BodyRates]:
-    one, other = d.arms
-    assert isinstance(one, RotatingArm)
-    assert isinstance(other, SlidingArm)
-    return {d.group.first: one.rates(node), d.group.second: _carried(other, one.place, node)}
-
-
-def _rates_rpr(
-    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
-) -> dict[str, BodyRates]:
-    about, along = d.arms
-    assert isinstance(about, RotatingArm)
-    assert isinstance(along, SlidingArm)
-    rates, at = about.rates(node), along.origin
-    slides = sliding_body(placement.scene.sliders[d.group.inner])
-    guide = placement.scene.sliders[d.group.inner].on
-    carried = replace(rates, place=at.place, velocity=at.velocity, acceleration=at.acceleration)
-    return {guide: rates, slides: carried}
-
-
-def _rates_prp(
-    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
-) -> dict[str, BodyRates]:
-    place = placement.points[d.group.inner]
-    one, other = d.arms
-    assert isinstance(one, SlidingArm)
-    assert isinstance(other, SlidingArm)
-    first, second = _carried(one, place, node), _carried(other, place, node)
-    return {d.group.first: first, d.group.second: second}
-
-
-def _rates_rpp(
-    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
-) -> dict[str, BodyRates]:
-    pinned, outer = d.arms
-    assert isinstance(pinned, SlidingArm)
-    assert isinstance(outer, SlidingArm)
-    at = pinned.origin
-    carried = _carried(outer, at.place, node)
-    first = replace(carried, velocity=at.velocity, acceleration=at.acceleration)
-    return {d.group.first: first, d.group.second: carried}
-
-
-def _carried(arm: SlidingArm, place: Array, node: NodeMotion) -> BodyRates:
-    """Return a body that turns as the line does, by its point at the node."""
-    turning = arm.turning(node)
-    return replace(turning, place=place, velocity=node.velocity, acceleration=node.acceleration)
-
-
-_ARMS = {"RRR": _rrr, "RRP": _rrp, "RPR": _rpr, "PRP": _prp, "RPP": _rpp}
-_RATES = {
-    "RRR": _rates_rrr, "RRP": _rates_rrp, "RPR": _rates_rpr, "PRP": _rates_prp, "RPP": _rates_rpp,
-}  # fmt: skip

@@ -40,11 +40,9 @@ class Plotted:
 
 @dataclass(frozen=True)
 class ThreeGraphs:
-    """Quantity, its rate and the rate of that, two of them drawn from the third.
-
-    ``slopes`` are the axis sections of rays from the poles of the second and third graph: those of
-    the chords (tangents, steps) of the graph of the order before.
-    """
+    """Quantity, its rate and the rate of that, two of them drawn from the third. ``slopes`` are the
+    axis sections of rays from the poles of the second and third graph: those of the chords
+    (tangents, steps) of the graph of the order before."""
 
     graphs: tuple[Plotted, Plotted, Plotted]
     slopes: tuple[Plotted, Plotted]

@@ -46,10 +46,8 @@ FAR = 1e-12
 @dataclass(frozen=True)
 class Centre:
     """Instant centre: its ``place`` [m], (2,), or None where it is at infinity, across the unit
-    vector ``along`` then, in which the two bodies slide against each other.
-
-    ``by`` names the two pairs of centres whose lines cross in it, and is empty for a joint's.
-    """
+    vector ``along`` then, in which the two bodies slide against each other. ``by`` names the two
+    pairs of centres whose lines cross in it, and is empty for a joint's."""
 
     place: Array | None
     along: Array | None = None
@@ -82,7 +80,6 @@ def _centre(known: _KnownCentres, size: float) -> Centre:
 
 
 def _of_joints(placement: PlacedMechanism, size: float) -> dict[Pair, _KnownCentres]:
-    """Return the centres of pins and sliders."""
     found: dict[Pair, _KnownCentres] = {}
     for point, bodies in placement.structure.pins.items():
         at = _KnownCentres(_unit(np.array([*placement.points[point] / size, 1.0])))
@@ -147,10 +144,8 @@ class Centrodes:
 
 
 def centrodes(motion: Motion, link: str, point: str) -> Centrodes:
-    """Return the centrodes of a link over a motion, by one of its points.
-
-    Raises CrankcheckError for a link that never turns.
-    """
+    """Return the centrodes of a link over a motion, by one of its points. Raises CrankcheckError
+    for a link that never turns."""
     body, at = motion.links[link], motion.points[point]
     # Against the fastest link: a link without rotation turns by the rounding of its neighbours.
     fastest = max(float(np.abs(other.omega).max()) for other in motion.links.values())

@@ -15,7 +15,7 @@ vector has a known direction u and an unknown length::
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -55,10 +55,9 @@ class Term:
 
 @dataclass(frozen=True)
 class EquationSide:
-    """Side of the equation: from the point ``base`` of the polygon at ``start`` (2,) over ``known``
-    vectors, and on along the direction of ``unknown``, whose value is a unit vector."""
+    """Side of the equation: from ``start`` (2,) in the polygon over ``known`` vectors, and on along
+    the direction of ``unknown``, whose value is a unit vector."""
 
-    base: str
     start: Array
     known: Sequence[Term]
     unknown: Term
@@ -70,11 +69,7 @@ class EquationSide:
 
     def with_length(self, length: float) -> tuple[Term, ...]:
         """Return all vectors of the way, the unknown one with its length, which may be below 0."""
-        last = self.unknown
-        return (
-            *self.known,
-            Term(last.subscript, last.kind, length * last.value, last.direction),
-        )
+        return (*self.known, replace(self.unknown, value=length * self.unknown.value))
 
 
 def sine_between(one: EquationSide, other: EquationSide) -> float:
@@ -103,11 +98,9 @@ UNITS: Mapping[Quantity, str] = {"velocity": "m/s", "acceleration": "m/s^2"}
 
 @dataclass(frozen=True)
 class Vector:
-    """Drawn vector from ``start`` to ``end`` (2,) [m/s or m/s^2], the pole at the origin.
-
-    ``name`` is as in books (v_CB, a^n_CB); ``direction`` names the line that it is parallel or
-    perpendicular to if a crossing gave its length, and is empty if it was known before.
-    """
+    """Drawn vector from ``start`` to ``end`` (2,) [m/s or m/s^2], the pole at the origin. ``name``
+    is as in books (v_CB, a^n_CB); ``direction`` names the line that it is parallel or perpendicular
+    to if a crossing gave its length, and is empty if it was known before."""
 
     name: str
     kind: Kind
@@ -136,12 +129,9 @@ class PolygonStep:
 
 @dataclass(frozen=True)
 class Polygon:
-    """Polygon, steps in the order of drawing.
-
-    ``images`` holds for every moving link the ends of the vectors of its points, by name (2,):
-    similar to the link, and turned. ``undetermined`` names groups that could not be drawn, with
-    reasons.
-    """
+    """Polygon, steps in the order of drawing. ``images`` holds for every moving link the ends of
+    the vectors of its points, by name (2,): similar to the link, and turned. ``undetermined`` names
+    groups that could not be drawn, with reasons."""
 
     quantity: Quantity
     steps: tuple[PolygonStep, ...]

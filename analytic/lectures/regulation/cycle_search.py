@@ -6,6 +6,7 @@ follow the speed settle it, else they have to balance, and the speed of its star
 """
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 
@@ -54,10 +55,8 @@ class MeanBalance:
 
     def settled(self, start: float) -> float:
         """Return the speed at which the work is 0, from the machine's start [rad/s]: upwards where
-        it gains there, downwards where it loses.
-
-        Raises CrankcheckError where there is none, or for a table that does not reach its start.
-        """
+        it gains there, downwards where it loses. Raises CrankcheckError where there is none, or for
+        a table that does not reach its start."""
         start = max(start, SLOWEST)
         self.machine.rated_torque(self.cells.nodes, np.full_like(self.cells.nodes, start))
         speeds = np.unique(np.append(np.geomspace(SLOWEST, FASTEST, SPEEDS), start))
@@ -96,7 +95,6 @@ class MeanBalance:
         return np.array(kept), np.array(own)
 
     def _never(self, speeds: Array, works: Array, first: int) -> str:
-        """Return the reason for the lack of a steady cycle."""
         scene, gains = self.machine.scene, works[first] > 0.0
         end = -1 if gains else 0
         comes = "goes faster and faster" if gains else "comes to rest"
@@ -114,11 +112,6 @@ class MeanBalance:
         )
 
 
-def other_way(machine: TurningMachine) -> TurningMachine:
-    """Return the machine turning to the other side."""
-    return replace(machine, way=-machine.way)
-
-
 CLOSED = 1e-6
 """Allowed imbalance of loads alone in a cycle, over the driving work: tables have six digits. A
 constant torque makes it up."""
@@ -131,15 +124,9 @@ STILL = 1e-11
 
 
 def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> SteadyCycle:
-    """Find the cycle that a machine repeats with an added flywheel on its driver.
-
-    Raises
-    ------
-    StallError
-        Its masses hold too little energy to carry it round.
-    CrankcheckError
-        Loads that do not balance at any speed, or have tables that end before.
-    """
+    """Find the cycle that a machine repeats with an added flywheel on its driver. Raises StallError
+    where its masses hold too little energy to carry it round; CrankcheckError for loads that do not
+    balance at any speed, or have tables that end before."""
     cells = AngleCells.of(machine.cycle_rad, breaks(machine))
     scene = machine.scene
     law_speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
@@ -206,7 +193,6 @@ def _pull(solution: PeriodicSolution, u: Array) -> Array:
 
 
 def _check_closed(solution: PeriodicSolution) -> None:
-    """Refuse loads that follow no speed and do not balance over the cycle."""
     machine = solution.machine
     whole = machine.cycle_rad
     put_in = solution.cells.integral(np.maximum(solution.torque, 0.0))
@@ -229,8 +215,6 @@ def cycle_of(machine: TurningMachine) -> SteadyCycle:
     except CrankcheckError:
         if machine.scene.driver.law.at(np.zeros(1))[1][0] != 0.0:
             raise
-        try:
-            return steady_cycle(other_way(machine))
-        except CrankcheckError:
-            pass
+        with suppress(CrankcheckError):
+            return steady_cycle(replace(machine, way=-machine.way))
         raise

@@ -18,6 +18,7 @@ Mechanisms, on flywheels (own inertia at mean speed, after N. I. Mertsalov); pro
 co hoc may", chapter on real motion and its regulation (surplus of work).
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,16 +106,14 @@ class WantedFlywheel:
 
 
 def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywheel:
-    """Find the flywheel for a coefficient of fluctuation.
-
-    Raises
-    ------
-    CrankcheckError
-        An invalid coefficient, or one that the machine keeps without a flywheel; no steady cycle
-        with any flywheel.
-    """
+    """Find the flywheel for a coefficient of fluctuation. Raises CrankcheckError for an invalid
+    coefficient, or one that the machine keeps without a flywheel; no steady cycle with any
+    flywheel."""
     _check(delta)
-    machine, bare = _bare(scene_machine)
+    machine, bare = scene_machine, None
+    with suppress(StallError):
+        bare = cycle_of(machine)
+        machine = bare.machine  # turning as its loads turn it
     if bare is not None and bare.delta <= delta:
         raise CrankcheckError(
             f"{machine.scene.name}: no flywheel is needed for a coefficient of {delta:g}: without "
@@ -139,16 +138,6 @@ def _check(delta: float) -> None:
     else:
         return
     raise CoefficientError(f"delta {delta:g}: {why}")
-
-
-def _bare(machine: TurningMachine) -> tuple[TurningMachine, SteadyCycle | None]:
-    """Return the machine, turning as its loads turn it, and its cycle without a flywheel if there
-    is one."""
-    try:
-        cycle = cycle_of(machine)
-    except StallError:
-        return machine, None
-    return cycle.machine, cycle
 
 
 def _heavy(machine: TurningMachine, delta: float) -> SteadyCycle:

@@ -9,7 +9,7 @@ Mean speed is (w_max + w_min) / 2, that of the coefficient of fluctuation.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,7 +40,7 @@ class PeriodicSolution:
     cells: AngleCells
     flywheel: float
     inertia: Array
-    inertia_at_borders: Array
+
     energy: Array
     at_borders: Array
     torque: Array
@@ -105,12 +105,9 @@ def repeated(
     guess: PeriodicSolution | float,
     wanted: WantedSpeed,
 ) -> PeriodicSolution:
-    """Find the solution that the machine repeats.
-
-    ``guess`` is a speed [rad/s] to begin with, or a solution, in cells of its own. Raises
-    StallError where the energy runs out on the way, CrankcheckError for tables of loads that end
-    before.
-    """
+    """Find the solution that the machine repeats. ``guess`` is a speed [rad/s] to begin with, or a
+    solution, in cells of its own. Raises StallError where the energy runs out on the way,
+    CrankcheckError for tables of loads that end before."""
     return _Newton(machine, cells, flywheel, wanted).solved(guess)
 
 
@@ -136,14 +133,10 @@ class _Newton:
         last = np.inf
         for _ in range(MOST_STEPS):
             full = self._step(solution)
-            change = max(
-                float(np.max(np.abs(full.energy - solution.energy))),
-                float(np.max(np.abs(full.at_borders - solution.at_borders))),
-            ) / float(np.max(np.abs(solution.energy)))
-            least = min(
-                float(np.min(full.energy / solution.energy)),
-                float(np.min(full.at_borders / solution.at_borders)),
-            )
+            pairs = (full.energy, solution.energy), (full.at_borders, solution.at_borders)
+            change = max(float(np.max(np.abs(new - old))) for new, old in pairs)
+            change /= float(np.max(np.abs(solution.energy)))
+            least = min(float(np.min(new / old)) for new, old in pairs)
             if least >= LEFT:
                 if change <= DONE or (change < 1e-9 and change >= 0.5 * last):
                     if self._holds(full):
@@ -181,7 +174,7 @@ class _Newton:
             speed = np.sqrt(2.0 * energy / self.inertia)
             torque = torque + self.machine.rated_torque(self.cells.nodes, speed)
         return PeriodicSolution(
-            self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
+            self.machine, self.cells, self.flywheel, self.inertia,
             energy, at_borders, torque, drive, gain,
         )  # fmt: skip
 
@@ -234,15 +227,12 @@ class _Newton:
         known = np.array([first, 1.0, drive])
         borders = start @ known
         energy = within[:, :, 0] * borders[:-1, None] + within[:, :, 1] + drive * within[:, :, 2]
-        torque = (
-            torques[:, :, 0] * borders[:-1, None]
-            + torques[:, :, 1]
-            + drive * (torques[:, :, 2] - 1.0)
+        torque = torques[:, :, 0] * borders[:-1, None] + torques[:, :, 1]
+        torque = torque + drive * (torques[:, :, 2] - 1.0)
+        gain = float(start[-1, 0])
+        return replace(
+            solution, energy=energy, at_borders=borders, torque=torque, drive=drive, gain=gain
         )
-        return PeriodicSolution(
-            self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
-            energy, borders, torque, drive, float(start[-1, 0]),
-        )  # fmt: skip
 
     def _open(
         self, solution: PeriodicSolution, start: Array, torques: Array
@@ -284,7 +274,6 @@ class _Newton:
         return list(zip(u.tolist(), energy.tolist(), inertia.tolist(), strict=True))
 
     def _stalled(self, solution: PeriodicSolution) -> str:
-        """Return the text of the place where the energy runs out."""
         scene, worst = self.machine.scene, int(np.argmin(solution.energy / self.inertia))
         where = np.degrees(self.machine.theta(self.cells.nodes.ravel()[worst])) % 360.0
         mean = self.wanted.mean_rad_s
@@ -303,10 +292,8 @@ hundredth; most halvings of cells for it, and most cells."""
 
 def resolved(solution: PeriodicSolution, wanted: WantedSpeed) -> PeriodicSolution:
     """Refine the cells until their polynomials follow the solution: a machine that comes quickly to
-    the speed of its motor, or a load of short waves, takes narrower ones.
-
-    Raises CrankcheckError where no cells are narrow enough.
-    """
+    the speed of its motor, or a load of short waves, takes narrower ones. Raises CrankcheckError
+    where no cells are narrow enough."""
     machine = solution.machine
     for _ in range(MOST_HALVINGS):
         rough = np.flatnonzero(solution.roughness > RESOLVED)

@@ -26,11 +26,9 @@ SAMPLES = 720
 
 @dataclass(frozen=True)
 class SteadyCycle:
-    """Machine over the cycle that it repeats.
-
-    ``fastest`` and ``slowest`` are the angles u turned since the start at which the speed is
-    largest and smallest [rad]. Torques count along the motion: positive ones drive.
-    """
+    """Machine over the cycle that it repeats. ``fastest`` and ``slowest`` are the angles u turned
+    since the start at which the speed is largest and smallest [rad]. Torques count along the
+    motion: positive ones drive."""
 
     solution: PeriodicSolution
     fastest: float

@@ -8,18 +8,14 @@ The angle u counts along the motion, and so do torques: positive ones drive::
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.forces import force_elements
 from analytic.forces.bounded import Bounded
-from analytic.forces.force_elements import (
-    apply_springs,
-    put_constant_friction,
-    rubbing_joints,
-    spring_lengths,
-)
 from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
 from analytic.kinematics import driven_chunk, reach, repeats_after, unit_chunk
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
@@ -41,14 +37,9 @@ CLOSE = 1e-9
 
 def cycle_angle(scene: Scene) -> float:
     """Return the angle of the driver after which the machine repeats [rad]: a turn, two for a
-    four-stroke engine.
-
-    Raises
-    ------
-    CrankcheckError
-        A driver that does not turn round, or speeds up by its law; friction that follows the
-        reactions; a load over time, or over the angle without a period; a spring that winds up.
-    """
+    four-stroke engine. Raises CrankcheckError for a driver that does not turn round, or speeds up
+    by its law; friction that follows the reactions; a load over time, or over the angle without a
+    period; a spring that winds up."""
     _check_turns(scene)
     if scene.coulomb_joints:
         raise CrankcheckError(
@@ -73,7 +64,6 @@ def cycle_angle(scene: Scene) -> float:
 
 
 def _check_turns(scene: Scene) -> None:
-    """Refuse a driver without a repeated cycle, or whose speed is no body's own."""
     refuse_other_than_cranked(scene, "a cycle of speed")
     if not (scene.is_free or isinstance(scene.driver.law, ConstantSpeed)):
         raise CrankcheckError(
@@ -110,7 +100,6 @@ def _period(scene: Scene, load: Load) -> float | None:
 
 
 def _check_periods(scene: Scene, whole_rad: float) -> None:
-    """Refuse loads that repeat too often in a cycle."""
     for load in scene.loads.values():
         period = _period(scene, load)
         if period is not None and whole_rad / period > MOST_PERIODS:
@@ -122,10 +111,9 @@ def _check_periods(scene: Scene, whole_rad: float) -> None:
 
 
 def _check_springs(scene: Scene, whole_rad: float) -> None:
-    """Refuse springs that are wound up cycle by cycle."""
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     chunk = unit_chunk(scene, start + np.array([0.0, whole_rad]), bound=False)
-    for spring, q, _ in spring_lengths(scene, chunk, counted=True):
+    for spring, q, _ in force_elements.spring_lengths(scene, chunk, counted=True):
         if spring.rate and abs(q[1] - q[0]) > 1.0:  # a turn or more: lengths come back
             raise CrankcheckError(
                 f"{scene.name}: springs.{spring.name} is wound up by "
@@ -143,19 +131,21 @@ class TurningMachine:
     way: float
     start_rad: float
     cycle_rad: float
-    _steady: Scene = field(init=False, repr=False)
-    _rated: Scene = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        scene = self.scene
-        fast = {n: load for n, load in scene.loads.items() if follows_speed(load)}
-        slow = {n: load for n, load in scene.loads.items() if n not in fast}
-        dampers = {n: replace(s, rate=0.0) for n, s in scene.springs.items() if s.damping}
-        springs = {n: replace(s, damping=0.0) for n, s in scene.springs.items() if s.rate}
-        steady = replace(scene, loads=slow, springs=springs)
-        rated = replace(scene, loads=fast, springs=dampers, friction={}, gravity_m_s2=(0.0, 0.0))
-        object.__setattr__(self, "_steady", steady)
-        object.__setattr__(self, "_rated", rated)
+    @cached_property
+    def _steady(self) -> Scene:
+        """Scene with the forces that do not follow the speed."""
+        slow = {n: load for n, load in self.scene.loads.items() if not follows_speed(load)}
+        springs = {n: replace(s, damping=0.0) for n, s in self.scene.springs.items() if s.rate}
+        return replace(self.scene, loads=slow, springs=springs)
+
+    @cached_property
+    def _rated(self) -> Scene:
+        """Scene with the forces that follow the speed."""
+        fast = {n: load for n, load in self.scene.loads.items() if follows_speed(load)}
+        dampers = {n: replace(s, rate=0.0) for n, s in self.scene.springs.items() if s.damping}
+        bare = replace(self.scene, friction={}, gravity_m_s2=(0.0, 0.0))
+        return replace(bare, loads=fast, springs=dampers)
 
     @staticmethod
     def of(scene: Scene) -> TurningMachine:
@@ -181,7 +171,7 @@ class TurningMachine:
 
     def inertia(self, u: Array) -> tuple[Array, Array]:
         """Return J and dJ/du [kg m^2]. Raises CrankcheckError where J has no bound."""
-        pair = inertia_and_slope(self.scene, self._unit(u.ravel()))
+        pair = inertia_and_slope(self.scene, self.mechanism(u.ravel()))
         inertia, slope = (each.reshape(u.shape) for each in pair)
         if (off := ~(np.isfinite(inertia) & np.isfinite(slope))).any():
             where = math.degrees(self.theta(u)[off].ravel()[0]) % 360.0
@@ -193,7 +183,7 @@ class TurningMachine:
 
     def mechanism(self, u: Array) -> Chunk:
         """Return the positions (T,), with rates and accelerations per unit of the driver's rate."""
-        return self._unit(u)
+        return unit_chunk(self.scene, self.theta(u), bound=False)
 
     def steady_torque(self, u: Array) -> Array:
         """Return the torque of all forces that do not follow the speed [N m]."""
@@ -223,21 +213,20 @@ class TurningMachine:
             parts["weights"] = replace(bare, gravity_m_s2=scene.gravity_m_s2)
         return {name: self._torque(part, u, speed) for name, part in parts.items()}
 
-    def _unit(self, u: Array) -> Chunk:
-        return unit_chunk(self.scene, self.theta(u), bound=False)
-
     def _torque(self, part: Scene, u: Array, speed: Array | float) -> Array:
         """Return the torque of ``part``, the same mechanism with some of its forces."""
         flat = u.ravel()
         rate = self.way * np.broadcast_to(speed, u.shape).ravel()
         chunk = driven_chunk(self.scene, self.theta(flat), rate)
         free = loaded_bodies(part, chunk, np.zeros_like(flat))
-        apply_springs(part, chunk, free)
+        force_elements.apply_springs(part, chunk, free)
         if part.friction:
             displaced = {name: Bounded(one.s, None) for name, one in chunk.sliders.items()}
-            joints = rubbing_joints(part, analyse(self.scene), chunk, free, displaced)
-            put_constant_friction(joints, free)
-        found = -self.way * np.asarray(torque_by_power(free, self._unit(flat), chunk).value)
+            joints = force_elements.rubbing_joints(
+                part, analyse(self.scene), chunk, free, displaced
+            )
+            force_elements.put_constant_friction(joints, free)
+        found = -self.way * np.asarray(torque_by_power(free, self.mechanism(flat), chunk).value)
         return np.broadcast_to(found, flat.shape).reshape(u.shape)
 
 

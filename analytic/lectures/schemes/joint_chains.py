@@ -80,12 +80,8 @@ def _contact(joint: SchemeJoint) -> list[Array]:
 
 
 def _gear(joint: SchemeJoint) -> list[Array]:
-    first, second = gear_centres(joint)
-    return [
-        screws.rotation(first, UP),
-        screws.translation(joint.axes[0]),
-        screws.rotation(second, UP),
-    ]
+    first, second = (screws.rotation(centre, UP) for centre in gear_centres(joint))
+    return [first, screws.translation(joint.axes[0]), second]
 
 
 def _turns(joint: SchemeJoint) -> list[Array]:
@@ -120,15 +116,9 @@ _KINDS: Mapping[str, Callable[[SchemeJoint], list[Array]]] = {
 
 def replaced(scheme: Scheme) -> Scheme:
     """Return the scheme with every contact and every pair of teeth replaced by a link or a block.
-
-    It has the count, the velocities and (but for teeth on centres that move against each other)
-    the accelerations of the given one, in this position.
-
-    Raises
-    ------
-    StructureError
-        A spatial scheme: a link between centres of curvature replaces a contact in the plane only.
-    """
+    It has the count, the velocities and (but for teeth on centres that move against each other) the
+    accelerations of the given one, in this position. Raises StructureError for a spatial scheme: a
+    link between centres of curvature replaces a contact in the plane only."""
     if scheme.space != PLANAR:
         raise StructureError(
             f"{scheme.name}: a spatial scheme; higher pairs are replaced in planar ones"
@@ -145,21 +135,17 @@ def replaced(scheme: Scheme) -> Scheme:
 
 
 def teeth_centres(joint: SchemeJoint) -> tuple[Array, Array]:
-    """Return the centres of curvature of two teeth that touch at the pitch point.
-
-    They are the feet of the perpendiculars from both wheels' centres on the line of action, which
-    goes through the pitch point, at the pressure angle from the common tangent.
-    """
+    """Return the centres of curvature of two teeth that touch at the pitch point. They are the feet
+    of the perpendiculars from both wheels' centres on the line of action, which goes through the
+    pitch point, at the pressure angle from the common tangent."""
     first, second = gear_centres(joint)
     along = np.array(joint.axes[0])
     outward = np.sign(sum(joint.radii)) * along  # out of the first wheel where they touch
     pitch = first + joint.radii[0] * outward
     tangent = np.cross((0.0, 0.0, 1.0), along)
     action = np.cos(joint.pressure) * tangent + np.sin(joint.pressure) * along
-    return (
-        pitch + ((first - pitch) @ action) * action,
-        pitch + ((second - pitch) @ action) * action,
-    )
+    one, other = (pitch + ((centre - pitch) @ action) * action for centre in (first, second))
+    return one, other
 
 
 def _pairs(joint: SchemeJoint, link: str, scheme: Scheme) -> list[SchemeJoint]:
@@ -186,9 +172,8 @@ def _place(point: Array) -> Place:
 
 def _unused(name: str, names: list[str] | tuple[str, ...]) -> str:
     """Return an unused name, of at most 40 characters."""
-    name = name[-36:]
+    fresh = name = name[-36:]
     number = 2
-    fresh = name
     while fresh in names:
         fresh, number = f"{name}-{number}", number + 1
     return fresh
@@ -213,9 +198,7 @@ class JointClass:
 @dataclass(frozen=True)
 class JointAnalysis:
     """Analysis of a joint by its contacts alone, and with the guidance of neighbouring joints.
-
-    ``kept`` is True if its form keeps the two together; else a force must.
-    """
+    ``kept`` is True if its form keeps the two together; else a force must."""
 
     touching: Touching
     alone: JointClass
@@ -225,25 +208,17 @@ class JointAnalysis:
 
 def analyse_joint(touching: Touching) -> JointAnalysis:
     """Find class and freedoms of a joint, its contacts taken as closed."""
-    size = _size(touching)
+    away = [np.subtract(contact.at, touching.at) for contact in touching.contacts]
+    size = float(max(np.abs(each).max() for each in away)) or 1.0  # about the joint's point [m]
     loads = {
-        contact: np.array(
-            _LOADS[contact.kind](contact, _contact_place(contact, touching, size), size)
-        )
-        for contact in touching.contacts
+        contact: np.array(_LOADS[contact.kind](contact, np.asarray(each / size), size))
+        for contact, each in zip(touching.contacts, away, strict=True)
     }
     rows = np.vstack(list(loads.values()))
-    twists = screws.named_twists()
-    guided = {
-        name: _class_of(
-            np.vstack(
-                [rows, screws.reciprocal(np.array([twists[each] for each in guide.leaves]).T)]
-            ),
-            touching,
-            size,
-        )
-        for name, guide in touching.guides.items()
-    }
+    twists, guided = screws.named_twists(), {}
+    for name, guide in touching.guides.items():
+        held = screws.reciprocal(np.array([twists[each] for each in guide.leaves]).T)
+        guided[name] = _class_of(np.vstack([rows, held]), touching, size)
     return JointAnalysis(touching, _class_of(rows, touching, size), guided, _is_kept(loads))
 
 
@@ -275,16 +250,6 @@ def _is_kept(loads: Mapping[Contact, Array]) -> bool:
         bounds=[(None, None)] * 6 + [(0.0, 1.0)] * count,
     )
     return bool(-answer.fun < OPENS)
-
-
-def _size(touching: Touching) -> float:
-    """Return the largest distance of contacts from the joint's point [m]; 1 if there is none."""
-    far = [np.abs(np.subtract(contact.at, touching.at)).max() for contact in touching.contacts]
-    return float(max(far)) or 1.0
-
-
-def _contact_place(contact: Contact, touching: Touching, size: float) -> Array:
-    return np.asarray(np.subtract(contact.at, touching.at) / size)
 
 
 def _line(contact: Contact, at: Array, size: float) -> list[Array]:

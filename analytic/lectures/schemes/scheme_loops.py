@@ -138,16 +138,13 @@ class Loops:
 
     def joint_twists(self, q: Array) -> dict[str, Array]:
         """Return the freedoms of each joint at ``q``, as twists (6, f of the joint)."""
-        links = self.placed(q)
-        return {
-            joint.name: self._beyond(
-                joint,
-                joint.between[0],
-                PlacedLink(links[joint.between[0]].pose, 0 * links[GROUND].twists),
-                q,
-            ).twists[:, self.columns[joint.name]]
-            for joint in self.scheme.joints
-        }
+        links, found = self.placed(q), {}
+        for joint in self.scheme.joints:
+            first = joint.between[0]
+            still = PlacedLink(links[first].pose, np.zeros((6, self.freedoms)))
+            twists = self._beyond(joint, first, still, q).twists
+            found[joint.name] = twists[:, self.columns[joint.name]]
+        return found
 
     def part(self, scheme: Scheme, q: Array) -> tuple[Loops, Array]:
         """Return the loops of a scheme with fewer joints, and their part of ``q``."""
@@ -207,12 +204,10 @@ SEED = 18
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """Motions of a scheme at the drawn position and next to it.
-
-    ``at`` (f,) is the position next to the drawn one, ``moves`` (f, d) are all motions that the
-    equations leave there, ``finite`` is the number of real motions among them; ``here`` is the
-    number that the equations leave at the drawn position.
-    """
+    """Motions of a scheme at the drawn position and next to it. ``at`` (f,) is the position next to
+    the drawn one, ``moves`` (f, d) are all motions that the equations leave there, ``finite`` is
+    the number of real motions among them; ``here`` is the number that the equations leave at the
+    drawn position."""
 
     here: int
     at: Array

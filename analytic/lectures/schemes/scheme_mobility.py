@@ -22,20 +22,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.lectures.schemes import screws
 from analytic.lectures.schemes.scheme_loops import (
     IN_PLANE,
     DrawingFrame,
     Loops,
     Neighbourhood,
     neighbourhood,
-)
-from analytic.lectures.schemes.screws import (
-    DEPENDENT,
-    axis_in_words,
-    kernel,
-    named_twists,
-    rank,
-    reciprocal,
 )
 from models.array import Array
 from models.lectures.scheme import Scheme, SchemeJoint
@@ -92,7 +85,7 @@ def _far(joint: SchemeJoint, links: tuple[str, ...]) -> str:
 
 def _common(twists: Mapping[str, Array], joints: list[SchemeJoint]) -> Array:
     """Return the motions (6, d) that all of some joints leave."""
-    return kernel(np.vstack([reciprocal(twists[joint.name]) for joint in joints]))
+    return screws.kernel(np.vstack([screws.reciprocal(twists[joint.name]) for joint in joints]))
 
 
 def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: DrawingFrame) -> str:
@@ -102,21 +95,19 @@ def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: Drawi
     twist = motions[:, 0]
     places = [frame.at(joint.at) for joint in outer]
     omega, v = twist[:3], twist[3:]
-    stays = [np.abs(v + np.cross(omega, place)).max() < DEPENDENT for place in places]
+    stays = [np.abs(v + np.cross(omega, place)).max() < screws.DEPENDENT for place in places]
     names = [joint.name for joint in outer]
-    if len(outer) == 2 and all(stays) and np.ptp(places, axis=0).max() > DEPENDENT:
+    if len(outer) == 2 and all(stays) and np.ptp(places, axis=0).max() > screws.DEPENDENT:
         return f"turns about the line through {names[0]} and {names[1]}"
-    if np.abs(omega[:2]).max() < DEPENDENT and any(stays):
+    if np.abs(omega[:2]).max() < screws.DEPENDENT and any(stays):
         return f"turns about {names[stays.index(True)]}"
-    return axis_in_words(frame.in_drawing(twist))
+    return screws.axis_in_words(frame.in_drawing(twist))
 
 
 @dataclass(frozen=True)
 class Passive:
     """Parts that may be left out: links with their joints, joints, and other single constraints.
-
-    ``also`` are links that might each be left out instead of one of ``links``.
-    """
+    ``also`` are links that might each be left out instead of one of ``links``."""
 
     links: tuple[str, ...] = ()
     also: tuple[str, ...] = ()
@@ -188,26 +179,24 @@ def _same_moves(loops: Loops, q: Array, fewer: Scheme, idle: int) -> tuple[Loops
 
 
 def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
-    """Yield single constraints of joints, each named by the motion that it takes.
-
-    A motion more in a joint is a column more: if it is outside the span of the others, the loops
-    still leave no motion more, so the constraint is passive.
-    """
+    """Yield single constraints of joints, each named by the motion that it takes. A motion more in
+    a joint is a column more: if it is outside the span of the others, the loops still leave no
+    motion more, so the constraint is passive."""
     slope = loops.closure(q)[1]
     links = loops.placed(q)
     planar = loops.scheme.dimension == 3
     rows = IN_PLANE if planar else list(range(6))
     used = 0
-    spare = slope.shape[0] - rank(slope)
+    spare = slope.shape[0] - screws.rank(slope)
     for joint in loops.scheme.joints:
         if used == spare:
             return
         effect = effect_of(loops, joint)
         at = links[joint.between[0]].pose @ np.r_[loops.frame.at(joint.at), 1.0]
-        for name, twist in named_twists(at[:3], planar).items():
+        for name, twist in screws.named_twists(at[:3], planar).items():
             column = (effect @ twist[rows])[:, None]
             wider = np.hstack([slope, column])
-            if used < spare and rank(wider) > rank(slope):
+            if used < spare and screws.rank(wider) > screws.rank(slope):
                 slope, used = wider, used + 1
                 yield joint.name, name
 
@@ -217,13 +206,8 @@ def effect_of(loops: Loops, joint: SchemeJoint) -> Array:
     size = loops.scheme.dimension
     blocks = [np.zeros((0, size))]
     for closing in loops.closing:
-        sign = (
-            1
-            if closing is joint
-            else _passes(loops, joint, closing.between[0])
-            - _passes(loops, joint, closing.between[1])
-        )
-        blocks.append(sign * np.eye(size))
+        first, second = (_passes(loops, joint, link) for link in closing.between)
+        blocks.append((1 if closing is joint else first - second) * np.eye(size))
     return np.vstack(blocks)
 
 

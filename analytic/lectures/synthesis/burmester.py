@@ -91,27 +91,14 @@ def _row(first: PlanePose, pose: PlanePose) -> Row:
     angle = arb(pose.angle) - arb(first.angle)
     e = acb(angle.cos(), angle.sin())
     d = acb(pose.point) - acb(first.point)
-    one = acb(1)
-    return (
-        one - e,
-        -d,
-        -d.conjugate(),
-        one - e.conjugate(),
-        d.conjugate() * e,
-        -d * d.conjugate(),
-        -d * e.conjugate(),
-    )
+    one, e_bar, d_bar = acb(1), e.conjugate(), d.conjugate()
+    return one - e, -d, -d_bar, one - e_bar, d_bar * e, -d * d_bar, -d * e_bar
 
 
 def _quartic(rows: Sequence[Row]) -> tuple[acb_poly, tuple[acb_poly, ...], acb_poly]:
     """Return the quartic in w', the numerators of w, m and m', and their denominator."""
-    wm, mc, m, w = (
-        [row[0] for row in rows],
-        [row[1] for row in rows],
-        ([row[2] for row in rows], [row[3] for row in rows]),
-        [row[4] for row in rows],
-    )
-    right = ([row[5] for row in rows], [row[6] for row in rows])
+    wm, mc, m0, m1, w, right0, right1 = (list(column) for column in zip(*rows, strict=True))
+    m, right = (m0, m1), (right0, right1)
 
     def determinant(*columns: list[acb] | tuple[list[acb], list[acb]]) -> acb_poly:
         """Return the determinant of columns that are constant, or linear in w'."""
@@ -157,38 +144,30 @@ def four_positions(poses: Sequence[PlanePose], count: int = SWEEP) -> list[list[
     ground = -np.sum(delta * e)
     # The shortest side turns further than the others: it leads.
     lead = int(np.argmin(np.abs(delta)))
-    one, other = (lead + 1) % 3, (lead + 2) % 3
+    order = [lead, (lead + 1) % 3, (lead + 2) % 3]
+    sides = np.array([e, d, a, delta])[:, order]
     beta = np.exp(2j * np.pi * np.arange(count + 1) / count)
-    pieces: list[list[PoseDyad]] = []
-    for sign in (1.0, -1.0):
-        pieces += _sheet(first, e, d, a, delta, ground, (lead, one, other), beta, sign)
-    return pieces
+    sheets = (_sheet(first, sides, ground, beta, sign) for sign in (1.0, -1.0))
+    return [piece for sheet in sheets for piece in sheet]
 
 
 def _sheet(
-    first: PlanePose,
-    e: Array,
-    d: Array,
-    a: Array,
-    delta: Array,
-    ground: complex,
-    order: tuple[int, int, int],
-    beta: Array,
-    sign: float,
+    first: PlanePose, sides: Array, ground: complex, beta: Array, sign: float
 ) -> list[list[PoseDyad]]:
-    """Return the pieces of the curves in one of the compatibility linkage's two assemblies."""
-    lead, one, other = order
-    rest = -(ground + delta[lead] * beta)
-    p, q, r = abs(delta[one]), abs(delta[other]), np.abs(rest)
+    """Return the pieces of the curves in one of the compatibility linkage's two assemblies;
+    ``sides`` (4, 3) are e, d, 1 - e and Delta, those of the leading side first."""
+    e, d, a, delta = sides
+    rest = -(ground + delta[0] * beta)
+    p, q, r = abs(delta[1]), abs(delta[2]), np.abs(rest)
     with np.errstate(divide="ignore", invalid="ignore"):
         cosine = (p**2 + r**2 - q**2) / (2.0 * p * r)
         side = rest / r * p * (cosine + 1j * sign * np.sqrt(1.0 - cosine**2))
-        turned = side / delta[one]
+        turned = side / delta[1]
         # Of the three equations, the two of the best condition.
-        x, y = beta - e[lead], turned - e[one]
-        det = x * a[one] - y * a[lead]
-        v = (d[lead] * a[one] - d[one] * a[lead]) / det
-        m = (x * d[one] - y * d[lead]) / det
+        x, y = beta - e[0], turned - e[1]
+        det = x * a[1] - y * a[0]
+        v = (d[0] * a[1] - d[1] * a[0]) / det
+        m = (x * d[1] - y * d[0]) / det
         w = v + m
     good = np.isfinite(w) & np.isfinite(m) & (np.abs(det) > 1e-9)
     pieces: list[list[PoseDyad]] = [[]]

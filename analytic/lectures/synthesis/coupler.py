@@ -14,6 +14,7 @@ from analytic.lectures.synthesis.design import (
     Element,
     Proposal,
     Segment,
+    chained,
 )
 from analytic.lectures.synthesis.driving_dyad import swings_little, with_driving_dyad
 from analytic.lectures.synthesis.pose import (
@@ -75,14 +76,13 @@ def _bisected(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> Dra
         elements.append(Segment(first, second))
         elements.append(Segment(middle, dyad.fixed, beyond=BEYOND))
     elements.append(Dot(dyad.fixed, pivot, "result", fixed=True))
-    names = [f"{letter}{number}" for number in range(1, len(places) + 1)]
-    if len(places) == 2:
-        words = f"{pivot} anywhere on the bisector of {names[0]}{names[1]}"
-    else:
+    a, b, c = (f"{letter}{number}" for number in (1, 2, 3))
+    words = f"{pivot} anywhere on the bisector of {a}{b}"
+    if len(places) > 2:
         elements.append(DrawnCircle(dyad.fixed, dyad.radius(body.poses)))
         words = (
-            f"the bisectors of {names[0]}{names[1]} and {names[1]}{names[2]} meet in {pivot}, the "
-            f"middle of the circle through {', '.join(names)}"
+            f"the bisectors of {a}{b} and {b}{c} meet in {pivot}, the middle of the circle through "
+            f"{a}, {b}, {c}"
         )
     return DrawingStep(words, tuple(elements))
 
@@ -106,33 +106,26 @@ def _inverted(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> Dra
 
 def links(body: CarriedBody, pair: Pair) -> DrawingStep:
     """Draw the four-bar in its first position."""
-    pins = [body.poses[0].at(dyad.moving) for dyad in pair]
-    letters = [f"{body.letter(dyad.moving, which)}1" for which, dyad in enumerate(pair)]
+    first, second = (body.poses[0].at(dyad.moving) for dyad in pair)
+    a, b = (f"{body.letter(dyad.moving, which)}1" for which, dyad in enumerate(pair))
     elements: tuple[Element, ...] = (
-        Segment(pair[0].fixed, pins[0], "result"),
-        Segment(pins[0], pins[1], "result"),
-        Segment(pins[1], pair[1].fixed, "result"),
-        *(Dot(place, letter, "result") for place, letter in zip(pins, letters, strict=True)),
-        *(
-            Dot(dyad.fixed, pivot, "result", fixed=True)
-            for dyad, pivot in zip(pair, PIVOTS, strict=True)
-        ),
+        *chained(pair[0].fixed, first, second, pair[1].fixed),
+        Dot(first, a, "result"),
+        Dot(second, b, "result"),
+        Dot(pair[0].fixed, PIVOTS[0], "result", fixed=True),
+        Dot(pair[1].fixed, PIVOTS[1], "result", fixed=True),
     )
-    return DrawingStep(f"the links {PIVOTS[0]}{letters[0]}, {''.join(letters)} and "
-                f"{PIVOTS[1]}{letters[1]}", elements)  # fmt: skip
+    return DrawingStep(f"the links {PIVOTS[0]}{a}, {a}{b} and {PIVOTS[1]}{b}", elements)
 
 
 def curve_steps(body: CarriedBody, curves: Sequence[Sequence[PoseDyad]]) -> Iterator[DrawingStep]:
     """Draw Burmester's curves of four positions."""
     yield given_positions(body)
-    centres = tuple(tuple(dyad.fixed for dyad in piece) for piece in curves)
-    circles = tuple(tuple(body.poses[0].at(dyad.moving) for dyad in piece) for piece in curves)
-    yield DrawingStep(
-        "the centre-point curve: where fixed pivots can stand", (DrawnCurve(centres),)
-    )
-    yield DrawingStep(
-        "the circle-point curve: their moving pivots in position 1", (DrawnCurve(circles),)
-    )
+    at = body.poses[0].at
+    centres = DrawnCurve(tuple(tuple(dyad.fixed for dyad in piece) for piece in curves))
+    circles = DrawnCurve(tuple(tuple(at(dyad.moving) for dyad in piece) for piece in curves))
+    yield DrawingStep("the centre-point curve: where fixed pivots can stand", (centres,))
+    yield DrawingStep("the circle-point curve: their moving pivots in position 1", (circles,))
 
 
 DISTANCES = (0.5, 1.0, 2.0)
@@ -147,15 +140,11 @@ FALLEN_BACK = 3
 
 
 def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
-    """Return the four-bars of a task, and the number of pairs of cranks considered.
-
-    Raises
-    ------
-    CrankcheckError
-        Positions that coincide; a point that stays, or runs on a line; no crank that holds the
-        body in all positions.
-    """
-    body = carried_body(task)
+    """Return the four-bars of a task, and the number of pairs of cranks considered. Raises
+    CrankcheckError for positions that coincide; a point that stays, or runs on a line; no crank
+    that holds the body in all positions."""
+    poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
+    body = CarriedBody(task.name, task.source, poses, task.own_points)
     size = max(abs(b.point - a.point) for a, b in itertools.combinations(body.poses, 2))
     size += max(map(abs, body.points.values()))
     refuse_coinciding(body.poses, size)
@@ -181,12 +170,6 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
     return proposals, len(proposals)
 
 
-def carried_body(task: CouplerTask) -> CarriedBody:
-    """Return the body of a task in its positions."""
-    poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
-    return CarriedBody(task.name, task.source, poses, task.own_points)
-
-
 def _moving(task: CouplerTask, body: CarriedBody) -> tuple[complex, complex]:
     """Return the two moving pivots in the body's frame."""
     if task.moving_m is not None:
@@ -202,19 +185,11 @@ def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str,
     """Yield pairs for two positions: the fixed pivots anywhere on the bisectors."""
     moving = _moving(task, body)
     ways = [abs(body.poses[1].at(z) - body.poses[0].at(z)) for z in moving]
-    if task.distances_m is not None:
-        choices = [(task.distances_m[0], task.distances_m[1])]
-    else:
-        steps = [sign * share * max(ways) for share in DISTANCES for sign in (1.0, -1.0)]
-        choices = list(itertools.product(steps, steps))
-    for first, second in choices:
-        pair = (
-            about_bisector(body.poses, moving[0], first),
-            about_bisector(body.poses, moving[1], second),
-        )
-        told = {f"{pivot} from the middle": f"{distance:.6g} m"
-                for pivot, distance in zip(PIVOTS, (first, second), strict=True)}  # fmt: skip
-        yield pair, told
+    steps = [sign * share * max(ways) for share in DISTANCES for sign in (1.0, -1.0)]
+    for far in [task.distances_m] if task.distances_m else itertools.product(steps, steps):
+        one, other = (about_bisector(body.poses, *each) for each in zip(moving, far, strict=True))
+        told = zip(PIVOTS, far, strict=True)
+        yield (one, other), {f"{name} from the middle": f"{way:.6g} m" for name, way in told}
 
 
 def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
@@ -255,16 +230,13 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
 
 
 def _wished(task: CouplerTask, pieces: Sequence[Sequence[PoseDyad]]) -> list[PoseDyad]:
-    """Return cranks along the curves: those with fixed pivots in the wished region, if two have."""
+    """Return about `CURVE_DYADS` cranks along the curves: those with fixed pivots in the wished
+    region, if two have."""
     every = [dyad for piece in pieces for dyad in piece]
     region = task.pivots_in
     inside = [dyad for dyad in every if region is not None and region.holds(dyad.fixed)]
-    return _spread(inside if len(inside) > 1 else every, CURVE_DYADS)
-
-
-def _spread(every: Sequence[PoseDyad], count: int) -> list[PoseDyad]:
-    """Return about so many cranks, evenly."""
-    return list(every[:: max(1, len(every) // count)])
+    kept = inside if len(inside) > 1 else every
+    return kept[:: max(1, len(kept) // CURVE_DYADS)]
 
 
 def _driven(

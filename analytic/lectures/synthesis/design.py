@@ -1,5 +1,6 @@
 """Mechanism proposed by a synthesis: its scene, its required positions, and its construction."""
 
+import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -79,13 +80,9 @@ class PrecisionPosition:
 
     def off(self, motion: Motion, size_m: float) -> Array:
         """Return the largest error of a motion, (T,): angles in rad, lengths over the size."""
-        off = [np.abs(each.off(motion)) / scale_of(each, size_m) for each in self.asked]
+        scales = [1.0 if isinstance(each, AskedAngle) else size_m for each in self.asked]
+        off = [np.abs(each.off(motion)) / by for each, by in zip(self.asked, scales, strict=True)]
         return np.asarray(np.max(off, axis=0))
-
-
-def scale_of(asked: Asked, size_m: float) -> float:
-    """Return the divisor of its error: 1 for an angle."""
-    return 1.0 if isinstance(asked, AskedAngle) else size_m
 
 
 def names_of(positions: Sequence[PrecisionPosition]) -> tuple[list[str], list[str], list[str]]:
@@ -99,12 +96,7 @@ def names_of(positions: Sequence[PrecisionPosition]) -> tuple[list[str], list[st
 
 def asked_motion(scene: Scene, positions: Sequence[PrecisionPosition]) -> Motion:
     """Solve the scene at the driver's angles of positions (P,), for required quantities alone.
-
-    Raises
-    ------
-    ReachError
-        An angle at which it can not be assembled.
-    """
+    Raises ReachError for an angle at which it can not be assembled."""
     links, points, sliders = names_of(positions)
     return solve_driven(
         scene,
@@ -163,6 +155,21 @@ class DrawnCurve:
 Element = Dot | Segment | DrawnCircle | DrawnCurve
 
 
+def numbered(letter: str, places: Iterable[complex], look: Look = "auxiliary") -> list[Dot]:
+    """Return the dots of a point in its positions, from 1 on."""
+    return [Dot(place, f"{letter}{number}", look) for number, place in enumerate(places, 1)]
+
+
+def rays(start: complex, ends: Iterable[complex], look: Look = "auxiliary") -> list[Segment]:
+    """Return the lines from a place to others."""
+    return [Segment(start, end, look) for end in ends]
+
+
+def chained(*places: complex) -> list[Segment]:
+    """Return the resulting links from each place to the next one."""
+    return [Segment(one, other, "result") for one, other in itertools.pairwise(places)]
+
+
 @dataclass(frozen=True)
 class DrawingStep:
     """Step of a construction: its text and its drawn elements."""
@@ -195,6 +202,19 @@ class Proposal:
     allowed: float = 0.0
     also_rad: tuple[float, ...] = ()
     turns_back: str = ""
+
+
+def to_and_fro(
+    draft: Draft,
+    angles: Iterable[float],
+    asked: Iterable[tuple[Asked, ...]],
+    chosen: Mapping[str, str],
+    steps: Iterable[DrawingStep],
+    turns_back: str,
+) -> Proposal:
+    """Return the mechanism whose crank has two angles [rad] at the limits of a link or slider."""
+    positions = tuple(map(PrecisionPosition, angles, asked))
+    return Proposal(draft, "crank", positions, chosen, tuple(steps), turns_back=turns_back)
 
 
 INPUT, COUPLER, OUTPUT = "input", "coupler", "output"

@@ -25,16 +25,9 @@ import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
 
-from analytic.lectures.synthesis.design import (
-    INPUT,
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    Proposal,
-    Segment,
-    letters_beside,
-)
+from analytic.lectures.synthesis import design
 from models.errors import CrankcheckError
 from models.lectures.draft import bar, plate, points_of
 
@@ -68,39 +61,29 @@ class ToAndFro:
         angles = (folded, stretched) if beyond == 1 else (stretched, folded)
         return ToAndFro(pivot, crank, distance_m, angles)
 
-    def pin(self, position: int) -> complex:
-        """Return the place of the crank's pin in a position, 0 or 1."""
-        return self.pivot + cmath.rect(self.crank_m, self.angles[position])
-
     def steps(
         self, ends: tuple[complex, complex], letters: tuple[str, str, str]
-    ) -> list[DrawingStep]:
+    ) -> list[design.DrawingStep]:
         """Return the construction; ``letters`` are the crank's pivot, its pin, the rocker's pin."""
         pivot, pin, end = letters
-        middle = 0.5 * sum(ends)
         far = max(ends, key=lambda place: abs(place - self.pivot))
+        pins = [self.pivot + cmath.rect(self.crank_m, angle) for angle in self.angles]
+        chord = (
+            design.Segment(far, self.pivot),
+            design.Dot(self.pivot, pivot, "result", fixed=True),
+        )
+        half = (
+            design.Segment(0.5 * sum(ends), ends[0]),
+            design.DrawnCircle(self.pivot, self.crank_m),
+            design.Dot(pins[0], f"{pin}1", "result"),
+            design.Dot(pins[1], f"{pin}2"),
+        )
+        words = f"half of {end}1{end}2 is the crank: its circle meets the line in {pin}1 and {pin}2"
+        coupler = tuple(design.chained(self.pivot, pins[0], ends[0]))
         return [
-            DrawingStep(
-                f"the chord {end}1{end}2, and {pivot} on its extension",
-                (Segment(far, self.pivot), Dot(self.pivot, pivot, "result", fixed=True)),
-            ),
-            DrawingStep(
-                f"half of {end}1{end}2 is the crank: its circle meets the line in {pin}1 and "
-                f"{pin}2",
-                (
-                    Segment(middle, ends[0]),
-                    DrawnCircle(self.pivot, self.crank_m),
-                    Dot(self.pin(0), f"{pin}1", "result"),
-                    Dot(self.pin(1), f"{pin}2"),
-                ),
-            ),
-            DrawingStep(
-                f"{pin}1{end}1 is the coupler",
-                (
-                    Segment(self.pivot, self.pin(0), "result"),
-                    Segment(self.pin(0), ends[0], "result"),
-                ),
-            ),
+            design.DrawingStep(f"the chord {end}1{end}2, and {pivot} on its extension", chord),
+            design.DrawingStep(words, half),
+            design.DrawingStep(f"{pin}1{end}1 is the coupler", coupler),
         ]
 
 
@@ -109,34 +92,29 @@ def choices(crank_m: float, asked: float | None) -> list[float]:
     return [asked] if asked is not None else [factor * crank_m for factor in FACTORS]
 
 
-def chord(radius: float, swing_rad: float) -> float:
-    """Return the distance of the two places of a rocker's pin [m]."""
-    return 2.0 * radius * math.sin(0.5 * swing_rad)
-
-
 O6 = "O6"
 SHARE = 0.6
 """Distance of the dyad's pin from the fixed pivot, over the input link."""
 
 
-def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
+def with_driving_dyad(proposal: design.Proposal) -> Iterator[design.Proposal]:
     """Yield the six-bars of a four-bar of two positions, the dyad on its input link, O6 on either
     side of the chord and at several distances from it."""
     draft = proposal.draft
-    pivot_name, pin_name = points_of(draft.links[INPUT])
-    length = draft.links[INPUT]["length_m"]
+    pivot_name, pin_name = points_of(draft.links[design.INPUT])
+    length = draft.links[design.INPUT]["length_m"]
     assert isinstance(length, float)
     pivot = draft.ground[pivot_name]
     first, second = (position.driver_rad for position in proposal.positions)
-    on, own_pin = letters_beside(
-        {name for one in draft.links.values() for name in points_of(one)}, 2
+    on, own_pin = design.letters_beside(
+        chain.from_iterable(map(points_of, draft.links.values())), 2
     )
     radius = SHARE * length
-    ends = tuple(pivot + cmath.rect(radius, angle) for angle in (first, second))
+    ends = pivot + cmath.rect(radius, first), pivot + cmath.rect(radius, second)
     crank = 0.5 * abs(ends[1] - ends[0])
     for distance in choices(crank, None):
         for beyond in (1, 2):
-            found = ToAndFro.of(ends[0], ends[1], distance, beyond=beyond)
+            found = ToAndFro.of(*ends, distance, beyond=beyond)
             driven = replace(
                 draft,
                 ground={**draft.ground, O6: found.pivot},
@@ -144,31 +122,26 @@ def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
                     "crank": bar(O6, own_pin, found.crank_m),
                     "rod": bar(own_pin, on, found.coupler_m),
                     **draft.links,
-                    INPUT: plate({pivot_name: 0j, pin_name: complex(length), on: complex(radius)}),
+                    design.INPUT: plate(
+                        {pivot_name: 0j, pin_name: complex(length), on: complex(radius)}
+                    ),
                 },
             )
-            positions = tuple(
-                replace(position, driver_rad=angle)
-                for position, angle in zip(proposal.positions, found.angles, strict=True)
-            )
-            dots = tuple(Dot(end, f"{on}{n}") for n, end in enumerate(ends, 1))
-            steps = (
-                *proposal.steps,
-                DrawingStep(f"{on} on the input link, in both positions", dots),
-                *found.steps((ends[0], ends[1]), (O6, own_pin, on)),
-            )
+            asked = [position.asked for position in proposal.positions]
+            dots = tuple(design.numbered(on, ends))
+            step = design.DrawingStep(f"{on} on the input link, in both positions", dots)
             told = {f"{O6} from the chord's middle": f"{distance:.6g} m", "beyond": f"{on}{beyond}"}
             yield replace(
                 proposal,
                 draft=driven,
                 driver="crank",
-                positions=positions,
+                positions=tuple(map(design.PrecisionPosition, found.angles, asked)),
                 chosen={**proposal.chosen, **told},
-                steps=steps,
+                steps=(*proposal.steps, step, *found.steps(ends, (O6, own_pin, on))),
             )
 
 
-def swings_little(proposal: Proposal) -> bool:
+def swings_little(proposal: design.Proposal) -> bool:
     """True if the input link turns by less than half a turn, so that a rocker's chord leads it."""
     first, second = (position.driver_rad for position in proposal.positions)
     return abs(math.remainder(second - first, math.tau)) < math.pi

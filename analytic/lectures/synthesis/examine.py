@@ -107,13 +107,9 @@ def ranked(every: Sequence[Examined]) -> list[Examined]:
 
 
 def examine(proposal: Proposal) -> Examined:
-    """Assemble a proposal in its first position and examine the way of its driver.
-
-    Raises
-    ------
-    CrankcheckError
-        Lengths that make no mechanism, or one that can not be assembled in its first position.
-    """
+    """Assemble a proposal in its first position and examine the way of its driver. Raises
+    CrankcheckError for lengths that make no mechanism, or one that can not be assembled in its
+    first position."""
     first, speed = proposal.positions[0].driver_rad, proposal.speed_rad_s
     circuits = circuits_of(proposal.draft.driven(_turning(proposal.driver, first, speed)).scene)
     places = [_place_of(circuits, each) for each in proposal.positions]
@@ -198,7 +194,6 @@ def _place_of(circuits: Circuits, position: PrecisionPosition) -> Position:
 
 
 def _at(circuits: Circuits, place: Position) -> Scene:
-    """Return the scene that starts at a position."""
     scene = circuits.signed.with_signs(place.signs)
     law = ConstantSpeed(place.driver_rad, SPEED_RAD_S)
     return replace(scene, driver=replace(scene.driver, law=law))

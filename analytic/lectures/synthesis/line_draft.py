@@ -20,18 +20,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.design import (
-    INPUT,
-    PIVOTS,
-    AskedPlace,
-    Dot,
-    DrawingStep,
-    DrawnCurve,
-    PrecisionPosition,
-    Proposal,
-    Segment,
-)
-from analytic.lectures.synthesis.path.candidate import POINT, drafted
+from analytic.lectures.synthesis import design
+from analytic.lectures.synthesis.path import candidate
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
 from analytic.lectures.synthesis.straight_part import StraightPart, measured, on_line
 from models.array import Array
@@ -48,7 +38,7 @@ class StraightLinkage:
 
     four_bar: CouplerCurve
     part: StraightPart
-    proposal: Proposal
+    proposal: design.Proposal
 
 
 def refuse_none(length_m: float, deviation: float) -> None:
@@ -78,49 +68,32 @@ def placed(
     turn = cmath.phase(by)
     own = measured(four_bar, part.crank_rad[0] + turn, part.crank_rad[1] + turn)
     # The ends of the part as well: between them the point is as near as stated.
-    angles = sorted({own.crank_rad[0], *on_line(four_bar, own), own.crank_rad[1]})
-    positions = tuple(
-        PrecisionPosition(angle, (AskedPlace(POINT, complex(place)),))
-        for angle, place in zip(angles, four_bar.at(np.array(angles)), strict=True)
-    )
-    draft = drafted(f"straight-line-{kind}", source, four_bar)
+    angles = np.array(sorted({own.crank_rad[0], *on_line(four_bar, own), own.crank_rad[1]}))
+    positions = candidate.at_places(angles, four_bar.at(angles).tolist())
+    draft = candidate.drafted(f"straight-line-{kind}", source, four_bar)
     chosen = {
         "deviation from the line": f"{own.deviation_m:.3g} m over {own.length_m:.6g} m",
         "crank's turn": f"{math.degrees(own.crank_rad[1] - own.crank_rad[0]):.6g} deg",
         "change of speed": f"{100.0 * own.uneven:.3g} % of its mean",
     }
-    proposal = Proposal(draft, INPUT, positions, chosen, _steps(four_bar, own, angles))
+    proposal = design.Proposal(
+        draft, design.INPUT, positions, chosen, _steps(four_bar, own, angles)
+    )
     return StraightLinkage(four_bar, own, proposal)
 
 
 def _steps(
-    four_bar: CouplerCurve, part: StraightPart, angles: list[float]
-) -> tuple[DrawingStep, ...]:
-    """Return the line, the linkage in its first position, and the curve with all positions."""
+    four_bar: CouplerCurve, part: StraightPart, angles: Array
+) -> tuple[design.DrawingStep, ...]:
     end = part.start + part.length_m * part.along
-    first = np.array(angles[:1])
-    a, b = (complex(pin[0]) for pin in four_bar.pins(first))
-    p = complex(four_bar.at(first)[0])
-    low, high = part.crank_rad
-    spread = np.linspace(low, low + math.tau if four_bar.family != "limited" else high, DRAWN)
-    met = tuple(
-        Dot(complex(place), str(k + 1)) for k, place in enumerate(four_bar.at(np.array(angles)))
-    )
-    pairs = ((four_bar.o2, a), (a, b), (four_bar.o4, b), (a, p), (b, p))
+    curve = candidate.drawn_curve(four_bar, part.crank_rad, DRAWN)
+    on_curve = design.numbered("", four_bar.at(angles).tolist())
     return (
-        DrawingStep("the line, and its length", (Segment(part.start, end, "given"),)),
-        DrawingStep(
-            "the linkage in the textbook's proportions",
-            (
-                *(Segment(*pair, "result") for pair in pairs),
-                Dot(four_bar.o2, PIVOTS[0], "result", fixed=True),
-                Dot(four_bar.o4, PIVOTS[1], "result", fixed=True),
-            ),
+        design.DrawingStep("the line, and its length", (design.Segment(part.start, end, "given"),)),
+        design.DrawingStep(
+            "the linkage in the textbook's proportions", candidate.drawn_links(four_bar, angles[:1])
         ),
-        DrawingStep(
-            "its coupler curve, and where this is on the line",
-            (DrawnCurve((tuple(four_bar.at(spread).tolist()),)), *met),
-        ),
+        design.DrawingStep("its coupler curve, and where this is on the line", (curve, *on_curve)),
     )
 
 
@@ -133,7 +106,9 @@ LEAN = math.radians(32.0)
 POSITIONS = 5
 
 
-def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 0.0) -> Proposal:
+def peaucellier(
+    length_m: float, *, start: complex = 0j, direction_rad: float = 0.0
+) -> design.Proposal:
     """Return Peaucellier's linkage with a way of a length [m], with P exactly on the line.
 
     Parameters
@@ -160,11 +135,14 @@ def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 
     # The crank turns by twice the lean of O4-A, and P moves by the tangent of the lean.
     ways = np.linspace(-1.0, 1.0, POSITIONS)
     places = (middle + 0.5 * length_m * ways * turn).tolist()
-    cranks = [o2 + CIRCLE * scale * inward * cmath.exp(2j * lean) for lean in _leans(ways)]
+    leans: list[float] = np.arctan(ways * math.tan(LEAN)).tolist()
+    cranks = [o2 + CIRCLE * scale * inward * cmath.exp(2j * lean) for lean in leans]
     corners = [_corner(a, p, scale) for a, p in zip(cranks, places, strict=True)]
     # The place of B selects the assembly, as B and C may be exchanged.
     positions = tuple(
-        PrecisionPosition(cmath.phase(a - o2), (AskedPlace("P", p), AskedPlace("B", b)))
+        design.PrecisionPosition(
+            cmath.phase(a - o2), (design.AskedPlace("P", p), design.AskedPlace("B", b))
+        )
         for a, p, b in zip(cranks, places, corners, strict=True)
     )
     draft = Draft(
@@ -185,13 +163,7 @@ def peaucellier(length_m: float, *, start: complex = 0j, direction_rad: float = 
     chosen = {"crank's turn": f"{math.degrees(4.0 * LEAN):.6g} deg", "deviation": "none"}
     at = POSITIONS // 2
     steps = _exact_steps((o2, o4, cranks[at], corners[at], places[at]), places)
-    return Proposal(draft, CRANK, positions, chosen, steps)
-
-
-def _leans(ways: Array) -> list[float]:
-    """Return the lean of O4-A [rad] with P at shares of half its way."""
-    leans: list[float] = np.arctan(ways * math.tan(LEAN)).tolist()
-    return leans
+    return design.Proposal(draft, CRANK, positions, chosen, steps)
 
 
 def _corner(a: complex, p: complex, scale: float) -> complex:
@@ -200,15 +172,16 @@ def _corner(a: complex, p: complex, scale: float) -> complex:
     return a + half + 1j * half / abs(half) * math.sqrt((SIDE * scale) ** 2 - abs(half) ** 2)
 
 
-def _exact_steps(points: tuple[complex, ...], places: list[complex]) -> tuple[DrawingStep, ...]:
-    """Return the way, and the linkage in its middle."""
+def _exact_steps(
+    points: tuple[complex, ...], places: list[complex]
+) -> tuple[design.DrawingStep, ...]:
     o2, o4, a, b, p = points
     c = a + p - b
     pairs = ((o2, a), (o4, b), (o4, c), (a, b), (a, c), (b, p), (c, p))
-    dots = tuple(Dot(place, str(k + 1), "given") for k, place in enumerate(places))
-    pivots = Dot(o2, "O2", "result", fixed=True), Dot(o4, "O4", "result", fixed=True)
-    links = tuple(Segment(*pair, "result") for pair in pairs)
+    dots = design.numbered("", places, "given")
+    pivots = design.Dot(o2, "O2", "result", fixed=True), design.Dot(o4, "O4", "result", fixed=True)
+    links = tuple(design.Segment(*pair, "result") for pair in pairs)
     return (
-        DrawingStep("the way of P", (Segment(places[0], places[-1], "given"), *dots)),
-        DrawingStep("the linkage in the middle of the way", (*links, *pivots)),
+        design.DrawingStep("the way of P", (design.Segment(places[0], places[-1], "given"), *dots)),
+        design.DrawingStep("the linkage in the middle of the way", (*links, *pivots)),
     )

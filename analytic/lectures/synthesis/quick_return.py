@@ -26,13 +26,12 @@ Source: R. L. Norton, Design of Machinery, section 3.4.
 import cmath
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from analytic.lectures.synthesis import design
-from analytic.lectures.synthesis.driving_dyad import chord
-from analytic.lectures.synthesis.slider_crank_strokes import lag_of
+from analytic.lectures.synthesis.rocker import Swung, by_angle
+from analytic.lectures.synthesis.slider_crank_strokes import circle_step, lag_of
 from models.errors import CrankcheckError
 from models.files.assemble import Table
 from models.lectures.draft import Draft, bar
@@ -42,39 +41,27 @@ PLACES = 24
 """Number of tried places of O2 on the circles of a time ratio, half on either side."""
 
 
-@dataclass(frozen=True)
-class SwungRocker:
-    """Rocker about O4 in the origin: its angles in both ends [rad], the places of B there [m], and
-    the circle that O2 lies on."""
-
-    rocker_m: float
-    angles: tuple[float, float]
-    ends: tuple[complex, complex]
-    seen: design.DrawnCircle
-
-
 def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[design.Proposal]:
     """Yield the crank-rockers of a task whose slow stroke takes half a turn and ``lag`` [rad]."""
     assert task.rocker_m is not None
     assert task.swing_deg is not None
-    half = math.radians(0.5 * task.swing_deg)
-    angles = 0.5 * math.pi + half, 0.5 * math.pi - half
-    ends = cmath.rect(task.rocker_m, angles[0]), cmath.rect(task.rocker_m, angles[1])
-    radius = 0.5 * chord(task.rocker_m, 2.0 * half) / math.sin(lag)
+    swung = by_angle(task.rocker_m, task.swing_deg, "the rocker O4 B in its end positions")
+    radius = task.rocker_m * math.sin(math.radians(0.5 * task.swing_deg)) / math.sin(lag)
     reach = math.pi - lag
     for side in (1.0, -1.0):
-        centre = 0.5 * sum(ends) + side * 1j * radius * math.cos(lag)
-        swung = SwungRocker(task.rocker_m, angles, ends, design.DrawnCircle(centre, radius))
+        centre = 0.5 * sum(swung.ends) + side * 1j * radius * math.cos(lag)
+        seen = design.DrawnCircle(centre, radius)
         for share in (np.arange(PLACES // 2) + 0.5) / (PLACES // 2):
             pivot = centre + side * 1j * radius * cmath.exp(1j * reach * (2.0 * share - 1.0))
-            if (proposal := _crank_rocker(task, swung, pivot, lag)) is not None:
+            if (proposal := _crank_rocker(task, swung, seen, pivot)) is not None:
                 yield proposal
 
 
 def _crank_rocker(
-    task: QuickReturnTask, swung: SwungRocker, pivot: complex, lag: float
+    task: QuickReturnTask, swung: Swung, seen: design.DrawnCircle, pivot: complex
 ) -> design.Proposal | None:
     """Return the one with O2 at a place of the circle; None as near to B1 as to B2."""
+    assert task.rocker_m is not None
     far, near = sorted(swung.ends, key=lambda end: -abs(end - pivot))
     crank = 0.5 * (abs(far - pivot) - abs(near - pivot))
     coupler = 0.5 * (abs(far - pivot) + abs(near - pivot))
@@ -84,47 +71,24 @@ def _crank_rocker(
     links = {
         "crank": bar(O2, PIN, crank),
         "coupler": bar(PIN, END, coupler),
-        "rocker": bar(O4, END, swung.rocker_m),
+        "rocker": bar(O4, END, task.rocker_m),
     }
     draft = Draft(task.name, task.source, {O2: pivot, O4: 0j}, links, {})
-    positions = tuple(
-        design.PrecisionPosition(angle, (design.AskedAngle("rocker", lever),))
-        for angle, lever in zip(turned, swung.angles, strict=True)
-    )
+    asked = [(design.AskedAngle("rocker", pose.angle),) for pose in swung.poses]
     told = {"crank": f"{crank:.6g} m", "coupler": f"{coupler:.6g} m"}
     pin = pivot + cmath.rect(crank, turned[0])
-    steps = tuple(_rocker_steps(swung, design.DrawnCircle(pivot, crank), pin, lag))
-    return design.Proposal(draft, "crank", positions, told, steps, turns_back="rocker")
-
-
-def _rocker_steps(
-    swung: SwungRocker, turn: design.DrawnCircle, pin: complex, lag: float
-) -> Iterator[design.DrawingStep]:
-    """Yield both ends, the circle they are seen from, and that of the crank, pin in position 1."""
-    pivot, ends = turn.centre, swung.ends
-    yield design.DrawingStep(
-        "the rocker O4 B in its end positions",
-        (
-            design.Dot(0j, O4, "given", fixed=True),
-            *(design.Segment(0j, end, "given") for end in ends),
-            *(design.Dot(end, f"B{n}", "given") for n, end in enumerate(ends, 1)),
-        ),
-    )
-    yield design.DrawingStep(
-        f"the circle from which B1 B2 is seen under a = {math.degrees(lag):.6g} deg, and O2 on it",
-        (swung.seen, design.Dot(pivot, O2, "result", fixed=True)),
-    )
-    yield design.DrawingStep(
+    lengths = design.DrawingStep(
         "half the difference of O2 B1 and O2 B2 is the crank, half their sum the coupler",
         (
-            *(design.Segment(pivot, end) for end in ends),
-            turn,
-            design.Segment(pivot, pin, "result"),
-            design.Segment(pin, ends[0], "result"),
-            design.Segment(0j, ends[0], "result"),
+            *design.rays(pivot, swung.ends),
+            design.DrawnCircle(pivot, crank),
+            *design.chained(pivot, pin, swung.ends[0]),
+            *design.chained(0j, swung.ends[0]),
             design.Dot(pin, "A1", "result"),
         ),
     )
+    steps = (*swung.steps, circle_step(lag_of(task.time_ratio), seen, pivot), lengths)
+    return design.to_and_fro(draft, turned, asked, told, steps, "rocker")
 
 
 O2, O4, PIN, END, RAM = "O2", "O4", "A", "B", "C"
@@ -134,15 +98,14 @@ ROD = 2.0
 """Default rod, over the ram's stroke."""
 
 
-def quick_return_proposals(task: QuickReturnTask) -> tuple[list[design.Proposal], int]:
-    """Return the mechanisms of a task, and their number."""
+def quick_return_proposals(task: QuickReturnTask) -> list[design.Proposal]:
+    """Return the mechanisms of a task."""
     lag = lag_of(task.time_ratio)
     if task.mechanism == "crank-rocker":
-        found = list(crank_rockers(task, lag))
-    else:
-        found = [_slotted_lever(task, lag) if task.mechanism == "slotted-lever"
-                 else _whitworth(task, lag)]  # fmt: skip
-    return found, len(found)
+        return list(crank_rockers(task, lag))
+    return [
+        _slotted_lever(task, lag) if task.mechanism == "slotted-lever" else _whitworth(task, lag)
+    ]
 
 
 def _slotted_lever(task: QuickReturnTask, lag: float) -> design.Proposal:
@@ -161,21 +124,16 @@ def _slotted_lever(task: QuickReturnTask, lag: float) -> design.Proposal:
     links: dict[str, Table] = {"crank": bar(O2, PIN, crank), "lever": bar(O4, END, lever)}
     sliders: dict[str, Table] = {PIN: {"on": "lever"}}
     ends = [cmath.rect(lever, angle) for angle in levers]
-    asked = [[design.AskedAngle("lever", angle)] for angle in levers]
-    slides: list[float] = []
+    asked: list[tuple[design.Asked, ...]]
+    asked = [(design.AskedAngle("lever", angle),) for angle in levers]
     if task.stroke_m is not None:
         slides = _add_ram(task, links, sliders, ends, 0.5 * (lever + ends[0].imag))
-    draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
-    positions = tuple(
-        design.PrecisionPosition(
-            angle, (*one, *(design.AskedSlide(RAM, s) for s in slides[k : k + 1]))
-        )
-        for k, (angle, one) in enumerate(zip(angles, asked, strict=True))
-    )
+        asked = [(*one, slide) for one, slide in zip(asked, slides, strict=True)]
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "swing": _degrees(lag)}
-    steps = tuple(_steps(1j * pivots, crank, angles, ends, lag))
-    goes = RAM if slides else "lever"
-    return design.Proposal(draft, "crank", positions, told, steps, turns_back=goes)
+    steps = _steps(1j * pivots, crank, angles, ends, lag)
+    goes = "lever" if task.stroke_m is None else RAM
+    draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
+    return design.to_and_fro(draft, angles, asked, told, steps, goes)
 
 
 def _whitworth(task: QuickReturnTask, lag: float) -> design.Proposal:
@@ -188,7 +146,6 @@ def _whitworth(task: QuickReturnTask, lag: float) -> design.Proposal:
     arm = 0.5 * (task.stroke_m or crank)
     # With the guide level the crank's pin is level with O4, below O2.
     angles = (-0.5 * lag, math.pi + 0.5 * lag)
-    levers = (0.0, math.pi)
     links: dict[str, Table] = {"crank": bar(O2, PIN, crank), "guide": bar(O4, END, arm)}
     sliders: dict[str, Table] = {PIN: {"on": "guide"}}
     ends = [complex(arm), complex(-arm)]
@@ -198,16 +155,12 @@ def _whitworth(task: QuickReturnTask, lag: float) -> design.Proposal:
             "to pass; take a longer one"
         )
     slides = _add_ram(task, links, sliders, ends, 0.0)
-    draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
-    positions = tuple(
-        design.PrecisionPosition(
-            angle, (design.AskedAngle("guide", level), design.AskedSlide(RAM, slide))
-        )
-        for angle, level, slide in zip(angles, levers, slides, strict=True)
-    )
+    levels = [design.AskedAngle("guide", level) for level in (0.0, math.pi)]
+    asked = zip(levels, slides, strict=True)
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "stroke": f"{2.0 * arm:.6g} m"}
-    steps = tuple(_steps(1j * pivots, crank, angles, ends, lag))
-    return design.Proposal(draft, "crank", positions, told, steps, turns_back=RAM)
+    steps = _steps(1j * pivots, crank, angles, ends, lag)
+    draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
+    return design.to_and_fro(draft, angles, asked, told, steps, RAM)
 
 
 def _add_ram(
@@ -216,7 +169,7 @@ def _add_ram(
     sliders: dict[str, Table],
     ends: list[complex],
     height: float,
-) -> list[float]:
+) -> list[design.AskedSlide]:
     """Put a rod and a ram at the end of a lever, the ram on a level line to the right; return its
     places with the lever's ``ends``, counted from the nearest."""
     stroke = abs(ends[0].real - ends[1].real)
@@ -231,7 +184,7 @@ def _add_ram(
     places = [end.real + rod * math.cos(below) for end in ends]
     links["rod"] = bar(END, RAM, rod)
     sliders[RAM] = {"on": "ground", "through_m": [min(places), height], "direction_deg": 0.0}
-    return [place - min(places) for place in places]
+    return [design.AskedSlide(RAM, place - min(places)) for place in places]
 
 
 def _steps(
@@ -243,7 +196,7 @@ def _steps(
         (
             design.Dot(0j, O4, "given", fixed=True),
             design.Dot(pivot, O2, "given", fixed=True),
-            *(design.Segment(0j, end, "given") for end in ends),
+            *design.rays(0j, ends, "given"),
         ),
     )
     pins = [pivot + cmath.rect(crank, angle) for angle in angles]
@@ -252,7 +205,7 @@ def _steps(
         "turn lie above them",
         (
             design.DrawnCircle(pivot, crank),
-            design.Segment(pivot, pins[0], "result"),
+            *design.chained(pivot, pins[0]),
             design.Segment(pivot, pins[1]),
             design.Dot(pins[0], "A1", "result"),
             design.Dot(pins[1], "A2"),

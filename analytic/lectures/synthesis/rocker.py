@@ -34,43 +34,38 @@ class Swung:
     pin: str = ""
 
 
-def rocker_proposals(task: RockerTask) -> tuple[list[design.Proposal], int]:
-    """Return the crank-rockers of a task, and their number.
-
-    Raises
-    ------
-    CrankcheckError
-        Positions that coincide, or whose pole is at infinity; a crank's pivot between the ends.
-    """
-    swung = _by_positions(task) if task.positions else _by_angle(task)
+def rocker_proposals(task: RockerTask) -> list[design.Proposal]:
+    """Return the crank-rockers of a task. Raises CrankcheckError for positions that coincide, or
+    whose pole is at infinity; a crank's pivot between the ends."""
+    if task.positions:
+        swung = _by_positions(task)
+    else:
+        assert task.rocker_m is not None
+        assert task.swing_deg is not None
+        words = f"the rocker O4 B in its end positions, {task.swing_deg:g} deg apart"
+        swung = by_angle(task.rocker_m, task.swing_deg, words)
     crank = 0.5 * abs(swung.ends[1] - swung.ends[0])
-    found = [
+    return [
         _proposal(task, swung, distance, beyond)
         for distance in choices(crank, task.distance_m)
         for beyond in (2, 1)
     ]
-    return found, len(found)
 
 
-def _by_angle(task: RockerTask) -> Swung:
+def by_angle(rocker_m: float, swing_deg: float, words: str) -> Swung:
     """Return the rocker with O4 at the origin, its ends on either side of the y-axis."""
-    assert task.swing_deg is not None
-    assert task.rocker_m is not None
-    half = math.radians(0.5 * task.swing_deg)
-    angles = (0.5 * math.pi + half, 0.5 * math.pi - half)
-    one, other = (cmath.rect(task.rocker_m, angle) for angle in angles)
+    half = math.radians(0.5 * swing_deg)
+    poses = PlanePose(0j, 0.5 * math.pi + half), PlanePose(0j, 0.5 * math.pi - half)
+    ends = cmath.rect(rocker_m, poses[0].angle), cmath.rect(rocker_m, poses[1].angle)
     step = design.DrawingStep(
-        f"the rocker O4 B in its end positions, {task.swing_deg:g} deg apart",
+        words,
         (
             design.Dot(0j, O4, "given", fixed=True),
-            design.Segment(0j, one, "given"),
-            design.Segment(0j, other, "given"),
-            design.Dot(one, "B1", "given"),
-            design.Dot(other, "B2", "given"),
+            *design.rays(0j, ends, "given"),
+            *design.numbered("B", ends, "given"),
         ),
     )
-    poses = (PlanePose(0j, angles[0]), PlanePose(0j, angles[1]))
-    return Swung(0j, (one, other), poses, {}, (step,))
+    return Swung(0j, ends, poses, {}, (step,))
 
 
 def _by_positions(task: RockerTask) -> Swung:
@@ -116,7 +111,6 @@ def _by_positions(task: RockerTask) -> Swung:
 def _pole_steps(
     places: tuple[PlanePose, PlanePose], own: Mapping[str, complex], pivot: complex
 ) -> Iterator[design.DrawingStep]:
-    """Yield the body in its positions, and the bisectors that meet in the pole."""
     elements: list[design.Element] = [
         design.Dot(pose.at(each), f"{name}{number}", "given")
         for number, pose in enumerate(places, 1)
@@ -149,8 +143,8 @@ def _pin_step(
         words if letter else f"{pin} at its distance from O4, in both positions",
         (
             design.DrawnCircle(pivot, abs(ends[0] - pivot)),
-            *(design.Segment(pivot, end) for end in ends),
-            *(design.Dot(end, f"{pin}{number}") for number, end in enumerate(ends, 1)),
+            *design.rays(pivot, ends),
+            *design.numbered(pin, ends),
         ),
     )
 
@@ -162,27 +156,18 @@ def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) ->
     rocker_pin = swung.pin or free
     radius = abs(swung.ends[0] - swung.pivot)
     own = {O4: 0j, rocker_pin: complex(radius), **swung.points}
-    draft = Draft(
-        task.name,
-        task.source,
-        {O2: found.pivot, O4: swung.pivot},
-        {
-            "crank": bar(O2, crank_pin, found.crank_m),
-            "coupler": bar(crank_pin, rocker_pin, found.coupler_m),
-            "rocker": plate(own) if swung.points else bar(O4, rocker_pin, radius),
-        },
-        {},
-    )
-    positions = tuple(
-        design.PrecisionPosition(angle, _asked(swung, pose))
-        for angle, pose in zip(found.angles, swung.poses, strict=True)
-    )
-    steps = (*swung.steps, *found.steps(swung.ends, (O2, crank_pin, rocker_pin)))
-    links = design.DrawingStep(
-        "the rocker", (design.Segment(swung.pivot, swung.ends[0], "result"),)
-    )
+    links = {
+        "crank": bar(O2, crank_pin, found.crank_m),
+        "coupler": bar(crank_pin, rocker_pin, found.coupler_m),
+        "rocker": plate(own) if swung.points else bar(O4, rocker_pin, radius),
+    }
+    draft = Draft(task.name, task.source, {O2: found.pivot, O4: swung.pivot}, links, {})
+    asked = [_asked(swung, pose) for pose in swung.poses]
+    rocker = design.DrawingStep("the rocker", (*design.chained(swung.pivot, swung.ends[0]),))
+    construction = found.steps(swung.ends, (O2, crank_pin, rocker_pin))
+    steps = (*swung.steps, *construction, rocker)
     told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"{rocker_pin}{beyond}"}
-    return design.Proposal(draft, "crank", positions, told, (*steps, links), turns_back="rocker")
+    return design.to_and_fro(draft, found.angles, asked, told, steps, "rocker")
 
 
 def _asked(swung: Swung, pose: PlanePose) -> tuple[design.Asked, ...]:

@@ -94,13 +94,8 @@ class Spread:
 
 
 def sensitivity(examined: Examined) -> Sensitivity:
-    """Compute the slopes of a mechanism that meets its positions.
-
-    Raises
-    ------
-    CrankcheckError
-        A mechanism that passes a change point, or a dead point: next to it there are no slopes.
-    """
+    """Compute the slopes of a mechanism that meets its positions. Raises CrankcheckError for a
+    mechanism that passes a change point, or a dead point: next to it there are no slopes."""
     if examined.least_sine < SINGULAR:
         raise CrankcheckError(
             f"{examined.scene.name}: it passes a position in which links are in line, where a "
@@ -109,17 +104,14 @@ def sensitivity(examined: Examined) -> Sensitivity:
     draft = as_plates(examined)
     step = STEP * examined.scene.longest_m
     dimensions = tuple(_dimensions(draft))
-    asked = tuple(
-        (number, one)
-        for number, position in enumerate(examined.positions, 1)
-        for one in position.asked
-    )
+    positions = enumerate(examined.positions, 1)
+    asked = tuple((number, one) for number, position in positions for one in position.asked)
     slopes = np.empty((len(asked), len(dimensions)))
     for k, dimension in enumerate(dimensions):
         ahead, back = (
             _values(examined, _varied(draft, {dimension: sign * step}).scene) for sign in (1, -1)
         )
-        slopes[:, k] = _distances(ahead, back) / (2.0 * step)
+        slopes[:, k] = np.abs(ahead - back) / (2.0 * step)
     return Sensitivity(examined, asked, dimensions, slopes)
 
 
@@ -142,7 +134,7 @@ def monte_carlo(
         except ReachError:
             lost += 1
             continue
-        change = _distances(values, exact)
+        change = np.abs(values - exact)
         largest = np.maximum(largest, change)
         within += bool(np.all(change <= limits))
     return Spread(largest, within / count, count, lost)
@@ -172,7 +164,6 @@ def as_plates(examined: Examined) -> Draft:
 
 
 def _dimensions(draft: Draft) -> Iterator[TolerancedDimension]:
-    """Yield the coordinates of all points of the ground and of the links."""
     for body, points in (("ground", draft.ground), *_bodies(draft)):
         yield from (TolerancedDimension(body, point, axis) for point in points for axis in (0, 1))
 
@@ -195,14 +186,5 @@ def _varied(draft: Draft, by: Mapping[TolerancedDimension, float]) -> Draft:
 def _values(examined: Examined, scene: Scene) -> NDArray[np.complex128]:
     """Return the required values at the positions (P,): places, or turns exp(i angle)."""
     motion = asked_motion(scene, examined.positions)
-    return np.array(
-        [
-            one.value(motion)[k]
-            for k, position in enumerate(examined.positions)
-            for one in position.asked
-        ]
-    )
-
-
-def _distances(one: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
-    return np.asarray(np.abs(one - other))
+    positions = enumerate(examined.positions)
+    return np.array([one.value(motion)[k] for k, each in positions for one in each.asked])

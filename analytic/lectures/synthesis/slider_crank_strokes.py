@@ -26,15 +26,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.design import (
-    AskedSlide,
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    PrecisionPosition,
-    Proposal,
-    Segment,
-)
+from analytic.lectures.synthesis import design
 from models.errors import CrankcheckError
 from models.lectures.draft import Draft, bar
 from models.lectures.tasks.positions import StrokeTask
@@ -85,10 +77,9 @@ class Ends:
         return folded, cmath.phase(self.second)
 
 
-def stroke_proposals(task: StrokeTask) -> tuple[list[Proposal], int]:
+def stroke_proposals(task: StrokeTask) -> list[design.Proposal]:
     """Return the slider-cranks of a task. Raises CrankcheckError for an impossible task."""
-    found = [_proposal(task, ends) for ends in _ends(task)]
-    return found, len(found)
+    return [_proposal(task, ends) for ends in _ends(task)]
 
 
 def lag_of(time_ratio: float) -> float:
@@ -96,9 +87,12 @@ def lag_of(time_ratio: float) -> float:
     return math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
 
 
-def ratio_of(lag: float) -> float:
-    """Return the time ratio of an angle a [rad]."""
-    return (math.pi + lag) / (math.pi - lag)
+def circle_step(lag: float, seen: design.DrawnCircle, pivot: complex) -> design.DrawingStep:
+    """Return the step to the places of O2 from which a stroke is seen under an angle [rad]."""
+    words = (
+        f"the circle from which B1 B2 is seen under a = {math.degrees(lag):.6g} deg, and O2 on it"
+    )
+    return design.DrawingStep(words, (seen, design.Dot(pivot, O2, "result", fixed=True)))
 
 
 def _ends(task: StrokeTask) -> Iterator[Ends]:
@@ -118,13 +112,8 @@ def _ends(task: StrokeTask) -> Iterator[Ends]:
 
 def crank_of(stroke: float, rod: float, offset: float) -> float:
     """Return the crank [m] of a stroke: with u, v = sqrt((l +- r)^2 - e^2) and u - v = s, u + v is
-    4 l r / s, and r^2 = s^2 (4 l^2 - 4 e^2 - s^2) / (4 (4 l^2 - s^2)).
-
-    Raises
-    ------
-    CrankcheckError
-        A rod that is too short for it.
-    """
+    4 l r / s, and r^2 = s^2 (4 l^2 - 4 e^2 - s^2) / (4 (4 l^2 - s^2)). Raises CrankcheckError for a
+    rod that is too short for it."""
     least = 0.5 * stroke + offset
     square = stroke**2 * (4.0 * rod**2 - 4.0 * offset**2 - stroke**2)
     below = 4.0 * (4.0 * rod**2 - stroke**2)
@@ -143,8 +132,8 @@ def _by_time_ratio(task: StrokeTask, lag: float) -> Iterator[float]:
     if lag > most:
         raise CrankcheckError(
             f"time_ratio is {task.time_ratio:.8g}: a slider-crank whose crank turns has one below "
-            f"3, and transmits from {ratio_of(most):.4f} on by less than 0.1 deg; a slotted lever "
-            "has any (`crankcheck synth quick-return`)"
+            f"3, and transmits from {(math.pi + most) / (math.pi - most):.4f} on by less than 0.1 "
+            "deg; a slotted lever has any (`crankcheck synth quick-return`)"
         )
     if task.offset_m is not None:
         yield _beside(task, lag, task.offset_m)
@@ -182,63 +171,41 @@ def _with_rod(task: StrokeTask, lag: float, rod: float) -> float:
     return at_far
 
 
-def _proposal(task: StrokeTask, ends: Ends) -> Proposal:
+def _proposal(task: StrokeTask, ends: Ends) -> design.Proposal:
     """Return the slider-crank; its displacement counts from the inner end of the stroke."""
     through = [ends.first.real, ends.first.imag]
-    draft = Draft(
-        task.name,
-        task.source,
-        {O2: 0j},
-        {"crank": bar(O2, PIN, ends.crank), "rod": bar(PIN, SLIDER, ends.rod)},
-        {},
-        sliders={SLIDER: {"on": "ground", "through_m": through, "direction_deg": 0.0}},
-    )
-    positions = tuple(
-        PrecisionPosition(angle, (AskedSlide(SLIDER, displacement),))
-        for angle, displacement in zip(ends.angles, (0.0, task.stroke_m), strict=True)
-    )
-    told = {
-        "crank": f"{ends.crank:.6g} m",
-        "rod": f"{ends.rod:.6g} m",
-        "offset": f"{ends.offset:.6g} m",
-    }
-    steps = tuple(_steps(task, ends))
-    return Proposal(draft, "crank", positions, told, steps, turns_back=SLIDER)
+    links = {"crank": bar(O2, PIN, ends.crank), "rod": bar(PIN, SLIDER, ends.rod)}
+    slider = {"on": "ground", "through_m": through, "direction_deg": 0.0}
+    draft = Draft(task.name, task.source, {O2: 0j}, links, {}, sliders={SLIDER: slider})
+    asked = [(design.AskedSlide(SLIDER, at),) for at in (0.0, task.stroke_m)]
+    lengths = {"crank": ends.crank, "rod": ends.rod, "offset": ends.offset}
+    told = {name: f"{length:.6g} m" for name, length in lengths.items()}
+    return design.to_and_fro(draft, ends.angles, asked, told, _steps(task, ends), SLIDER)
 
 
-def _steps(task: StrokeTask, ends: Ends) -> Iterator[DrawingStep]:
-    """Yield the construction in the plane of the scene."""
+def _steps(task: StrokeTask, ends: Ends) -> Iterator[design.DrawingStep]:
     first, second = ends.first, ends.second
-    yield DrawingStep(
+    line = design.Segment(first, second, "given", beyond=0.2)
+    yield design.DrawingStep(
         f"the stroke, {task.stroke_m:g} m on the slider's line",
-        (
-            Segment(first, second, "given", beyond=0.2),
-            Dot(first, "B1", "given"),
-            Dot(second, "B2", "given"),
-        ),
+        (line, *design.numbered("B", (first, second), "given")),
     )
     if task.time_ratio is not None:
         lag = lag_of(task.time_ratio)
         radius = 0.5 * abs(second - first) / math.sin(lag)
         centre = 0.5 * (first + second) + 1j * 0.5 * abs(second - first) / math.tan(lag)
-        yield DrawingStep(
-            f"the circle from which B1 B2 is seen under a = {math.degrees(lag):.6g} deg, and O2 "
-            "on it",
-            (DrawnCircle(centre, radius), Dot(0j, O2, "result", fixed=True)),
-        )
+        yield circle_step(lag, design.DrawnCircle(centre, radius), 0j)
     else:
-        yield DrawingStep(
-            f"O2 beside the line by {-first.imag:.6g} m", (Dot(0j, O2, "result", fixed=True),)
-        )
-    equal = task.form == "isosceles"
-    yield DrawingStep(
+        pivot = design.Dot(0j, O2, "result", fixed=True)
+        yield design.DrawingStep(f"O2 beside the line by {-first.imag:.6g} m", (pivot,))
+    yield design.DrawingStep(
         "crank and rod are a quarter of the stroke each, and O2 is its middle"
-        if equal
+        if task.form == "isosceles"
         else "O2 B1 is rod less crank, O2 B2 rod and crank: half their difference is the crank",
-        (Segment(0j, first), Segment(0j, second), DrawnCircle(0j, ends.crank)),
+        (*design.rays(0j, (first, second)), design.DrawnCircle(0j, ends.crank)),
     )
     pin = cmath.rect(ends.crank, ends.angles[0])
-    yield DrawingStep(
+    yield design.DrawingStep(
         "crank and rod in position 1",
-        (Segment(0j, pin, "result"), Segment(pin, first, "result"), Dot(pin, "A1", "result")),
+        (*design.chained(0j, pin, first), design.Dot(pin, "A1", "result")),
     )

@@ -5,6 +5,7 @@ positions do not show it. The reference follows it over a turn.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from analytic.lectures.synthesis.coupler import coupler_proposals
@@ -65,25 +66,21 @@ def _radians(degrees: float | None) -> float | None:
 
 def straight_line_of(table: StraightLineTable) -> Proposal:
     """Return the linkage of a straight line. Raises CrankcheckError for an impossible task."""
-    start, direction = complex(*table.start_m), math.radians(table.direction_deg)
+    length, start = table.length_m, complex(*table.start_m)
+    direction = math.radians(table.direction_deg)
     if table.linkage == "peaucellier":
-        return peaucellier(table.length_m, start=start, direction_rad=direction)
+        return peaucellier(length, start=start, direction_rad=direction)
     if table.linkage == "hoeken":
-        return hoeken(
-            table.length_m,
-            share=None if table.turn_deg is None else table.turn_deg / 360.0,
-            deviation=table.deviation,
-            even=table.even or "line",
-            start=start,
-            direction_rad=direction,
-        ).proposal
-    return straight_line(
-        table.linkage,
-        table.length_m,
-        deviation=table.deviation,
-        start=start,
-        direction_rad=direction,
-    ).proposal
+        share = None if table.turn_deg is None else table.turn_deg / 360.0
+        kept, even = table.deviation, table.even or "line"
+        found = hoeken(
+            length, share=share, deviation=kept, even=even, start=start, direction_rad=direction
+        )
+    else:
+        found = straight_line(
+            table.linkage, length, deviation=table.deviation, start=start, direction_rad=direction
+        )
+    return found.proposal
 
 
 STROKE = 1e-9
@@ -116,30 +113,18 @@ def held_to_its_limits(one: Examined) -> Examined:
 def _asked(positions: tuple[PrecisionPosition, ...], name: str) -> tuple[float, float]:
     """Return the stroke [m] or swing [rad] between the two positions, and the ratio of the crank's
     turns between them."""
-    first, second = (_of(position, name) for position in positions)
-    if isinstance(first, AskedAngle) and isinstance(second, AskedAngle):
-        stroke = abs(math.remainder(second.angle - first.angle, math.tau))
-    else:
-        assert isinstance(first, AskedSlide)
-        assert isinstance(second, AskedSlide)
-        stroke = abs(second.displacement - first.displacement)
+    every = [each for position in positions for each in position.asked]
+    slides = [a.displacement for a in every if isinstance(a, AskedSlide) and a.slider == name]
+    angles = [a.angle for a in every if isinstance(a, AskedAngle) and a.link == name]
+    if len(slides) + len(angles) != len(positions):
+        raise CrankcheckError(f"nothing is asked of {name} in a position, which it turns back in")
+    way = slides[1] - slides[0] if slides else math.remainder(angles[1] - angles[0], math.tau)
     forth = (positions[1].driver_rad - positions[0].driver_rad) % math.tau
     back = math.tau - forth
-    return stroke, max(forth, back) / min(forth, back)
-
-
-def _of(position: PrecisionPosition, name: str) -> AskedAngle | AskedSlide:
-    """Return the requirement of a position on a link or slider."""
-    for each in position.asked:
-        if isinstance(each, AskedAngle) and each.link == name:
-            return each
-        if isinstance(each, AskedSlide) and each.slider == name:
-            return each
-    raise CrankcheckError(f"nothing is asked of {name} in a position, which it turns back in")
+    return abs(way), max(forth, back) / min(forth, back)
 
 
 def _told(one: Examined, found: Travel) -> str:
-    """Return stroke and time ratio over a turn, in words."""
     if one.proposal.turns_back in one.scene.sliders:
         goes = f"goes {found.stroke:.6g} m"
     else:
@@ -171,12 +156,7 @@ class Solutions:
 
 def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions:
     """Propose and examine; a search calls ``progress`` with the finished share and its distance.
-
-    Raises
-    ------
-    CrankcheckError
-        A task without any mechanism.
-    """
+    Raises CrankcheckError for a task without any mechanism."""
     proposals, looked = _proposals(task, progress)
     examined, refused = [], []
     for number, proposal in enumerate(proposals, 1):
@@ -219,35 +199,34 @@ def _named(one: Examined, number: int) -> Examined:
 
 
 def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposal], int]:
+    """Return the proposals of a task, and the number considered."""
     if isinstance(task, CouplerTask):
         return coupler_proposals(task)
-    if isinstance(task, RockerTask):
-        return rocker_proposals(task)
-    if isinstance(task, QuickReturnTask):
-        return quick_return_proposals(task)
-    if isinstance(task, FunctionTable):
-        functions: list[Proposal] = [*function_designs(function_task(task))]
-        return functions, len(functions)
     if isinstance(task, PathTable):
-        return _paths(task, progress)
-    if isinstance(task, StraightLineTable):
-        return [straight_line_of(task)], 1
-    assert isinstance(task, StrokeTask)
-    return stroke_proposals(task)
-
-
-def _paths(task: PathTable, progress: Progress | None) -> tuple[list[Proposal], int]:
-    search = generate(
-        path_task(task),
-        name=task.name,
-        count=MOST_PATHS,
-        starts=task.starts,
-        seed=task.seed,
-        time_s=task.time_s,
-        progress=progress,
-        least_transmission_rad=math.radians(task.least_transmission_deg or 0.0),
-    )
-    return [fit.proposal for fit in search.fits], task.starts
+        search = generate(
+            path_task(task),
+            name=task.name,
+            count=MOST_PATHS,
+            starts=task.starts,
+            seed=task.seed,
+            time_s=task.time_s,
+            progress=progress,
+            least_transmission_rad=math.radians(task.least_transmission_deg or 0.0),
+        )
+        return [fit.proposal for fit in search.fits], task.starts
+    found: Sequence[Proposal]
+    if isinstance(task, RockerTask):
+        found = rocker_proposals(task)
+    elif isinstance(task, QuickReturnTask):
+        found = quick_return_proposals(task)
+    elif isinstance(task, FunctionTable):
+        found = function_designs(function_task(task))
+    elif isinstance(task, StraightLineTable):
+        found = [straight_line_of(task)]
+    else:
+        assert isinstance(task, StrokeTask)
+        found = stroke_proposals(task)
+    return [*found], len(found)
 
 
 def followed(one: Examined) -> Examined:

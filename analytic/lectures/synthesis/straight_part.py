@@ -87,11 +87,9 @@ def _slope(own: Complexes) -> float:
 
 
 def longest(four_bar: CouplerCurve, centre_rad: float, deviation: float) -> StraightPart:
-    """Find the longest part about a crank angle [rad] that deviates by a share of its length.
-
-    Its ends are equally far from the place at its centre. Raises CrankcheckError where the shortest
-    tried part deviates more.
-    """
+    """Find the longest part about a crank angle [rad] that deviates by a share of its length. Its
+    ends are equally far from the place at its centre. Raises CrankcheckError where the shortest
+    tried part deviates more."""
     angles, far = _both_ways(four_bar, centre_rad)
     ways = [(angle, np.maximum.accumulate(each)) for angle, each in zip(angles, far, strict=True)]
     reach = min(float(each[-1]) for _, each in ways)

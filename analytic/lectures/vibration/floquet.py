@@ -4,15 +4,15 @@ A deviation from the periodic motion is multiplied by Phi in every period. An ei
 exp((s + i p) 2 pi), gives the growth of a mode, and its p vibrations in a period, but for a whole
 number, which the natural frequency of the mechanism held still decides. The periodic force
 resonates with the mode if p is whole; if p of one mode is a half, or those of two make a whole
-number, the turning of the mechanism may feed the vibration itself (parametric resonance). Source:
-Thesis on vibration of planar mechanisms with elastic links (2018), chapter 4; A. H. Nayfeh, D. T.
-Mook, Nonlinear Oscillations, chapter 5.
+number, the turning of the mechanism may feed the vibration itself (parametric resonance).
 
 For M y'' + C y' + K y = h with coefficients of period T, the state x = (y, y') goes from x(0) to
 Phi x(0) + p in a period. Its periodic motion starts at x0 = (I - Phi)^-1 p. Deviations grow in a
 period as the eigenvalues of Phi: the motion is stable if none is larger than 1; if one is 1 and h
-acts on it there is none (a resonance). Source: Thesis on vibration of planar mechanisms with
-elastic links (2018), chapter 4.
+acts on it there is none (a resonance).
+
+Source: Thesis on vibration of planar mechanisms with elastic links (2018), chapter 4; A. H. Nayfeh,
+D. T. Mook, Nonlinear Oscillations, chapter 5.
 """
 
 from __future__ import annotations
@@ -27,11 +27,9 @@ from analytic.elastic.natural import NaturalModes, natural_modes
 from analytic.elastic.periodic import LinearForm, PeriodicMotion, linearise
 from analytic.elastic.reduced import ReducedForm
 from analytic.free.window import gauss
-from models.array import Array, Mask
+from models.array import Array
 
 NODES = 8
-NEWMARK_GAMMA, NEWMARK_BETA = 0.5, 0.25
-"""Mean acceleration over a step: stable at any step, of order 2, without damping."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +44,6 @@ class Monodromy:
         """Floquet's multipliers, the largest first, (2 m,) complex."""
         found = np.linalg.eigvals(self.matrix)
         return np.asarray(found[np.argsort(-np.abs(found), kind="stable")])
-
-    @property
-    def from_resonance(self) -> float:
-        """Smallest distance of a multiplier from 1."""
-        return float(np.abs(self.multipliers - 1.0).min())
 
     @property
     def start(self) -> tuple[Array, Array]:
@@ -121,43 +114,15 @@ def by_collocation(form: LinearForm, period_s: float, windows: int) -> Monodromy
     return Windows.of(form, period_s, windows).over(form.force)
 
 
-def by_newmark(form: LinearForm, period_s: float, steps: int) -> Monodromy:
-    """Integrate by Newmark's method in so many steps of a period, of order 2, as in the thesis."""
-    h, m = period_s / steps, form.force.shape[1]
-    shares = np.linspace(0.0, 1.0, steps + 1)
-    mass, damping, stiffness, force = (
-        _between(own, shares) for own in (form.mass, form.damping, form.stiffness, form.force)
-    )
-    y = np.concatenate([np.eye(m), np.zeros((m, m + 1))], axis=1)
-    v = np.concatenate([np.zeros((m, m)), np.eye(m), np.zeros((m, 1))], axis=1)
-    forced = np.zeros(2 * m + 1)
-    forced[-1] = 1.0
-    a = np.linalg.solve(mass[0], np.outer(force[0], forced) - damping[0] @ v - stiffness[0] @ y)
-    whole = mass + NEWMARK_GAMMA * h * damping + NEWMARK_BETA * h * h * stiffness
-    inverse = np.linalg.inv(whole)
-    for k in range(1, steps + 1):
-        y = y + h * v + (0.5 - NEWMARK_BETA) * h * h * a
-        v = v + (1.0 - NEWMARK_GAMMA) * h * a
-        a = inverse[k] @ (np.outer(force[k], forced) - damping[k] @ v - stiffness[k] @ y)
-        y, v = y + NEWMARK_BETA * h * h * a, v + NEWMARK_GAMMA * h * a
-    x = np.concatenate([y, v])
-    return Monodromy(x[:, :-1], x[:, -1])
-
-
 def at_nodes(own: Array, windows: int) -> Array:
     """Return values at an odd number of instants of a period, (N, ...), at the nodes of so many
-    windows of it, (W, NODES, ...), by their Fourier series."""
+    windows of it, (W, NODES, ...), by their Fourier series: in rows of W, as the threads of a
+    product of large matrices cost more than they gain."""
     shares = (np.arange(windows)[:, None] + gauss(NODES).places) / windows
-    return _between(own, shares)
-
-
-def _between(own: Array, shares: Array) -> Array:
-    """Return the same at shares of the period (W, ...): in rows of W, as the threads of a product
-    of large matrices cost more than they gain."""
     count = len(own)
     series = np.fft.rfft(own.reshape(count, -1), axis=0) / count
     series[1:] *= 2.0
-    angle = 2.0 * np.pi * shares.reshape(len(shares), -1, 1) * np.arange(len(series))
+    angle = 2.0 * np.pi * shares[:, :, None] * np.arange(len(series))
     found = np.cos(angle) @ series.real - np.sin(angle) @ series.imag
     return np.asarray(found.reshape(*shares.shape, *own.shape[1:]))
 
@@ -185,11 +150,6 @@ class Deviation:
     def size(self) -> float:
         """Growth in a period."""
         return abs(self.multiplier)
-
-    @property
-    def from_whole(self) -> float:
-        """Distance of the order from a whole number."""
-        return abs(self.order - round(self.order)) if math.isfinite(self.order) else math.nan
 
 
 @dataclass(frozen=True)
@@ -235,21 +195,14 @@ def looked_at(
     monodromy: Monodromy, windows: int, linear: LinearForm, modes: NaturalModes, period_s: float
 ) -> Stability:
     """Return the stability from a monodromy matrix of linearised equations, by so many windows of a
-    period, with known modes."""
+    period, with known modes: pairs of multipliers belong to the mode with most of their energy as a
+    period begins."""
     orders = modes.mean_rad_s * period_s / math.tau
     resolved = orders * math.tau <= 1.5 * RADIANS * windows
-    found = _deviations(monodromy, modes, linear.mass[0], orders, resolved)
-    return Stability(tuple(found), monodromy)
-
-
-def _deviations(
-    monodromy: Monodromy, modes: NaturalModes, mass: Array, orders: Array, resolved: Mask
-) -> list[Deviation]:
-    """Return pairs of multipliers by the mode with most of their energy as a period begins."""
     m = len(orders)
     multipliers, vectors = np.linalg.eig(monodromy.matrix)
     upper = _pairs(multipliers)
-    coordinates = modes.shape[0].T @ mass
+    coordinates = modes.shape[0].T @ linear.mass[0]
     places, rates = coordinates @ vectors[:m, upper], coordinates @ vectors[m:, upper]
     energy = np.abs(rates) ** 2 + modes.frequency_rad_s[0][:, None] ** 2 * np.abs(places) ** 2
     shares = energy / energy.sum(axis=0)
@@ -259,7 +212,7 @@ def _deviations(
         multiplier = complex(multipliers[upper[own]])
         order = _unwrapped(multiplier, float(orders[k])) if resolved[k] else math.nan
         found.append(Deviation(int(k) + 1, multiplier, order, float(orders[k])))
-    return found
+    return Stability(tuple(found), monodromy)
 
 
 def _pairs(multipliers: Array) -> list[int]:

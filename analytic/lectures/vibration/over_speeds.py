@@ -16,25 +16,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from analytic.elastic import natural
 from analytic.elastic.discretisation import Modes
-from analytic.elastic.natural import (
-    MOST,
-    FrequencySensitivity,
-    lowest_rad_s,
-    natural_modes,
-    sensitivity,
-)
 from analytic.elastic.periodic import LinearForm
 from analytic.elastic.reduced import ReducedForm
-from analytic.lectures.vibration.floquet import (
-    Deviation,
-    Monodromy,
-    Stability,
-    Windows,
-    looked_at,
-    stability,
-    window_count,
-)
+from analytic.lectures.vibration import floquet
 from analytic.lectures.vibration.steady_vibration import AnySpeed, VibrationSwing, swings
 from models.array import Array
 from models.errors import CrankcheckError, cut
@@ -55,11 +41,11 @@ class AtSpeed:
     speed_rad_s: float
     ratio: float
     swings: Mapping[str, VibrationSwing]
-    stability: Stability
-    sensitivity: FrequencySensitivity
+    stability: floquet.Stability
+    sensitivity: natural.FrequencySensitivity
 
     @property
-    def deviations(self) -> tuple[Deviation, ...]:
+    def deviations(self) -> tuple[floquet.Deviation, ...]:
         return self.stability.deviations
 
     @property
@@ -108,7 +94,7 @@ class OverSpeeds:
                     speed = self._met(k, order, (one, before.order), (other, after.order))
                     hangs = self._sensitivity((1.0 + ASIDE) * speed)
                     if hangs.order == order:
-                        band = math.sqrt(hangs.size / MOST) * ASIDE
+                        band = math.sqrt(hangs.size / natural.MOST) * ASIDE
                         ratio = one.ratio * one.speed_rad_s / speed
                         found.append(CriticalSpeed(speed, ratio, before.mode, order, band))
         return sorted(found, key=lambda each: -each.band)
@@ -124,7 +110,7 @@ class OverSpeeds:
                 break
             speed = a - before * (b - a) / (after - before)
             linear = self.every.linear(speed)
-            off = stability(linear, math.tau / speed, HIGHEST).deviations[k].order - order
+            off = floquet.stability(linear, math.tau / speed, HIGHEST).deviations[k].order - order
             if not math.isfinite(off) or off == 0.0:
                 break
             if off * before > 0.0:
@@ -133,41 +119,34 @@ class OverSpeeds:
                 b, after = speed, off
         return speed
 
-    def _sensitivity(self, speed: float) -> FrequencySensitivity:
+    def _sensitivity(self, speed: float) -> natural.FrequencySensitivity:
         return _solved(self.form, self.every.linear(speed), math.tau / speed)[2]
 
 
 def _solved(
     form: ReducedForm, linear: LinearForm, period_s: float
-) -> tuple[Array, Stability, FrequencySensitivity]:
+) -> tuple[Array, floquet.Stability, natural.FrequencySensitivity]:
     """Return coefficients at the instants of linearised equations (N, m), stability, sensitivity.
-
     Windows have matrices of their own: the one large matrix of harmonic balance
-    (`periodic.linear_motion`) takes ten times as long where processors are busy.
-    """
+    (`periodic.linear_motion`) takes ten times as long where processors are busy."""
     count = len(linear.force)
-    modes = natural_modes(linear.mass, linear.stiffness)
-    each = math.ceil(window_count(modes, period_s, HIGHEST) / count)
-    windows = Windows.of(linear, period_s, each * count)
+    modes = natural.natural_modes(linear.mass, linear.stiffness)
+    each = math.ceil(floquet.window_count(modes, period_s, HIGHEST) / count)
+    windows = floquet.Windows.of(linear, period_s, each * count)
     monodromy = windows.over(linear.force)
     z = windows.periodic(linear.force, monodromy)[::each]
     asked = z @ form.stiffness
-    pushed = Monodromy(monodromy.matrix, windows.over(asked).particular)
+    pushed = floquet.Monodromy(monodromy.matrix, windows.over(asked).particular)
     change = windows.periodic(asked, pushed)[::each]
-    stable = looked_at(monodromy, each * count, linear, modes, period_s)
-    return z, stable, sensitivity(form, z, change)
+    stable = floquet.looked_at(monodromy, each * count, linear, modes, period_s)
+    return z, stable, natural.sensitivity(form, z, change)
 
 
 def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
-    """Compute the vibration at ascending speeds [rad/s], (S,), all above 0.
-
-    Raises
-    ------
-    CrankcheckError
-        Loads that do not repeat each turn at these speeds; joints that can not be closed.
-    """
+    """Compute the vibration at ascending speeds [rad/s], (S,), all above 0. Raises CrankcheckError
+    for loads that do not repeat each turn at these speeds; joints that can not be closed."""
     every = AnySpeed(scene, by, float(speeds[0]), float(speeds[-1]))
-    form, lowest = every.form(float(speeds[0])), lowest_rad_s(scene)
+    form, lowest = every.form(float(speeds[0])), natural.lowest_rad_s(scene)
     found = []
     for speed in map(float, speeds):
         z, own, hangs = _solved(form, every.linear(speed), math.tau / speed)
@@ -176,7 +155,6 @@ def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
 
 
 def _between(before: float, after: float) -> Iterator[int]:
-    """Yield the whole orders between two."""
     if math.isfinite(before) and math.isfinite(after):
         low, high = min(before, after), max(before, after)
         yield from range(max(math.ceil(low), 1), min(math.floor(high), HIGHEST) + 1)
@@ -217,13 +195,8 @@ class InertiaMap:
 
 
 def with_inertia(scene: Scene, body: str, factor: float) -> Scene:
-    """Return the scene with a rigid link, or the block of a slider, so many times as heavy.
-
-    Raises
-    ------
-    CrankcheckError
-        No such body; one that is elastic, or the driver, or without mass.
-    """
+    """Return the scene with a rigid link, or the block of a slider, so many times as heavy. Raises
+    CrankcheckError for no such body; one that is elastic, or the driver, or without mass."""
     links = {
         name: own
         for name, own in scene.links.items()
@@ -245,7 +218,6 @@ def with_inertia(scene: Scene, body: str, factor: float) -> Scene:
 
 
 def _unchanged(scene: Scene, body: str) -> str:
-    """Return the reason why the inertia of a body can not be changed."""
     if body in scene.elastic:
         return "it is elastic, and its own mass is that of the beam"
     if body == scene.driver.link:

@@ -32,13 +32,8 @@ PARTS = ("mass", "damping", "stiffness", "force")
 
 
 def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
-    """Return the scene with its driver at another speed, in its own sense of rotation.
-
-    Raises
-    ------
-    CrankcheckError
-        The scene is not driven at a constant speed.
-    """
+    """Return the scene with its driver at another speed, in its own sense of rotation. Raises
+    CrankcheckError where the scene is not driven at a constant speed."""
     law = scene.driver.law
     if not isinstance(law, ConstantSpeed):
         raise CrankcheckError(
@@ -127,10 +122,8 @@ PLACES = 41
 @dataclass(frozen=True)
 class VibrationSwing:
     """Swing of a link at N instants of a period: deflection of its middle and extension [m], (N,).
-
     ``largest_m`` is the largest deflection of any place on a link that bends, ``place_m`` from its
-    first pin, at the instant ``when``; for a link that only stretches, the extension at its end.
-    """
+    first pin, at the instant ``when``; for a link that only stretches, the extension at its end."""
 
     link: str
     length_m: float
@@ -244,13 +237,8 @@ class SteadyVibration:
 
 
 def steady_vibration(scene: Scene, by: Modes) -> SteadyVibration:
-    """Return the vibration of a scene that may have one.
-
-    Raises
-    ------
-    CrankcheckError
-        No elastic links; a driver whose speed is not constant.
-    """
+    """Return the vibration of a scene that may have one. Raises CrankcheckError for no elastic
+    links; a driver whose speed is not constant."""
     check_vibrates(scene)
     return SteadyVibration(scene, by)
 

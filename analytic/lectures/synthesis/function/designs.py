@@ -92,15 +92,14 @@ def _places(
 def _steps(
     task: FunctionTask, generator: Generator, x: Array, places: list[tuple[complex, complex]]
 ) -> tuple[design.DrawingStep, ...]:
-    """Return the steps: maps, required input and output of the points, resulting links."""
     slides = isinstance(generator, SliderCrankGenerator)
     pivot = None if slides else complex(task.ground_m)
     frame: tuple[design.Element, ...] = (design.Dot(0j, design.PIVOTS[0], "given", fixed=True),)
     frame += () if pivot is None else (design.Dot(pivot, design.PIVOTS[1], "given", fixed=True),)
     k1, k2, k3 = generator.k
     first_in, first_out = places[0]
-    links = [design.Segment(0j, first_in, "result"), design.Segment(first_in, first_out, "result")]
-    links += [] if pivot is None else [design.Segment(pivot, first_out, "result")]
+    links = design.chained(0j, first_in, first_out)
+    links += [] if pivot is None else design.chained(pivot, first_out)
     unit = f"{abs(task.output_range):.6g} m" if slides else _degrees(task.output_range)
     return (
         design.DrawingStep(

@@ -38,12 +38,10 @@ POLISHES = 4
 
 @dataclass(frozen=True)
 class Generator(ABC):
-    """Mechanism in units of its scale; a search may lead through negative lengths.
-
-    ``input_start`` [rad] and ``output_start`` [rad, or scales] are the input and the output at the
-    start of their ranges. ``turned`` names the starts that a negative length turned by 180 degrees:
-    a link of length -a at an angle is one of length a at the opposite angle.
-    """
+    """Mechanism in units of its scale; a search may lead through negative lengths. ``input_start``
+    [rad] and ``output_start`` [rad, or scales] are the input and the output at the start of their
+    ranges. ``turned`` names the starts that a negative length turned by 180 degrees: a link of
+    length -a at an angle is one of length a at the opposite angle."""
 
     k: tuple[float, float, float]
     input_start: float
@@ -117,10 +115,9 @@ class Generator(ABC):
         best, signs = self, self.signs(turns, ways)
         error = best.error(turns, ways, signs)
         for _ in range(POLISHES):
+            gradient = best.gradient(turns, signs, varied)
             try:
-                step = np.asarray(
-                    np.linalg.solve(best.gradient(turns, signs, varied), -error), float
-                )
+                step = np.asarray(np.linalg.solve(gradient, -error), float)
             except np.linalg.LinAlgError:
                 break
             nearer = best.moved(step, varied)
@@ -162,13 +159,8 @@ def one_vector(equations: Array) -> Array:
 
 def vectors_of(equations: Array, form: Form, degree: int) -> list[Array]:
     """Return all vectors, up to their length, that n equations (n, n + 2) leave and at which a
-    homogeneous form of a degree vanishes: at most as many as the degree.
-
-    Raises
-    ------
-    CrankcheckError
-        Coincident equations, or a form that vanishes at every vector.
-    """
+    homogeneous form of a degree vanishes: at most as many as the degree. Raises CrankcheckError for
+    coincident equations, or a form that vanishes at every vector."""
     p, q = _null_space(equations, 2)
     turns = np.pi * np.arange(LOOKS) / LOOKS
     sizes = np.array([abs(form(np.cos(t) * p + np.sin(t) * q)) for t in turns])
@@ -222,10 +214,6 @@ class FunctionProposal(Proposal):
     generator: Generator
     x_points: tuple[float, ...]
 
-    def input_rad(self, x: Array) -> Array:
-        """Return the angle of the driver at x [rad], (T,)."""
-        return np.asarray(self.generator.input_start + self.task.input_turn(x))
-
     def asked(self, x: Array) -> Array:
         """Return the required output [rad or m], (T,)."""
         start = self.generator.output_start * self.task.output_scale
@@ -234,17 +222,15 @@ class FunctionProposal(Proposal):
 
 @dataclass(frozen=True)
 class StructuralError:
-    """Required less actual output at x [rad, for a slider m], and in units of y, (T,).
-
-    ``largest`` is its largest size, at ``x_largest``; ``rms`` its root mean square over x.
-    ``y_scale`` is the change of y per rad or m of the output.
-    """
+    """Required less actual output at x [rad, for a slider m], and in units of y, (T,). ``largest``
+    is its largest size, ``rms`` its root mean square over x. ``y_scale`` is the change of y per rad
+    or m of the output."""
 
     x: Array
     asked: Array
     error: Array
     largest: float
-    x_largest: float
+
     rms: float
     y_scale: float
 
@@ -275,19 +261,16 @@ def structural_error(
     x = np.linspace(task.x_low, task.x_high, count)
     error = _error(proposal, examined.scene, x)
     k = int(np.argmax(np.abs(error)))
-    x_largest, largest = x[k], abs(error[k])
+    largest = abs(error[k])
     low, high = x[max(k - 1, 0)], x[min(k + 1, count - 1)]
     for _ in range(ZOOMS):
         looks = np.linspace(low, high, FINER)
         sizes = np.abs(_error(proposal, examined.scene, looks))
         j = int(np.argmax(sizes))
-        if sizes[j] > largest:
-            x_largest, largest = looks[j], sizes[j]
+        largest = max(largest, sizes[j])
         low, high = looks[max(j - 1, 0)], looks[min(j + 1, FINER - 1)]
     rms = float(np.sqrt(np.trapezoid(error**2, x) / (x[-1] - x[0])))
-    return StructuralError(
-        x, proposal.asked(x), error, float(largest), float(x_largest), rms, task.y_scale
-    )
+    return StructuralError(x, proposal.asked(x), error, float(largest), rms, task.y_scale)
 
 
 def _error(proposal: FunctionProposal, scene: Scene, x: Array) -> Array:
@@ -296,7 +279,7 @@ def _error(proposal: FunctionProposal, scene: Scene, x: Array) -> Array:
     try:
         motion = solve_driven(
             scene,
-            proposal.input_rad(x),
+            proposal.generator.input_start + proposal.task.input_turn(x),
             np.ones(1),
             np.zeros(1),
             links=(OUTPUT,) if turns else (),
@@ -308,8 +291,5 @@ def _error(proposal: FunctionProposal, scene: Scene, x: Array) -> Array:
         raise ReachError(
             f"the mechanism does not close over the whole range of x: {fault}"
         ) from None
-    asked = proposal.asked(x)
-    if not turns:
-        return np.asarray(asked - motion.sliders[PINS[1]].displacement)
-    off = asked - motion.links[OUTPUT].theta
-    return np.asarray(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
+    actual = motion.links[OUTPUT].theta if turns else motion.sliders[PINS[1]].displacement
+    return proposal.generator.apart(proposal.asked(x), actual)

@@ -78,27 +78,8 @@ class SliderCrankGenerator(generator.Generator):
 def slider_cranks(
     turns: Array, ways: Array, input_start: float | None = None, output_start: float | None = None
 ) -> list[generator.Generator]:
-    """Return all slider-cranks whose input and slider go through precision points.
-
-    Parameters
-    ----------
-    turns, ways : Array
-        The angles of the input [rad] and the displacements of the slider [scales] from their
-        starts, (n,).
-    input_start, output_start : float or None
-        The starts [rad and scales]: both for three points, one for four, none for five; the others
-        are found.
-
-    Returns
-    -------
-    list of Generator
-        At most one for three points, two for four, three for five; none with an infinite length.
-
-    Raises
-    ------
-    CrankcheckError
-        Points that a whole family of slider-cranks meets.
-    """
+    """Return all slider-cranks whose input and slider go through precision points, as `fourbars`;
+    ``ways`` and ``output_start`` are displacements of the slider [scales]."""
     if input_start is not None and output_start is not None:
         found = [_of_both(input_start + turns, output_start + ways, input_start, output_start)]
     elif input_start is not None:

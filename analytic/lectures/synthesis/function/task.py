@@ -43,10 +43,8 @@ FLAT = 1e-12
 
 @dataclass(frozen=True)
 class GivenFunction:
-    """Function by its name; ``at`` gives its values (T,) at x (T,), NaN where it has none.
-
-    ``rows`` is the range of x of a table.
-    """
+    """Function by its name; ``at`` gives its values (T,) at x (T,), NaN where it has none. ``rows``
+    is the range of x of a table."""
 
     name: str
     at: Callable[[Array], Array]
@@ -61,10 +59,8 @@ class GivenFunction:
     @staticmethod
     def of_table(x: Sequence[float], y: Sequence[float], name: str = "a table") -> GivenFunction:
         """Make the function of rows, with cubics between them that rise and fall as the rows do.
-
         Raises CrankcheckError for fewer than two rows, places that do not increase, and values that
-        are no numbers.
-        """
+        are no numbers."""
         places, values = tuple(map(float, x)), tuple(map(float, y))
         if not np.isfinite([*places, *values]).all():
             raise CrankcheckError(f"{name}: the rows of a function have to be finite numbers")
@@ -74,21 +70,9 @@ class GivenFunction:
             raise CrankcheckError(f"{name}: {fault}") from None
         return GivenFunction(name, table.at, (places[0], places[-1]))
 
-    @staticmethod
-    def of_callable(function: Callable[[float], float], name: str = "y = f(x)") -> GivenFunction:
-        """Make it from a Python function of one number, which may raise where it is not defined."""
-        return GivenFunction(
-            name, lambda x: np.array([_value(function, one) for one in x.tolist()])
-        )
-
     def extremes(self, low: float, high: float) -> tuple[float, float]:
-        """Return the least and the largest y between two x.
-
-        Raises
-        ------
-        CrankcheckError
-            An invalid range; one on which the function is not defined, jumps or is constant.
-        """
+        """Return the least and the largest y between two x. Raises CrankcheckError for an invalid
+        range; one on which the function is not defined, jumps or is constant."""
         if not (np.isfinite([low, high]).all() and low < high):
             raise CrankcheckError(
                 f"{self.name}: a range of x from {low:g} to {high:g} was asked for; give two "
@@ -147,15 +131,6 @@ class GivenFunction:
             best = max(best, values[k])
             low, high = looks[max(k - 1, 0)], looks[min(k + 1, 64)]
         return float(sign * best)
-
-
-def _value(function: Callable[[float], float], x: float) -> float:
-    """Return a Python function's value; nan at arithmetic errors, or without a real number."""
-    try:
-        y = function(x)
-        return float("nan") if isinstance(y, complex) else float(y)
-    except (ArithmeticError, ValueError):
-        return float("nan")
 
 
 MechanismKind = Literal["fourbar", "slider-crank"]

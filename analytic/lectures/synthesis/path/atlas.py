@@ -23,8 +23,8 @@ Mechanical Design 119 (1997), pages 504 to 510.
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -57,9 +57,7 @@ def shares(curves: Complexes) -> Array:
 
 def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complexes | Array:
     """Interpolate values (E, M) at their own shares to wanted shares (E, W), each within 0 to 1.
-
-    All rows at once: each is moved by its number, so that they follow each other on one axis.
-    """
+    All rows at once: each is moved by its number, so that they follow each other on one axis."""
     rows = 2.0 * np.arange(len(share))[:, None]
     flat = (share + rows).ravel()
     upper = np.searchsorted(flat, (wanted + rows).ravel(), side="right").reshape(wanted.shape)
@@ -73,11 +71,9 @@ def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complex
 
 
 def smooth(points: Complexes, closed: bool) -> tuple[Complexes, Array]:
-    """Return a fine curve through points, in order, and the shares of its length in them, (N,).
-
-    It is a cubic spline over the length of the chords; a closed curve ends where it starts, and
-    the shares are below 1.
-    """
+    """Return a fine curve through points, in order, and the shares of its length in them, (N,). It
+    is a cubic spline over the length of the chords; a closed curve ends where it starts, and the
+    shares are below 1."""
     knots = np.append(points, points[0]) if closed else points
     at = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(knots)))])
     spline = CubicSpline(at, knots, bc_type="periodic" if closed else "not-a-knot")
@@ -143,7 +139,7 @@ def spread(count: int, dimensions: int, seed: int) -> Array:
 
 def between(share: Array, bounds: tuple[tuple[float, float], ...]) -> Array:
     """Return shares of a box (count, d) as numbers within bounds, (d, count)."""
-    low, high = (np.array(side)[:, None] for side in zip(*bounds, strict=True))
+    low, high = np.array(bounds).T[:, :, None]
     return np.asarray(low + (high - low) * share.T)
 
 
@@ -152,7 +148,6 @@ LOOKS = 96
 """Number of crank angles at which a curve of the atlas is drawn."""
 REACH = 2.2
 """Largest distance of a coupler point from the middle of the coupler, over its length."""
-PLACES = ((0.0, 1.0), (0.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -202,49 +197,42 @@ def curves(family: Family, x: Array, arm: Complexes, phi: Array | None = None) -
 def closed_starts(path: UnitPath, count: int) -> list[Fitted]:
     """Return the most similar four-bars of the atlas, put over a closed path in either sense of
     turning and in either assembly, the best first."""
-    return [fit for _, fit in _ranked(path, count)]
+    return [fit for _, fit in ranked(path, count, _over)]
 
 
-def _ranked(path: UnitPath, count: int) -> list[tuple[float, Fitted]]:
-    """Return the same with their similarity."""
+Over = Callable[[Complexes, int], Iterator[tuple[float, Fitted]]]
+"""Function that yields the most similar four-bars for points drawn forwards, so many of each
+family, with their similarity."""
+
+
+def ranked(path: UnitPath, count: int, over: Over) -> list[tuple[float, Fitted]]:
+    """Return the most similar four-bars for a path in either sense of turning and in either
+    assembly, the best first, with their similarity."""
     found: list[tuple[float, Fitted]] = []
     for mirrored in (False, True):
-        own = path.mirrored if mirrored else path
-        for back in (False, True):
-            points = own.points[::-1] if back else own.points
-            found += _over(points, count, mirrored=mirrored, back=back)
+        points = (path.mirrored if mirrored else path).points
+        found += [(same, replace(fit, mirrored=mirrored)) for same, fit in over(points, count)]
+        for same, fit in over(points[::-1], count):
+            found.append((same, replace(fit, mirrored=mirrored, phi=fit.phi[::-1])))
     found.sort(key=lambda each: -each[0])
     return found[:count]
 
 
-def _over(
-    points: Complexes, count: int, *, mirrored: bool, back: bool
-) -> list[tuple[float, Fitted]]:
-    """Return the most similar entries for points drawn forwards, with their similarity."""
+def _over(points: Complexes, count: int) -> Iterator[tuple[float, Fitted]]:
     curve, share = smooth(points, closed=True)
     own = descriptors(curve[None])[0]
-    found: list[tuple[float, Fitted]] = []
+    angles = np.linspace(0.0, math.tau, LOOKS + 1)[None]
     for family in FULL:
         book = atlas(family)
         matched = match(own, book.descriptors)
         for k in np.argsort(-matched.similarity, kind="stable")[:count].tolist():
-            x, arm = book.x[:, k], book.arm[k : k + 1]
-            phi = _crank_angles(family, x, arm, share + matched.start[k])
+            x, wanted = book.x[:, k], share + matched.start[k]
+            turns = np.floor(wanted)
+            drawn = shares(curves(family, x[:, None], book.arm[k : k + 1]))
+            within = at_shares(drawn, angles, (wanted - turns)[None])[0].real
+            phi = np.asarray(within + math.tau * turns)
             placing = placed(lengths(family, x), phi, points)
-            if back:
-                phi = phi[::-1]
-            fit = Fitted(family, x, placing, phi, math.inf, mirrored)
-            found.append((float(matched.similarity[k]), fit))
-    return found
-
-
-def _crank_angles(family: Family, x: Array, arm: Complexes, share: Array) -> Array:
-    """Return the crank's angles [rad] at shares of an entry's curve, on through the turns."""
-    drawn = shares(curves(family, x[:, None], arm))
-    angles = np.linspace(0.0, math.tau, LOOKS + 1)[None]
-    turns = np.floor(share)
-    within = at_shares(drawn, angles, (share - turns)[None])[0].real
-    return np.asarray(within + math.tau * turns)
+            yield float(matched.similarity[k]), Fitted(family, x, placing, phi, math.inf)
 
 
 def similar(points: Sequence[complex], count: int = 10) -> list[Similar]:
@@ -267,5 +255,5 @@ def similar(points: Sequence[complex], count: int = 10) -> list[Similar]:
     unit, middle, radius = UnitPath.of(np.array(points, dtype=np.complex128))
     return [
         Similar(similarity, real_size(fit)[0].moved(complex(radius), middle))
-        for similarity, fit in _ranked(unit, count)
+        for similarity, fit in ranked(unit, count, _over)
     ]

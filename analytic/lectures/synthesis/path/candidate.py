@@ -64,19 +64,8 @@ class FourBarCandidate:
 
 def _numbers(one: CouplerCurve) -> Array:
     """Return its places, from the pivot, and its lengths [m]."""
-    return np.array(
-        [
-            one.o2.real,
-            one.o2.imag,
-            one.o4.real - one.o2.real,
-            one.o4.imag - one.o2.imag,
-            one.crank,
-            one.coupler,
-            one.rocker,
-            one.arm.real,
-            one.arm.imag,
-        ]
-    )
+    places = np.array([one.o2, one.o4 - one.o2, one.arm]).view(np.float64)
+    return np.array([*places, one.crank, one.coupler, one.rocker])
 
 
 def candidates(fits: Iterable[Fitted], task: PathTask) -> list[FourBarCandidate]:
@@ -145,7 +134,7 @@ ROUNDING = 1e-9
 """Allowed error of the reference beyond that of the fit, over the longest link."""
 
 
-def drafted(name: str, source: str, four_bar: CouplerCurve, note: str = "") -> Draft:
+def drafted(name: str, source: str, four_bar: CouplerCurve) -> Draft:
     """Return the draft of a four-bar with its coupler point."""
     places = {design.PINS[0]: 0j, design.PINS[1]: complex(four_bar.coupler), POINT: four_bar.arm}
     return Draft(
@@ -158,7 +147,6 @@ def drafted(name: str, source: str, four_bar: CouplerCurve, note: str = "") -> D
             design.OUTPUT: bar(design.PIVOTS[1], design.PINS[1], four_bar.rocker),
         },
         {"link": design.INPUT, "speed_rad_s": SPEED_RAD_S},
-        note=note,
     )
 
 
@@ -168,10 +156,7 @@ def proposed(
     """Return a candidate as a proposal: its crank's angles are those that fit the points best."""
     four_bar = candidate.four_bar
     draft = drafted(name, source, four_bar)
-    positions = tuple(
-        design.PrecisionPosition(angle, (design.AskedPlace(POINT, place),))
-        for angle, place in zip(candidate.crank_rad.tolist(), task.points, strict=True)
-    )
+    positions = at_places(candidate.crank_rad, task.points)
     allowed = candidate.largest_m / draft.scene.longest_m + ROUNDING
     off = f"{candidate.rms_m:.3g} m RMS, {candidate.largest_m:.3g} m at most"
     chosen = {"distance from the points": off}
@@ -184,32 +169,42 @@ def proposed(
     )
 
 
+def at_places(crank_rad: Array, places: Iterable[complex]) -> tuple[design.PrecisionPosition, ...]:
+    """Return the positions of a coupler point in places [m] at angles of the crank [rad]."""
+    asked = [(design.AskedPlace(POINT, place),) for place in places]
+    return tuple(map(design.PrecisionPosition, crank_rad.tolist(), asked))
+
+
 def _steps(candidate: FourBarCandidate, task: PathTask) -> tuple[design.DrawingStep, ...]:
-    """Return the points, the curve through them, and the links that draw it."""
-    four_bar = candidate.four_bar
-    angles = candidate.crank_rad
-    first, second = (pin[0] for pin in four_bar.pins(angles[:1]))
-    dots = tuple(design.Dot(place, str(k + 1), "given") for k, place in enumerate(task.points))
-    start = complex(four_bar.at(angles[:1])[0])
-    links = (
-        design.Segment(four_bar.o2, complex(first), "result"),
-        design.Segment(complex(first), complex(second), "result"),
-        design.Segment(four_bar.o4, complex(second), "result"),
-        design.Segment(complex(first), start, "result"),
-        design.Segment(complex(second), start, "result"),
-        design.Dot(four_bar.o2, design.PIVOTS[0], "result", fixed=True),
-        design.Dot(four_bar.o4, design.PIVOTS[1], "result", fixed=True),
-    )
+    four_bar, angles = candidate.four_bar, candidate.crank_rad
+    dots = tuple(design.numbered("", task.points, "given"))
+    curve = drawn_curve(four_bar, (float(np.min(angles)), float(np.max(angles))), LOOKS + 1)
     return (
         design.DrawingStep("the points of the path, in their order", dots),
-        design.DrawingStep("the coupler curve of least squares", (_curve(four_bar, angles),)),
-        design.DrawingStep("the four-bar that draws it, in the first point", links),
+        design.DrawingStep("the coupler curve of least squares", (curve,)),
+        design.DrawingStep(
+            "the four-bar that draws it, in the first point", drawn_links(four_bar, angles[:1])
+        ),
     )
 
 
-def _curve(four_bar: CouplerCurve, angles: Array) -> design.DrawnCurve:
-    """Return the coupler curve: over a turn, or between the outermost angles."""
-    low, high = float(np.min(angles)), float(np.max(angles))
+def drawn_links(four_bar: CouplerCurve, crank_rad: Array) -> tuple[design.Element, ...]:
+    """Draw the links and pivots of a four-bar with its crank at an angle [rad], (1,)."""
+    ends = (*four_bar.pins(crank_rad), four_bar.at(crank_rad))
+    a, b, p = (complex(end[0]) for end in ends)
+    o2, o4 = (
+        design.Dot(place, name, "result", fixed=True)
+        for place, name in zip((four_bar.o2, four_bar.o4), design.PIVOTS, strict=True)
+    )
+    pairs = ((four_bar.o2, a), (a, b), (four_bar.o4, b), (a, p), (b, p))
+    return (*(design.Segment(*pair, "result") for pair in pairs), o2, o4)
+
+
+def drawn_curve(
+    four_bar: CouplerCurve, ends_rad: tuple[float, float], count: int
+) -> design.DrawnCurve:
+    """Draw the coupler curve through so many places: over a turn, or between the crank's ends."""
+    low, high = ends_rad
     if four_bar.family != "limited":
         high = low + math.tau
-    return design.DrawnCurve((tuple(four_bar.at(np.linspace(low, high, LOOKS + 1)).tolist()),))
+    return design.DrawnCurve((tuple(four_bar.at(np.linspace(low, high, count)).tolist()),))

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -106,16 +106,8 @@ def real_size(fit: Fitted) -> tuple[CouplerCurve, Array]:
     angles = fit.phi + turn
     if not fit.mirrored:
         return own, angles
-    mirror = CouplerCurve(
-        own.o2.conjugate(),
-        own.o4.conjugate(),
-        own.crank,
-        own.coupler,
-        own.rocker,
-        own.arm.conjugate(),
-        -1,
-    )
-    return mirror, -angles
+    o2, o4, arm = (place.conjugate() for place in (own.o2, own.o4, own.arm))
+    return replace(own, o2=o2, o4=o4, arm=arm, sign=-1), -angles
 
 
 def assembled(

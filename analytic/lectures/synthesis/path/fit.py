@@ -13,7 +13,7 @@ Least Squares Orthogonal Distance Fitting of Curves and Surfaces in Space, chapt
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares  # type: ignore[import-untyped]  # ships no stubs
@@ -39,11 +39,8 @@ BOXED = slice(0, 9)
 @dataclass(frozen=True)
 class Fitted:
     """Four-bar near the points of a unit path: numbers of its shape, placing numbers O, G, Q, and
-    the crank's angles [rad] from the ground on.
-
-    ``cost`` is the mean square of the distances, ``mirrored`` is True for the mirror image of the
-    points.
-    """
+    the crank's angles [rad] from the ground on. ``cost`` is the mean square of the distances,
+    ``mirrored`` is True for the mirror image of the points."""
 
     family: unit_four_bar.Family
     x: Array
@@ -103,9 +100,7 @@ class _Problem:
     @property
     def box(self) -> tuple[Array, Array]:
         """Middle and half width of shape and placing numbers, (9,)."""
-        low, high = (
-            np.array(side) for side in zip(*unit_four_bar.BOUNDS[self.family], strict=True)
-        )
+        low, high = np.array(unit_four_bar.BOUNDS[self.family]).T
         middle = np.concatenate([0.5 * (low + high), np.zeros(6)])
         return middle, np.concatenate([0.5 * (high - low), np.full(6, LARGEST)])
 
@@ -153,10 +148,8 @@ class _Problem:
         if self.family == "limited":
             shut = np.zeros((len(e), 9))
             shut[:, :3] = (by_shape @ at.d_excess).T
-            rows.append(
-                PENALTY
-                * np.hstack([shut, self._spread(at.d_excess_phi.astype(np.complex128)).real])
-            )
+            by_phi = self._spread(at.d_excess_phi.astype(np.complex128)).real
+            rows.append(PENALTY * np.hstack([shut, by_phi]))
         if self._is_strict:
             strained = np.zeros((2, 9 + self._angles))
             strained[:, :3] = self._strained((a, b, c))[1] @ by_shape.T
@@ -234,7 +227,7 @@ class SearchClock:
     progress: Progress | None = None
     complete: bool = True
     best: float = math.inf
-    work: float = field(default=0.0)
+    work: float = 0.0
 
     @property
     def is_over(self) -> bool:
@@ -294,7 +287,7 @@ def _apart(fits: Sequence[Fitted]) -> list[Fitted]:
     """Return fits without those near a better one: they would end in the same mechanism."""
     kept: list[Fitted] = []
     for fit in fits:
-        low, high = (np.array(side) for side in zip(*unit_four_bar.BOUNDS[fit.family], strict=True))
+        low, high = np.array(unit_four_bar.BOUNDS[fit.family]).T
         near = (
             one.family == fit.family
             and one.mirrored == fit.mirrored

@@ -6,6 +6,7 @@ from 0 to 1, which no turn changes.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
@@ -60,16 +61,13 @@ def pieces(family: Family) -> Pieces:
 
 def _angles(ends: Array) -> Array:
     """Return angles from end to end, (E, LOOKS)."""
-    return np.asarray(
-        ends[0][:, None] + (ends[1] - ends[0])[:, None] * np.linspace(0.0, 1.0, LOOKS)
-    )
+    part = np.linspace(0.0, 1.0, LOOKS)
+    return np.asarray(ends[0][:, None] + (ends[1] - ends[0])[:, None] * part)
 
 
 def _within_limits(shape: tuple[Array, Array, Array], share: Array) -> Array:
     """Return ends of pieces between the limits of cranks, (2, E); two equal ones where none closes.
-
-    A is |1 - a exp(i phi)| from O4, by the cosine of phi, and has to be within |b - c| to b + c.
-    """
+    A is |1 - a exp(i phi)| from O4, by the cosine of phi, and has to be within |b - c| to b + c."""
     a, b, c = shape
     high, low = (
         np.clip((1.0 + a**2 - far**2) / (2.0 * a), -1.0, 1.0) for far in (np.abs(b - c), b + c)
@@ -93,24 +91,13 @@ def standard(places: Complexes | Array) -> Complexes:
 def open_starts(path: UnitPath, count: int) -> list[Fitted]:
     """Return the most similar pieces, put over an open path in either sense of turning and in
     either assembly, the best first."""
-    found: list[tuple[float, Fitted]] = []
-    for mirrored in (False, True):
-        own = path.mirrored if mirrored else path
-        for back in (False, True):
-            points = own.points[::-1] if back else own.points
-            found += _over(points, count, mirrored=mirrored, back=back)
-    found.sort(key=lambda each: -each[0])
-    return [fit for _, fit in found[:count]]
+    return [fit for _, fit in atlas.ranked(path, count, _over)]
 
 
-def _over(
-    points: Complexes, count: int, *, mirrored: bool, back: bool
-) -> list[tuple[float, Fitted]]:
-    """Return the most similar pieces for points drawn forwards, with their similarity."""
+def _over(points: Complexes, count: int) -> Iterator[tuple[float, Fitted]]:
     curve, share = atlas.smooth(points, closed=False)
     even = np.linspace(0.0, 1.0, PLACES)[None]
     own = standard(atlas.at_shares(atlas.shares(curve[None]), curve[None], even))[0]
-    found: list[tuple[float, Fitted]] = []
     for family in ENTRIES:
         book = pieces(family)
         similarity = np.abs(book.places @ own.conj())
@@ -119,6 +106,4 @@ def _over(
             drawn = atlas.shares(atlas.curves(family, x[:, None], book.arm[k : k + 1], angles))
             phi = np.asarray(atlas.at_shares(drawn, angles, share[None])[0].real)
             placing = placed(lengths(family, x), phi, points)
-            fit = Fitted(family, x, placing, phi[::-1] if back else phi, math.inf, mirrored)
-            found.append((float(similarity[k]), fit))
-    return found
+            yield float(similarity[k]), Fitted(family, x, placing, phi, math.inf)

@@ -23,7 +23,6 @@ from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.examine import Examined, examine
 from analytic.lectures.synthesis.path.atlas import between, closed_starts, spread
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, candidates, proposed
-from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
 from analytic.lectures.synthesis.path.fit import (
     LARGEST,
     Fitted,
@@ -71,12 +70,8 @@ def _best(path: UnitPath, family: Family, count: int, seed: int, mirrored: bool)
     """Return those of one family, spread over its box."""
     share = spread(LOOKS, 4, seed)
     x, start = between(share[:, :3], BOUNDS[family]), math.tau * share[:, 3]
-    cost = np.concatenate(
-        [
-            _costs(path, family, x[:, k : k + BLOCK], start[k : k + BLOCK])
-            for k in range(0, LOOKS, BLOCK)
-        ]
-    )
+    blocks = [slice(k, k + BLOCK) for k in range(0, LOOKS, BLOCK)]
+    cost = np.concatenate([_costs(path, family, x[:, own], start[own]) for own in blocks])
     kept: list[int] = []
     for k in np.argsort(cost, kind="stable")[: 20 * count].tolist():
         off = np.abs(share[kept] - share[k])
@@ -85,7 +80,13 @@ def _best(path: UnitPath, family: Family, count: int, seed: int, mirrored: bool)
             kept.append(k)
         if len(kept) == count:
             break
-    return [_start(path, family, x[:, k], float(start[k]), float(cost[k]), mirrored) for k in kept]
+    assert path.turned is not None
+    found = []
+    for k in kept:
+        phi = float(start[k]) + path.turned
+        placing = placed(lengths(family, x[:, k]), phi, path.points)
+        found.append(Fitted(family, x[:, k], placing, phi, float(cost[k]), mirrored))
+    return found
 
 
 def _costs(path: UnitPath, family: Family, x: Array, start: Array) -> Array:
@@ -101,25 +102,13 @@ def _costs(path: UnitPath, family: Family, x: Array, start: Array) -> Array:
     arm = product / np.maximum(square, 1e-12)
     cost = np.sum(np.abs(y) ** 2) - np.abs(product) ** 2 / np.maximum(square, 1e-12)
     ground = ((path.points - arm[:, None] * u) @ common[:, 1].conj()) / (triangle[1, 1] * a[:, 0])
-    bad = (
-        (np.abs(arm) > LARGEST)
-        | (np.abs(ground) > LARGEST)
-        | (np.max(np.abs(cosine), axis=1) >= 1.0)
-    )
-    return np.where(bad, np.inf, cost)
+    large = (np.abs(arm) > LARGEST) | (np.abs(ground) > LARGEST)
+    return np.where(large | (np.max(np.abs(cosine), axis=1) >= 1.0), np.inf, cost)
 
 
 def _left(rows: Complexes, common: Complexes) -> Complexes:
     """Return the residuals of rows (E, N) outside the plane of two columns (N, 2)."""
     return np.asarray(rows - (rows @ common.conj()) @ common.T)
-
-
-def _start(
-    path: UnitPath, family: Family, x: Array, start: float, cost: float, mirrored: bool
-) -> Fitted:
-    assert path.turned is not None
-    phi = start + path.turned
-    return Fitted(family, x, placed(lengths(family, x), phi, path.points), phi, cost, mirrored)
 
 
 STARTS = 48
@@ -134,14 +123,9 @@ OWN = 0.7
 
 
 @dataclass(frozen=True)
-class PathFit:
-    """Four-bar of a path: its crank's angles in the points [rad], its distances from them [m], and
-    its examination by the reference."""
+class PathFit(FourBarCandidate):
+    """Four-bar of a path, with its examination by the reference."""
 
-    four_bar: CouplerCurve
-    crank_rad: Array
-    rms_m: float
-    largest_m: float
     examined: Examined
 
     @property
@@ -254,7 +238,7 @@ def _starts(task: PathTask, count: int, seed: int) -> Iterator[Fitted]:
 
 def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
     """Return a start beside an entry: another shape, put over the points anew."""
-    low, high = (np.array(side) for side in zip(*BOUNDS[entry.family], strict=True))
+    low, high = np.array(BOUNDS[entry.family]).T
     off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)
     x = np.clip(entry.x + off, low, high)
     own = path.mirrored if entry.mirrored else path
@@ -269,10 +253,4 @@ def _examined(name: str, candidate: FourBarCandidate, task: PathTask) -> PathFit
         return str(error)  # such as a point on a pin, or a change point
     if examined.defects:
         return ", ".join(examined.defects)
-    return PathFit(
-        candidate.four_bar,
-        candidate.crank_rad,
-        candidate.rms_m,
-        candidate.largest_m,
-        examined,
-    )
+    return PathFit(candidate.four_bar, candidate.crank_rad, candidate.off_m, examined)

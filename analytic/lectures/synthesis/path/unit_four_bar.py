@@ -51,11 +51,9 @@ DEAD = 1e-6
 @dataclass(frozen=True)
 class Turn:
     """Coupler's direction at crank angles, (..., N); ``excess`` is that of the cosine of the angle
-    at A over 1, where the dyad does not close, else 0.
-
-    ``d_phi`` is the change of the direction with the crank's angle; ``d_shape`` and
-    ``d_excess`` (3, ..., N), those of direction and excess with a, b, c, and ``d_excess_phi``.
-    """
+    at A over 1, where the dyad does not close, else 0. ``d_phi`` is the change of the direction
+    with the crank's angle; ``d_shape`` and ``d_excess`` (3, ..., N), those of direction and excess
+    with a, b, c, and ``d_excess_phi``."""
 
     u: Complexes
     excess: Array

@@ -72,12 +72,6 @@ def test_chains_in_any_order_of_their_links_are_the_same() -> None:
         assert other.relabelled() == chain
 
 
-def test_a_rigid_part_is_seen() -> None:
-    # a triangle, on a loop of four
-    joints = [(0, 1), (1, 2), (0, 2), (2, 3), (3, 4), (4, 5), (5, 0)]
-    assert has_rigid_part(Chain.of(6, joints))
-
-
 def test_assortments_of_eight_links() -> None:
     assert assortments(8, 1) == [(4, 4), (5, 2, 1), (6, 0, 2)]
     many = [sum(chain.assortment == one for chain in chains(8)) for one in assortments(8, 1)]

@@ -218,11 +218,8 @@ def test_a_scheme_written_and_read_is_the_same(name: str, tmp_path) -> None:  # 
         assert (one.at, one.radii, one.lead) == (other.at, other.radii, other.lead)
 
 
-WITH_HIGHER = [
-    name
-    for name in shipped_schemes()
-    if load_scheme(name).space == "planar" and HIGHER & {j.kind for j in load_scheme(name).joints}
-]
+PLANAR = [scheme for scheme in map(load_scheme, SCHEMES) if scheme.space == "planar"]
+WITH_HIGHER = [one.name for one in PLANAR if HIGHER & {joint.kind for joint in one.joints}]
 FRAME = DrawingFrame((0.0, 0.0, 0.0), 0.2)
 
 

@@ -99,7 +99,7 @@ def test_the_reference_measures_the_time_ratio_that_was_asked_for(kind: str, num
 
 def test_a_turn_that_is_claimed_wrongly_is_a_fault() -> None:
     """Two places of a slider that it passes, and does not turn back in."""
-    (proposal,), _ = stroke_proposals(StrokeTask(**HEAD, stroke_m=0.2, rod_m=0.5))
+    (proposal,) = stroke_proposals(StrokeTask(**HEAD, stroke_m=0.2, rod_m=0.5))
     first, last = proposal.positions
     passed = 0.1 * math.cos(0.3) + math.sqrt(0.25 - (0.1 * math.sin(0.3)) ** 2) - 0.4
     short = replace(last, driver_rad=0.3, asked=(AskedSlide("B", passed),))
