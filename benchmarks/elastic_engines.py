@@ -28,7 +28,7 @@ from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell, examined
 from reports.plan.requirements import SPRINGS, held_steps
-from reports.way.length import Springs
+from reports.protocol.length import Springs
 from sim.registry import applying_beams, usual
 
 COUNTS, ELEMENTS = (4, 8, 16, 32), (2, 4, 8, 16)

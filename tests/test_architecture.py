@@ -38,7 +38,7 @@ FLOORS: Mapping[str, str] = {
         plan
         causes
         judge describe drawing logs
-        way
+        protocol
         compare
         quantities
         workers output

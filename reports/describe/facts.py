@@ -14,7 +14,7 @@ from models.errors import CrankcheckError, StructureError
 from models.scene import Scene
 from models.scene.driver import Controlled, Released, passing
 from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-from reports.way.way import way_of
+from reports.protocol.way import way_of
 
 FULL_TURN = math.tau - 1e-9
 

@@ -23,7 +23,7 @@ from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import ForceArrows, force_arrows
 from reports.output.numbers import readable
-from reports.way.way import way_of
+from reports.protocol.way import way_of
 
 INK = "#1f2933"
 """Colour of everything but the links."""

@@ -13,7 +13,7 @@ from models.array import Array
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene, Slider
 from models.scene.laws import Oscillating
-from reports.way.way import way_of
+from reports.protocol.way import way_of
 
 PATH_SAMPLES = 361
 MARGIN = 0.14

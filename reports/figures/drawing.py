@@ -20,7 +20,7 @@ class Drawing:
     """Functions of a figure, for one scene and over all of them; None where it has no such form.
 
     Each gives None where a store has nothing to draw. Files are called ``name-scene`` and ``name``.
-    ``drives`` are the kinds of cells that it shows (`reports.way.way.Way.kinds`).
+    ``drives`` are the kinds of cells that it shows (`reports.protocol.way.Way.kinds`).
     """
 
     of: Callable[[Report, str], Figure | None] | None = None

@@ -25,8 +25,8 @@ from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, s
 from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
 from reports.figures.style import INK, PAGE_IN, QUIET, SMALL, FigureSet, Look, note, shorten
 from reports.output.numbers import readable
-from reports.way.length import SECONDS, TURNS
-from reports.way.way import way_of
+from reports.protocol.length import SECONDS, TURNS
+from reports.protocol.way import way_of
 
 ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}
 RIGID: Look = {"color": "#c04a1d", "linewidth": 0.9, "linestyle": (0, (4.0, 2.0))}

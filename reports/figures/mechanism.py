@@ -22,9 +22,9 @@ from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
 from reports.drawing.shape import PATH_SAMPLES, Sheet, box_of, clearest, names, turn_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, Look, width_in
+from reports.protocol.length import SECONDS, TURNS
+from reports.protocol.way import way_of
 from reports.results.overview import Report, facts_of
-from reports.way.length import SECONDS, TURNS
-from reports.way.way import way_of
 
 FREE_SAMPLES = 2401
 """Samples of the paths of a free motion, which are passed many times."""

@@ -19,10 +19,10 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from reports.figures.drawing import Mark, around, ends, marks, timed
 from reports.figures.sheet import Panels, grid, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic, power_of_ten
+from reports.protocol.way import TARGETS
 from reports.results.candidates import front, front_over_all, performance_profile
 from reports.results.lines import Line, Named, label, named
 from reports.results.overview import Report, notes
-from reports.way.way import TARGETS
 
 COST = "time per simulated turn [s]"
 ALL = "all scenes: worst error, mean time"

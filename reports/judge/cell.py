@@ -18,8 +18,8 @@ from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
-from reports.way.length import SEGMENTS, GivenAs, Planned, Springs
-from reports.way.way import Way, way_of
+from reports.protocol.length import SEGMENTS, GivenAs, Planned, Springs
+from reports.protocol.way import Way, way_of
 from sim.engine import Drive, Engine, Run, SettingValue
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine

@@ -21,8 +21,8 @@ from reports.compare.beside import Beside, Truth
 from reports.compare.errors import Error
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
+from reports.protocol.way import way_of
 from reports.quantities import QUANTITIES, named
-from reports.way.way import way_of
 from sim.engine import Run
 
 EVEN = 1e-6

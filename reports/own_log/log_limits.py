@@ -16,9 +16,9 @@ from reports.judge.tolerance import Limit, in_passage, limits
 from reports.logs.channel import OwnLog
 from reports.logs.log_beside import readings_of
 from reports.own_log.drives import DriveFit, LogDrive
+from reports.protocol.length import SEGMENTS, Springs
+from reports.protocol.way import way_of
 from reports.quantities import QUANTITIES
-from reports.way.length import SEGMENTS, Springs
-from reports.way.way import way_of
 
 
 @dataclass(frozen=True)

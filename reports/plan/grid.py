@@ -17,8 +17,8 @@ from reports.plan.chosen import chosen_engines
 from reports.plan.requirements import refuse_rigid, scenes_of
 from reports.plan.singular import gives_forces
 from reports.plan.study import UNITS, Study, Variant
-from reports.way.length import GivenAs, Planned
-from reports.way.way import driven_by, way_of
+from reports.protocol.length import GivenAs, Planned
+from reports.protocol.way import driven_by, way_of
 from sim.engine import SettingValue
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine

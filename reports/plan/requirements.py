@@ -18,8 +18,8 @@ from reports.judge.tolerance import check_names
 from reports.output.numbers import listed
 from reports.plan.chosen import chosen_scenes, refuse_unfollowed
 from reports.plan.steps import FREE_STEP_S, STEPS_PER_TURN, counted_free, positive
-from reports.way.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
-from reports.way.way import StudyLinks, way_of
+from reports.protocol.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
+from reports.protocol.way import StudyLinks, way_of
 
 if TYPE_CHECKING:
     from reports.compare.elastic_truth import ElasticTruth

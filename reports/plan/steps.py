@@ -14,7 +14,7 @@ from numbers import Real
 from models.errors import CrankcheckError, shown
 from models.scene import Scene
 from reports.compare.beside import SETTLING
-from reports.way.length import LEAST_STEPS
+from reports.protocol.length import LEAST_STEPS
 
 LEAST_STEPS_PER_TURN = 8
 MOST_STEPS = 300_000

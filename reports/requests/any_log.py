@@ -16,10 +16,10 @@ from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.kinds import KINDS, Kind, plural, si
 from reports.logs.map_file import ChannelTable, Map, TimeTable, map_of, read_map
+from reports.protocol.way import way_of
 from reports.requests.arguments import is_true, one_of, path_of, wrong_kind
 from reports.requests.run import Simulation
 from reports.requests.solution import Solution
-from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ from reports.judge.tolerance import check_names
 from reports.output.write import provenance
 from reports.plan.chosen import refuse_unfollowed
 from reports.plan.requirements import given_of, refuse_giving_way
+from reports.protocol.length import SEGMENTS, Length, Planned
+from reports.protocol.way import laid_out, way_of
 from reports.requests import arguments
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.verify.advised import advised
-from reports.way.length import SEGMENTS, Length, Planned
-from reports.way.way import laid_out, way_of
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
 

@@ -20,14 +20,14 @@ from reports.output.console import grid, say
 from reports.output.numbers import short
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
+from reports.protocol.length import SEGMENTS, GivenAs, Planned
+from reports.protocol.way import way_of
 from reports.quantities import QUANTITIES
 from reports.requests import any_log
 from reports.requests.any_log import LogLike, LogOptions, MapLike
 from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, told_at_the_call
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
-from reports.way.length import SEGMENTS, GivenAs, Planned
-from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:

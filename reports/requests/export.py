@@ -24,8 +24,8 @@ from reports.output.console import grid, put, say
 from reports.output.write import check_file, write
 from reports.plan.requirements import under_control
 from reports.plan.steps import MOST_STEPS
+from reports.protocol.way import way_of
 from reports.requests.options import SceneName, option, output_option
-from reports.way.way import way_of
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 from sim.registry.offers import force_recipe, viewer

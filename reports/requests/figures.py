@@ -18,10 +18,10 @@ from reports.figures.style import FORMATS, saved, styled
 from reports.output.console import say_whole, tell
 from reports.output.numbers import count
 from reports.output.write import check_folder, write
+from reports.protocol.way import own_parts
 from reports.requests.options import argument, option, output_option
 from reports.results.overview import Report
 from reports.store.reader import read_store
-from reports.way.way import own_parts
 
 FIGURES: Mapping[str, Drawing] = {
     name: drawing

@@ -17,11 +17,11 @@ from reports.judge.cell import Cell
 from reports.output.console import say_whole
 from reports.output.write import check_folder, provenance, refuse_link, write
 from reports.plan.chosen import left_out_note
+from reports.protocol.length import clock_of
 from reports.requests import options
 from reports.requests.options import argument, option
 from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.stored_runs import scene_digests
-from reports.way.length import clock_of
 from reports.workers.signals import run_child
 from sim.registry import ENGINES, engine
 

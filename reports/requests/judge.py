@@ -24,6 +24,7 @@ from reports.own_log.log_limits import EVERY, LogRequest
 from reports.own_log.table import markdown, show
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
+from reports.protocol.way import way_of
 from reports.requests import any_log, arguments, options
 from reports.requests.any_log import LogLike, MapLike
 from reports.requests.check import CellVerdict, verdict_of_run
@@ -31,7 +32,6 @@ from reports.requests.judge_files import contents, write_log_map
 from reports.requests.options import argument, option, output_option, seconds
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
-from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:

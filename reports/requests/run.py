@@ -18,11 +18,11 @@ from reports.output.console import say, say_whole
 from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import check_file
 from reports.plan.requirements import given_of, under_control
+from reports.protocol.length import SEGMENTS, GivenAs, Length, Planned, Springs
+from reports.protocol.way import way, way_of
 from reports.requests import arguments, options
 from reports.requests.shown import Shown
 from reports.requests.solution import ROWS, drawn, thinned
-from reports.way.length import SEGMENTS, GivenAs, Length, Planned, Springs
-from reports.way.way import way, way_of
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST

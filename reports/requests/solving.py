@@ -21,10 +21,10 @@ from models.scene.laws import ConstantSpeed, Oscillating
 from reports.output.console import say_whole
 from reports.output.formats import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
+from reports.protocol.way import way_of
 from reports.requests.arguments import is_true, one_of, whole_of
 from reports.requests.options import SolveOptions, given, name_of
 from reports.requests.solution import Solution
-from reports.way.way import way_of
 
 if TYPE_CHECKING:
     from analytic.elastic.discretisation import Discretisation

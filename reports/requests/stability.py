@@ -17,13 +17,13 @@ from reports.output.numbers import count
 from reports.output.write import Outputs, provenance
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.singular import silent_note
+from reports.protocol.way import WAYS, way
 from reports.requests.options import Engines, Forces, Jobs, argument, option, output_option
 from reports.stability.case import Case
 from reports.stability.grading import CATALOGUE
 from reports.stability.matrix import FILE, Matrix, read_matrix, run_rows, to_json
 from reports.stability.running import CaseLine, command, run_lines, run_one
 from reports.stability.table import show, show_run
-from reports.way.way import WAYS, way
 from reports.workers.isolated import Limits, checked_limits
 from reports.workers.progress import progress_bar
 from sim.registry import engine

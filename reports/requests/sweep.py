@@ -21,10 +21,10 @@ from reports.plan.requirements import chosen_segments, chosen_springs
 from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
+from reports.protocol.way import way_of
 from reports.requests import arguments, options, sweep_arguments
 from reports.requests.options import argument, option, output_option
 from reports.requests.shown import Shown
-from reports.way.way import way_of
 from reports.workers.isolated import checked_limits
 
 if TYPE_CHECKING:

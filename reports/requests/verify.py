@@ -20,11 +20,11 @@ from reports.output.formats import csv, json_text, junit, parquet
 from reports.output.write import Outputs, provenance
 from reports.plan import chosen, requirements
 from reports.plan.singular import gives_forces, silent_note
+from reports.protocol.length import Length
+from reports.protocol.way import driven_by, laid_out, way_of
 from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.advised import check_all
 from reports.verify.table import show, suite
-from reports.way.length import Length
-from reports.way.way import driven_by, laid_out, way_of
 from sim.engine import Drive
 from sim.registry import engine
 

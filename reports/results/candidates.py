@@ -11,10 +11,10 @@ from typing import TypeVar
 import numpy as np
 import pandas as pd
 
+from reports.protocol.length import clock_of
+from reports.protocol.way import WAYS, ResultKind, Way, way
 from reports.results.cost import mean, time_to
 from reports.results.lines import Line, called, named, numbers
-from reports.way.length import clock_of
-from reports.way.way import WAYS, ResultKind, Way, way
 from sim.engine import Drive, SettingValue
 
 NOT_RUN = "not run"

@@ -14,12 +14,12 @@ from pydantic import ValidationError
 from reports.judge.halving import BEHIND_DRIVE, EXACT_DRIVE
 from reports.judge.three_steps import AT_ROUNDING
 from reports.plan.study import Study
+from reports.protocol.length import SECONDS, clock_of, common_clock
+from reports.protocol.way import ResultKind, Way, way_of_row
 from reports.quantities import QUANTITIES
 from reports.results.line_fit import LineFit, fit_line, words
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
-from reports.way.length import SECONDS, clock_of, common_clock
-from reports.way.way import ResultKind, Way, way_of_row
 from sim.engine import Drive, SettingValue
 
 

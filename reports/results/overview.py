@@ -14,6 +14,8 @@ from models.files.reading import parse_scene
 from models.scene import Scene
 from reports.output.numbers import count, duration, listed
 from reports.plan.requirements import under_control
+from reports.protocol.length import SECONDS, TURNS, clock_of, common_clock
+from reports.protocol.way import TARGETS, WAYS, way_of_row
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import Costs, costs_of, noise
 from reports.results.lines import (
@@ -29,8 +31,6 @@ from reports.results.lines import (
 )
 from reports.results.recommend import Recommendation, recommendations
 from reports.store.reader import Stored
-from reports.way.length import SECONDS, TURNS, clock_of, common_clock
-from reports.way.way import TARGETS, WAYS, way_of_row
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Report:
         return DrivenReport(replace(self.stored, cells=own), whole=self)
 
     def of_kind(self, kind: str) -> tuple[Line, ...]:
-        """Return the lines of a kind (`reports.way.way.Way.kinds`)."""
+        """Return the lines of a kind (`reports.protocol.way.Way.kinds`)."""
         return tuple(line for line in self.lines if kind in line.way.kinds)
 
     def look(self, line: Line) -> Look:

@@ -15,12 +15,12 @@ from rich.text import Text
 from models.errors import few
 from reports.output.console import grid
 from reports.output.numbers import short
+from reports.protocol.length import clock_of
+from reports.protocol.way import WAYS, ResultKind, way
 from reports.results.candidates import NOT_RUN, Candidate, candidates
 from reports.results.cost import SHARE, equal, noise, pairs, reached
 from reports.results.lines import Line, called, left_out, lines, machine
 from reports.store.reader import Stored
-from reports.way.length import clock_of
-from reports.way.way import WAYS, ResultKind, way
 from sim.registry import offering
 from sim.registry.offers import PERIOD_S, snippet
 

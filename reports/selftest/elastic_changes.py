@@ -19,10 +19,10 @@ from models.scene.cut_scenes import BeamedScene, SegmentedScene
 from models.scene.elastic import Beam, Shape
 from reports.compare.elastic_truth import ChainTruth, ElasticTruth
 from reports.judge.cell import Cell
+from reports.protocol.length import Springs
+from reports.protocol.way import way_of
 from reports.selftest.fault import PROFILE, Items, Plant, SceneChange, in_scene, planting
 from reports.selftest.log_edits import WHEN, moved
-from reports.way.length import Springs
-from reports.way.way import way_of
 from sim.engine import Run
 from sim.run import run
 

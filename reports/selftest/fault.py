@@ -15,8 +15,8 @@ from analytic.kinematics import solve
 from models.motion import State
 from models.scene import Same, Scene
 from reports.judge.cell import Cell, CellRunner
-from reports.way.length import Planned
-from reports.way.way import way_of
+from reports.protocol.length import Planned
+from reports.protocol.way import way_of
 from sim.engine import Run, Session, Settings
 from sim.engine.settings import profile_of, resolved
 from sim.registry import available, engine, offering

@@ -17,8 +17,8 @@ from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Checked, check, examined
 from reports.judge.rules.rule import Finding
+from reports.protocol.way import own_parts
 from reports.selftest.fault import PROFILE, STEPS, Fault, FaultRuns, FaultSet, RunKind, Unseen
-from reports.way.way import own_parts
 from reports.workers.isolated import Limits, Lost, run_all
 from sim.engine.settings import profile_of, resolved
 from sim.registry import ENGINES, engine

@@ -15,9 +15,9 @@ from models.motion import Motion, State
 from models.scene import Scene
 from models.scene.cut_scenes import SegmentedScene
 from models.scene.hard import WindowChain
+from reports.protocol.way import own_parts
 from reports.stability.error_series import ErrorSeries
 from reports.stability.matrix import CaseFacts, Outcome
-from reports.way.way import own_parts
 from sim.engine import Drive, Run, SettingValue
 
 WITHIN = 1e-2

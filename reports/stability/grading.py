@@ -16,10 +16,10 @@ from reports.compare.beside import Beside, Truth
 from reports.compare.whole_errors import force_rows
 from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
 from reports.output.numbers import DIGITS, finite
+from reports.protocol.way import own_parts
 from reports.stability.case import Case, Trial, Yardstick, yardsticks
 from reports.stability.grades import outcome
 from reports.stability.matrix import Graded, Outcome, Picture, label
-from reports.way.way import own_parts
 from sim.engine import Run
 from sim.engine.settings import SettingError
 from sim.registry import engine as engine_of

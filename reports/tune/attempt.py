@@ -9,8 +9,8 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, coarsest, counted
+from reports.protocol.length import LEAST_STEPS
 from reports.sweep.measured import MeasuredCell, Repeats, measured, timed_in_turns
-from reports.way.length import LEAST_STEPS
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import Settings
 from sim.registry.offers import Work

@@ -23,8 +23,8 @@ from reports.judge.three_steps import Convergence
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, remark, suite_of
 from reports.output.numbers import count
+from reports.protocol.way import WAYS
 from reports.quantities import QUANTITIES, named
-from reports.way.way import WAYS
 
 Texts = Callable[[Checked], Sequence[str]]
 Part = tuple[int, Callable[[Sequence[Checked]], Sequence[str]]]

@@ -16,8 +16,8 @@ from reports.page.sections.provenance import fairness, provenance
 from reports.page.sections.section import PageReport, Section, WaySection
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict
+from reports.protocol.way import own_parts
 from reports.results.overview import Report
-from reports.way.way import own_parts
 
 Build = Callable[[PageReport], Section | None]
 

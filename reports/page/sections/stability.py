@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import pandas as pd
 
 from reports.page.sections.section import Section
+from reports.protocol.length import SECONDS, clock_of
 from reports.results.overview import Report
-from reports.way.length import SECONDS, clock_of
 
 
 @dataclass(frozen=True)

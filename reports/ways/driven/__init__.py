@@ -17,11 +17,11 @@ from reports.compare.beside import Truth, truth_of
 from reports.compare.errors import DRIVEN
 from reports.plan import singular
 from reports.plan.steps import TURNS, counted
+from reports.protocol.length import GivenAs, Length, Planned
+from reports.protocol.way import ResultKind, StudyLengths, Way
 from reports.quantities import MOVES, named
 from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
-from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import ResultKind, StudyLengths, Way
 from sim.engine import Drive
 
 

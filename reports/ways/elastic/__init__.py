@@ -10,9 +10,9 @@ from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan import requirements
+from reports.protocol.length import SEGMENTS, GivenAs, Length, Planned
+from reports.protocol.way import ResultKind, StudyLengths, StudyLinks
 from reports.quantities.limits import ELASTIC
-from reports.way.length import SEGMENTS, GivenAs, Length, Planned
-from reports.way.way import ResultKind, StudyLengths, StudyLinks
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 

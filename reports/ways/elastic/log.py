@@ -13,7 +13,7 @@ from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import LogBeside
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_limits import HeldLog, LogRequest
-from reports.way.length import Springs
+from reports.protocol.length import Springs
 from reports.ways.driven.log import DrivenLog
 from sim.engine import Run
 

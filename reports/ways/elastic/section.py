@@ -9,9 +9,9 @@ from reports.compare.last_turn import Trace
 from reports.drawing.moving import first_turn, packed
 from reports.output.numbers import duration
 from reports.page.sections.section import Section, WaySection
+from reports.protocol.length import SECONDS, TURNS, Clock, clock_of
 from reports.results.lines import Line
 from reports.results.overview import Report
-from reports.way.length import SECONDS, TURNS, Clock, clock_of
 from reports.ways.free.section import cost_row, error_curves
 
 KIND = "elastic"

@@ -17,11 +17,11 @@ from reports.compare.free_facts import FreeFacts
 from reports.compare.free_truth import kept_motion, released_state
 from reports.plan.requirements import refuse_unreleased, under_control
 from reports.plan.steps import counted_free
+from reports.protocol.length import LEAST_STEPS, GivenAs, Length, Planned
+from reports.protocol.way import ResultKind, StudyLengths
 from reports.quantities import named
 from reports.quantities.limits import FREE
 from reports.quantities.quantity import Role, Tolerance
-from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
-from reports.way.way import ResultKind, StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 

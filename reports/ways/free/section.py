@@ -6,10 +6,10 @@ from reports.output.numbers import duration
 from reports.page.sections.errors import drawn
 from reports.page.sections.free_courses import FreeCourses, sizes_of
 from reports.page.sections.section import BUDGET, Section, WaySection, steps_held
+from reports.protocol.length import clock_of
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation, short_target
-from reports.way.length import clock_of
 
 KIND = "let go"
 SHOWN = (

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan import requirements
+from reports.protocol.length import GivenAs, Length, Planned
+from reports.protocol.way import StudyLengths
 from reports.quantities.limits import FREE_ELASTIC
-from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
 from reports.ways.free import FreeWay
 from sim.engine import Drive

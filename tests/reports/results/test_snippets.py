@@ -11,10 +11,10 @@ from rich.console import Console
 from models.files.reading import load_scene
 from reports.judge.cell import Cell
 from reports.plan.study import Variant, load_study
+from reports.protocol.way import TARGETS
 from reports.requests.sweep import SweepRequest
 from reports.results.recommend import Recommendation, recommendations
 from reports.store.reader import Stored, read_store
-from reports.way.way import TARGETS
 from sim.engine import Drive
 from sim.engine.settings import profile_of, resolved
 from sim.mujoco.settings import writing

@@ -1,7 +1,8 @@
 """A kind of scene that crankcheck has not: a bead on a wire that is bent to a circle.
 
 One link is the spoke that holds the bead; the bead is let go from rest. What a kind of scene needs
-is this folder, and its name in `reports.way.way.WAYS` (see `tests/reports/way/test_new_way.py`).
+is this folder, and its name in `reports.protocol.way.WAYS`: see
+`tests/reports/protocol/test_new_way.py`.
 """
 
 from collections.abc import Mapping
@@ -10,8 +11,8 @@ from typing import Any
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.way.length import Planned
-from reports.way.way import ResultKind
+from reports.protocol.length import Planned
+from reports.protocol.way import ResultKind
 from reports.ways.free import FreeWay
 from sim.engine import Drive
 from tests.worlds.bead.limits import LIMITS

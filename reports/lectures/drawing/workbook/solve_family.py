@@ -39,9 +39,9 @@ from reports.output.numbers import count
 from reports.output.write import crankcheck_version, write
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
+from reports.protocol.way import way_of
 from reports.requests import solving
 from reports.requests.options import SolveOptions, given
-from reports.way.way import way_of
 
 LARGEST = 1e9
 """Largest number of a mechanism [SI]."""

@@ -13,13 +13,13 @@ from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import limits
 from reports.plan.requirements import counted_released, few_swings_s, shortened_note, under_control
+from reports.protocol.way import way_of
 from reports.requests.compare import compare
 from reports.requests.judge import judge
 from reports.requests.run import run as simulated
 from reports.selftest.elastic_changes import in_given
 from reports.selftest.segment_changes import springs, stiffer
 from reports.verify.table import footer
-from reports.way.way import way_of
 from tests.worlds.facts import with_facts
 from tests.worlds.tiers import slowly
 

@@ -16,8 +16,8 @@ from models.array import Array
 from models.motion import Forces, Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
+from reports.protocol.length import Clock, GivenAs, Length, Planned, Springs, clock_of
 from reports.quantities.quantity import Role, Tolerance
-from reports.way.length import Clock, GivenAs, Length, Planned, Springs, clock_of
 from sim.engine import Drive
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-HERE = Path("reports/way/way.py")
+HERE = Path("reports/protocol/way.py")
 BEFORE, AFTER = "WAYS = (", 'WAYS = ("tests.worlds.bead", '
 ENGINE = "--engine tests.worlds.bead.engine:ENGINE"
 COMMANDS = {
