@@ -10,7 +10,6 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.console import Console
 from rich.progress import Progress
 
@@ -38,7 +37,7 @@ from reports.output.numbers import count
 from reports.output.write import check_folder, provenance, write
 from reports.plan.chosen import chosen_engines, chosen_profiles
 from reports.requests.arguments import told_at_the_call
-from reports.requests.options import Engines, PaperSize
+from reports.requests.options import Engines, PaperSize, argument, option
 from reports.requests.shown import Shown
 from sim.registry import engine
 
@@ -60,37 +59,29 @@ SAMPLES = 1000
 class SynthRequest:
     """Arguments of `synth`, as given."""
 
-    kind: Annotated[
-        str | None, typer.Argument(metavar="KIND", help="What kind of task; none lists them.")
-    ] = None
-    task: Annotated[
-        str | None, typer.Argument(metavar="TASK", help="A shipped task, or a task file (.toml).")
-    ] = None
+    kind: Annotated[str | None, argument("KIND", "What kind of task; none lists them.")] = None
+    task: Annotated[str | None, argument("TASK", "A shipped task, or a task file (.toml).")] = None
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Folder of scenes, tables, figures."),
+        Path | None, option("Folder of scenes, tables, figures.", "-o --output DIR")
     ] = None
     best: Annotated[
-        int, typer.Option(min=1, max=1000, help="So many of the solutions are listed and written.")
+        int, option("So many of the solutions are listed and written.", min=1, max=1000)
     ] = 5
-    prove: Annotated[
-        bool, typer.Option("--prove", help="Run each in every engine, through what is asked.")
-    ] = False
+    prove: Annotated[bool, "Run each in every engine, through what is asked."] = False
     engines: Engines = ()
     profiles: Annotated[
-        Sequence[str], typer.Option("--profile", help="Profile of the engines; default: tuned.")
+        Sequence[str], option("Profile of the engines; default: tuned.", "--profile")
     ] = ()
-    steps_per_turn: Annotated[
-        float, typer.Option(min=24, max=1e5, help="Steps in a turn of the proof.")
-    ] = 720.0
+    steps_per_turn: Annotated[float, option("Steps in a turn of the proof.", min=24, max=1e5)] = (
+        720.0
+    )
     vary_m: Annotated[
         float | None,
-        typer.Option(
-            "--vary",
-            metavar="METRES",
+        option(
+            "What dimensions that are off by up to so much do, and clearances.",
+            "--vary METRES",
             min=1e-9,
             max=1e6,
-            help="What dimensions that are off by up to so much do, and clearances.",
         ),
     ] = None
     paper: PaperSize = "A4"
@@ -138,13 +129,13 @@ class SynthRequest:
 
 def _check(request: SynthRequest) -> None:
     numbers = {"--steps-per-turn": request.steps_per_turn, "--vary": request.vary_m}
-    for option, number in numbers.items():
+    for name, number in numbers.items():
         if number is not None and not math.isfinite(number):
-            raise CrankcheckError(f"{option}: found {number}; give a number")
+            raise CrankcheckError(f"{name}: found {number}; give a number")
     given = {"--engine": request.engines, "--profile": request.profiles}
-    for option, names in given.items():
-        if names and not request.prove:
-            raise CrankcheckError(f"{option} {names[0]}: engines are run by --prove; add it")
+    for name, chosen in given.items():
+        if chosen and not request.prove:
+            raise CrankcheckError(f"{name} {chosen[0]}: engines are run by --prove; add it")
 
 
 def _searched(task: TaskTable, console: Console) -> Solutions:

@@ -5,19 +5,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from analytic.lectures.drawings.graphical import METHODS, Method
 from models.errors import CrankcheckError, shown
 from models.files.reading import find_scene, load_scene
-from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
+from reports.lectures.drawing.sheet_requests import ENDINGS, LogMap, SheetFile, save_sheet
 from reports.lectures.drawing.sheets import graph_drawing, graph_orders, graph_words
 from reports.lectures.drawing.sheets.graph_page import draw_graphs, laid_out
 from reports.lectures.drawing.sheets.graph_span import OVERS, Over, over_period
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic, sheet_note
 from reports.output.write import check_file
-from reports.requests.options import Duration, PaperSize, SceneName
+from reports.requests.options import Duration, PaperSize, SceneName, option
 
 LEAST_PARTS, MOST_PARTS, MOST_COUNTS = 4, 1440, 12
 MOST_DIGITS = 9
@@ -29,30 +28,19 @@ class GraphRequest:
     """Arguments of `graph`, as given."""
 
     scene: SceneName
-    of: Annotated[
-        str, typer.Option("--of", metavar="NAME", help="A link, a slider, or a coordinate: C.x.")
-    ]
+    of: Annotated[str, option("A link, a slider, or a coordinate: C.x.", "NAME")]
     divisions: Annotated[
-        str,
-        typer.Option(metavar="N[,N...]", help="Parts of the period; of several, the errors."),
+        str, option("Parts of the period; of several, the errors.", "N[,N...]")
     ] = "24"
-    by: Annotated[
-        str, typer.Option(help="chords, tangents, or integration (of the acceleration).")
-    ] = "chords"
-    over: Annotated[str, typer.Option(help="time, or angle of the driver.")] = "time"
+    by: Annotated[str, "chords, tangents, or integration (of the acceleration)."] = "chords"
+    over: Annotated[str, "time, or angle of the driver."] = "time"
     log: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="A log of an engine, drawn the same way beside it."),
+        Path | None, option("A log of an engine, drawn the same way beside it.", "FILE")
     ] = None
-    map: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="TOML that says what its columns mean."),
-    ] = None
+    map: LogMap = None
     duration_s: Duration = None
     paper: PaperSize = "A4"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")
-    ] = None
+    output: SheetFile = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or draw graphs. Raises CrankcheckError for a faulty request."""

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 from rich.text import Text
 
@@ -17,27 +16,24 @@ from models.lectures.scheme_files import find_scheme, load_scheme, scheme_text, 
 from models.lectures.touching import Touching, load_touching, shipped_contacts
 from reports.output.console import grid, hanging, say_whole
 from reports.output.write import check_file, write
+from reports.requests.options import argument, output_option
 
 HEAD = 10
 """Width of the heads of paragraphs, in letters."""
+NameOrFile = Annotated[
+    str | None, argument("NAME", "A shipped name, or a file; all are listed if none.")
+]
 
 
 @dataclass(frozen=True)
 class MobilityRequest:
     """Arguments of `mobility`, as given."""
 
-    scheme: Annotated[
-        str | None,
-        typer.Argument(metavar="NAME", help="A shipped name, or a file; all are listed if none."),
-    ] = None
-    replace: Annotated[
-        bool,
-        typer.Option("--replace", help="Links with lower pairs in place of planar higher pairs."),
-    ] = False
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="With --replace: write that scheme as .toml."),
-    ] = None
+    scheme: NameOrFile = None
+    replace: Annotated[bool, "Links with lower pairs in place of planar higher pairs."] = False
+    output: Annotated[Path | None, output_option("With --replace: write that scheme as .toml.")] = (
+        None
+    )
 
     def run(self, console: Console, progress: Console) -> int:
         """Show a scheme, or list the shipped ones. Raises CrankcheckError for a faulty request."""
@@ -156,10 +152,7 @@ def _number(count: int, what: str) -> str:
 class JointRequest:
     """Arguments of `joint`, as given."""
 
-    joint: Annotated[
-        str | None,
-        typer.Argument(metavar="NAME", help="A shipped name, or a file; all are listed if none."),
-    ] = None
+    joint: NameOrFile = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Show a joint, or list the shipped ones. Raises CrankcheckError for a bad file."""

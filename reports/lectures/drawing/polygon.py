@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
 from rich.console import Console
 from rich.table import Table
 
@@ -18,6 +17,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.lectures.drawing.sheet_requests import LogMap
 from reports.lectures.drawing.sheets import polygon_instant, polygon_table
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic
 from reports.lectures.drawing.sheets.polygon_on_paper import DrawnPolygon
@@ -35,7 +35,7 @@ from reports.logs.map_file import Map, read_map
 from reports.output.console import grid, say_whole
 from reports.output.numbers import readable
 from reports.output.write import check_file, write
-from reports.requests.options import PaperSize, SceneName, seconds
+from reports.requests.options import PaperSize, SceneName, option, output_option, seconds
 
 
 def show_polygons(console: Console, sheet: PolygonSheet) -> None:
@@ -130,47 +130,28 @@ class PolygonRequest:
     """Arguments of `polygon`, as given."""
 
     scene: SceneName
-    at_deg: Annotated[
-        float | None, typer.Option(metavar="DEG", help="The driver's angle (default 90).")
-    ] = None
+    at_deg: Annotated[float | None, option("The driver's angle (default 90).", "DEG")] = None
     at_s: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SECONDS",
-            parser=seconds,
-            help="The time, in place of an angle.",
-        ),
+        float | None, option("The time, in place of an angle.", "SECONDS", parser=seconds)
     ] = None
     omega: Annotated[
-        float | None,
-        typer.Option(metavar="RAD_S", help="The driver's speed, in place of its law's."),
+        float | None, option("The driver's speed, in place of its law's.", "RAD_S")
     ] = None
     k: Annotated[
-        float | None,
-        typer.Option(
-            "--k", help="Vectors of the crank so many times as long as it is drawn, p b = k AB."
-        ),
+        float | None, "Vectors of the crank so many times as long as it is drawn, p b = k AB."
     ] = None
     log: Annotated[
-        Path | None,
-        typer.Option(metavar="LOG", help="A log of the scene, yours or an engine's: drawn beside."),
+        Path | None, option("A log of the scene, yours or an engine's: drawn beside.", "LOG")
     ] = None
-    map: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="TOML that says what its columns mean.")
-    ] = None
+    map: LogMap = None
     paper: PaperSize = "A4"
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            help="Draw the sheet: .svg in layers, .pdf, .gif step by step, or .html over a turn.",
+        output_option(
+            "Draw the sheet: .svg in layers, .pdf, .gif step by step, or .html over a turn."
         ),
     ] = None
-    turn: Annotated[
-        bool,
-        typer.Option("--turn", help="With -o FILE.gif: over a turn, in place of step by step."),
-    ] = False
+    turn: Annotated[bool, "With -o FILE.gif: over a turn, in place of step by step."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show the vectors, or draw the sheet. Raises CrankcheckError for a faulty request."""

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from analytic.lectures.chains.assur_groups import Mechanism, inversions
@@ -33,12 +32,13 @@ from reports.lectures.drawing.sheets.scheme import sense_of_law
 from reports.output.console import grid, say, say_whole
 from reports.output.numbers import roman
 from reports.output.write import check_file, crankcheck_version, write
-from reports.requests.options import PaperSize, SceneName
+from reports.requests.options import PaperSize, SceneName, option, output_option
 
 ENDINGS = (".svg", ".pdf")
 
 
-Output = Annotated[Path, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")]
+SheetFile = Annotated[Path | None, output_option("Draw it: .svg in layers, or .pdf.")]
+LogMap = Annotated[Path | None, option("TOML that says what its columns mean.", "FILE")]
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class PositionsRequest:
     """Arguments of `positions`, as given."""
 
     scene: SceneName
-    output: Output
-    divisions: Annotated[int, typer.Option(min=2, max=360, help="Parts of the crank circle.")] = 12
+    output: Annotated[Path, output_option("Draw it: .svg in layers, or .pdf.")]
+    divisions: Annotated[int, option("Parts of the crank circle.", min=2, max=360)] = 12
     paper: PaperSize = "A4"
 
     def run(self, console: Console, progress: Console) -> int:
@@ -77,15 +77,12 @@ class CentresRequest:
     """Arguments of `centres`, as given."""
 
     scene: SceneName
-    at_deg: Annotated[float, typer.Option(metavar="DEG", help="The driver's angle.")] = 60.0
+    at_deg: Annotated[float, option("The driver's angle.", "DEG")] = 60.0
     link: Annotated[
-        str,
-        typer.Option(metavar="NAME", help="Its poles, circles of curvature and centrodes as well."),
+        str, option("Its poles, circles of curvature and centrodes as well.", "NAME")
     ] = ""
     paper: PaperSize = "A4"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")
-    ] = None
+    output: SheetFile = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or draw centres. Raises CrankcheckError for a faulty request."""
@@ -156,19 +153,14 @@ MOST_TYPED = 8
 class ChainsRequest:
     """Arguments of `chains`, as given."""
 
-    links: Annotated[int, typer.Option(metavar="N", help="Links, the ground with them.")] = 6
-    mobility: Annotated[int, typer.Option(metavar="W", help="Their mobility.")] = 1
-    inversions: Annotated[
-        bool, typer.Option("--inversions", help="The mechanisms: each link as the ground.")
-    ] = False
+    links: Annotated[int, option("Links, the ground with them.", "N")] = 6
+    mobility: Annotated[int, option("Their mobility.", "W")] = 1
+    inversions: Annotated[bool, "The mechanisms: each link as the ground."] = False
     sliders: Annotated[
-        int | None,
-        typer.Option(metavar="K", help="Type synthesis: up to so many of the pins are sliders."),
+        int | None, option("Type synthesis: up to so many of the pins are sliders.", "K")
     ] = None
     paper: PaperSize = "A4"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Draw them: .svg in layers, or .pdf.")
-    ] = None
+    output: Annotated[Path | None, output_option("Draw them: .svg in layers, or .pdf.")] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """List or draw chains. Raises CrankcheckError for a faulty request."""

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
 from rich.console import Console
 
 from analytic.lectures.chains.assur_groups import ClassedGroup, by_drivers, classed
@@ -28,7 +27,7 @@ from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.output.console import grid, say
 from reports.output.numbers import roman
 from reports.output.write import check_file
-from reports.requests.options import PaperSize, SceneName
+from reports.requests.options import PaperSize, SceneName, option, output_option
 
 MOST_CHOICES = 1024
 """Largest number of combinations of branches."""
@@ -121,16 +120,12 @@ class StructureRequest:
 
     scene: SceneName
     at_deg: Annotated[
-        float | None,
-        typer.Option(metavar="DEG", help="The driver's angle; default: where the scene starts."),
+        float | None, option("The driver's angle; default: where the scene starts.", "DEG")
     ] = None
-    at_m: Annotated[
-        float | None, typer.Option(metavar="M", help="The place of a slider that drives.")
-    ] = None
+    at_m: Annotated[float | None, option("The place of a slider that drives.", "M")] = None
     paper: PaperSize = "A4"
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="Draw all assemblies: .svg in layers, or .pdf."),
+        Path | None, output_option("Draw all assemblies: .svg in layers, or .pdf.")
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:

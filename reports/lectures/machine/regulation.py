@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.console import Console
 
 from analytic.lectures.regulation.cycle_search import cycle_of
@@ -23,7 +22,7 @@ from reports.output.console import say_whole
 from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import check_file, check_folder, check_outputs, write
 from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, option, output_option
 from reports.requests.shown import Shown
 
 if TYPE_CHECKING:
@@ -162,13 +161,9 @@ PAGE, NUMBERS = ".html", ".json"
 
 
 Output = Annotated[
-    Path | None,
-    typer.Option("-o", "--output", help="Write .csv, .parquet, .xlsx or .json, or a page, .html."),
+    Path | None, output_option("Write .csv, .parquet, .xlsx or .json, or a page, .html.")
 ]
-
-Figures = Annotated[
-    Path | None, typer.Option(metavar="DIR", help="Draw the cycle, as SVG and PDF.")
-]
+Figures = Annotated[Path | None, option("Draw the cycle, as SVG and PDF.", "DIR")]
 
 
 @dataclass(frozen=True)
@@ -239,21 +234,15 @@ class FlywheelRequest:
     motion there with ``free``."""
 
     scene: SceneName
-    delta: Annotated[
-        float, typer.Option(help="Coefficient of fluctuation that is wanted, such as 0.02.")
-    ]
+    delta: Annotated[float, "Coefficient of fluctuation that is wanted, such as 0.02."]
     output: Output = None
     figures: Figures = None
     written: Annotated[
-        Path | None,
-        typer.Option("--write", metavar="FILE.toml", help="Write the scene with the flywheel."),
+        Path | None, option("Write the scene with the flywheel.", "--write FILE.toml")
     ] = None
-    free: Annotated[
-        bool,
-        typer.Option(
-            "--free", help="With --write: let go in its cycle, the drive's torque as a load."
-        ),
-    ] = False
+    free: Annotated[bool, "With --write: let go in its cycle, the drive's torque as a load."] = (
+        False
+    )
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a flywheel. Raises CrankcheckError for a faulty request."""

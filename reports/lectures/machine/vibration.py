@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
 import numpy as np
-import typer
 from rich.console import Console
 
 from analytic.elastic.discretisation import Modes
@@ -35,7 +34,7 @@ from reports.lectures.machine.vibration_tables import show_map, show_speeds, sho
 from reports.output.console import say_whole
 from reports.output.formats import csv
 from reports.output.write import check_folder, write
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, option
 
 if TYPE_CHECKING:
     from reports.figures.style import FigureSet
@@ -44,7 +43,7 @@ MOST_COUNT = 5000
 """Number of speeds, or of speeds times factors, beyond which it takes minutes."""
 RATIOS, COUNT = (12.5, 2.5), 101
 """Default of --map: the frequency ratios of the extreme speeds, and the number of speeds."""
-FACTORS = "0.1:10:9"
+FACTORS, RANGE = "0.1:10:9", "FROM:TO:COUNT"
 MOST_RATIO = 1e4
 """Frequency ratio above which a turn has more vibrations than windows follow."""
 ONE, MANY = 5, 3
@@ -106,34 +105,25 @@ class VibrationRequest:
 
     scene: SceneName
     speeds: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FROM:TO:COUNT", help="Over speeds of the driver [rad/s], such as 5:40:200."
-        ),
+        str | None, option("Over speeds of the driver [rad/s], such as 5:40:200.", RANGE)
     ] = None
     map_link: Annotated[
         str | None,
-        typer.Option(
-            "--map",
-            metavar="LINK",
-            help="Over speeds and over the inertia of a rigid link or of a slider's block.",
+        option(
+            "Over speeds and over the inertia of a rigid link or of a slider's block.",
+            "--map LINK",
         ),
     ] = None
     factors: Annotated[
         str | None,
-        typer.Option(
-            metavar="FROM:TO:COUNT",
-            help="With --map: how many times as heavy (default 0.1:10:9, in equal ratios).",
-        ),
+        option("With --map: how many times as heavy (default 0.1:10:9, in equal ratios).", RANGE),
     ] = None
     modes: Annotated[
-        int | None,
-        typer.Option(min=1, max=40, help="Modes of each link (default 5, over speeds 3)."),
+        int | None, option("Modes of each link (default 5, over speeds 3).", min=1, max=40)
     ] = None
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Write tables, JSON and figures."),
-    ] = None
+    output: Annotated[Path | None, option("Write tables, JSON and figures.", "-o --output DIR")] = (
+        None
+    )
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a vibration. Raises CrankcheckError for a faulty request, and where there
@@ -196,7 +186,7 @@ def asked_range(text: str, option: str, example: str) -> tuple[float, float, int
     except (ValueError, IndexError):
         whole = False
     if not whole:
-        raise CrankcheckError(f"{option}: found {shown(text)}; write FROM:TO:COUNT like {example}")
+        raise CrankcheckError(f"{option}: found {shown(text)}; write {RANGE} like {example}")
     if not 0.0 < low < high:
         raise CrankcheckError(
             f"{option}: found {low:g} to {high:g}; give two numbers above 0, the smaller first"
