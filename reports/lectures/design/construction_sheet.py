@@ -44,11 +44,11 @@ from reports.lectures.drawing.sheets.paper import (
     Box,
     Canvas,
     Paper,
-    draw_border,
+    ToScale,
+    headed,
     inner_box,
     layer_words,
     sheet_note,
-    write_head,
 )
 from reports.lectures.drawing.sheets.scheme import PIN_MM, draw_foot, draw_outline, draw_scheme
 
@@ -129,21 +129,13 @@ FRONT = 6
 
 
 @dataclass(frozen=True)
-class ConstructionSheet:
-    """A construction on paper: its scale [m/mm], the middle of its box [m], and the words of the
-    column beside or below it."""
+class ConstructionSheet(ToScale):
+    """A construction on paper, and the words of the column beside or below it."""
 
     view: ConstructionView
-    scale: float
-    middle: Array
-    box: Box
     column: Box
     words: list[list[ColumnPart]]
     paper: Paper
-
-    def at(self, places: Array) -> Array:
-        """Places [m], (..., 2), on the sheet [mm]."""
-        return np.asarray(self.box.middle + (places - self.middle) / self.scale)
 
     @property
     def cut(self) -> tuple[Array, Array]:
@@ -178,24 +170,19 @@ def _in(view: ConstructionView, box: Box, column: Box, paper: Paper) -> Construc
     scale, middle = box.fitted(view.shown, PADDING)
     half = scale * np.array([box.width, box.height]) / 2
     words = parts_of(view, [words for _, words in view.far(middle - half, middle + half)])
-    return ConstructionSheet(view, scale, middle, box, column, words, paper)
+    return ConstructionSheet(box, scale, middle, view, column, words, paper)
 
 
 def _beside(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     """Boxes of the figure with columns of several widths on its right."""
-    boxes = []
-    for width in COLUMNS_MM:
-        wide = inner.width - width - GAP
-        if width <= MOST_SHARE * inner.width:
-            left = inner.left + wide + GAP
-            figure = Box(inner.left, inner.bottom, wide, inner.height)
-            boxes.append((figure, Box(left, inner.bottom, width, inner.height)))
-    return boxes
+    fit = [width for width in COLUMNS_MM if width <= MOST_SHARE * inner.width]
+    return [inner.side_by_side(width, GAP) for width in fit]
 
 
 def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     """The box of the figure over the box of the words, which is as high as they need."""
-    tall = height_of(parts_of(view, [words for _, words in view.far(*_corners(view))]), inner.width)
+    corners = view.shown.min(axis=0), view.shown.max(axis=0)
+    tall = height_of(parts_of(view, [words for _, words in view.far(*corners)]), inner.width)
     boxes = []
     for spare in (1.0, 1.25, 1.6):
         high = spare * tall
@@ -206,10 +193,6 @@ def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     return boxes
 
 
-def _corners(view: ConstructionView) -> tuple[Array, Array]:
-    return view.shown.min(axis=0), view.shown.max(axis=0)
-
-
 def construction_sheet(proposed: Examined | Proposal, paper: Paper) -> Canvas:
     """The sheet of a construction on paper. Raises CrankcheckError as `laid_out`."""
     sheet = laid_out(proposed, paper)
@@ -218,8 +201,12 @@ def construction_sheet(proposed: Examined | Proposal, paper: Paper) -> Canvas:
 
 def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
     """The sheet, in layers: frame and words, other positions, the steps, the mechanism, letters."""
-    canvas = Canvas(sheet.paper)
-    _frame(canvas.layer("frame"), sheet, note)
+    told = f": construction, position 1 of {len(sheet.view.placements)}, K_l = {sheet.scale:g} m/mm"
+    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN / 1.15  # bold is so much wider
+    name = cut(sheet.view.examined.scene.name, room / 2, LARGE)
+    title = cut(name + told, room, LARGE)
+    canvas, frame = headed(sheet.paper, title, note, sheet.box, sheet.column)
+    write_column(frame, sheet.words, sheet.column)
     others = canvas.layer("positions")
     for placed in sheet.view.others:
         places = {name: sheet.at(place) for name, place in placed.points.items()}
@@ -235,16 +222,6 @@ def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
     letters += step_numbers(sheet.view.steps, drawn)
     write_letters(canvas, canvas.layer("letters"), letters, sheet.box)
     return canvas
-
-
-def _frame(axes: Axes, sheet: ConstructionSheet, note: str) -> None:
-    told = f": construction, position 1 of {len(sheet.view.placements)}, K_l = {sheet.scale:g} m/mm"
-    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN / 1.15  # bold is so much wider
-    name = cut(sheet.view.examined.scene.name, room / 2, LARGE)
-    write_head(axes, sheet.paper, cut(name + told, room, LARGE), note)
-    for box in (sheet.box, sheet.column):
-        draw_border(axes, box)
-    write_column(axes, sheet.words, sheet.column)
 
 
 def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> list[Array]:

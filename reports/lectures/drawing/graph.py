@@ -15,6 +15,7 @@ from reports.lectures.drawing.sheets import graph_drawing, graph_orders, graph_w
 from reports.lectures.drawing.sheets.graph_page import draw_graphs, laid_out
 from reports.lectures.drawing.sheets.graph_span import OVERS, Over, over_period
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic, sheet_note
+from reports.output.console import say_whole
 from reports.output.write import check_file
 from reports.requests.options import Duration, PaperSize, SceneName, option
 
@@ -79,13 +80,12 @@ def _tell_graphs(
     )
     if request.output is None:
         graph_words.show_graphs(console, drawn)
-        graph_words.tell(console, told)
+        say_whole(console, told)
     else:
         canvas = draw_graphs(laid_out(drawn, paper), sheet_note(of.scene))
         save_sheet(console, canvas, request.output, told)
     if drawn.logged is not None:
-        for line in graph_words.told_log(drawn):
-            graph_words.tell(console, line)
+        say_whole(console, *graph_words.told_log(drawn))
 
 
 def _tell_errors(
@@ -98,7 +98,7 @@ def _tell_errors(
         save_sheet(console, canvas, request.output, told)
     graph_orders.show_errors(console, errors)
     if errors.log is not None:
-        graph_words.tell(console, graph_orders.told_floor(errors))
+        say_whole(console, graph_orders.told_floor(errors))
 
 
 def _by(method: Method) -> str:

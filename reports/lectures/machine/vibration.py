@@ -54,11 +54,11 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class Files(Generic[Found]):
-    """Printed form and files of a result: texts by file, and figures by the name of their set in
-    `vibration_figures`, whose import waits until they are needed."""
+    """Printed form and files of a result: texts and tables by file, and figures by the name of
+    their set in `vibration_figures`, whose import waits until they are needed."""
 
     show: Callable[[Console, Found], None]
-    texts: Mapping[str, Callable[[Found], str]]
+    contents: Mapping[str, Callable[[Found], Any]]
     set_name: str
 
     @property
@@ -73,9 +73,9 @@ AT_A_SPEED = Files[SteadyVibration](
     show_vibration,
     {
         "vibration.json": files.vibration_document,
-        "turn.csv": lambda found: csv(files.turn_frame(found)),
-        "natural.csv": lambda found: csv(files.natural_frame(found)),
-        "spectrum.csv": lambda found: csv(files.spectrum_frame(found)),
+        "turn.csv": files.turn_columns,
+        "natural.csv": files.natural_columns,
+        "spectrum.csv": files.spectrum_columns,
     },
     "AT_A_SPEED",
 )
@@ -83,19 +83,14 @@ OVER_SPEEDS = Files[OverSpeeds](
     show_speeds,
     {
         "speeds.json": files.speeds_document,
-        "speeds.csv": lambda found: csv(files.speeds_frame(found)),
-        "waterfall.csv": lambda found: csv(files.waterfall_frame(found)),
-        "critical.csv": lambda found: csv(files.critical_frame(found)),
+        "speeds.csv": files.speeds_rows,
+        "waterfall.csv": files.waterfall_rows,
+        "critical.csv": files.critical_columns,
     },
     "OVER_SPEEDS",
 )
 OVER_INERTIA = Files[InertiaMap](
-    show_map,
-    {
-        "map.json": files.map_document,
-        "map.csv": lambda found: csv(files.map_frame(found)),
-    },
-    "OVER_INERTIA",
+    show_map, {"map.json": files.map_document, "map.csv": files.map_rows}, "OVER_INERTIA"
 )
 
 
@@ -131,7 +126,8 @@ class VibrationRequest:
         scene = load_scene(self.scene)
         check_vibrates(scene)
         one = self.map_link is None and self.speeds is None
-        by = _modes(self.modes or (ONE if one else MANY))
+        across = self.modes or (ONE if one else MANY)
+        by = Modes(across, min(across, Modes().along))
         if self.factors is not None and self.map_link is None:
             raise CrankcheckError("--factors: they are of the inertia of a link; give --map LINK")
         if self.map_link is not None:
@@ -142,10 +138,6 @@ class VibrationRequest:
         else:
             _answer(self, AT_A_SPEED, lambda: steady_vibration(scene, by), console)
         return 0
-
-
-def _modes(across: int) -> Modes:
-    return Modes(across, min(across, Modes().along))
 
 
 def _over_speeds(request: VibrationRequest, scene: Scene, by: Modes) -> OverSpeeds:
@@ -206,7 +198,7 @@ def _answer(
 ) -> None:
     """Find and show a result, and write its tables and figures into a folder, where one is named.
     Raises CrankcheckError for a folder that can not be written."""
-    folder, files = request.output, list(wanted.texts)
+    folder, files = request.output, list(wanted.contents)
     if folder is not None:
         files += wanted.figures.files
         check_folder(folder, "-o", files, inputs=[find_scene(request.scene)])
@@ -214,7 +206,11 @@ def _answer(
     wanted.show(console, found)
     if folder is None:
         return
-    for name, text in wanted.texts.items():
-        write(folder / name, text(found))
+    import pandas as pd
+
+    for name, content_of in wanted.contents.items():
+        content = content_of(found)
+        is_text = isinstance(content, str)
+        write(folder / name, content if is_text else csv(pd.DataFrame(content)))
     wanted.figures.written(found, folder)
     say_whole(console, f"{folder}: {', '.join(files)}")
