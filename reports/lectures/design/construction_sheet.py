@@ -166,7 +166,6 @@ def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
 
 
 def _in(view: ConstructionView, box: Box, column: Box, paper: Paper) -> ConstructionSheet:
-    """The sheet with its figure in one box, and its words in another."""
     scale, middle = box.fitted(view.shown, PADDING)
     half = scale * np.array([box.width, box.height]) / 2
     words = parts_of(view, [words for _, words in view.far(middle - half, middle + half)])

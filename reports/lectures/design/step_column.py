@@ -103,7 +103,6 @@ def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box
 
 
 def _hang(axes: Axes, part: ColumnPart, left: float, base: float) -> None:
-    """Draw the number or sample before a paragraph, on the base line of its first row."""
     if isinstance(part.before, Stroke):
         look = {"color": part.before.colour, "linewidth": part.before.width}
         line(axes, (left, base + 0.8), (left + SAMPLE_MM, base + 0.8), **look)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from rich.console import Console
 
@@ -13,13 +13,14 @@ from models.files.reading import find_scene, load_scene
 from reports.lectures.drawing.sheet_requests import ENDINGS, LogMap, SheetFile, save_sheet
 from reports.lectures.drawing.sheets import graph_drawing, graph_orders, graph_words
 from reports.lectures.drawing.sheets.graph_page import draw_graphs, laid_out
-from reports.lectures.drawing.sheets.graph_span import OVERS, Over, over_period
+from reports.lectures.drawing.sheets.graph_span import OVERS, over_period
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic, sheet_note
 from reports.output.console import say_whole
 from reports.output.write import check_file
 from reports.requests.options import Duration, PaperSize, SceneName, option
 
 LEAST_PARTS, MOST_PARTS, MOST_COUNTS = 4, 1440, 12
+Name = TypeVar("Name", bound=str)
 MOST_DIGITS = 9
 """Most digits of a number; longer ones are not parsed."""
 
@@ -47,7 +48,8 @@ class GraphRequest:
         """Show or draw graphs. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
         divisions = counts(self.divisions)
-        by, over = _method(self.by), _over(self.over)
+        by = _chosen("--by", self.by, METHODS, ", ")
+        over = _chosen("--over", self.over, OVERS, " or ")
         if self.map is not None and self.log is None:
             raise CrankcheckError(f"--map {self.map}: it is of a log; give --log as well")
         if self.output is not None:
@@ -71,7 +73,6 @@ class GraphRequest:
 def _tell_graphs(
     request: GraphRequest, console: Console, drawn: graph_drawing.DrawnGraphs, paper: Paper
 ) -> None:
-    """Draw the sheet, or show the table; then print the errors of graphs and log."""
     of = drawn.span
     told = (
         f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}"
@@ -126,15 +127,9 @@ def counts(text: str) -> Sequence[int]:
     return found
 
 
-def _method(text: str) -> Method:
-    for name in METHODS:
+def _chosen(option: str, text: str, names: Sequence[Name], between: str) -> Name:
+    """The name that a text is. Raises CrankcheckError for none of them."""
+    for name in names:
         if text == name:
             return name
-    raise CrankcheckError(f"--by {shown(text)}: unknown; use {', '.join(METHODS)}")
-
-
-def _over(text: str) -> Over:
-    for name in OVERS:
-        if text == name:
-            return name
-    raise CrankcheckError(f"--over {shown(text)}: unknown; use {' or '.join(OVERS)}")
+    raise CrankcheckError(f"{option} {shown(text)}: unknown; use {between.join(names)}")

@@ -1,13 +1,13 @@
 """`crankcheck polygon`: the vector polygons of a position."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 from analytic.lectures.drawings import drawn_polygons
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
@@ -44,13 +44,13 @@ def show_polygons(console: Console, sheet: PolygonSheet) -> None:
     for drawn in (sheet.velocity, sheet.acceleration):
         quantity, unit = drawn.polygon.quantity, UNITS[drawn.polygon.quantity]
         say_whole(console, f"\n{quantity} polygon, {readable(drawn.scale)} {unit} to the mm")
-        console.print(_vectors(drawn))
+        heads = ("vector", f"{unit}:", "mm:", "towards deg:", "found")
+        console.print(grid(heads, _vector_rows(drawn)))
         if drawn.polygon.largest == 0.0:
             say_whole(console, polygon_table.at_rest(quantity))
-        _show_log(console, drawn, sheet)
+        _show_log(console, drawn)
     _show_links(console, sheet)
-    for told in polygon_table.doubts(sheet.drawn):
-        say_whole(console, told)
+    say_whole(console, *polygon_table.doubts(sheet.drawn))
 
 
 def _heading(sheet: PolygonSheet) -> str:
@@ -66,17 +66,17 @@ def _heading(sheet: PolygonSheet) -> str:
     )
 
 
-def _vectors(drawn: DrawnPolygon) -> Table:
-    unit = UNITS[drawn.polygon.quantity]
-    table = grid(("vector", f"{unit}:", "mm:", "towards deg:", "found"))
+def _vector_rows(drawn: DrawnPolygon) -> Iterator[tuple[str, ...]]:
     for vector in drawn.polygon.vectors:
         size = drawn.size_of(vector)
-        table.add_row(
-            vector.name, f"{size:.7g}", f"{size / drawn.scale:.2f}",
-            _towards(vector.value if size else np.zeros(2)),
-            f"by crossing, {vector.direction}" if vector.direction else "known",
-        )  # fmt: skip
-    return table
+        towards = _towards(vector.value if size else np.zeros(2))
+        found = f"by crossing, {vector.direction}" if vector.direction else "known"
+        yield vector.name, *_sizes(size, drawn), towards, found
+
+
+def _sizes(size: float, drawn: DrawnPolygon) -> tuple[str, str]:
+    """A length in its unit, and on paper [mm]."""
+    return f"{size:.7g}", f"{size / drawn.scale:.2f}"
 
 
 def _towards(vector: Array) -> str:
@@ -85,7 +85,7 @@ def _towards(vector: Array) -> str:
     return f"{math.degrees(math.atan2(y, x)):.3f}" if np.any(vector) else "-"
 
 
-def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> None:
+def _show_log(console: Console, drawn: DrawnPolygon) -> None:
     if drawn.logged is None:
         return
     unit = UNITS[drawn.polygon.quantity]
@@ -94,32 +94,26 @@ def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> Non
         return
     say_whole(console, f"\n{drawn.logged_by}: {drawn.logged.words} on the sheet")
     heads = (unit, "mm", f"logged {unit}", "mm", f"error {unit}", "mm", "towards deg")
-    table = grid(("point", *(f"{head}:" for head in heads)))
+    rows = []
     for name, size, own, error in drawn.logged_sizes():
-        off = float(np.hypot(*error))
-        table.add_row(
-            name,
-            f"{size:.7g}", f"{size / drawn.scale:.2f}", f"{own:.7g}", f"{own / drawn.scale:.2f}",
-            readable(off * drawn.scale), readable(off), _towards(error),
-        )  # fmt: skip
-    console.print(table)
+        off, sizes = float(np.hypot(*error)), (*_sizes(size, drawn), *_sizes(own, drawn))
+        rows.append((name, *sizes, readable(off * drawn.scale), readable(off), _towards(error)))
+    console.print(grid(("point", *(f"{head}:" for head in heads)), rows))
 
 
 def _show_links(console: Console, sheet: PolygonSheet) -> None:
-    rates = grid(("link", "omega rad/s:", "alpha rad/s^2:"))
-    for name in polygon_table.drawn_links(sheet.drawn):
-        rates.add_row(
-            name, *(f"{rate:.7g}" for rate in drawn_polygons.link_rates(sheet.drawn, name))
-        )
-    console.print("", rates, sep="\n")
-    images = grid(("image of", "in velocities", "in accelerations"))
-    for name in polygon_table.drawn_links(sheet.drawn):
-        words = (
-            polygon_table.image_words(sheet.drawn, name, quantity)
-            for quantity in drawn_polygons.QUANTITIES
-        )
-        images.add_row(name, *words)
-    console.print("", images, sep="\n")
+    drawn, links = sheet.drawn, polygon_table.drawn_links(sheet.drawn)
+    rates = (
+        (name, *(f"{rate:.7g}" for rate in drawn_polygons.link_rates(drawn, name)))
+        for name in links
+    )
+    console.print("", grid(("link", "omega rad/s:", "alpha rad/s^2:"), rates), sep="\n")
+    quantities = drawn_polygons.QUANTITIES
+    images = (
+        (name, *(polygon_table.image_words(drawn, name, each) for each in quantities))
+        for name in links
+    )
+    console.print("", grid(("image of", "in velocities", "in accelerations"), images), sep="\n")
 
 
 LEAST_K, MOST_K = 1e-3, 1e3
@@ -173,9 +167,8 @@ class PolygonRequest:
         else:
             raw = turning_file(sheet, steady=steady) if self.turn else polygon_file(sheet, ending)
         write(self.output, raw)
-        told = f"{self.output}: {_told(sheet, self)}"
-        say_whole(console, told)
-        _tell_doubts(console, sheet.drawn)
+        say_whole(console, f"{self.output}: {_told(sheet, self)}")
+        say_whole(console, *polygon_table.doubts(sheet.drawn))
         return 0
 
 
@@ -240,8 +233,3 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
         f"velocities and accelerations of {name} {of}{beside}, on {sheet.paper.width:g} x "
         f"{sheet.paper.height:g} mm"
     )
-
-
-def _tell_doubts(console: Console, drawn: drawn_polygons.DrawnPolygons) -> None:
-    for told in polygon_table.doubts(drawn):
-        say_whole(console, told)

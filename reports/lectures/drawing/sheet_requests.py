@@ -11,12 +11,12 @@ from analytic.lectures.chains.assur_groups import Mechanism, inversions
 from analytic.lectures.chains.chain import Chain, assortment_in_words, assortments
 from analytic.lectures.chains.chain_synthesis import chain_names, chains, type_in_letters, types
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
+from analytic.lectures.drawings.instant_centres import CentreCircle, CurvatureCircles
 from analytic.lectures.drawings.placed_mechanism import DriverState
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
-from models.scene import Scene
 from reports.describe.facts import angle_at, driver_at
 from reports.lectures.drawing.sheets.centre_sheet import (
     CentreSheet,
@@ -30,7 +30,7 @@ from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions
 from reports.lectures.drawing.sheets.scheme import sense_of_law
 from reports.output.console import grid, say, say_whole
-from reports.output.numbers import roman
+from reports.output.numbers import count, roman
 from reports.output.write import check_file, crankcheck_version, write
 from reports.requests.options import PaperSize, SceneName, option, output_option
 
@@ -52,18 +52,13 @@ class PositionsRequest:
 
     def run(self, console: Console, progress: Console) -> int:
         """Draw positions. Raises CrankcheckError for a faulty request."""
-        paper = _checked(self.scene, self.output, self.paper)
+        check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
+        paper = Paper.of(self.paper)
         scene = load_scene(self.scene)
         sheet = positions(scene, self.divisions, paper)
         told = f"{self.divisions} positions of {scene.name}, K_l = {sheet.scale:g} m/mm"
         save_sheet(console, draw_positions(sheet, sheet_note(scene)), self.output, told)
         return 0
-
-
-def _checked(scene: str, output: Path, paper: str) -> Paper:
-    """The paper; refuses a file that could not be written."""
-    check_file(output, "-o", ENDINGS, inputs=[find_scene(scene)])
-    return Paper.of(paper)
 
 
 def save_sheet(console: Console, canvas: Canvas, path: Path, told: str) -> None:
@@ -92,7 +87,8 @@ class CentresRequest:
         scene = load_scene(self.scene)
         refuse_other_than_cranked(scene, "a sheet of instant centres", analyse(scene))
         # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
-        drawn = draw_polygons(scene, DriverState(_angle(scene, self.at_deg), sense_of_law(scene)))
+        angle = angle_at(self.at_deg) if scene.is_free else driver_at(scene, self.at_deg)[0]
+        drawn = draw_polygons(scene, DriverState(angle, sense_of_law(scene)))
         sheet = centres_of(drawn, self.link, paper)
         if self.output is not None:
             told = f"instant centres of {scene.name} at {self.at_deg:g} deg"
@@ -102,47 +98,44 @@ class CentresRequest:
         return 0
 
 
-def _angle(scene: Scene, at_deg: float) -> float:
-    """The driver's angle [rad]. Raises CrankcheckError for an angle that its law never reaches."""
-    return angle_at(at_deg) if scene.is_free else driver_at(scene, at_deg)[0]
-
-
 def _show(console: Console, sheet: CentreSheet) -> None:
     numbers = body_numbers(sheet.drawn)
     bodies = ", ".join(f"{k} {body}" for body, k in numbers.items())
     say(console, f"bodies: {bodies}")
-    table = grid(("centre", "x m:", "y m:", "found"))
+    rows = []
     ranked = sorted(sheet.centres.items(), key=lambda each: sorted(numbers[b] for b in each[0]))
     for pair, centre in ranked:
         crossing = " and ".join(
             " ".join(centre_name(each, numbers) for each in pairs) for pairs in centre.by
         )
         found = f"where {crossing} cross" if crossing else "a joint"
-        table.add_row(centre_name(pair, numbers), *_place(centre.place), found)
-    console.print(table)
+        rows.append((centre_name(pair, numbers), *_place(centre.place), found))
+    console.print(grid(("centre", "x m:", "y m:", "found"), rows))
     if sheet.circles is not None:
-        _show_circles(console, sheet)
+        _show_circles(console, sheet.link, sheet.circles)
 
 
 def _place(place: Array | None) -> tuple[str, str]:
     return ("at infinity", "") if place is None else (f"{place[0]:.8g}", f"{place[1]:.8g}")
 
 
-def _show_circles(console: Console, sheet: CentreSheet) -> None:
-    circles = sheet.circles
-    assert circles is not None
-    table = grid((f"of {sheet.link}, driver steady", "x m:", "y m:", "radius m:"))
-    table.add_row("velocity pole P", *_place(circles.pole), "")
-    table.add_row("acceleration pole Q", *_place(circles.acceleration_pole), "")
-    for name, circle in (
-        ("inflection circle, middle", circles.inflection),
-        ("second circle of Bresse, middle", circles.still_speed),
-    ):
-        if circle is None:
-            table.add_row(name, "a straight line, as its alpha is 0", "", "")
-        else:
-            table.add_row(name, *_place(circle.middle), f"{circle.radius:.8g}")
-    console.print("", table, sep="\n")
+def _show_circles(console: Console, link: str, circles: CurvatureCircles) -> None:
+    second = circles.still_speed
+    rows = [
+        ("velocity pole P", *_place(circles.pole), ""),
+        ("acceleration pole Q", *_place(circles.acceleration_pole), ""),
+        ("inflection circle, middle", *_circle(circles.inflection)),
+        (
+            "second circle of Bresse, middle",
+            *(_circle(second) if second else ("a straight line, as its alpha is 0", "", "")),
+        ),
+    ]
+    heads = (f"of {link}, driver steady", "x m:", "y m:", "radius m:")
+    console.print("", grid(heads, rows), sep="\n")
+
+
+def _circle(circle: CentreCircle) -> tuple[str, str, str]:
+    return *_place(circle.middle), f"{circle.radius:.8g}"
 
 
 MOST_TYPED = 8
@@ -207,8 +200,7 @@ def _asked(request: ChainsRequest) -> Iterator[tuple[str, Chain]]:
 def _rows(request: ChainsRequest, name: str, chain: Chain) -> Iterator[DrawnChain]:
     """The listed or drawn rows of a chain: itself, or its mechanisms."""
     if not request.inversions:
-        many = len(inversions(chain, name))
-        counted = f"{many} mechanism{'s' if many > 1 else ''}"
+        counted = count(len(inversions(chain, name)), "mechanism")
         yield DrawnChain(chain, name, f"{assortment_in_words(chain.assortment)}; {counted}")
         return
     for mechanism in inversions(chain, name):
@@ -227,15 +219,14 @@ def _show_chains(console: Console, request: ChainsRequest, rows: list[DrawnChain
     heads = ["chain", "links"]
     if request.inversions:
         heads = ["mechanism", "ground", "by its drivers"]
-    table = grid((*heads, "joints of links, sliders with *"))
+    cells = []
     for row in rows:
         ground = [] if row.ground is None else [f"link {row.ground + 1}"]
         joints = " ".join(
-            f"{a + 1}-{b + 1}{'*' if (a, b) in row.chain.sliders else ''}"
-            for a, b in row.chain.joints
+            f"{a + 1}-{b + 1}{'*' * ((a, b) in row.chain.sliders)}" for a, b in row.chain.joints
         )
-        table.add_row(row.name, *ground, row.words, joints)
-    console.print(table)
+        cells.append((row.name, *ground, row.words, joints))
+    console.print(grid((*heads, "joints of links, sliders with *"), cells))
 
 
 def _show_assortments(console: Console, request: ChainsRequest, every: list[Chain]) -> None:

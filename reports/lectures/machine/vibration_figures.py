@@ -43,7 +43,6 @@ def _coloured(links: Iterable[str]) -> dict[str, str]:
 
 
 def _entry(words: str, **look: Any) -> tuple[Artist, str]:
-    """A line and its words in a legend."""
     return Line2D([], [], **look), words
 
 

@@ -27,7 +27,7 @@ from reports.lectures.drawing.sheets.paper import (
     line,
     write_middle,
 )
-from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
+from reports.lectures.drawing.sheets.scheme import draw_block, draw_scheme, extent_of, point_letters
 
 PIN_MM, BLOCK_MM = 0.75, (3.4, 2.2)
 HATCH_MM, EVERY_MM = 1.1, 1.1
@@ -50,7 +50,10 @@ def draw_chain(
             _plate(axes, corners, is_ground=link == ground)
     for joint in chain.joints:
         if joint in chain.sliders:
-            _block(axes, at[joint], _along(chain, joint, at))
+            place, along = at[joint], _along(chain, joint, at)
+            draw_block(axes, place, along, BLOCK_MM, FRONT)
+            half = 0.5 * BLOCK_MM[0] * along
+            line(axes, place - half, place + half, linewidth=0.5, zorder=FRONT)
         else:
             axes.add_patch(
                 Circle(tuple(at[joint]), PIN_MM, fc="white", ec=INK, lw=0.7, zorder=FRONT)
@@ -82,15 +85,6 @@ def _strokes(axes: Axes, ends: Array, middle: Array) -> None:
     for share in np.linspace(0.0, 1.0, max(int(length / EVERY_MM), 2) + 1)[1:-1]:
         at = ends[0] + share * along
         line(axes, at, at + stroke, linewidth=0.45)
-
-
-def _block(axes: Axes, place: Array, along: Array) -> None:
-    """Draw a slider: a block on the bar that it slides on."""
-    half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
-    signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
-    corners = [place + a * half + b * aside for a, b in signs]
-    axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=0.8, zorder=FRONT))
-    line(axes, place - half, place + half, linewidth=0.5, zorder=FRONT)
 
 
 def _along(chain: Chain, joint: Joint, at: Mapping[Joint, Array]) -> Array:

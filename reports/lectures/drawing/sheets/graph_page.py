@@ -66,7 +66,6 @@ def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None
 
 
 def _names(sheet: GraphSheet) -> list[str]:
-    """Labels of the divisions: their numbers, or the angles of the driver."""
     of, parts = sheet.drawn.span, sheet.drawn.parts
     if of.over == "time":
         return [str(k) for k in range(parts + 1)]
@@ -74,7 +73,6 @@ def _names(sheet: GraphSheet) -> list[str]:
 
 
 def _write_values(axes: Axes, panel: Panel) -> None:
-    """Write round values on an axis right of the graph."""
     right, bottom = panel.box.right + 2.0, panel.box.bottom
     line(axes, (right, bottom), (right, panel.box.top), linewidth=0.4, color=QUIET)
     step = round_scale(VALUES_APART_MM * panel.scale, 1.0)

@@ -157,7 +157,6 @@ def graph_sheet(drawn: DrawnGraphs, paper: Paper, table_mm: float) -> GraphSheet
 
 
 def _panels(drawn: DrawnGraphs, scale_x: float, boxes: list[Box]) -> tuple[Panel, ...]:
-    """The graphs in their boxes, the read graph at the top."""
     axes = _axis_of_places(drawn), 0.0, 0.0
     reaches = [_reach(drawn, order, axes[order]) for order in ORDERS]
     first, second, third = (high - low for low, high in reaches)

@@ -223,7 +223,6 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
 
 
 def _missing(drawn: Sequence[drawn_polygons.DrawnPolygons]) -> str:
-    """The number of instants at which polygons are not determined, in words."""
     some = sum(bool(each.undetermined) for each in drawn)
     return f"At {count(some, 'instant')} of {len(drawn)} not all is determined." if some else ""
 
@@ -283,7 +282,6 @@ def _images(polygon: Polygon, points: Sequence[str]) -> list[list[int]]:
 
 
 def _box(rows: Array, places: Array) -> list[float]:
-    """The corners of the box around the polygon at all instants."""
     xs = np.concatenate([rows[::2].ravel(), places[::2].ravel(), [0.0]])
     ys = np.concatenate([rows[1::2].ravel(), places[1::2].ravel(), [0.0]])
     return [np.nanmin(xs), np.nanmin(ys), np.nanmax(xs), np.nanmax(ys)]

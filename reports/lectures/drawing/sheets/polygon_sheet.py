@@ -226,7 +226,6 @@ def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
 
 
 def _logged(sheet: PolygonSheet) -> dict[str, str]:
-    """The words on a log in the boxes where it is drawn."""
     log, misplaced = sheet.log, sheet.misplaced
     if log is None or misplaced is None:
         return {}
@@ -242,7 +241,6 @@ def _logged(sheet: PolygonSheet) -> dict[str, str]:
 
 
 def _letters(sheet: PolygonSheet) -> dict[str, list[Letter]]:
-    """The letters of the scheme and of both polygons."""
     placement = sheet.drawn.placement
     places = {name: sheet.place(at) for name, at in placement.points.items()}
     of_scheme = point_letters(placement, places)

@@ -150,7 +150,6 @@ def _parts(column: list[Row], size: float) -> tuple[float, float]:
 
 
 def _width(column: list[Row], size: float) -> float:
-    """The width of a column [mm]."""
     name, on_paper = _parts(column, size)
     return max(
         name + on_paper + 2 * GAP / 2 + width_in(row.value, size) * MM_PER_IN

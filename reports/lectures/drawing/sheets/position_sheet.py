@@ -82,7 +82,6 @@ def _points(scene: Scene, angles: Array) -> dict[str, Array]:
 
 
 def _check_apart(sheet: PositionSheet, divisions: int) -> None:
-    """Refuse divisions that fall together on the paper. Raises CrankcheckError."""
     apart = max(
         float(np.hypot(*np.diff(sheet.at(sheet.points[name])[:2], axis=0)[0]))
         for name in _driven(sheet.scene)
@@ -159,7 +158,6 @@ def _arc(axes: Axes, centre: Array, through: Array) -> None:
 
 
 def _letters(sheet: PositionSheet) -> list[Letter]:
-    """Letters of points in the first position, numbers on the driver's path, names of loci."""
     spots = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
     letters = scheme.point_letters(sheet.placement, spots)
     pivot = sheet.scene.driver_pivot if sheet.scene.driver.is_crank else ""
