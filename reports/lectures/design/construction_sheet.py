@@ -10,14 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle as Round
 
-from analytic.lectures.synthesis.design import (
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    DrawnCurve,
-    Element,
-    Proposal,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
 from models.errors import CrankcheckError
@@ -59,7 +52,7 @@ NUMBERED, NUMBER_PLACES = 2, 14
 
 
 def dot_letters(
-    steps: Sequence[DrawingStep],
+    steps: Sequence[design.DrawingStep],
     points: Mapping[str, Array],
     at: Callable[[Array], Array],
     box: Box,
@@ -67,7 +60,7 @@ def dot_letters(
     """The letters of all dots in the box, and of those of the mechanism's ``points`` [m] without a
     letter: C1 is also the letter of a point C in the first position."""
     low, high = box.corners
-    dots = [each for step in steps for each in step.elements if isinstance(each, Dot)]
+    dots = [each for step in steps for each in step.elements if isinstance(each, design.Dot)]
     named = [(dot.letter, at(xy(dot.place)), dot.look) for dot in dots if dot.letter]
     named += [(name, at(place), "result") for name, place in points.items()]
     spots: list[tuple[list[str], Array, str]] = []
@@ -86,13 +79,13 @@ def dot_letters(
 
 
 def step_numbers(
-    steps: Sequence[DrawingStep], drawn: Mapping[int, Sequence[Array]]
+    steps: Sequence[design.DrawingStep], drawn: Mapping[int, Sequence[Array]]
 ) -> list[Letter]:
     """The number of each step at its longest lines [mm], links excepted; ``drawn`` are the lines of
     elements, by their identity."""
     letters = []
     for number, step in enumerate(steps, 1):
-        every = [each for each in step.elements if not isinstance(each, Dot)]
+        every = [each for each in step.elements if not isinstance(each, design.Dot)]
         some = [each for each in every if each.look != "result"]
         longest = sorted(
             ((max(map(_length, lines)), each) for each in some if (lines := drawn[id(each)])),
@@ -100,7 +93,7 @@ def step_numbers(
         )
         for _, each in longest[:NUMBERED]:
             line = max(drawn[id(each)], key=_length)
-            colour = look_of(each, steps).colour if isinstance(each, DrawnCurve) else QUIET
+            colour = look_of(each, steps).colour if isinstance(each, design.DrawnCurve) else QUIET
             letters.append(Letter(f"({number})", _along(line), 0.1, NUMBER, colour))
     return letters
 
@@ -144,7 +137,7 @@ class ConstructionSheet(ToScale):
         return self.middle - half, self.middle + half
 
 
-def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
+def laid_out(proposed: Examined | design.Proposal, paper: Paper) -> ConstructionSheet:
     """The construction of a mechanism on paper, with the words of its steps on the right, or below
     on paper that is higher than wide.
 
@@ -192,7 +185,7 @@ def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     return boxes
 
 
-def construction_sheet(proposed: Examined | Proposal, paper: Paper) -> Canvas:
+def construction_sheet(proposed: Examined | design.Proposal, paper: Paper) -> Canvas:
     """The sheet of a construction on paper. Raises CrankcheckError as `laid_out`."""
     sheet = laid_out(proposed, paper)
     return draw_construction(sheet, sheet_note(sheet.view.examined.scene))
@@ -223,14 +216,18 @@ def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
     return canvas
 
 
-def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> list[Array]:
+def _draw(axes: Axes, sheet: ConstructionSheet, element: design.Element, gid: str) -> list[Array]:
     """Draw an element of a step; return its lines on the sheet [mm]."""
-    if isinstance(element, Dot):
+    if isinstance(element, design.Dot):
         _draw_dot(axes, sheet, element, gid)
         return []
     look = look_of(element, sheet.view.steps)
     lines = [sheet.at(part) for part in strokes(element, *sheet.cut)]
-    if isinstance(element, DrawnCircle) and element.arc is None and _is_whole(sheet, element):
+    if (
+        isinstance(element, design.DrawnCircle)
+        and element.arc is None
+        and _is_whole(sheet, element)
+    ):
         # a drawing program is to have it as a circle
         middle, radius = sheet.at(xy(element.centre)), element.radius / sheet.scale
         axes.add_patch(
@@ -242,13 +239,15 @@ def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> l
     return lines
 
 
-def _is_whole(sheet: ConstructionSheet, circle: DrawnCircle) -> bool:
+def _is_whole(sheet: ConstructionSheet, circle: design.DrawnCircle) -> bool:
     low, high = sheet.cut
     middle = xy(circle.centre)
-    return bool(np.all((middle - circle.radius > low) & (middle + circle.radius < high)))
+    return circle.arc is None and bool(
+        np.all((middle - circle.radius > low) & (middle + circle.radius < high))
+    )
 
 
-def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: Dot, gid: str) -> None:
+def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: design.Dot, gid: str) -> None:
     """Draw a point as a small circle, a pivot of the ground on its foot; nothing off the paper."""
     low, high = sheet.cut
     place = xy(dot.place)

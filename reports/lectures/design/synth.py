@@ -20,15 +20,7 @@ from models.errors import CrankcheckError, shown
 from models.lectures.shipped_tables import TaskTable, table_of
 from models.lectures.tasks import KINDS, load_task, refuse_unknown, shipped_tasks
 from models.scene import Scene
-from reports.lectures.design.design_tables import (
-    clearance_in_words,
-    counted,
-    proof_frame,
-    proof_table,
-    sensitivity_table,
-    solution_frame,
-    solution_table,
-)
+from reports.lectures.design import design_tables
 from reports.lectures.design.proof import Met, by_reference, limit_of, proven
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.output.console import grid, say
@@ -100,8 +92,8 @@ class SynthRequest:
         solutions = _searched(task, console)
         listed = solutions.examined[: self.best]
         say(console, f"{task.name}: {task.source}")
-        say(console, counted(solutions, len(listed)))
-        console.print("", solution_table(listed), sep="\n")
+        say(console, design_tables.counted(solutions, len(listed)))
+        console.print("", design_tables.solution_table(listed), sep="\n")
         if self.vary_m is not None:
             _show_sensitivity(console, solutions, task, self.vary_m)
         proofs = {
@@ -121,7 +113,7 @@ class SynthRequest:
         if self.prove:
             _show_proof(console, proofs, facts, self)
         if self.output is not None:
-            told = counted(solutions, len(listed))
+            told = design_tables.counted(solutions, len(listed))
             _write(self.output, listed, task, told, proofs, facts, paper, console)
         met = all(one.within for every in proofs.values() for one in every)
         return 0 if solutions.sound and met else 1
@@ -172,8 +164,9 @@ def _show_sensitivity(
     except CrankcheckError as error:
         say(console, f"\nno sensitivity: {error}")
         return
-    console.print("", sensitivity_table(slopes, limits, tolerance_m, spread), sep="\n")
-    say(console, clearance_in_words(slopes, limits, spread))
+    table = design_tables.sensitivity_table(slopes, limits, tolerance_m, spread)
+    console.print("", table, sep="\n")
+    say(console, design_tables.clearance_in_words(slopes, limits, spread))
 
 
 def _show_proof(
@@ -182,7 +175,7 @@ def _show_proof(
     if not proofs:
         say(console, "\nnothing to prove: no solution listed is without a defect")
         return
-    console.print("", proof_table(proofs), sep="\n")
+    console.print("", design_tables.proof_table(proofs), sep="\n")
     within = all(one.within for every in proofs.values() for one in every)
     verdict = "PROVEN: every position is met" if within else "NOT PROVEN: a position is missed"
     say(console, f"\n{verdict}")
@@ -212,9 +205,9 @@ def _write(
     texts: dict[str, str | bytes] = {
         scene_name(number): one.text for number, one in enumerate(listed, 1)
     }
-    texts[FRAME] = csv(solution_frame(listed))
+    texts[FRAME] = csv(design_tables.solution_frame(listed))
     if proofs:
-        texts[PROOF] = csv(proof_frame(proofs))
+        texts[PROOF] = csv(design_tables.proof_frame(proofs))
     for number, one in enumerate(listed, 1):
         title = f"{one.scene.name}: construction"
         sheet = construction_sheet(one, paper)
@@ -259,7 +252,7 @@ class Synthesis(Shown):
 
     def frame(self) -> pd.DataFrame:
         """Table of solutions, a row each, including those with a defect."""
-        return solution_frame(self.details.examined)
+        return design_tables.solution_frame(self.details.examined)
 
     def proof(self, engine: str, profile: str = "tuned", *, best: int = 1) -> pd.DataFrame:
         """Prove the best sound solutions in an engine: a row for each requirement at each position.
@@ -271,14 +264,14 @@ class Synthesis(Shown):
         """
         found = enumerate(self.details.examined, 1)
         sound = [(number, one) for number, one in found if not one.defects][:best]
-        return proof_frame(
+        return design_tables.proof_frame(
             {number: proven(one, self.details.task, engine, profile) for number, one in sound}
         )
 
     def show(self, console: Console) -> None:
         listed = self.details.examined[:LISTED]
-        say(console, counted(self.details, len(listed)))
-        console.print("", solution_table(listed), sep="\n")
+        say(console, design_tables.counted(self.details, len(listed)))
+        console.print("", design_tables.solution_table(listed), sep="\n")
 
 
 @told_at_the_call
