@@ -31,6 +31,7 @@ from reports.lectures.drawing.sheets.polygon_page import (
     turning_file,
 )
 from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
+from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.map_file import Map, read_map
 from reports.output.console import grid, say_whole
 from reports.output.numbers import readable
@@ -207,7 +208,8 @@ def _logged(scene: Scene, request: PolygonRequest) -> polygon_instant.LoggedInst
     if request.log is None:
         return None
     map_ = read_map(request.map) if request.map else Map()
-    instants = polygon_instant.LogInstants.of_file(scene, request.log, map_)
+    beside = SheetLog.of_file(scene, request.log, map_, "polygons")
+    instants = polygon_instant.LogInstants.of(beside)
     if request.at_s is not None:
         return instants.at_time(request.at_s)
     return instants.at_angle(polygon_instant.AT_DEG if request.at_deg is None else request.at_deg)
