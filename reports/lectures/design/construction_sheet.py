@@ -24,12 +24,7 @@ from reports.lectures.design.construction_view import (
     strokes,
     xy,
 )
-from reports.lectures.design.step_column import (
-    ColumnPart,
-    height_of,
-    parts_of,
-    write_column,
-)
+from reports.lectures.design.step_column import ColumnPart, height_of, parts_of, write_column
 from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
 from reports.lectures.drawing.sheets.paper import (
     MARGIN,

@@ -104,7 +104,7 @@ def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box
 
 def _hang(axes: Axes, part: ColumnPart, left: float, base: float) -> None:
     if isinstance(part.before, Stroke):
-        look = {"color": part.before.colour, "linewidth": part.before.width}
-        line(axes, (left, base + 0.8), (left + SAMPLE_MM, base + 0.8), **look)
+        start, end, stroke = (left, base + 0.8), (left + SAMPLE_MM, base + 0.8), part.before
+        line(axes, start, end, color=stroke.colour, linewidth=stroke.width)
     elif part.before:
         text(axes, left, base, part.before, SMALL, color=QUIET)

@@ -13,6 +13,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
+from numpy.typing import ArrayLike
 
 from analytic.lectures.vibration.floquet import STABLE
 from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds, spectra
@@ -51,15 +52,15 @@ def _mark_orders(axes: Axes, scene: Scene) -> None:
     axes.set_xlabel(f"order of {scene.driver.link}")
 
 
-def _field(axes: Axes, x: Array, y: Array, values: Array, **look: Any) -> QuadMesh:
+def _field(axes: Axes, x: ArrayLike, y: Array, values: Array, **look: Any) -> QuadMesh:
     """Draw the values at places of a grid as colours."""
     axes.grid(visible=False)
     return axes.pcolormesh(x, y, values, shading="nearest", rasterized=True, **look)
 
 
-def _add_scale(axes: Axes, field: QuadMesh, words: str) -> None:
+def _add_scale(figure: Figure, axes: Axes, field: QuadMesh, words: str) -> None:
     """Draw the scale of a field's colours on its right."""
-    bar = axes.get_figure().colorbar(field, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)))
+    bar = figure.colorbar(field, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)))
     bar.set_label(f"log₁₀ {words}", size=SMALL)
 
 
@@ -143,7 +144,7 @@ def draw_waterfall(over: OverSpeeds) -> Figure:
         panel.set_xlim(-0.5, orders[-1] + 0.5)
         panel.set_ylim(over.speeds[0], over.speeds[-1])
         _mark_orders(panel, scene)
-        _add_scale(panel, field, "amplitude / length")
+        _add_scale(figure, panel, field, "amplitude / length")
     axes[0].set_ylabel(f"speed of {scene.driver.link} [rad/s]")
     return figure
 
@@ -179,7 +180,7 @@ def draw_over_inertia(found: InertiaMap) -> Figure:
         panel.set_yticks(np.log10(ticks), [f"{tick:.3g}" for tick in ticks])
         panel.set_xlabel(f"lowest natural frequency / speed of {driver}")
         panel.set_ylabel(f"{found.link}, times its inertia")
-        _add_scale(panel, field, words)
+        _add_scale(figure, panel, field, words)
     return figure
 
 

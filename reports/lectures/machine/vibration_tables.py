@@ -9,6 +9,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from rich.console import Console
 
 from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds
@@ -27,16 +28,16 @@ Rows = list[dict[str, object]]
 def show_vibration(console: Console, vibration: SteadyVibration) -> None:
     """Print a vibration."""
     say(console, f"{vibration_rows.heading(vibration)}\n")
-    heads = ("natural frequency of", "", "mode", "rad/s", "Hz", "over speed")
-    _show(console, heads, (
+    links = ("natural frequency of", "", "mode", "rad/s", "Hz", "over speed")
+    _show(console, links, (
         (own.link, own.kind, str(own.number),
          *map(_digits, (own.frequency_rad_s, own.frequency_rad_s / math.tau, own.ratio)))
         for own in vibration_rows.link_rows(vibration)
     ))  # fmt: skip
-    heads = (
+    modes = (
         "mechanism, mode", "rad/s, least", "most", "over speed", "order", "from whole", "multiplier"
     )  # fmt: skip
-    _show(console, heads, (
+    _show(console, modes, (
         (str(row.mode),
          *map(_digits, (row.least_rad_s, row.most_rad_s, row.ratio, row.order)),
          readable(abs(row.order - round(row.order))) if math.isfinite(row.order) else NONE,
@@ -133,10 +134,10 @@ def natural_columns(vibration: SteadyVibration) -> Mapping[str, Array]:
     return {f"{driver.link}_theta_rad": angles} | modes
 
 
-def spectrum_columns(vibration: SteadyVibration) -> Mapping[str, Array]:
+def spectrum_columns(vibration: SteadyVibration) -> Mapping[str, ArrayLike]:
     """Amplitudes over orders: of middles, or of extensions of links that only stretch."""
     each = {f"{name}_m": own.amplitudes for name, own in vibration.swings.items()}
-    return {"order": np.arange(len(next(iter(each.values()))))} | each
+    return {"order": np.arange(len(next(iter(each.values())))), **each}
 
 
 def speeds_rows(over: OverSpeeds) -> Rows:

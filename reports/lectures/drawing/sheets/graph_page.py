@@ -11,12 +11,7 @@ from analytic.lectures.drawings.graphical import Plotted, ThreeGraphs
 from reports.figures.style import INK, LARGE, QUIET, SMALL, TINY, cut, width_in
 from reports.lectures.drawing.sheets import graph_words
 from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
-from reports.lectures.drawing.sheets.graph_sheet import (
-    CAPTION_MM,
-    GraphSheet,
-    Panel,
-    graph_sheet,
-)
+from reports.lectures.drawing.sheets.graph_sheet import CAPTION_MM, GraphSheet, Panel, graph_sheet
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
     Canvas,
@@ -249,8 +244,9 @@ def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
         text(axes, x, base, words, TINY, color=QUIET)
         x -= 10.0
         if width:
-            look = {"linewidth": width, "linestyle": DASHED if color == LOGGED else "-"}
-            line(axes, (x, base + 0.6), (x + 8.0, base + 0.6), color=color, **look)
+            ends = (x, base + 0.6), (x + 8.0, base + 0.6)
+            style = DASHED if color == LOGGED else "-"
+            line(axes, *ends, color=color, linewidth=width, linestyle=style)
         if marker:
             look = {"mfc": "none", "mec": color, "mew": 0.5} if marker == "D" else {"mew": 0.0}
             axes.plot(x + 4.0, base + 0.6, marker=marker, ms=1.8, color=color, **look)

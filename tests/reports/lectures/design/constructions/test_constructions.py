@@ -26,11 +26,7 @@ from reports.lectures.design.construction_view import (
     strokes,
     xy,
 )
-from reports.lectures.design.pages import (
-    INSTANTS,
-    MOVES,
-    construction_page,
-)
+from reports.lectures.design.pages import INSTANTS, MOVES, construction_page
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
     Canvas,
