@@ -256,9 +256,9 @@ def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
 def _along(sheet: GraphSheet) -> str:
     of = sheet.drawn.span
     part = (of.end - of.start) / sheet.drawn.parts
-    name, unit = (
-        ("time", "s") if of.over == "time" else (f"angle of {of.scene.driver.joint}", "deg")
-    )
+    name, unit = f"angle of {of.scene.driver.joint}", "deg"
+    if of.over == "time":
+        name, unit = "time", "s"
     since = f" from {of.start:.6g} s on" if of.start and not of.analogues else ""
     return (
         f"along: {name}{since}, {readable(of.shown * sheet.scale_x)} {unit} per mm; a part is "

@@ -234,12 +234,9 @@ def _embedded(
     every = [each.velocity if quantity == "velocity" else each.acceleration for each in drawn]
     whole = max(every, key=lambda each: (len(each.steps), len(each.vectors)))
     vectors = {vector.name: vector for each in [whole, *every] for vector in each.vectors}
-    step_of = {
-        v.name: n for each in every for n, step in enumerate(each.steps) for v in step.vectors
-    }
-    node_of = {
-        name: n for each in every for n, step in enumerate(each.steps) for name in step.nodes
-    }
+    steps = [numbered for each in every for numbered in enumerate(each.steps)]
+    step_of = {vector.name: n for n, step in steps for vector in step.vectors}
+    node_of = {name: n for n, step in steps for name in step.nodes}
     points = [name for name in whole.ends if name in node_of or np.any(whole.ends[name])]
     row_of = {name: 4 * number for number, name in enumerate(vectors)}
     rows = np.full((4 * len(vectors), len(every)), np.nan)
@@ -293,7 +290,6 @@ def _links(drawn: Sequence[drawn_polygons.DrawnPolygons]) -> dict[str, object]:
     rows = np.full((2 * len(names), len(drawn)), np.nan)
     for at, each in enumerate(drawn):
         for number, name in enumerate(names):
-            if name not in each.rates:
-                continue
-            rows[2 * number : 2 * number + 2, at] = drawn_polygons.link_rates(each, name)
+            if name in each.rates:
+                rows[2 * number : 2 * number + 2, at] = drawn_polygons.link_rates(each, name)
     return {"names": names, "rows": packed(rows)}
