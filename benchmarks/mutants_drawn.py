@@ -39,7 +39,7 @@ CHANGED = {
         "k2",
     ),
     40: ("off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)", "rng", "path"),
-    61: ("graph_words.tell(console, told)", "(console, told)", "(told, console)"),
+    61: ("say_whole(console, told)", "(console, told)", "(told, console)"),
     62: (
         "say(console, f\"{document['scene']}: the branch that it is on alone\")",
         "say(console, f\"{document['scene']}: the branch that it is on alone\")",
@@ -78,6 +78,12 @@ CHANGED = {
         "0.0125",
     ),
     106: ("return omega * 30.0 / np.pi", "omega * 30.0 / np.pi", "(omega * 30.0 * np.pi)"),
+    108: (
+        "size = SMALL if width_in(caption) <= room else TINY",
+        "width_in(caption) <= room",
+        "(not (width_in(caption) <= room))",
+    ),
+    118: ("_show(console, heads, modes)", "_show(console, heads, modes)", "pass"),
 }
 """Lines that read otherwise since then, and the piece of each before and after the fault."""
 SEED = 37

@@ -34,16 +34,17 @@ def show_vibration(console: Console, vibration: SteadyVibration) -> None:
          *map(_digits, (own.frequency_rad_s, own.frequency_rad_s / math.tau, own.ratio)))
         for own in vibration_rows.link_rows(vibration)
     ))  # fmt: skip
-    modes = (
-        "mechanism, mode", "rad/s, least", "most", "over speed", "order", "from whole", "multiplier"
-    )  # fmt: skip
-    _show(console, modes, (
+    modes = [
         (str(row.mode),
          *map(_digits, (row.least_rad_s, row.most_rad_s, row.ratio, row.order)),
          readable(abs(row.order - round(row.order))) if math.isfinite(row.order) else NONE,
          f"{row.multiplier:.6f}")
         for row in vibration_rows.mode_rows(vibration)[:MODES]
-    ))  # fmt: skip
+    ]  # fmt: skip
+    heads = (
+        "mechanism, mode", "rad/s, least", "most", "over speed", "order", "from whole", "multiplier"
+    )  # fmt: skip
+    _show(console, heads, modes)
     swings = vibration_rows.swing_rows(vibration)
     heads = (
         "largest deflection", "mm", "of length", "at mm", "driver deg", "middle mm", "extension mm"
