@@ -82,7 +82,7 @@ CHANGED = {
         "defaults | dict(settings)",
         "(defaults & dict(settings))",
     ),
-    61: ("graph_words.tell(console, told)", "(console, told)", "(told, console)"),
+    61: ("say_whole(console, told)", "(console, told)", "(told, console)"),
     62: (
         "say(console, f\"{document['scene']}: the branch that it is on alone\")",
         "say(console, f\"{document['scene']}: the branch that it is on alone\")",
@@ -132,6 +132,12 @@ CHANGED = {
         "(name or {})",
     ),
     106: ("return omega * 30.0 / np.pi", "omega * 30.0 / np.pi", "(omega * 30.0 * np.pi)"),
+    108: (
+        "size = SMALL if width_in(caption) <= room else TINY",
+        "width_in(caption) <= room",
+        "(not (width_in(caption) <= room))",
+    ),
+    118: ("_show(console, heads, modes)", "_show(console, heads, modes)", "pass"),
 }
 """Lines that read otherwise since then, and the piece of each before and after the fault."""
 SEED = 37

@@ -10,14 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle as Round
 
-from analytic.lectures.synthesis.design import (
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    DrawnCurve,
-    Element,
-    Proposal,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
 from models.errors import CrankcheckError
@@ -31,12 +24,7 @@ from reports.lectures.design.construction_view import (
     strokes,
     xy,
 )
-from reports.lectures.design.step_column import (
-    ColumnPart,
-    height_of,
-    parts_of,
-    write_column,
-)
+from reports.lectures.design.step_column import ColumnPart, height_of, parts_of, write_column
 from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
 from reports.lectures.drawing.sheets.paper import (
     MARGIN,
@@ -44,11 +32,11 @@ from reports.lectures.drawing.sheets.paper import (
     Box,
     Canvas,
     Paper,
-    draw_border,
+    ToScale,
+    headed,
     inner_box,
     layer_words,
     sheet_note,
-    write_head,
 )
 from reports.lectures.drawing.sheets.scheme import PIN_MM, draw_foot, draw_outline, draw_scheme
 
@@ -59,7 +47,7 @@ NUMBERED, NUMBER_PLACES = 2, 14
 
 
 def dot_letters(
-    steps: Sequence[DrawingStep],
+    steps: Sequence[design.DrawingStep],
     points: Mapping[str, Array],
     at: Callable[[Array], Array],
     box: Box,
@@ -67,7 +55,7 @@ def dot_letters(
     """The letters of all dots in the box, and of those of the mechanism's ``points`` [m] without a
     letter: C1 is also the letter of a point C in the first position."""
     low, high = box.corners
-    dots = [each for step in steps for each in step.elements if isinstance(each, Dot)]
+    dots = [each for step in steps for each in step.elements if isinstance(each, design.Dot)]
     named = [(dot.letter, at(xy(dot.place)), dot.look) for dot in dots if dot.letter]
     named += [(name, at(place), "result") for name, place in points.items()]
     spots: list[tuple[list[str], Array, str]] = []
@@ -86,13 +74,13 @@ def dot_letters(
 
 
 def step_numbers(
-    steps: Sequence[DrawingStep], drawn: Mapping[int, Sequence[Array]]
+    steps: Sequence[design.DrawingStep], drawn: Mapping[int, Sequence[Array]]
 ) -> list[Letter]:
     """The number of each step at its longest lines [mm], links excepted; ``drawn`` are the lines of
     elements, by their identity."""
     letters = []
     for number, step in enumerate(steps, 1):
-        every = [each for each in step.elements if not isinstance(each, Dot)]
+        every = [each for each in step.elements if not isinstance(each, design.Dot)]
         some = [each for each in every if each.look != "result"]
         longest = sorted(
             ((max(map(_length, lines)), each) for each in some if (lines := drawn[id(each)])),
@@ -100,7 +88,7 @@ def step_numbers(
         )
         for _, each in longest[:NUMBERED]:
             line = max(drawn[id(each)], key=_length)
-            colour = look_of(each, steps).colour if isinstance(each, DrawnCurve) else QUIET
+            colour = look_of(each, steps).colour if isinstance(each, design.DrawnCurve) else QUIET
             letters.append(Letter(f"({number})", _along(line), 0.1, NUMBER, colour))
     return letters
 
@@ -129,21 +117,13 @@ FRONT = 6
 
 
 @dataclass(frozen=True)
-class ConstructionSheet:
-    """A construction on paper: its scale [m/mm], the middle of its box [m], and the words of the
-    column beside or below it."""
+class ConstructionSheet(ToScale):
+    """A construction on paper, and the words of the column beside or below it."""
 
     view: ConstructionView
-    scale: float
-    middle: Array
-    box: Box
     column: Box
     words: list[list[ColumnPart]]
     paper: Paper
-
-    def at(self, places: Array) -> Array:
-        """Places [m], (..., 2), on the sheet [mm]."""
-        return np.asarray(self.box.middle + (places - self.middle) / self.scale)
 
     @property
     def cut(self) -> tuple[Array, Array]:
@@ -152,7 +132,7 @@ class ConstructionSheet:
         return self.middle - half, self.middle + half
 
 
-def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
+def laid_out(proposed: Examined | design.Proposal, paper: Paper) -> ConstructionSheet:
     """The construction of a mechanism on paper, with the words of its steps on the right, or below
     on paper that is higher than wide.
 
@@ -174,28 +154,22 @@ def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
 
 
 def _in(view: ConstructionView, box: Box, column: Box, paper: Paper) -> ConstructionSheet:
-    """The sheet with its figure in one box, and its words in another."""
     scale, middle = box.fitted(view.shown, PADDING)
     half = scale * np.array([box.width, box.height]) / 2
     words = parts_of(view, [words for _, words in view.far(middle - half, middle + half)])
-    return ConstructionSheet(view, scale, middle, box, column, words, paper)
+    return ConstructionSheet(box, scale, middle, view, column, words, paper)
 
 
 def _beside(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     """Boxes of the figure with columns of several widths on its right."""
-    boxes = []
-    for width in COLUMNS_MM:
-        wide = inner.width - width - GAP
-        if width <= MOST_SHARE * inner.width:
-            left = inner.left + wide + GAP
-            figure = Box(inner.left, inner.bottom, wide, inner.height)
-            boxes.append((figure, Box(left, inner.bottom, width, inner.height)))
-    return boxes
+    fit = [width for width in COLUMNS_MM if width <= MOST_SHARE * inner.width]
+    return [inner.side_by_side(width, GAP) for width in fit]
 
 
 def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     """The box of the figure over the box of the words, which is as high as they need."""
-    tall = height_of(parts_of(view, [words for _, words in view.far(*_corners(view))]), inner.width)
+    corners = view.shown.min(axis=0), view.shown.max(axis=0)
+    tall = height_of(parts_of(view, [words for _, words in view.far(*corners)]), inner.width)
     boxes = []
     for spare in (1.0, 1.25, 1.6):
         high = spare * tall
@@ -206,11 +180,7 @@ def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
     return boxes
 
 
-def _corners(view: ConstructionView) -> tuple[Array, Array]:
-    return view.shown.min(axis=0), view.shown.max(axis=0)
-
-
-def construction_sheet(proposed: Examined | Proposal, paper: Paper) -> Canvas:
+def construction_sheet(proposed: Examined | design.Proposal, paper: Paper) -> Canvas:
     """The sheet of a construction on paper. Raises CrankcheckError as `laid_out`."""
     sheet = laid_out(proposed, paper)
     return draw_construction(sheet, sheet_note(sheet.view.examined.scene))
@@ -218,8 +188,12 @@ def construction_sheet(proposed: Examined | Proposal, paper: Paper) -> Canvas:
 
 def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
     """The sheet, in layers: frame and words, other positions, the steps, the mechanism, letters."""
-    canvas = Canvas(sheet.paper)
-    _frame(canvas.layer("frame"), sheet, note)
+    told = f": construction, position 1 of {len(sheet.view.placements)}, K_l = {sheet.scale:g} m/mm"
+    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN / 1.15  # bold is so much wider
+    name = cut(sheet.view.examined.scene.name, room / 2, LARGE)
+    title = cut(name + told, room, LARGE)
+    canvas, frame = headed(sheet.paper, title, note, sheet.box, sheet.column)
+    write_column(frame, sheet.words, sheet.column)
     others = canvas.layer("positions")
     for placed in sheet.view.others:
         places = {name: sheet.at(place) for name, place in placed.points.items()}
@@ -237,24 +211,18 @@ def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
     return canvas
 
 
-def _frame(axes: Axes, sheet: ConstructionSheet, note: str) -> None:
-    told = f": construction, position 1 of {len(sheet.view.placements)}, K_l = {sheet.scale:g} m/mm"
-    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN / 1.15  # bold is so much wider
-    name = cut(sheet.view.examined.scene.name, room / 2, LARGE)
-    write_head(axes, sheet.paper, cut(name + told, room, LARGE), note)
-    for box in (sheet.box, sheet.column):
-        draw_border(axes, box)
-    write_column(axes, sheet.words, sheet.column)
-
-
-def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> list[Array]:
+def _draw(axes: Axes, sheet: ConstructionSheet, element: design.Element, gid: str) -> list[Array]:
     """Draw an element of a step; return its lines on the sheet [mm]."""
-    if isinstance(element, Dot):
+    if isinstance(element, design.Dot):
         _draw_dot(axes, sheet, element, gid)
         return []
     look = look_of(element, sheet.view.steps)
     lines = [sheet.at(part) for part in strokes(element, *sheet.cut)]
-    if isinstance(element, DrawnCircle) and element.arc is None and _is_whole(sheet, element):
+    if (
+        isinstance(element, design.DrawnCircle)
+        and element.arc is None
+        and _is_whole(sheet, element)
+    ):
         # a drawing program is to have it as a circle
         middle, radius = sheet.at(xy(element.centre)), element.radius / sheet.scale
         axes.add_patch(
@@ -266,13 +234,15 @@ def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> l
     return lines
 
 
-def _is_whole(sheet: ConstructionSheet, circle: DrawnCircle) -> bool:
+def _is_whole(sheet: ConstructionSheet, circle: design.DrawnCircle) -> bool:
     low, high = sheet.cut
     middle = xy(circle.centre)
-    return bool(np.all((middle - circle.radius > low) & (middle + circle.radius < high)))
+    return circle.arc is None and bool(
+        np.all((middle - circle.radius > low) & (middle + circle.radius < high))
+    )
 
 
-def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: Dot, gid: str) -> None:
+def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: design.Dot, gid: str) -> None:
     """Draw a point as a small circle, a pivot of the ground on its foot; nothing off the paper."""
     low, high = sheet.cut
     place = xy(dot.place)

@@ -232,7 +232,6 @@ def _extent(element: design.Element) -> Iterable[complex]:
 
 
 def _is_out(element: design.Element, low: Array, high: Array) -> bool:
-    """True if no part of an element is in a box."""
     if isinstance(element, design.Dot):
         place = xy(element.place)
         return bool(np.any((place < low) | (place > high)))
@@ -240,7 +239,6 @@ def _is_out(element: design.Element, low: Array, high: Array) -> bool:
 
 
 def _words_of(element: design.Element, number: int) -> tuple[complex, str]:
-    """A place of an element of a step, and its name."""
     match element:
         case design.Dot(place, letter):
             return place, letter or f"a point of step {number}"

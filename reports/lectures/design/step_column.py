@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from matplotlib.axes import Axes
 
 from analytic.lectures.synthesis.design import Dot, Look
@@ -89,7 +88,7 @@ def height_of(groups: Sequence[Sequence[ColumnPart]], width: float) -> float:
 
 def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box) -> None:
     """Write all groups from the top of a column that is high enough."""
-    left, y = column.left + INSET_MM, column.bottom + column.height - INSET_MM
+    left, y = column.left + INSET_MM, column.top - INSET_MM
     for group in groups:
         for part in group:
             rows = part.lines(column.width)
@@ -104,9 +103,8 @@ def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box
 
 
 def _hang(axes: Axes, part: ColumnPart, left: float, base: float) -> None:
-    """Draw the number or sample before a paragraph, on the base line of its first row."""
     if isinstance(part.before, Stroke):
-        start, end = np.array([left, base + 0.8]), np.array([left + SAMPLE_MM, base + 0.8])
-        line(axes, start, end, color=part.before.colour, linewidth=part.before.width)
+        start, end, stroke = (left, base + 0.8), (left + SAMPLE_MM, base + 0.8), part.before
+        line(axes, start, end, color=stroke.colour, linewidth=stroke.width)
     elif part.before:
         text(axes, left, base, part.before, SMALL, color=QUIET)

@@ -10,7 +10,6 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.console import Console
 from rich.progress import Progress
 
@@ -21,15 +20,7 @@ from models.errors import CrankcheckError, shown
 from models.lectures.shipped_tables import TaskTable, table_of
 from models.lectures.tasks import KINDS, load_task, refuse_unknown, shipped_tasks
 from models.scene import Scene
-from reports.lectures.design.design_tables import (
-    clearance_in_words,
-    counted,
-    proof_frame,
-    proof_table,
-    sensitivity_table,
-    solution_frame,
-    solution_table,
-)
+from reports.lectures.design import design_tables
 from reports.lectures.design.proof import Met, by_reference, limit_of, proven
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.output.console import grid, say
@@ -38,7 +29,7 @@ from reports.output.numbers import count
 from reports.output.write import check_folder, provenance, write
 from reports.plan.chosen import chosen_engines, chosen_profiles
 from reports.requests.arguments import told_at_the_call
-from reports.requests.options import Engines, PaperSize
+from reports.requests.options import Engines, PaperSize, argument, option
 from reports.requests.shown import Shown
 from sim.registry import engine
 
@@ -60,37 +51,29 @@ SAMPLES = 1000
 class SynthRequest:
     """Arguments of `synth`, as given."""
 
-    kind: Annotated[
-        str | None, typer.Argument(metavar="KIND", help="What kind of task; none lists them.")
-    ] = None
-    task: Annotated[
-        str | None, typer.Argument(metavar="TASK", help="A shipped task, or a task file (.toml).")
-    ] = None
+    kind: Annotated[str | None, argument("KIND", "What kind of task; none lists them.")] = None
+    task: Annotated[str | None, argument("TASK", "A shipped task, or a task file (.toml).")] = None
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Folder of scenes, tables, figures."),
+        Path | None, option("Folder of scenes, tables, figures.", "-o --output DIR")
     ] = None
     best: Annotated[
-        int, typer.Option(min=1, max=1000, help="So many of the solutions are listed and written.")
+        int, option("So many of the solutions are listed and written.", min=1, max=1000)
     ] = 5
-    prove: Annotated[
-        bool, typer.Option("--prove", help="Run each in every engine, through what is asked.")
-    ] = False
+    prove: Annotated[bool, "Run each in every engine, through what is asked."] = False
     engines: Engines = ()
     profiles: Annotated[
-        Sequence[str], typer.Option("--profile", help="Profile of the engines; default: tuned.")
+        Sequence[str], option("Profile of the engines; default: tuned.", "--profile")
     ] = ()
-    steps_per_turn: Annotated[
-        float, typer.Option(min=24, max=1e5, help="Steps in a turn of the proof.")
-    ] = 720.0
+    steps_per_turn: Annotated[float, option("Steps in a turn of the proof.", min=24, max=1e5)] = (
+        720.0
+    )
     vary_m: Annotated[
         float | None,
-        typer.Option(
-            "--vary",
-            metavar="METRES",
+        option(
+            "What dimensions that are off by up to so much do, and clearances.",
+            "--vary METRES",
             min=1e-9,
             max=1e6,
-            help="What dimensions that are off by up to so much do, and clearances.",
         ),
     ] = None
     paper: PaperSize = "A4"
@@ -109,8 +92,8 @@ class SynthRequest:
         solutions = _searched(task, console)
         listed = solutions.examined[: self.best]
         say(console, f"{task.name}: {task.source}")
-        say(console, counted(solutions, len(listed)))
-        console.print("", solution_table(listed), sep="\n")
+        say(console, design_tables.counted(solutions, len(listed)))
+        console.print("", design_tables.solution_table(listed), sep="\n")
         if self.vary_m is not None:
             _show_sensitivity(console, solutions, task, self.vary_m)
         proofs = {
@@ -130,7 +113,7 @@ class SynthRequest:
         if self.prove:
             _show_proof(console, proofs, facts, self)
         if self.output is not None:
-            told = counted(solutions, len(listed))
+            told = design_tables.counted(solutions, len(listed))
             _write(self.output, listed, task, told, proofs, facts, paper, console)
         met = all(one.within for every in proofs.values() for one in every)
         return 0 if solutions.sound and met else 1
@@ -138,13 +121,13 @@ class SynthRequest:
 
 def _check(request: SynthRequest) -> None:
     numbers = {"--steps-per-turn": request.steps_per_turn, "--vary": request.vary_m}
-    for option, number in numbers.items():
+    for name, number in numbers.items():
         if number is not None and not math.isfinite(number):
-            raise CrankcheckError(f"{option}: found {number}; give a number")
+            raise CrankcheckError(f"{name}: found {number}; give a number")
     given = {"--engine": request.engines, "--profile": request.profiles}
-    for option, names in given.items():
-        if names and not request.prove:
-            raise CrankcheckError(f"{option} {names[0]}: engines are run by --prove; add it")
+    for name, chosen in given.items():
+        if chosen and not request.prove:
+            raise CrankcheckError(f"{name} {chosen[0]}: engines are run by --prove; add it")
 
 
 def _searched(task: TaskTable, console: Console) -> Solutions:
@@ -181,8 +164,9 @@ def _show_sensitivity(
     except CrankcheckError as error:
         say(console, f"\nno sensitivity: {error}")
         return
-    console.print("", sensitivity_table(slopes, limits, tolerance_m, spread), sep="\n")
-    say(console, clearance_in_words(slopes, limits, spread))
+    table = design_tables.sensitivity_table(slopes, limits, tolerance_m, spread)
+    console.print("", table, sep="\n")
+    say(console, design_tables.clearance_in_words(slopes, limits, spread))
 
 
 def _show_proof(
@@ -191,7 +175,7 @@ def _show_proof(
     if not proofs:
         say(console, "\nnothing to prove: no solution listed is without a defect")
         return
-    console.print("", proof_table(proofs), sep="\n")
+    console.print("", design_tables.proof_table(proofs), sep="\n")
     within = all(one.within for every in proofs.values() for one in every)
     verdict = "PROVEN: every position is met" if within else "NOT PROVEN: a position is missed"
     say(console, f"\n{verdict}")
@@ -221,9 +205,9 @@ def _write(
     texts: dict[str, str | bytes] = {
         scene_name(number): one.text for number, one in enumerate(listed, 1)
     }
-    texts[FRAME] = csv(solution_frame(listed))
+    texts[FRAME] = csv(design_tables.solution_frame(listed))
     if proofs:
-        texts[PROOF] = csv(proof_frame(proofs))
+        texts[PROOF] = csv(design_tables.proof_frame(proofs))
     for number, one in enumerate(listed, 1):
         title = f"{one.scene.name}: construction"
         sheet = construction_sheet(one, paper)
@@ -268,7 +252,7 @@ class Synthesis(Shown):
 
     def frame(self) -> pd.DataFrame:
         """Table of solutions, a row each, including those with a defect."""
-        return solution_frame(self.details.examined)
+        return design_tables.solution_frame(self.details.examined)
 
     def proof(self, engine: str, profile: str = "tuned", *, best: int = 1) -> pd.DataFrame:
         """Prove the best sound solutions in an engine: a row for each requirement at each position.
@@ -280,14 +264,14 @@ class Synthesis(Shown):
         """
         found = enumerate(self.details.examined, 1)
         sound = [(number, one) for number, one in found if not one.defects][:best]
-        return proof_frame(
+        return design_tables.proof_frame(
             {number: proven(one, self.details.task, engine, profile) for number, one in sound}
         )
 
     def show(self, console: Console) -> None:
         listed = self.details.examined[:LISTED]
-        say(console, counted(self.details, len(listed)))
-        console.print("", solution_table(listed), sep="\n")
+        say(console, design_tables.counted(self.details, len(listed)))
+        console.print("", design_tables.solution_table(listed), sep="\n")
 
 
 @told_at_the_call

@@ -3,23 +3,24 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
-import typer
 from rich.console import Console
 
 from analytic.lectures.drawings.graphical import METHODS, Method
 from models.errors import CrankcheckError, shown
 from models.files.reading import find_scene, load_scene
-from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
+from reports.lectures.drawing.sheet_requests import ENDINGS, LogMap, SheetFile, save_sheet
 from reports.lectures.drawing.sheets import graph_drawing, graph_orders, graph_words
 from reports.lectures.drawing.sheets.graph_page import draw_graphs, laid_out
-from reports.lectures.drawing.sheets.graph_span import OVERS, Over, over_period
+from reports.lectures.drawing.sheets.graph_span import OVERS, over_period
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic, sheet_note
+from reports.output.console import say_whole
 from reports.output.write import check_file
-from reports.requests.options import Duration, PaperSize, SceneName
+from reports.requests.options import Duration, PaperSize, SceneName, option
 
 LEAST_PARTS, MOST_PARTS, MOST_COUNTS = 4, 1440, 12
+Name = TypeVar("Name", bound=str)
 MOST_DIGITS = 9
 """Most digits of a number; longer ones are not parsed."""
 
@@ -29,36 +30,26 @@ class GraphRequest:
     """Arguments of `graph`, as given."""
 
     scene: SceneName
-    of: Annotated[
-        str, typer.Option("--of", metavar="NAME", help="A link, a slider, or a coordinate: C.x.")
-    ]
+    of: Annotated[str, option("A link, a slider, or a coordinate: C.x.", "NAME")]
     divisions: Annotated[
-        str,
-        typer.Option(metavar="N[,N...]", help="Parts of the period; of several, the errors."),
+        str, option("Parts of the period; of several, the errors.", "N[,N...]")
     ] = "24"
-    by: Annotated[
-        str, typer.Option(help="chords, tangents, or integration (of the acceleration).")
-    ] = "chords"
-    over: Annotated[str, typer.Option(help="time, or angle of the driver.")] = "time"
+    by: Annotated[str, "chords, tangents, or integration (of the acceleration)."] = "chords"
+    over: Annotated[str, "time, or angle of the driver."] = "time"
     log: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="A log of an engine, drawn the same way beside it."),
+        Path | None, option("A log of an engine, drawn the same way beside it.", "FILE")
     ] = None
-    map: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="TOML that says what its columns mean."),
-    ] = None
+    map: LogMap = None
     duration_s: Duration = None
     paper: PaperSize = "A4"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")
-    ] = None
+    output: SheetFile = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or draw graphs. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
         divisions = counts(self.divisions)
-        by, over = _method(self.by), _over(self.over)
+        by = _chosen("--by", self.by, METHODS, ", ")
+        over = _chosen("--over", self.over, OVERS, " or ")
         if self.map is not None and self.log is None:
             raise CrankcheckError(f"--map {self.map}: it is of a log; give --log as well")
         if self.output is not None:
@@ -82,7 +73,6 @@ class GraphRequest:
 def _tell_graphs(
     request: GraphRequest, console: Console, drawn: graph_drawing.DrawnGraphs, paper: Paper
 ) -> None:
-    """Draw the sheet, or show the table; then print the errors of graphs and log."""
     of = drawn.span
     told = (
         f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}"
@@ -91,13 +81,12 @@ def _tell_graphs(
     )
     if request.output is None:
         graph_words.show_graphs(console, drawn)
-        graph_words.tell(console, told)
+        say_whole(console, told)
     else:
         canvas = draw_graphs(laid_out(drawn, paper), sheet_note(of.scene))
         save_sheet(console, canvas, request.output, told)
     if drawn.logged is not None:
-        for line in graph_words.told_log(drawn):
-            graph_words.tell(console, line)
+        say_whole(console, *graph_words.told_log(drawn))
 
 
 def _tell_errors(
@@ -110,7 +99,7 @@ def _tell_errors(
         save_sheet(console, canvas, request.output, told)
     graph_orders.show_errors(console, errors)
     if errors.log is not None:
-        graph_words.tell(console, graph_orders.told_floor(errors))
+        say_whole(console, graph_orders.told_floor(errors))
 
 
 def _by(method: Method) -> str:
@@ -138,15 +127,9 @@ def counts(text: str) -> Sequence[int]:
     return found
 
 
-def _method(text: str) -> Method:
-    for name in METHODS:
+def _chosen(option: str, text: str, names: Sequence[Name], between: str) -> Name:
+    """The name that a text is. Raises CrankcheckError for none of them."""
+    for name in names:
         if text == name:
             return name
-    raise CrankcheckError(f"--by {shown(text)}: unknown; use {', '.join(METHODS)}")
-
-
-def _over(text: str) -> Over:
-    for name in OVERS:
-        if text == name:
-            return name
-    raise CrankcheckError(f"--over {shown(text)}: unknown; use {' or '.join(OVERS)}")
+    raise CrankcheckError(f"{option} {shown(text)}: unknown; use {between.join(names)}")

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 from rich.text import Text
 
@@ -16,28 +15,26 @@ from models.lectures.scheme import HIGHER, Scheme
 from models.lectures.scheme_files import find_scheme, load_scheme, scheme_text, shipped_schemes
 from models.lectures.touching import Touching, load_touching, shipped_contacts
 from reports.output.console import grid, hanging, say_whole
+from reports.output.numbers import count
 from reports.output.write import check_file, write
+from reports.requests.options import argument, output_option
 
 HEAD = 10
 """Width of the heads of paragraphs, in letters."""
+NameOrFile = Annotated[
+    str | None, argument("NAME", "A shipped name, or a file; all are listed if none.")
+]
 
 
 @dataclass(frozen=True)
 class MobilityRequest:
     """Arguments of `mobility`, as given."""
 
-    scheme: Annotated[
-        str | None,
-        typer.Argument(metavar="NAME", help="A shipped name, or a file; all are listed if none."),
-    ] = None
-    replace: Annotated[
-        bool,
-        typer.Option("--replace", help="Links with lower pairs in place of planar higher pairs."),
-    ] = False
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="With --replace: write that scheme as .toml."),
-    ] = None
+    scheme: NameOrFile = None
+    replace: Annotated[bool, "Links with lower pairs in place of planar higher pairs."] = False
+    output: Annotated[Path | None, output_option("With --replace: write that scheme as .toml.")] = (
+        None
+    )
 
     def run(self, console: Console, progress: Console) -> int:
         """Show a scheme, or list the shipped ones. Raises CrankcheckError for a faulty request."""
@@ -71,25 +68,23 @@ def show_mobility(console: Console, mobility: SchemeMobility) -> None:
 
 def _paragraphs(mobility: SchemeMobility) -> list[tuple[str, str]]:
     scheme = mobility.scheme
-    told = [("count", f"{scheme.count_in_words}, with n = {len(scheme.links)} moving links")]
     rank = f"{mobility.rank} of {scheme.constraints} constraints are independent"
-    told.append(("rank", f"{rank}, next to the drawn position"))
-    told.append(("mobility", _mobility(mobility)))
-    if mobility.spare:
-        names = f": {mobility.passive}" if str(mobility.passive) else ""
-        told.append(("passive", f"{_number(mobility.spare, 'constraint')}{names}"))
-    else:
-        told.append(("passive", "none"))
-    idle = [f"{_number(mobility.idle_count, 'freedom')}: "] if mobility.idle else ["none"]
-    told.append(("idle", idle[0] + "; ".join(map(str, mobility.idle))))
+    names = f": {mobility.passive}" if str(mobility.passive) else ""
+    passive = f"{count(mobility.spare, 'constraint')}{names}" if mobility.spare else "none"
+    idle = f"{count(mobility.idle_count, 'freedom')}: " if mobility.idle else "none"
+    told = [
+        ("count", f"{scheme.count_in_words}, with n = {len(scheme.links)} moving links"),
+        ("rank", f"{rank}, next to the drawn position"),
+        ("mobility", _mobility(mobility)),
+        ("passive", passive),
+        ("idle", idle + "; ".join(map(str, mobility.idle))),
+    ]
     if mobility.margin_is_small:
-        told.append(
-            (
-                "nearly",
-                f"the equations depend on each other but for {mobility.near.margin:.1e}: "
-                "with numbers to more digits the scheme may have a motion more",
-            )
+        nearly = (
+            f"the equations depend on each other but for {mobility.near.margin:.1e}: with numbers "
+            "to more digits the scheme may have a motion more"
         )
+        told.append(("nearly", nearly))
     return told
 
 
@@ -105,7 +100,7 @@ def _mobility(mobility: SchemeMobility) -> str:
         )
     if mobility.yielding:
         words += (
-            f"; {_number(mobility.yielding, 'motion')} of first order more, which gives back: the "
+            f"; {count(mobility.yielding, 'motion')} of first order more, which gives back: the "
             "scheme shakes"
         )
     if mobility.near.others:
@@ -148,18 +143,11 @@ def _list(console: Console) -> None:
     console.print(table, highlight=False)
 
 
-def _number(count: int, what: str) -> str:
-    return f"{count} {what}{'s' * (count != 1)}"
-
-
 @dataclass(frozen=True)
 class JointRequest:
     """Arguments of `joint`, as given."""
 
-    joint: Annotated[
-        str | None,
-        typer.Argument(metavar="NAME", help="A shipped name, or a file; all are listed if none."),
-    ] = None
+    joint: NameOrFile = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Show a joint, or list the shipped ones. Raises CrankcheckError for a bad file."""
@@ -176,7 +164,9 @@ def show_joint(console: Console, joint: JointAnalysis) -> None:
     hanging(console, f"{touching.name}: ", touching.source, "bold")
     if touching.note:
         console.print(Text(touching.note))
-    hanging(console, "touches  ", f"{_contacts(touching)}: {_pair(touching)}")
+    counts = Counter(contact.kind for contact in touching.contacts)
+    contacts = ", ".join(f"{kind} x {n}" if n > 1 else kind for kind, n in counts.items())
+    hanging(console, "touches  ", f"{contacts}: a {_pair(touching)} pair")
     alone = f"{joint.alone}{'' if joint.kept else '; a force must keep the two together'}"
     hanging(console, "alone    " if joint.guided else "joint    ", alone)
     for name, guided in joint.guided.items():
@@ -195,15 +185,10 @@ def _list_contacts(console: Console) -> None:
         last = [*joint.guided.values()]
         classes = ", ".join(str(each) for each in sorted({each.constraints for each in last}))
         free = " or ".join(" ".join(each.freedoms) for each in last or [joint.alone])
-        pair = "lower" if joint.touching.is_lower_pair else "higher"
-        table.add_row(name, pair, str(joint.alone.constraints), classes or "-", Text(free))
+        alone = str(joint.alone.constraints)
+        table.add_row(name, _pair(joint.touching), alone, classes or "-", Text(free))
     console.print(table, highlight=False)
 
 
 def _pair(touching: Touching) -> str:
-    return "a lower pair" if touching.is_lower_pair else "a higher pair"
-
-
-def _contacts(touching: Touching) -> str:
-    counts = Counter(contact.kind for contact in touching.contacts)
-    return ", ".join(f"{kind} x {n}" if n > 1 else kind for kind, n in counts.items())
+    return "lower" if touching.is_lower_pair else "higher"

@@ -1,14 +1,13 @@
 """`crankcheck polygon`: the vector polygons of a position."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
 from rich.console import Console
-from rich.table import Table
 
 from analytic.lectures.drawings import drawn_polygons
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
@@ -18,6 +17,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.lectures.drawing.sheet_requests import LogMap
 from reports.lectures.drawing.sheets import polygon_instant, polygon_table
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic
 from reports.lectures.drawing.sheets.polygon_on_paper import DrawnPolygon
@@ -31,11 +31,12 @@ from reports.lectures.drawing.sheets.polygon_page import (
     turning_file,
 )
 from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
+from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.map_file import Map, read_map
 from reports.output.console import grid, say_whole
 from reports.output.numbers import readable
 from reports.output.write import check_file, write
-from reports.requests.options import PaperSize, SceneName, seconds
+from reports.requests.options import PaperSize, SceneName, option, output_option, seconds
 
 
 def show_polygons(console: Console, sheet: PolygonSheet) -> None:
@@ -44,13 +45,13 @@ def show_polygons(console: Console, sheet: PolygonSheet) -> None:
     for drawn in (sheet.velocity, sheet.acceleration):
         quantity, unit = drawn.polygon.quantity, UNITS[drawn.polygon.quantity]
         say_whole(console, f"\n{quantity} polygon, {readable(drawn.scale)} {unit} to the mm")
-        console.print(_vectors(drawn))
+        heads = ("vector", f"{unit}:", "mm:", "towards deg:", "found")
+        console.print(grid(heads, _vector_rows(drawn)))
         if drawn.polygon.largest == 0.0:
             say_whole(console, polygon_table.at_rest(quantity))
-        _show_log(console, drawn, sheet)
+        _show_log(console, drawn)
     _show_links(console, sheet)
-    for told in polygon_table.doubts(sheet.drawn):
-        say_whole(console, told)
+    say_whole(console, *polygon_table.doubts(sheet.drawn))
 
 
 def _heading(sheet: PolygonSheet) -> str:
@@ -66,17 +67,17 @@ def _heading(sheet: PolygonSheet) -> str:
     )
 
 
-def _vectors(drawn: DrawnPolygon) -> Table:
-    unit = UNITS[drawn.polygon.quantity]
-    table = grid(("vector", f"{unit}:", "mm:", "towards deg:", "found"))
+def _vector_rows(drawn: DrawnPolygon) -> Iterator[tuple[str, ...]]:
     for vector in drawn.polygon.vectors:
         size = drawn.size_of(vector)
-        table.add_row(
-            vector.name, f"{size:.7g}", f"{size / drawn.scale:.2f}",
-            _towards(vector.value if size else np.zeros(2)),
-            f"by crossing, {vector.direction}" if vector.direction else "known",
-        )  # fmt: skip
-    return table
+        towards = _towards(vector.value if size else np.zeros(2))
+        found = f"by crossing, {vector.direction}" if vector.direction else "known"
+        yield vector.name, *_sizes(size, drawn), towards, found
+
+
+def _sizes(size: float, drawn: DrawnPolygon) -> tuple[str, str]:
+    """A length in its unit, and on paper [mm]."""
+    return f"{size:.7g}", f"{size / drawn.scale:.2f}"
 
 
 def _towards(vector: Array) -> str:
@@ -85,7 +86,7 @@ def _towards(vector: Array) -> str:
     return f"{math.degrees(math.atan2(y, x)):.3f}" if np.any(vector) else "-"
 
 
-def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> None:
+def _show_log(console: Console, drawn: DrawnPolygon) -> None:
     if drawn.logged is None:
         return
     unit = UNITS[drawn.polygon.quantity]
@@ -94,32 +95,26 @@ def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> Non
         return
     say_whole(console, f"\n{drawn.logged_by}: {drawn.logged.words} on the sheet")
     heads = (unit, "mm", f"logged {unit}", "mm", f"error {unit}", "mm", "towards deg")
-    table = grid(("point", *(f"{head}:" for head in heads)))
+    rows = []
     for name, size, own, error in drawn.logged_sizes():
-        off = float(np.hypot(*error))
-        table.add_row(
-            name,
-            f"{size:.7g}", f"{size / drawn.scale:.2f}", f"{own:.7g}", f"{own / drawn.scale:.2f}",
-            readable(off * drawn.scale), readable(off), _towards(error),
-        )  # fmt: skip
-    console.print(table)
+        off, sizes = float(np.hypot(*error)), (*_sizes(size, drawn), *_sizes(own, drawn))
+        rows.append((name, *sizes, readable(off * drawn.scale), readable(off), _towards(error)))
+    console.print(grid(("point", *(f"{head}:" for head in heads)), rows))
 
 
 def _show_links(console: Console, sheet: PolygonSheet) -> None:
-    rates = grid(("link", "omega rad/s:", "alpha rad/s^2:"))
-    for name in polygon_table.drawn_links(sheet.drawn):
-        rates.add_row(
-            name, *(f"{rate:.7g}" for rate in drawn_polygons.link_rates(sheet.drawn, name))
-        )
-    console.print("", rates, sep="\n")
-    images = grid(("image of", "in velocities", "in accelerations"))
-    for name in polygon_table.drawn_links(sheet.drawn):
-        words = (
-            polygon_table.image_words(sheet.drawn, name, quantity)
-            for quantity in drawn_polygons.QUANTITIES
-        )
-        images.add_row(name, *words)
-    console.print("", images, sep="\n")
+    drawn, links = sheet.drawn, polygon_table.drawn_links(sheet.drawn)
+    rates = (
+        (name, *(f"{rate:.7g}" for rate in drawn_polygons.link_rates(drawn, name)))
+        for name in links
+    )
+    console.print("", grid(("link", "omega rad/s:", "alpha rad/s^2:"), rates), sep="\n")
+    quantities = drawn_polygons.QUANTITIES
+    images = (
+        (name, *(polygon_table.image_words(drawn, name, each) for each in quantities))
+        for name in links
+    )
+    console.print("", grid(("image of", "in velocities", "in accelerations"), images), sep="\n")
 
 
 LEAST_K, MOST_K = 1e-3, 1e3
@@ -130,47 +125,28 @@ class PolygonRequest:
     """Arguments of `polygon`, as given."""
 
     scene: SceneName
-    at_deg: Annotated[
-        float | None, typer.Option(metavar="DEG", help="The driver's angle (default 90).")
-    ] = None
+    at_deg: Annotated[float | None, option("The driver's angle (default 90).", "DEG")] = None
     at_s: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SECONDS",
-            parser=seconds,
-            help="The time, in place of an angle.",
-        ),
+        float | None, option("The time, in place of an angle.", "SECONDS", parser=seconds)
     ] = None
     omega: Annotated[
-        float | None,
-        typer.Option(metavar="RAD_S", help="The driver's speed, in place of its law's."),
+        float | None, option("The driver's speed, in place of its law's.", "RAD_S")
     ] = None
     k: Annotated[
-        float | None,
-        typer.Option(
-            "--k", help="Vectors of the crank so many times as long as it is drawn, p b = k AB."
-        ),
+        float | None, "Vectors of the crank so many times as long as it is drawn, p b = k AB."
     ] = None
     log: Annotated[
-        Path | None,
-        typer.Option(metavar="LOG", help="A log of the scene, yours or an engine's: drawn beside."),
+        Path | None, option("A log of the scene, yours or an engine's: drawn beside.", "LOG")
     ] = None
-    map: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="TOML that says what its columns mean.")
-    ] = None
+    map: LogMap = None
     paper: PaperSize = "A4"
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            help="Draw the sheet: .svg in layers, .pdf, .gif step by step, or .html over a turn.",
+        output_option(
+            "Draw the sheet: .svg in layers, .pdf, .gif step by step, or .html over a turn."
         ),
     ] = None
-    turn: Annotated[
-        bool,
-        typer.Option("--turn", help="With -o FILE.gif: over a turn, in place of step by step."),
-    ] = False
+    turn: Annotated[bool, "With -o FILE.gif: over a turn, in place of step by step."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show the vectors, or draw the sheet. Raises CrankcheckError for a faulty request."""
@@ -192,9 +168,8 @@ class PolygonRequest:
         else:
             raw = turning_file(sheet, steady=steady) if self.turn else polygon_file(sheet, ending)
         write(self.output, raw)
-        told = f"{self.output}: {_told(sheet, self)}"
-        say_whole(console, told)
-        _tell_doubts(console, sheet.drawn)
+        say_whole(console, f"{self.output}: {_told(sheet, self)}")
+        say_whole(console, *polygon_table.doubts(sheet.drawn))
         return 0
 
 
@@ -233,7 +208,8 @@ def _logged(scene: Scene, request: PolygonRequest) -> polygon_instant.LoggedInst
     if request.log is None:
         return None
     map_ = read_map(request.map) if request.map else Map()
-    instants = polygon_instant.LogInstants.of_file(scene, request.log, map_)
+    beside = SheetLog.of_file(scene, request.log, map_, "polygons")
+    instants = polygon_instant.LogInstants.of(beside)
     if request.at_s is not None:
         return instants.at_time(request.at_s)
     return instants.at_angle(polygon_instant.AT_DEG if request.at_deg is None else request.at_deg)
@@ -259,8 +235,3 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
         f"velocities and accelerations of {name} {of}{beside}, on {sheet.paper.width:g} x "
         f"{sheet.paper.height:g} mm"
     )
-
-
-def _tell_doubts(console: Console, drawn: drawn_polygons.DrawnPolygons) -> None:
-    for told in polygon_table.doubts(drawn):
-        say_whole(console, told)

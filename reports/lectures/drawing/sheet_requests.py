@@ -5,19 +5,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from analytic.lectures.chains.assur_groups import Mechanism, inversions
 from analytic.lectures.chains.chain import Chain, assortment_in_words, assortments
 from analytic.lectures.chains.chain_synthesis import chain_names, chains, type_in_letters, types
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
+from analytic.lectures.drawings.instant_centres import CentreCircle, CurvatureCircles
 from analytic.lectures.drawings.placed_mechanism import DriverState
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
-from models.scene import Scene
 from reports.describe.facts import angle_at, driver_at
 from reports.lectures.drawing.sheets.centre_sheet import (
     CentreSheet,
@@ -31,14 +30,15 @@ from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions
 from reports.lectures.drawing.sheets.scheme import sense_of_law
 from reports.output.console import grid, say, say_whole
-from reports.output.numbers import roman
+from reports.output.numbers import count, roman
 from reports.output.write import check_file, crankcheck_version, write
-from reports.requests.options import PaperSize, SceneName
+from reports.requests.options import PaperSize, SceneName, option, output_option
 
 ENDINGS = (".svg", ".pdf")
 
 
-Output = Annotated[Path, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")]
+SheetFile = Annotated[Path | None, output_option("Draw it: .svg in layers, or .pdf.")]
+LogMap = Annotated[Path | None, option("TOML that says what its columns mean.", "FILE")]
 
 
 @dataclass(frozen=True)
@@ -46,24 +46,19 @@ class PositionsRequest:
     """Arguments of `positions`, as given."""
 
     scene: SceneName
-    output: Output
-    divisions: Annotated[int, typer.Option(min=2, max=360, help="Parts of the crank circle.")] = 12
+    output: Annotated[Path, output_option("Draw it: .svg in layers, or .pdf.")]
+    divisions: Annotated[int, option("Parts of the crank circle.", min=2, max=360)] = 12
     paper: PaperSize = "A4"
 
     def run(self, console: Console, progress: Console) -> int:
         """Draw positions. Raises CrankcheckError for a faulty request."""
-        paper = _checked(self.scene, self.output, self.paper)
+        check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
+        paper = Paper.of(self.paper)
         scene = load_scene(self.scene)
         sheet = positions(scene, self.divisions, paper)
         told = f"{self.divisions} positions of {scene.name}, K_l = {sheet.scale:g} m/mm"
         save_sheet(console, draw_positions(sheet, sheet_note(scene)), self.output, told)
         return 0
-
-
-def _checked(scene: str, output: Path, paper: str) -> Paper:
-    """The paper; refuses a file that could not be written."""
-    check_file(output, "-o", ENDINGS, inputs=[find_scene(scene)])
-    return Paper.of(paper)
 
 
 def save_sheet(console: Console, canvas: Canvas, path: Path, told: str) -> None:
@@ -77,15 +72,12 @@ class CentresRequest:
     """Arguments of `centres`, as given."""
 
     scene: SceneName
-    at_deg: Annotated[float, typer.Option(metavar="DEG", help="The driver's angle.")] = 60.0
+    at_deg: Annotated[float, option("The driver's angle.", "DEG")] = 60.0
     link: Annotated[
-        str,
-        typer.Option(metavar="NAME", help="Its poles, circles of curvature and centrodes as well."),
+        str, option("Its poles, circles of curvature and centrodes as well.", "NAME")
     ] = ""
     paper: PaperSize = "A4"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")
-    ] = None
+    output: SheetFile = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or draw centres. Raises CrankcheckError for a faulty request."""
@@ -95,7 +87,8 @@ class CentresRequest:
         scene = load_scene(self.scene)
         refuse_other_than_cranked(scene, "a sheet of instant centres", analyse(scene))
         # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
-        drawn = draw_polygons(scene, DriverState(_angle(scene, self.at_deg), sense_of_law(scene)))
+        angle = angle_at(self.at_deg) if scene.is_free else driver_at(scene, self.at_deg)[0]
+        drawn = draw_polygons(scene, DriverState(angle, sense_of_law(scene)))
         sheet = centres_of(drawn, self.link, paper)
         if self.output is not None:
             told = f"instant centres of {scene.name} at {self.at_deg:g} deg"
@@ -105,47 +98,44 @@ class CentresRequest:
         return 0
 
 
-def _angle(scene: Scene, at_deg: float) -> float:
-    """The driver's angle [rad]. Raises CrankcheckError for an angle that its law never reaches."""
-    return angle_at(at_deg) if scene.is_free else driver_at(scene, at_deg)[0]
-
-
 def _show(console: Console, sheet: CentreSheet) -> None:
     numbers = body_numbers(sheet.drawn)
     bodies = ", ".join(f"{k} {body}" for body, k in numbers.items())
     say(console, f"bodies: {bodies}")
-    table = grid(("centre", "x m:", "y m:", "found"))
+    rows = []
     ranked = sorted(sheet.centres.items(), key=lambda each: sorted(numbers[b] for b in each[0]))
     for pair, centre in ranked:
         crossing = " and ".join(
             " ".join(centre_name(each, numbers) for each in pairs) for pairs in centre.by
         )
         found = f"where {crossing} cross" if crossing else "a joint"
-        table.add_row(centre_name(pair, numbers), *_place(centre.place), found)
-    console.print(table)
+        rows.append((centre_name(pair, numbers), *_place(centre.place), found))
+    console.print(grid(("centre", "x m:", "y m:", "found"), rows))
     if sheet.circles is not None:
-        _show_circles(console, sheet)
+        _show_circles(console, sheet.link, sheet.circles)
 
 
 def _place(place: Array | None) -> tuple[str, str]:
     return ("at infinity", "") if place is None else (f"{place[0]:.8g}", f"{place[1]:.8g}")
 
 
-def _show_circles(console: Console, sheet: CentreSheet) -> None:
-    circles = sheet.circles
-    assert circles is not None
-    table = grid((f"of {sheet.link}, driver steady", "x m:", "y m:", "radius m:"))
-    table.add_row("velocity pole P", *_place(circles.pole), "")
-    table.add_row("acceleration pole Q", *_place(circles.acceleration_pole), "")
-    for name, circle in (
-        ("inflection circle, middle", circles.inflection),
-        ("second circle of Bresse, middle", circles.still_speed),
-    ):
-        if circle is None:
-            table.add_row(name, "a straight line, as its alpha is 0", "", "")
-        else:
-            table.add_row(name, *_place(circle.middle), f"{circle.radius:.8g}")
-    console.print("", table, sep="\n")
+def _show_circles(console: Console, link: str, circles: CurvatureCircles) -> None:
+    second = circles.still_speed
+    rows = [
+        ("velocity pole P", *_place(circles.pole), ""),
+        ("acceleration pole Q", *_place(circles.acceleration_pole), ""),
+        ("inflection circle, middle", *_circle(circles.inflection)),
+        (
+            "second circle of Bresse, middle",
+            *(_circle(second) if second else ("a straight line, as its alpha is 0", "", "")),
+        ),
+    ]
+    heads = (f"of {link}, driver steady", "x m:", "y m:", "radius m:")
+    console.print("", grid(heads, rows), sep="\n")
+
+
+def _circle(circle: CentreCircle) -> tuple[str, str, str]:
+    return *_place(circle.middle), f"{circle.radius:.8g}"
 
 
 MOST_TYPED = 8
@@ -156,19 +146,14 @@ MOST_TYPED = 8
 class ChainsRequest:
     """Arguments of `chains`, as given."""
 
-    links: Annotated[int, typer.Option(metavar="N", help="Links, the ground with them.")] = 6
-    mobility: Annotated[int, typer.Option(metavar="W", help="Their mobility.")] = 1
-    inversions: Annotated[
-        bool, typer.Option("--inversions", help="The mechanisms: each link as the ground.")
-    ] = False
+    links: Annotated[int, option("Links, the ground with them.", "N")] = 6
+    mobility: Annotated[int, option("Their mobility.", "W")] = 1
+    inversions: Annotated[bool, "The mechanisms: each link as the ground."] = False
     sliders: Annotated[
-        int | None,
-        typer.Option(metavar="K", help="Type synthesis: up to so many of the pins are sliders."),
+        int | None, option("Type synthesis: up to so many of the pins are sliders.", "K")
     ] = None
     paper: PaperSize = "A4"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Draw them: .svg in layers, or .pdf.")
-    ] = None
+    output: Annotated[Path | None, output_option("Draw them: .svg in layers, or .pdf.")] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """List or draw chains. Raises CrankcheckError for a faulty request."""
@@ -215,8 +200,7 @@ def _asked(request: ChainsRequest) -> Iterator[tuple[str, Chain]]:
 def _rows(request: ChainsRequest, name: str, chain: Chain) -> Iterator[DrawnChain]:
     """The listed or drawn rows of a chain: itself, or its mechanisms."""
     if not request.inversions:
-        many = len(inversions(chain, name))
-        counted = f"{many} mechanism{'s' if many > 1 else ''}"
+        counted = count(len(inversions(chain, name)), "mechanism")
         yield DrawnChain(chain, name, f"{assortment_in_words(chain.assortment)}; {counted}")
         return
     for mechanism in inversions(chain, name):
@@ -235,15 +219,14 @@ def _show_chains(console: Console, request: ChainsRequest, rows: list[DrawnChain
     heads = ["chain", "links"]
     if request.inversions:
         heads = ["mechanism", "ground", "by its drivers"]
-    table = grid((*heads, "joints of links, sliders with *"))
+    cells = []
     for row in rows:
         ground = [] if row.ground is None else [f"link {row.ground + 1}"]
         joints = " ".join(
-            f"{a + 1}-{b + 1}{'*' if (a, b) in row.chain.sliders else ''}"
-            for a, b in row.chain.joints
+            f"{a + 1}-{b + 1}{'*' * ((a, b) in row.chain.sliders)}" for a, b in row.chain.joints
         )
-        table.add_row(row.name, *ground, row.words, joints)
-    console.print(table)
+        cells.append((row.name, *ground, row.words, joints))
+    console.print(grid((*heads, "joints of links, sliders with *"), cells))
 
 
 def _show_assortments(console: Console, request: ChainsRequest, every: list[Chain]) -> None:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
 from rich.console import Console
 
 from analytic.lectures.chains.assur_groups import ClassedGroup, by_drivers, classed
@@ -26,9 +25,9 @@ from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.field_sheets import draw_assemblies
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.output.console import grid, say
-from reports.output.numbers import roman
+from reports.output.numbers import count, roman
 from reports.output.write import check_file
-from reports.requests.options import PaperSize, SceneName
+from reports.requests.options import PaperSize, SceneName, option, output_option
 
 MOST_CHOICES = 1024
 """Largest number of combinations of branches."""
@@ -47,18 +46,13 @@ class SceneAssembly:
 
     @property
     def words(self) -> str:
-        """The text of the assembly's branch for a scene file."""
-        if not self.branch:
-            return "the only one"
-        return ", ".join(
-            f"{key} {number:+d}" if key in self.signed else f"{key} {number}"
+        """The text of the assembly's branch for a scene file; class II groups have signs."""
+        signed = {group.branch_key for group in self.placement.structure.groups}
+        numbers = (
+            f"{key} {number:+d}" if key in signed else f"{key} {number}"
             for key, number in self.branch.items()
         )
-
-    @property
-    def signed(self) -> set[str]:
-        """The keys of class II groups."""
-        return {group.branch_key for group in self.placement.structure.groups}
+        return ", ".join(numbers) or "the only one"
 
 
 def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> list[SceneAssembly]:
@@ -78,9 +72,10 @@ def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> lis
             f"than the {MOST_CHOICES} that are tried; `solve` shows the scene's own assembly"
         )
     rigid = with_rigid_links(scene)
-    speed = math.copysign(rigid.driver.law.peak_speed_rad_s, _way(rigid))
+    way = float(rigid.driver.law.at(np.zeros(1))[1][0]) or 1.0  # 1 where it starts from rest
+    speed = math.copysign(rigid.driver.law.peak_speed_rad_s, way)
     state = DriverState(coordinate, speed)
-    own = _own(rigid, state)
+    own = _placed(rigid, state)  # None where the scene's motion does not reach it
     there = replace(rigid, driver=replace(rigid.driver, law=ConstantSpeed(coordinate, speed)))
     every = []
     for chosen in itertools.product(*choices):
@@ -89,16 +84,6 @@ def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> lis
         if placement is not None:
             every.append(SceneAssembly(placement, branch, own is not None and _is(placement, own)))
     return every
-
-
-def _way(scene: Scene) -> float:
-    """The sense in which the driver starts, 1 where it starts from rest."""
-    return float(scene.driver.law.at(np.zeros(1))[1][0]) or 1.0
-
-
-def _own(scene: Scene, state: DriverState) -> PlacedMechanism | None:
-    """The scene's own assembly there; None where its motion does not reach it."""
-    return _placed(scene, state)
 
 
 def _placed(scene: Scene, state: DriverState) -> PlacedMechanism | None:
@@ -121,16 +106,12 @@ class StructureRequest:
 
     scene: SceneName
     at_deg: Annotated[
-        float | None,
-        typer.Option(metavar="DEG", help="The driver's angle; default: where the scene starts."),
+        float | None, option("The driver's angle; default: where the scene starts.", "DEG")
     ] = None
-    at_m: Annotated[
-        float | None, typer.Option(metavar="M", help="The place of a slider that drives.")
-    ] = None
+    at_m: Annotated[float | None, option("The place of a slider that drives.", "M")] = None
     paper: PaperSize = "A4"
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="Draw all assemblies: .svg in layers, or .pdf."),
+        Path | None, output_option("Draw all assemblies: .svg in layers, or .pdf.")
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
@@ -140,7 +121,9 @@ class StructureRequest:
             check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
         scene = load_scene(self.scene)
         structure = analyse(scene)
-        coordinate = _coordinate(scene, self)
+        coordinate = float(scene.driver.law.at(np.zeros(1))[0][0])
+        if self.at_deg is not None or self.at_m is not None:
+            coordinate = place_at(scene, self.at_deg, self.at_m)
         every = all_assemblies(scene, structure, coordinate)
         at = f"{scene.driver.joint} at {_told(scene, coordinate)}"
         if self.output is not None:
@@ -150,7 +133,10 @@ class StructureRequest:
                     "place of the driver"
                 )
             told = f"{scene.name}: {_counted(every)} with {at}"
-            drawn = [(one.placement, _caption(one), one.is_own) for one in every]
+            drawn = [
+                (one.placement, f"branch: {one.words}" + "; this scene's" * one.is_own, one.is_own)
+                for one in every
+            ]
             canvas = draw_assemblies(drawn, told, sheet_note(scene), paper)
             save_sheet(console, canvas, self.output, told)
             return 0
@@ -160,13 +146,6 @@ class StructureRequest:
         _show_drivers(console, scene, structure)
         _show_assemblies(console, every, at)
         return 0
-
-
-def _coordinate(scene: Scene, request: StructureRequest) -> float:
-    """The driver's coordinate [rad, m]: the requested one, or the scene's start."""
-    if request.at_deg is not None or request.at_m is not None:
-        return place_at(scene, request.at_deg, request.at_m)
-    return float(scene.driver.law.at(np.zeros(1))[0][0])
 
 
 def _told(scene: Scene, coordinate: float) -> str:
@@ -187,30 +166,30 @@ def _count_in_words(structure: Structure) -> str:
 
 def _show_groups(console: Console, structure: Structure) -> None:
     heads = ("group", "links", "class", "order")
-    table, highest = grid(heads, title="Assur groups in solving order"), 1
+    rows, highest = [], 1
     for part in structure.order:
         if isinstance(part, Bridge):
-            table.add_row("redundant", part.link, "", "")
+            rows.append(("redundant", part.link, "", ""))
             continue
         group = classed(part)
         highest = max(highest, group.class_number)
-        links = ", ".join(group.links)
-        table.add_row(group.kind, links, roman(group.class_number), str(group.order))
-    console.print("", table, sep="\n")
+        number = roman(group.class_number)
+        rows.append((group.kind, ", ".join(group.links), number, str(group.order)))
+    console.print("", grid(heads, rows, "Assur groups in solving order"), sep="\n")
     say(console, f"the mechanism is of class {roman(highest)}")
 
 
 def _show_drivers(console: Console, scene: Scene, structure: Structure) -> None:
-    heads = ("", "driver", "class", "groups")
-    table = grid(heads, title="Driven at another joint (* this scene's)")
+    rows = []
     for one in by_drivers(scene, structure):
         if one.class_number is None:
-            told = f"none: it can not move, or leaves {', '.join(one.left)} loose"
+            number, told = "", f"none: it can not move, or leaves {', '.join(one.left)} loose"
         else:
+            number = roman(one.class_number)
             told = "; ".join(map(_group_in_words, one.groups)) or "the driver alone"
-        number = "" if one.class_number is None else roman(one.class_number)
-        table.add_row("*" if one.is_own else "", one.joint.words, number, told)
-    console.print("", table, sep="\n")
+        rows.append(("*" * one.is_own, one.joint.words, number, told))
+    heads = ("", "driver", "class", "groups")
+    console.print("", grid(heads, rows, "Driven at another joint (* this scene's)"), sep="\n")
 
 
 def _group_in_words(group: ClassedGroup) -> str:
@@ -223,19 +202,12 @@ def _show_assemblies(console: Console, every: list[SceneAssembly], at: str) -> N
     if not every:
         return
     links = list(every[0].placement.scene.links)
-    table = grid(("", "branch", *(f"{name} deg:" for name in links)))
+    rows = []
     for one in every:
         angles = (math.degrees(math.remainder(one.placement.angles[n], math.tau)) for n in links)
-        table.add_row(
-            "*" if one.is_own else "", one.words, *(f"{round(a, 9) + 0.0:.6g}" for a in angles)
-        )
-    console.print(table)
-
-
-def _caption(one: SceneAssembly) -> str:
-    return f"branch: {one.words}" + ("; this scene's" if one.is_own else "")
+        rows.append(("*" * one.is_own, one.words, *(f"{round(a, 9) + 0.0:.6g}" for a in angles)))
+    console.print(grid(("", "branch", *(f"{name} deg:" for name in links)), rows))
 
 
 def _counted(every: list[SceneAssembly]) -> str:
-    many = len(every)
-    return f"{many or 'no'} assembl{'y' if many == 1 else 'ies'}"
+    return count(len(every), "assembly", "assemblies") if every else "no assemblies"

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
@@ -261,28 +260,27 @@ def cycle_frame(cycle: SteadyCycle, bare: SteadyCycle | None = None) -> pd.DataF
 
 def cycle_document(cycle: SteadyCycle) -> str:
     """The numbers of a cycle as JSON."""
-    return json_text({**origin_of(cycle.machine.scene), "cycle": _numbers(cycle)})
+    return numbers_text(cycle.machine.scene, cycle=_numbers(cycle))
 
 
 def flywheel_document(found: WantedFlywheel) -> str:
     """The numbers of a flywheel as JSON."""
     steep, flat = found.slopes
-    return json_text(
-        {
-            **origin_of(found.cycle.machine.scene),
-            "delta": found.delta,
-            "flywheel_kg_m2": {row.key: row.inertia_kg_m2 for row in way_rows(found)},
-            "tan_psi_max_j_per_kg_m2": steep,
-            "tan_psi_min_j_per_kg_m2": flat,
-            "cycle": _numbers(found.cycle),
-            "without": None if found.bare is None else _numbers(found.bare),
-        }
+    return numbers_text(
+        found.cycle.machine.scene,
+        delta=found.delta,
+        flywheel_kg_m2={row.key: row.inertia_kg_m2 for row in way_rows(found)},
+        tan_psi_max_j_per_kg_m2=steep,
+        tan_psi_min_j_per_kg_m2=flat,
+        cycle=_numbers(found.cycle),
+        without=None if found.bare is None else _numbers(found.bare),
     )
 
 
-def origin_of(scene: Scene) -> dict[str, object]:
-    """The origin of numbers: the scene, its source, and the version."""
-    return {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()}
+def numbers_text(scene: Scene, **numbers: object) -> str:
+    """Numbers as JSON, with their origin: the scene, its source, and the version."""
+    origin = {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()}
+    return json_text(origin | numbers)
 
 
 def _numbers(cycle: SteadyCycle) -> dict[str, object]:
@@ -297,37 +295,36 @@ def _numbers(cycle: SteadyCycle) -> dict[str, object]:
 def show_cycle(console: Console, cycle: SteadyCycle) -> None:
     """Print a cycle."""
     say(console, f"{heading(cycle)}\n")
-    table = _table(("", "value", "", f"{cycle.machine.scene.driver.link} at"))
-    for row in number_rows(cycle):
-        at = "" if math.isnan(row.at_deg) else f"{row.at_deg:.4f} deg"
-        table.add_row(row.name, _digits(row.value), row.unit, at)
-    console.print(table, "")
-    works = _table(("work of a cycle by", "work J", "", "mean torque N m"))
-    for work in work_rows(cycle):
-        works.add_row(work.name, _digits(work.work_j), "", _digits(work.mean_n_m))
-    console.print(works, "")
+    _show(console, ("", "value", "", f"{cycle.machine.scene.driver.link} at"), (
+        (row.name, _digits(row.value), row.unit,
+         "" if math.isnan(row.at_deg) else f"{row.at_deg:.4f} deg")
+        for row in number_rows(cycle)
+    ))  # fmt: skip
+    _show(console, ("work of a cycle by", "work J", "", "mean torque N m"), (
+        (work.name, _digits(work.work_j), "", _digits(work.mean_n_m)) for work in work_rows(cycle)
+    ))  # fmt: skip
     say_each(console, notes(cycle))
 
 
 def show_flywheel(console: Console, found: WantedFlywheel) -> None:
     """Print a flywheel."""
     say(console, f"{flywheel_heading(found)}\n")
-    ways = _table(("flywheel", "kg m^2", "", "off the exact one"))
-    for row in way_rows(found):
-        off = "" if row.key == "exact" else f"{'+' * (row.off > 0.0)}{error_text(row.off)}"
-        ways.add_row(row.name, _digits(row.inertia_kg_m2), "", off)
-    console.print(ways, "")
-    beside = _table(("cycle", "without", "with it", ""))
-    for each in beside_rows(found):
-        beside.add_row(each.name, _digits(each.without), _digits(each.with_it), each.unit)
-    console.print(beside, "")
+    _show(console, ("flywheel", "kg m^2", "", "off the exact one"), (
+        (row.name, _digits(row.inertia_kg_m2), "",
+         "" if row.key == "exact" else f"{'+' * (row.off > 0.0)}{error_text(row.off)}")
+        for row in way_rows(found)
+    ))  # fmt: skip
+    _show(console, ("cycle", "without", "with it", ""), (
+        (each.name, _digits(each.without), _digits(each.with_it), each.unit)
+        for each in beside_rows(found)
+    ))  # fmt: skip
     say_each(console, flywheel_notes(found))
 
 
-def _table(heads: tuple[str, str, str, str]) -> Table:
-    """A table of names, then numbers; a column without a head has units."""
+def _show(console: Console, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """Print a table of names, then numbers; a column without a head has units."""
     first, *others = heads
-    return grid((first, *(head and f"{head}:" for head in others)), whole=heads)
+    console.print(grid((first, *(head and f"{head}:" for head in others)), rows, whole=heads), "")
 
 
 def _digits(value: float) -> str:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.console import Console
 
 from analytic.lectures.regulation.cycle_search import cycle_of
@@ -23,7 +22,7 @@ from reports.output.console import say_whole
 from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import Outputs, check_file, check_folder, write
 from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, option, output_option
 from reports.requests.shown import Shown
 
 if TYPE_CHECKING:
@@ -59,10 +58,8 @@ class MachineCycle(Shown):
     def extreme_angles_deg(self) -> tuple[float, float]:
         """The driver's angles at the largest and at the smallest speed."""
         one = self.details
-        return (
-            math.degrees(one.driver_rad(one.fastest)),
-            math.degrees(one.driver_rad(one.slowest)),
-        )
+        high, low = (math.degrees(one.driver_rad(u)) for u in (one.fastest, one.slowest))
+        return high, low
 
     @property
     def surplus_j(self) -> float:
@@ -81,7 +78,6 @@ class MachineCycle(Shown):
 
     def frame(self) -> pd.DataFrame:
         """Table of the cycle, a row each half degree: speed, inertia, torques, work, energy."""
-
         return cycle_rows.cycle_frame(self.details)
 
     def show(self, console: Console) -> None:
@@ -112,7 +108,6 @@ class MachineFlywheel(Shown):
 
     def frame(self) -> pd.DataFrame:
         """Table of the cycle, with the speed without the flywheel where there is one."""
-
         return cycle_rows.cycle_frame(self.details.cycle, self.details.bare)
 
     def show(self, console: Console) -> None:
@@ -162,13 +157,9 @@ PAGE, NUMBERS = ".html", ".json"
 
 
 Output = Annotated[
-    Path | None,
-    typer.Option("-o", "--output", help="Write .csv, .parquet, .xlsx or .json, or a page, .html."),
+    Path | None, output_option("Write .csv, .parquet, .xlsx or .json, or a page, .html.")
 ]
-
-Figures = Annotated[
-    Path | None, typer.Option(metavar="DIR", help="Draw the cycle, as SVG and PDF.")
-]
+Figures = Annotated[Path | None, option("Draw the cycle, as SVG and PDF.", "DIR")]
 
 
 @dataclass(frozen=True)
@@ -181,21 +172,22 @@ class CycleRequest:
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a steady cycle. Raises CrankcheckError for a faulty request."""
-        check_outputs_of(self.scene, self.output, self.figures)
+        _check_outputs(self)
         cycle = cycle_of(TurningMachine.of(load_scene(self.scene)))
         _write(self, cycle, None, console)
         cycle_rows.show_cycle(console, cycle)
         return 0
 
 
-def check_outputs_of(scene: str, output: Path | None, figures: Path | None) -> None:
+def _check_outputs(request: CycleRequest | FlywheelRequest) -> None:
     """Refuse files that could not be written, before the calculation. Raises CrankcheckError."""
-    if output is not None:
-        check_file(output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=[find_scene(scene)])
-    if figures is not None:
+    inputs = [find_scene(request.scene)]
+    if request.output is not None:
+        check_file(request.output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=inputs)
+    if request.figures is not None:
         from reports.lectures.machine.regulation_figures import REGULATION_FIGURES
 
-        check_folder(figures, "--figures", REGULATION_FIGURES.files, inputs=[find_scene(scene)])
+        check_folder(request.figures, "--figures", REGULATION_FIGURES.files, inputs=inputs)
 
 
 def _write(
@@ -204,7 +196,6 @@ def _write(
     found: WantedFlywheel | None,
     console: Console,
 ) -> None:
-    """Write the requested figures and file of a cycle, and of its flywheel if it has one."""
     scene, output = cycle.machine.scene, request.output
     if request.figures is not None:
         from reports.lectures.machine.regulation_figures import REGULATION_FIGURES, Regulated
@@ -230,30 +221,21 @@ def _write(
     say_whole(console, f"{output}: the {what} of {scene.name}{more}")
 
 
-SCENE = ".toml"
-
-
 @dataclass(frozen=True)
 class FlywheelRequest:
     """Arguments of `flywheel`, as given. ``written`` is the file of the scene, which is in free
     motion there with ``free``."""
 
     scene: SceneName
-    delta: Annotated[
-        float, typer.Option(help="Coefficient of fluctuation that is wanted, such as 0.02.")
-    ]
+    delta: Annotated[float, "Coefficient of fluctuation that is wanted, such as 0.02."]
     output: Output = None
     figures: Figures = None
     written: Annotated[
-        Path | None,
-        typer.Option("--write", metavar="FILE.toml", help="Write the scene with the flywheel."),
+        Path | None, option("Write the scene with the flywheel.", "--write FILE.toml")
     ] = None
-    free: Annotated[
-        bool,
-        typer.Option(
-            "--free", help="With --write: let go in its cycle, the drive's torque as a load."
-        ),
-    ] = False
+    free: Annotated[bool, "With --write: let go in its cycle, the drive's torque as a load."] = (
+        False
+    )
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a flywheel. Raises CrankcheckError for a faulty request."""
@@ -265,7 +247,10 @@ class FlywheelRequest:
             raise CrankcheckError(f"--{error}") from None  # of the option
         _write(self, found.cycle, found, console)
         if self.written is not None:
-            write(self.written, _scene(found, free=self.free))
+            scene = found.cycle.machine.scene
+            if self.free:
+                scene = cycle_scene(found.cycle, flywheel=False)
+            write(self.written, scene_text(scene, {scene.driver.link: found.inertia_kg_m2}))
             told = ", let go in its steady cycle" * self.free
             say_whole(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
         cycle_rows.show_flywheel(console, found)
@@ -274,21 +259,12 @@ class FlywheelRequest:
 
 def _check(request: FlywheelRequest) -> None:
     """Refuse files that can not be written, and ``free`` without a file. Raises CrankcheckError."""
-    check_outputs_of(request.scene, request.output, request.figures)
+    _check_outputs(request)
     if request.free and request.written is None:
         raise CrankcheckError("--free: it says how the scene is written; give --write FILE.toml")
     if request.written is not None:
-        if request.written.suffix.lower() != SCENE:
-            raise CrankcheckError(
-                f"--write {request.written}: found {request.written.suffix or 'no ending'}; use "
-                f"{SCENE}"
-            )
+        if request.written.suffix.lower() != ".toml":
+            found = request.written.suffix or "no ending"
+            raise CrankcheckError(f"--write {request.written}: found {found}; use .toml")
         files = {"-o": request.output, "--write": request.written}
         Outputs(files).check([find_scene(request.scene)])
-
-
-def _scene(found: WantedFlywheel, *, free: bool) -> str:
-    """The scene with the flywheel as the text of a file, with an entry for the flywheel itself."""
-    machine = found.cycle.machine
-    scene = cycle_scene(found.cycle, flywheel=False) if free else machine.scene
-    return scene_text(scene, {scene.driver.link: found.inertia_kg_m2})

@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -16,14 +15,12 @@ from analytic.lectures.regulation.flywheel import EnergyMass, WantedFlywheel, en
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
 from models.scene import Scene
-from reports.figures.sheet import Panels, sheet
+from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
 from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, FigureSet, Look, shorten
 from reports.lectures.machine.cycle_rows import CycleSeries, cycle_series
 from reports.output.numbers import readable
 from reports.output.write import crankcheck_version
 
-SIDES = (0.58, 0.1)
-"""Room on the left and on the right of a panel over the angle [inch]."""
 CURVE: Look = {"color": "#1f5f9e", "linewidth": 1.3}
 OTHER: Look = {"color": "#c04a1d", "linewidth": 1.0, "linestyle": (0, (4.0, 1.5))}
 RETURNING: Look = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
@@ -31,7 +28,7 @@ RETURNING: Look = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 
 
 @dataclass(frozen=True)
 class Regulated:
-    """A steady cycle to draw; ``wanted`` is its flywheel, if it has one."""
+    """A steady cycle to draw over its driver's angle; ``wanted`` is its flywheel, if any."""
 
     cycle: SteadyCycle
     wanted: WantedFlywheel | None = None
@@ -44,36 +41,24 @@ class Regulated:
     def series(self) -> CycleSeries:
         return cycle_series(self.cycle)
 
-    @property
-    def bare(self) -> SteadyCycle | None:
-        """The cycle without the flywheel, where there is one."""
-        return None if self.wanted is None else self.wanted.bare
-
-    @property
-    def degrees(self) -> Array:
-        """The abscissa of curves: the driver's angle, continuous from the start [deg]."""
-        return np.degrees(self.series.theta)
-
-    def plot(self, axes: Axes, curve: Array, **look: Any) -> None:
+    def plot(self, axes: Axes, series: Array, **look: Any) -> None:
         """Draw a series of the cycle (T,)."""
-        axes.plot(self.degrees, curve, **look)
+        axes.plot(np.degrees(self.series.theta), series, **look)
 
-    def mark_axis(self, axes: Axes) -> None:
-        """Set limits and ticks of the angle; short numbers on the other axis."""
-        ends = self.degrees[[0, -1]]
-        axes.set_xlim(*sorted(ends))
+    def mark(self, axes: Axes, *, labelled: bool = True) -> None:
+        """Set limits, ticks and label of the angle; short numbers on the other axis."""
+        axes.set_xlim(*sorted(np.degrees(self.series.theta[[0, -1]])))
         shorten(axes)
         turns = round(self.cycle.machine.cycle_rad / math.tau)
         axes.xaxis.set_major_locator(MultipleLocator(60.0 if turns == 1 else 90.0 * turns / 2.0))
-
-    @property
-    def label(self) -> str:
-        return f"angle of {self.cycle.machine.scene.driver.link} [deg]"
+        axes.tick_params(labelbottom=labelled)
+        if labelled:
+            axes.set_xlabel(f"angle of {self.scene.driver.link} [deg]")
 
     @property
     def notes(self) -> list[str]:
         """The notes under each figure."""
-        cycle, scene = self.cycle, self.cycle.machine.scene
+        cycle, scene = self.cycle, self.scene
         parts = [
             f"crankcheck {crankcheck_version()}; steady cycle at a mean speed of "
             f"{readable(cycle.mean_rad_s, 5)} rad/s",
@@ -103,11 +88,13 @@ def draw_energy_mass(of: Regulated) -> Figure | None:
         return None
     high, low = cycle.extreme_speeds_rad_s
     slopes = ((0.5 * high**2, True, OTHER, "max"), (0.5 * low**2, False, RETURNING, "min"))
-    entries: list[tuple[Artist, str]] = [(Line2D([], [], **CURVE), "over the cycle")]
+    entries = [(Line2D([], [], **CURVE), "over the cycle")]
     for slope, _, look, which in slopes:
         words = f"tan psi {which} = {readable(slope, 5)} J/(kg m²)"
         entries.append((Line2D([], [], **look), words))
-    notes = [*of.notes, f"The tangents meet in {_origin(cycle)}, the origin of the diagram."]
+    inertia = readable(0.0 - cycle.solution.flywheel, 5)
+    origin = f"{inertia} kg m² and {readable(-float(cycle.solution.at_borders[0]), 5)} J"
+    notes = [*of.notes, f"The tangents meet in {origin}, the origin of the diagram."]
     title = f"Energy and mass: {cycle.machine.scene.name}"
     figure, (axes,) = sheet(COLUMN_IN, Panels(1, 1, 2.6, *SIDES, 0.2), title, entries, notes)
     axes.plot(diagram.inertia, diagram.work, **CURVE)
@@ -142,22 +129,10 @@ def _angles(of: Regulated, axes: Axes) -> None:
     u = np.clip(cycle.machine.way * (np.radians(degrees) - first), 0.0, cycle.machine.cycle_rad)
     inertia, work = cycle.machine.inertia(u)[0], cycle.energy(u) - cycle.solution.at_borders[0]
     axes.plot(inertia, work, "o", color=QUIET, markersize=2.0, zorder=3)
+    look: Look = {"size": TINY, "color": QUIET, "va": "center", "bbox": PAPER}
+    look |= {"textcoords": "offset points", "annotation_clip": True}
     for deg, x, y in zip(degrees, inertia, work, strict=True):
-        look: Look = {"size": TINY, "color": QUIET, "va": "center", "bbox": PAPER}
-        axes.annotate(
-            f"{deg:.0f}",
-            (x, y),
-            (3.0, 0.0),
-            textcoords="offset points",
-            annotation_clip=True,
-            **look,
-        )
-
-
-def _origin(cycle: SteadyCycle) -> str:
-    """The intersection of the tangents, in the numbers of the axes."""
-    inertia = readable(0.0 - cycle.solution.flywheel, 5)
-    return f"{inertia} kg m² and {readable(-float(cycle.solution.at_borders[0]), 5)} J"
+        axes.annotate(f"{deg:.0f}", (x, y), (3.0, 0.0), **look)
 
 
 MEAN: Look = {"color": INK, "linewidth": 0.7, "linestyle": (0, (5.0, 2.0))}
@@ -168,41 +143,33 @@ APART = 6.0
 
 def draw_speed(of: Regulated) -> Figure:
     """Draw one panel; a second, closer one where the flywheel takes most of the fluctuation."""
-    cycle, bare = of.cycle, of.bare
+    cycle, bare = of.cycle, None if of.wanted is None else of.wanted.bare
     with_it = "with the flywheel" if of.wanted is not None else "speed"
-    entries: list[tuple[Artist, str]] = [
+    extremes = cycle.fastest, cycle.slowest
+    high, low = (readable(math.degrees(cycle.driver_rad(u)), 4) for u in extremes)
+    entries = [
         (Line2D([], [], **CURVE), f"{with_it}, delta = {readable(cycle.delta)}"),
         (Line2D([], [], **MEAN), f"mean {readable(cycle.mean_rad_s, 5)} rad/s"),
-        (Line2D([], [], **EXTREME), _extremes(of)),
+        (Line2D([], [], **EXTREME), f"extreme at {high} and {low} deg"),
     ]
+    notes, curves = list(of.notes), [("", of.series.speed, CURVE)]
+    panels = [curves]
     if bare is not None:
         entries.append((Line2D([], [], **OTHER), f"without, delta = {readable(bare.delta)}"))
-    notes = list(of.notes)
-    if of.wanted is not None and bare is None:
+        both = [("", bare.solution.speed_at(of.series.turned), OTHER), *curves]
+        panels = [both, curves] if bare.delta > APART * cycle.delta else [both]
+    elif of.wanted is not None:
         notes.append("Without the flywheel there is no steady cycle at this speed.")
-    rows = 2 if bare is not None and bare.delta > APART * cycle.delta else 1
-    shape = Panels(rows, 1, 2.1 if rows == 1 else 1.5, *SIDES, 0.15, between=(0, 0.2))
-    title = f"Speed over a cycle: {cycle.machine.scene.name}"
-    figure, axes = sheet(COLUMN_IN, shape, title, entries, notes)
-    for k, one in enumerate(axes):
-        if bare is not None and (rows == 1 or k == 0):
-            of.plot(one, bare.solution.speed_at(of.series.turned), **OTHER)
-        of.plot(one, of.series.speed, **CURVE)
+    label = f"{of.scene.driver.link} [rad/s]"
+    figure, axes = line_figure(
+        of, "Speed over a cycle", [LinePanel(label, each) for each in panels], notes, entries,
+        height=2.1 if len(panels) == 1 else 1.5,
+    )  # fmt: skip
+    for one in axes:
         one.axhline(cycle.mean_rad_s, **MEAN)
-        at = np.array([cycle.fastest, cycle.slowest])
-        if k == len(axes) - 1:
-            one.plot(np.degrees(cycle.machine.theta(at)), cycle.extreme_speeds_rad_s, **EXTREME)
-        of.mark_axis(one)
-        one.tick_params(labelbottom=k == len(axes) - 1)
-        one.set_ylabel(f"{cycle.machine.scene.driver.link} [rad/s]")
-    axes[-1].set_xlabel(of.label)
+    at = np.degrees(cycle.machine.theta(np.array(extremes)))
+    axes[-1].plot(at, cycle.extreme_speeds_rad_s, **EXTREME)
     return figure
-
-
-def _extremes(of: Regulated) -> str:
-    """The driver's angles at the extreme speeds, in words."""
-    high, low = (math.degrees(of.cycle.driver_rad(u)) for u in (of.cycle.fastest, of.cycle.slowest))
-    return f"extreme at {readable(high, 4)} and {readable(low, 4)} deg"
 
 
 WORK: Look = {"color": INK, "linewidth": 1.2}
@@ -210,31 +177,18 @@ WORK: Look = {"color": INK, "linewidth": 1.2}
 
 def draw_torques(of: Regulated) -> Figure:
     """Draw torques above, and work with its surplus below."""
-    series, cycle = of.series, of.cycle
-    curves = [
-        (series.driving, CURVE, "driving torque"),
-        (-series.resisting, OTHER, "resisting torque"),
-        (series.returning, RETURNING, "of weights and springs"),
+    series = of.series
+    torques = [
+        ("driving torque", series.driving, CURVE),
+        ("resisting torque", -series.resisting, OTHER),
+        ("of weights and springs", series.returning, RETURNING),
     ]
-    curves = [each for each in curves if np.any(np.abs(each[0]) > 0.0)]
-    entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **look), words) for _, look, words in curves
+    words = f"work since the start, surplus {readable(of.cycle.surplus_j, 4)} J"
+    panels = [
+        LinePanel("torque [N m]", [each for each in torques if np.any(each[1])], level=0.0),
+        LinePanel("work [J]", [(words, series.work, WORK)], level=0.0),
     ]
-    words = f"work since the start, surplus {readable(cycle.surplus_j, 4)} J"
-    entries.append((Line2D([], [], **WORK), words))
-    shape = Panels(2, 1, 1.5, *SIDES, 0.15, between=(0, 0.2))
-    title = f"Torques and work: {cycle.machine.scene.name}"
-    figure, (upper, lower) = sheet(COLUMN_IN, shape, title, entries, of.notes)
-    for curve, look, _ in curves:
-        of.plot(upper, curve, **look)
-    of.plot(lower, series.work, **WORK)
-    for one, label in ((upper, "torque [N m]"), (lower, "work [J]")):
-        one.axhline(0.0, color=QUIET, linewidth=0.5)
-        of.mark_axis(one)
-        one.set_ylabel(label)
-    upper.tick_params(labelbottom=False)
-    lower.set_xlabel(of.label)
-    return figure
+    return line_figure(of, "Torques and work", panels, of.notes, height=1.5)[0]
 
 
 REGULATION_FIGURES = FigureSet[Regulated](

@@ -62,19 +62,9 @@ def regulation_page(cycle: SteadyCycle, found: WantedFlywheel | None) -> str:
     sections = [cycle_section(cycle, figures)]
     if found is not None:
         sections.insert(0, flywheel_section(found))
-    return assembled(_head(cycle, sections[0].anchor), sections)
-
-
-def _head(cycle: SteadyCycle, first: str) -> Head:
     scene = cycle.machine.scene
-    return Head(
-        title=f"crankcheck: {scene.name}",
-        facts=(
-            "regulation",
-            count(len(scene.links), "link"),
-            *((count(len(scene.loads), "load"),) if scene.loads else ()),
-            f"crankcheck {crankcheck_version()}",
-        ),
-        made="",
-        first=first,
-    )
+    facts = ["regulation", count(len(scene.links), "link")]
+    facts += [count(len(scene.loads), "load")] * bool(scene.loads)
+    facts.append(f"crankcheck {crankcheck_version()}")
+    head = Head(f"crankcheck: {scene.name}", facts, made="", first=sections[0].anchor)
+    return assembled(head, sections)

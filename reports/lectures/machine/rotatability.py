@@ -48,28 +48,23 @@ class RotatabilityRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Show the answer; return the exit code. Raises CrankcheckError for a faulty request."""
         scene = load_scene(self.scene)
+        show = _show
         try:
             circuits = circuits_of(scene)
         except StructureError as error:
             analyse(scene)  # which refuses whatever is no mechanism
             if self.position:
                 raise
-            document = _of_own_branch(scene, str(error))
-            if self.json:
-                _print_json(console, document)
-            else:
-                _show_own_branch(console, document)
-            return 0
-        positions = [_position(circuits, text) for text in self.position]
-        defect = circuits.defect(positions) if positions else "none"
-        document = _document(scene, circuits)
-        if positions:
-            document["defect"] = defect
-        if self.json:
-            _print_json(console, document)
+            document, show = _of_own_branch(scene, str(error)), _show_own_branch
         else:
-            _show(console, document)
-        return int(defect != "none")
+            positions = [_position(circuits, text) for text in self.position]
+            found = {"defect": circuits.defect(positions)} if positions else {}
+            document = _document(scene, circuits) | found
+        if self.json:
+            say_whole(console, json.dumps(document, indent=1))
+        else:
+            show(console, document)
+        return int(document.get("defect", "none") != "none")
 
 
 def _position(circuits: Circuits, text: str) -> Position:
@@ -163,17 +158,11 @@ def _show_own_branch(console: Console, document: Mapping[str, Any]) -> None:
     show_rows(console, document["rotations"], TABLES["rotations"].split())
     say(console, "")
     for end in document["ends"]:
-        say(
-            console,
-            f"{document['driver']} ends at {end['at']:.6g} {document['unit']}: {end['where']}",
-        )
+        at = f"{end['at']:.6g} {document['unit']}"
+        say(console, f"{document['driver']} ends at {at}: {end['where']}")
     if not document["ends"]:
         say(console, f"{document['driver']} turns fully")
     say(console, harmless(document["why_no_circuits"]))
-
-
-def _print_json(console: Console, document: Mapping[str, object]) -> None:
-    say_whole(console, json.dumps(document, indent=1))
 
 
 def rotation_row(one: Rotation, *, is_limited: bool) -> Row:

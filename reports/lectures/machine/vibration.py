@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
 import numpy as np
-import typer
 from rich.console import Console
 
 from analytic.elastic.discretisation import Modes
@@ -35,7 +34,7 @@ from reports.lectures.machine.vibration_tables import show_map, show_speeds, sho
 from reports.output.console import say_whole
 from reports.output.formats import csv
 from reports.output.write import check_folder, write
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, option
 
 if TYPE_CHECKING:
     from reports.figures.style import FigureSet
@@ -44,7 +43,7 @@ MOST_COUNT = 5000
 """Number of speeds, or of speeds times factors, beyond which it takes minutes."""
 RATIOS, COUNT = (12.5, 2.5), 101
 """Default of --map: the frequency ratios of the extreme speeds, and the number of speeds."""
-FACTORS = "0.1:10:9"
+FACTORS, RANGE = "0.1:10:9", "FROM:TO:COUNT"
 MOST_RATIO = 1e4
 """Frequency ratio above which a turn has more vibrations than windows follow."""
 ONE, MANY = 5, 3
@@ -55,11 +54,11 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class Files(Generic[Found]):
-    """Printed form and files of a result: texts by file, and figures by the name of their set in
-    `vibration_figures`, whose import waits until they are needed."""
+    """Printed form and files of a result: texts and tables by file, and figures by the name of
+    their set in `vibration_figures`, whose import waits until they are needed."""
 
     show: Callable[[Console, Found], None]
-    texts: Mapping[str, Callable[[Found], str]]
+    contents: Mapping[str, Callable[[Found], Any]]
     set_name: str
 
     @property
@@ -74,9 +73,9 @@ AT_A_SPEED = Files[SteadyVibration](
     show_vibration,
     {
         "vibration.json": files.vibration_document,
-        "turn.csv": lambda found: csv(files.turn_frame(found)),
-        "natural.csv": lambda found: csv(files.natural_frame(found)),
-        "spectrum.csv": lambda found: csv(files.spectrum_frame(found)),
+        "turn.csv": files.turn_columns,
+        "natural.csv": files.natural_columns,
+        "spectrum.csv": files.spectrum_columns,
     },
     "AT_A_SPEED",
 )
@@ -84,19 +83,14 @@ OVER_SPEEDS = Files[OverSpeeds](
     show_speeds,
     {
         "speeds.json": files.speeds_document,
-        "speeds.csv": lambda found: csv(files.speeds_frame(found)),
-        "waterfall.csv": lambda found: csv(files.waterfall_frame(found)),
-        "critical.csv": lambda found: csv(files.critical_frame(found)),
+        "speeds.csv": files.speeds_rows,
+        "waterfall.csv": files.waterfall_rows,
+        "critical.csv": files.critical_columns,
     },
     "OVER_SPEEDS",
 )
 OVER_INERTIA = Files[InertiaMap](
-    show_map,
-    {
-        "map.json": files.map_document,
-        "map.csv": lambda found: csv(files.map_frame(found)),
-    },
-    "OVER_INERTIA",
+    show_map, {"map.json": files.map_document, "map.csv": files.map_rows}, "OVER_INERTIA"
 )
 
 
@@ -106,34 +100,25 @@ class VibrationRequest:
 
     scene: SceneName
     speeds: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FROM:TO:COUNT", help="Over speeds of the driver [rad/s], such as 5:40:200."
-        ),
+        str | None, option("Over speeds of the driver [rad/s], such as 5:40:200.", RANGE)
     ] = None
     map_link: Annotated[
         str | None,
-        typer.Option(
-            "--map",
-            metavar="LINK",
-            help="Over speeds and over the inertia of a rigid link or of a slider's block.",
+        option(
+            "Over speeds and over the inertia of a rigid link or of a slider's block.",
+            "--map LINK",
         ),
     ] = None
     factors: Annotated[
         str | None,
-        typer.Option(
-            metavar="FROM:TO:COUNT",
-            help="With --map: how many times as heavy (default 0.1:10:9, in equal ratios).",
-        ),
+        option("With --map: how many times as heavy (default 0.1:10:9, in equal ratios).", RANGE),
     ] = None
     modes: Annotated[
-        int | None,
-        typer.Option(min=1, max=40, help="Modes of each link (default 5, over speeds 3)."),
+        int | None, option("Modes of each link (default 5, over speeds 3).", min=1, max=40)
     ] = None
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Write tables, JSON and figures."),
-    ] = None
+    output: Annotated[Path | None, option("Write tables, JSON and figures.", "-o --output DIR")] = (
+        None
+    )
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a vibration. Raises CrankcheckError for a faulty request, and where there
@@ -141,7 +126,8 @@ class VibrationRequest:
         scene = load_scene(self.scene)
         check_vibrates(scene)
         one = self.map_link is None and self.speeds is None
-        by = _modes(self.modes or (ONE if one else MANY))
+        across = self.modes or (ONE if one else MANY)
+        by = Modes(across, min(across, Modes().along))
         if self.factors is not None and self.map_link is None:
             raise CrankcheckError("--factors: they are of the inertia of a link; give --map LINK")
         if self.map_link is not None:
@@ -152,10 +138,6 @@ class VibrationRequest:
         else:
             _answer(self, AT_A_SPEED, lambda: steady_vibration(scene, by), console)
         return 0
-
-
-def _modes(across: int) -> Modes:
-    return Modes(across, min(across, Modes().along))
 
 
 def _over_speeds(request: VibrationRequest, scene: Scene, by: Modes) -> OverSpeeds:
@@ -196,7 +178,7 @@ def asked_range(text: str, option: str, example: str) -> tuple[float, float, int
     except (ValueError, IndexError):
         whole = False
     if not whole:
-        raise CrankcheckError(f"{option}: found {shown(text)}; write FROM:TO:COUNT like {example}")
+        raise CrankcheckError(f"{option}: found {shown(text)}; write {RANGE} like {example}")
     if not 0.0 < low < high:
         raise CrankcheckError(
             f"{option}: found {low:g} to {high:g}; give two numbers above 0, the smaller first"
@@ -216,7 +198,7 @@ def _answer(
 ) -> None:
     """Find and show a result, and write its tables and figures into a folder, where one is named.
     Raises CrankcheckError for a folder that can not be written."""
-    folder, files = request.output, list(wanted.texts)
+    folder, files = request.output, list(wanted.contents)
     if folder is not None:
         files += wanted.figures.files
         check_folder(folder, "-o", files, inputs=[find_scene(request.scene)])
@@ -224,7 +206,11 @@ def _answer(
     wanted.show(console, found)
     if folder is None:
         return
-    for name, text in wanted.texts.items():
-        write(folder / name, text(found))
+    import pandas as pd
+
+    for name, content_of in wanted.contents.items():
+        content = content_of(found)
+        is_text = isinstance(content, str)
+        write(folder / name, content if is_text else csv(pd.DataFrame(content)))
     wanted.figures.written(found, folder)
     say_whole(console, f"{folder}: {', '.join(files)}")

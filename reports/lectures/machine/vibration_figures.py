@@ -1,29 +1,32 @@
 """Figures of vibration at a speed, over speeds and over inertia, and the notes under them."""
 
+import itertools
 import math
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
+from numpy.typing import ArrayLike
 
 from analytic.lectures.vibration.floquet import STABLE
 from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds, spectra
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from models.array import Array
 from models.scene import Scene
-from reports.figures.sheet import Panels, sheet
+from reports.figures.sheet import SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, PAGE_IN, SMALL, FigureSet, logarithmic
 from reports.lectures.machine.vibration_rows import unstable_speeds
 from reports.output.write import crankcheck_version
 
 COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a4d9e")
 """Colours of the links, one after the other."""
-SIDES = (0.58, 0.1)
-"""Room on the left and on the right of a panel [inch]."""
 ORDERS = 24
 """Largest number of drawn orders."""
 SMALLEST = 1e-7
@@ -36,10 +39,29 @@ def notes(scene: Scene, said: str) -> list[str]:
     return [f"crankcheck {crankcheck_version()}; elastic: {links}; {said}."]
 
 
-def whole_orders(axes: Axes, which: str, highest: int) -> None:
-    """Set ticks at whole orders."""
-    axis = axes.xaxis if which == "x" else axes.yaxis
-    axis.set_major_locator(MaxNLocator(nbins=min(12, highest), integer=True))
+def _coloured(links: Iterable[str]) -> dict[str, str]:
+    return dict(zip(links, itertools.cycle(COLOURS), strict=False))
+
+
+def _entry(words: str, **look: Any) -> tuple[Artist, str]:
+    return Line2D([], [], **look), words
+
+
+def _mark_orders(axes: Axes, scene: Scene) -> None:
+    axes.xaxis.set_major_locator(MaxNLocator(nbins=12, integer=True))
+    axes.set_xlabel(f"order of {scene.driver.link}")
+
+
+def _field(axes: Axes, x: ArrayLike, y: Array, values: Array, **look: Any) -> QuadMesh:
+    """Draw the values at places of a grid as colours."""
+    axes.grid(visible=False)
+    return axes.pcolormesh(x, y, values, shading="nearest", rasterized=True, **look)
+
+
+def _add_scale(figure: Figure, axes: Axes, field: QuadMesh, words: str) -> None:
+    """Draw the scale of a field's colours on its right."""
+    bar = figure.colorbar(field, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)))
+    bar.set_label(f"log₁₀ {words}", size=SMALL)
 
 
 SHOWN = "#b8860b"
@@ -49,19 +71,18 @@ LINEAR = "linear in the deflection, about the rigid motion, with the stiffness t
 
 def draw_over_speed(over: OverSpeeds) -> Figure:
     """Draw the largest deflection of each link, and below it the largest multiplier."""
-    scene, links = over.scene, list(over.points[0].swings)
-    entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], color=colour), f"{name}, largest over length")
-        for name, colour in zip(links, COLOURS * len(links), strict=False)
+    scene, colours = over.scene, _coloured(over.points[0].swings)
+    entries = [
+        _entry(f"{name}, largest over length", color=colour) for name, colour in colours.items()
     ]
-    entries.append((Line2D([], [], color="#8a8a8a", linestyle=":"), "critical speed, with order"))
+    entries.append(_entry("critical speed, with order", color="#8a8a8a", linestyle=":"))
     if unstable_speeds(over):
-        entries.append((Line2D([], [], color=UNSTABLE, linewidth=3.0, alpha=0.4), "unstable"))
+        entries.append(_entry("unstable", color=UNSTABLE, linewidth=3.0, alpha=0.4))
     shape = Panels(2, 1, 1.6, *SIDES, 0.2, between=(0, 0.12))
     title = f"Vibration over speed: {scene.name}"
     figure, (upper, lower) = sheet(COLUMN_IN, shape, title, entries, notes(scene, LINEAR))
     everything = []
-    for name, colour in zip(links, COLOURS * len(links), strict=False):
+    for name, colour in colours.items():
         shares = np.array([point.swings[name].share for point in over.points])
         everything.append(shares[shares > 0.0])
         upper.plot(over.speeds, np.maximum(shares, 1e-300), color=colour)
@@ -105,9 +126,7 @@ def _mark_critical(axes: Axes, over: OverSpeeds) -> None:
 def draw_waterfall(over: OverSpeeds) -> Figure:
     """Draw the spectrum at every speed, a panel for each link, and the orders of the modes."""
     scene, links = over.scene, list(over.points[0].swings)
-    entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], color=SHOWN, linestyle="--"), "order that a mode vibrates at"),
-    ]
+    entries = [_entry("order that a mode vibrates at", color=SHOWN, linestyle="--")]
     shape = Panels(1, len(links), 2.6, 0.48, 0.62, 0.2, between=(0.75, 0.25))
     title = f"Spectrum of the deflection over speed: {scene.name}"
     width = COLUMN_IN if len(links) == 1 else PAGE_IN
@@ -116,27 +135,18 @@ def draw_waterfall(over: OverSpeeds) -> Figure:
         amplitudes = np.log10(np.maximum(spectra(over, name), SMALLEST))[:, : ORDERS + 1]
         highest = max(min(math.ceil(np.percentile(amplitudes, 99.9)), 0), -5)
         orders = np.arange(amplitudes.shape[1])
-        image = panel.pcolormesh(
-            orders, over.speeds, amplitudes, shading="nearest", cmap="viridis",
-            vmin=math.log10(SMALLEST), vmax=highest, rasterized=True,
-        )  # fmt: skip
-        _draw_modes(panel, over)
-        panel.grid(visible=False)
+        look = {"cmap": "viridis", "vmin": math.log10(SMALLEST), "vmax": highest}
+        field = _field(panel, orders, over.speeds, amplitudes, **look)
+        of_modes = np.array([[each.order for each in point.deviations] for point in over.points])
+        for own in of_modes.T:
+            panel.plot(own, over.speeds, color=SHOWN, linestyle="--", linewidth=0.9)
         panel.set_title(name)
         panel.set_xlim(-0.5, orders[-1] + 0.5)
         panel.set_ylim(over.speeds[0], over.speeds[-1])
-        whole_orders(panel, "x", ORDERS)
-        panel.set_xlabel(f"order of {scene.driver.link}")
-        bar = figure.colorbar(image, cax=panel.inset_axes((1.03, 0.0, 0.04, 1.0)))
-        bar.set_label("log₁₀ amplitude / length", size=SMALL)
+        _mark_orders(panel, scene)
+        _add_scale(figure, panel, field, "amplitude / length")
     axes[0].set_ylabel(f"speed of {scene.driver.link} [rad/s]")
     return figure
-
-
-def _draw_modes(axes: Axes, over: OverSpeeds) -> None:
-    orders = np.array([[each.order for each in point.deviations] for point in over.points])
-    for own in orders.T:
-        axes.plot(own, over.speeds, color=SHOWN, linestyle="--", linewidth=0.9)
 
 
 LOWEST, HIGHEST = -5.0, 0.0
@@ -148,9 +158,7 @@ MOST_GROWTH = 3.0
 def draw_over_inertia(found: InertiaMap) -> Figure:
     """Draw the deflection on the left, multipliers on the right."""
     scene, driver = found.scene, found.scene.driver.link
-    entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], color="#eeeeee", marker="s", linestyle=""), "deviations do not grow"),
-    ]
+    entries = [_entry("deviations do not grow", color="#eeeeee", marker="s", linestyle="")]
     shape = Panels(1, 2, 2.5, 0.55, 0.62, 0.2, between=(1.15, 0.25))
     title = f"Vibration over speed and inertia of {found.link}: {scene.name}"
     figure, (left, right) = sheet(PAGE_IN, shape, title, entries, notes(scene, LINEAR))
@@ -158,31 +166,21 @@ def draw_over_inertia(found: InertiaMap) -> Figure:
     height = np.log10(found.factors)
     shares = np.log10(np.clip(found.shares, 10.0**LOWEST, 10.0**HIGHEST))
     low, high = math.floor(shares.min()), math.ceil(shares.max())
-    drawn = left.pcolormesh(
-        ratios, height, shares, shading="nearest", cmap="viridis", vmin=low,
-        vmax=max(high, low + 1), rasterized=True,
-    )  # fmt: skip
+    look = {"cmap": "viridis", "vmin": low, "vmax": max(high, low + 1)}
+    drawn = _field(left, ratios, height, shares, **look)
     growth = np.log10(np.maximum(found.multipliers, 1.0))
     growth = np.where(found.multipliers > 1.0 + STABLE, growth, np.nan)
-    right.pcolormesh(
-        ratios, height, np.zeros_like(shares), shading="nearest", cmap=ListedColormap(["#eeeeee"]),
-        rasterized=True,
-    )  # fmt: skip
-    grown = right.pcolormesh(
-        ratios, height, growth, shading="nearest", cmap="YlOrRd", vmin=0.0, vmax=MOST_GROWTH,
-        rasterized=True,
-    )  # fmt: skip
-    bars = ((left, drawn, "largest deflection / length"), (right, grown, "growth in a turn"))
-    for panel, image, told in bars:
-        panel.grid(visible=False)
+    _field(right, ratios, height, np.zeros_like(shares), cmap=ListedColormap(["#eeeeee"]))
+    grown = _field(right, ratios, height, growth, cmap="YlOrRd", vmin=0.0, vmax=MOST_GROWTH)
+    scales = ((left, drawn, "largest deflection / length"), (right, grown, "growth in a turn"))
+    for panel, field, words in scales:
         panel.set_xlim(ratios.min(), ratios.max())
         panel.set_ylim(height.min(), height.max())
         ticks = found.factors[:: max(1, len(found.factors) // 5)]
         panel.set_yticks(np.log10(ticks), [f"{tick:.3g}" for tick in ticks])
         panel.set_xlabel(f"lowest natural frequency / speed of {driver}")
         panel.set_ylabel(f"{found.link}, times its inertia")
-        bar = figure.colorbar(image, cax=panel.inset_axes((1.03, 0.0, 0.04, 1.0)))
-        bar.set_label(f"log₁₀ {told}", size=SMALL)
+        _add_scale(figure, panel, field, words)
     return figure
 
 
@@ -194,8 +192,8 @@ LOOKS = {"": "-", "linear": (0, (1.0, 1.2)), "linear, not stiffened": (0, (4.0, 
 def draw_over_turn(vibration: SteadyVibration) -> Figure:
     """Draw the deflection of the middle over the driver's angle, a panel for each link."""
     scene = vibration.scene
-    entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], color="#1a1a1a", linestyle=look), name or "unlinearised")  # type: ignore[arg-type]  # a pattern of dashes
+    entries = [
+        _entry(name or "unlinearised", color="#1a1a1a", linestyle=look)
         for name, look in LOOKS.items()
     ]
     shape = Panels(len(vibration.swings), 1, 1.7, *SIDES, 0.17, between=(0, 0.25))
@@ -205,13 +203,12 @@ def draw_over_turn(vibration: SteadyVibration) -> Figure:
     law = scene.driver.law
     turn = np.linspace(0.0, 1.0, FINE)
     degrees = np.degrees(law.at(turn * law.period_s)[0])
-    for panel, (name, own), colour in zip(
-        axes, vibration.swings.items(), COLOURS * len(axes), strict=False
-    ):
+    colours = _coloured(vibration.swings)
+    for panel, (name, own) in zip(axes, vibration.swings.items(), strict=True):
         for theory, look in LOOKS.items():
             swing = vibration.theories[theory][name] if theory else own
             curve = 1e3 * between(swing.series, turn)
-            panel.plot(degrees, curve, color=colour, linestyle=look, linewidth=1.0)
+            panel.plot(degrees, curve, color=colours[name], linestyle=look, linewidth=1.0)
         panel.set_ylabel(f"{name} {'middle' if own.bends else 'extension'} [mm]")
         panel.set_xlim(*sorted(degrees[[0, -1]]))
         panel.xaxis.set_major_locator(MultipleLocator(60.0))
@@ -222,23 +219,24 @@ def draw_over_turn(vibration: SteadyVibration) -> Figure:
 
 def draw_spectrum(vibration: SteadyVibration) -> Figure:
     """Draw amplitudes over the length at orders of the driver, and the orders of the modes."""
-    scene, each = vibration.scene, list(vibration.swings.values())
-    entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], color=colour, marker="o", markersize=3, linestyle="-"), own.link)
-        for own, colour in zip(each, COLOURS * len(each), strict=False)
+    scene, colours = vibration.scene, _coloured(vibration.swings)
+    entries = [
+        _entry(link, color=colour, marker="o", markersize=3, linestyle="-")
+        for link, colour in colours.items()
     ]
     shown = [d for d in vibration.stability.deviations if d.order <= ORDERS]
     if shown:
-        entries.append((Line2D([], [], color="#8a8a8a", linestyle=":"), "modes of the mechanism"))
+        entries.append(_entry("modes of the mechanism", color="#8a8a8a", linestyle=":"))
     said = notes(scene, f"{scene.driver.link} at {vibration.speed_rad_s:.5g} rad/s")
     title = f"Spectrum of the deflection: {scene.name}"
     figure, (panel,) = sheet(COLUMN_IN, Panels(1, 1, 2.0, *SIDES, 0.08), title, entries, said)
     tops = []
-    for k, (own, colour) in enumerate(zip(each, COLOURS * len(each), strict=False)):
+    for k, (link, colour) in enumerate(colours.items()):
+        own = vibration.swings[link]
         orders = np.arange(min(ORDERS + 1, len(own.amplitudes)))
         orders = orders[own.amplitudes[orders] > SMALLEST * own.length_m]
         heights = own.amplitudes[orders] / own.length_m
-        shift = 0.18 * (k - 0.5 * (len(each) - 1))
+        shift = 0.18 * (k - 0.5 * (len(colours) - 1))
         panel.vlines(orders + shift, SMALLEST, heights, color=colour, linewidth=1.2)
         panel.plot(orders + shift, heights, color=colour, marker="o", markersize=2.4, linestyle="")
         tops.append(heights.max(initial=SMALLEST))
@@ -246,8 +244,7 @@ def draw_spectrum(vibration: SteadyVibration) -> Figure:
         panel.axvline(deviation.order, color="#8a8a8a", linestyle=":", linewidth=0.9)
     logarithmic(panel, "y", SMALLEST, max(3.0 * max(tops), 1e2 * SMALLEST))
     panel.set_xlim(-0.7, ORDERS + 0.7)
-    whole_orders(panel, "x", ORDERS)
-    panel.set_xlabel(f"order of {scene.driver.link}")
+    _mark_orders(panel, scene)
     panel.set_ylabel("amplitude / length")
     return figure
 

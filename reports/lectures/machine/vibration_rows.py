@@ -1,7 +1,7 @@
 """Words on a steady vibration: natural frequencies, orders, deflections, notes."""
 
+import itertools
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -174,19 +174,13 @@ class Unstable:
 
 def unstable_speeds(over: OverSpeeds) -> list[Unstable]:
     """The ranges of speeds at which deviations grow."""
-    found, own = [], list[tuple[float, float]]()
-    for point in over.points:
-        if point.stability.is_stable:
-            found += list(_run(own))
-            own = []
-        else:
-            own.append((point.speed_rad_s, point.stability.largest))
-    return found + list(_run(own))
-
-
-def _run(own: list[tuple[float, float]]) -> Iterator[Unstable]:
-    if own:
-        yield Unstable(own[0][0], own[-1][0], max(size for _, size in own))
+    found = []
+    for is_stable, run in itertools.groupby(over.points, lambda point: point.stability.is_stable):
+        points = list(run)
+        if not is_stable:
+            largest = max(point.stability.largest for point in points)
+            found.append(Unstable(points[0].speed_rad_s, points[-1].speed_rad_s, largest))
+    return found
 
 
 def speeds_heading(over: OverSpeeds) -> str:

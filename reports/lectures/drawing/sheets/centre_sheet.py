@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,13 +31,13 @@ from reports.lectures.drawing.sheets.paper import (
     Box,
     Canvas,
     Paper,
+    ToScale,
     arc_places,
-    draw_border,
+    headed,
     inner_box,
     line,
     near_angles,
     text,
-    write_head,
 )
 from reports.lectures.drawing.sheets.scheme import assembled, draw_scheme, extent_of, range_about
 
@@ -49,14 +49,9 @@ INFLECTION, NO_TANGENTIAL = "#2e6f9e", "#3a7d44"
 FIXED, MOVING, THEOREM = "#b7791f", "#6b4e9b", "#a9b3bf"
 
 
-def height_of_column(bodies: int, *, with_curves: bool) -> float:
-    """Height of the column for so many bodies [mm]."""
-    return POLYGON_MM + ROW_MM * (bodies + (CURVE_ROWS if with_curves else 0.0) + 1.0)
-
-
 def write_legend(axes: Axes, numbers: Mapping[str, int], link: str, column: Box) -> None:
     """Write the bodies by number; with a ``link``, also the key of its poles and curves."""
-    left, y = column.left + 2.0, column.bottom + column.height - POLYGON_MM - ROW_MM
+    left, y = column.left + 2.0, column.top - POLYGON_MM - ROW_MM
     room = (column.width - 4.0) / MM_PER_IN
     for body, k in numbers.items():
         text(axes, left, y, cut(f"{k}  {body}", room, SMALL), SMALL)
@@ -96,8 +91,7 @@ def draw_polygon_of_centres(
     axes: Axes, centres: Mapping[Pair, Centre], numbers: Mapping[str, int], column: Box
 ) -> None:
     """Draw bodies as corners, centres of joints as full sides, others dashed; atop the column."""
-    top = column.bottom + column.height
-    middle = np.array([column.left + column.width / 2, top - POLYGON_MM / 2])
+    middle = np.array([column.middle[0], column.top - POLYGON_MM / 2])
     radius = POLYGON_MM / 2 - 5.0
     angles = math.pi / 2 + math.tau * np.arange(len(numbers)) / len(numbers)
     corners = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -128,27 +122,19 @@ DENSE = 1441
 
 
 @dataclass(frozen=True)
-class CentreSheet:
-    """The centres at one position, and the circles and centrodes of the named link, if any."""
+class CentreSheet(ToScale):
+    """The centres at one position, and the circles and centrodes of the named link, if any; the
+    column of words stands on the right."""
 
     drawn: DrawnPolygons
     centres: Mapping[Pair, Centre]
     link: str
     circles: CurvatureCircles | None
     centrodes: Centrodes | None
-    scale: float
-    middle: Array
+    column: Box
     paper: Paper
 
-    @property
-    def box(self) -> Box:
-        return _boxes(self.paper)[0]
-
-    def at(self, places: Array) -> Array:
-        """Places [m], (..., 2), on the sheet [mm]."""
-        return np.asarray(self.box.middle + (places - self.middle) / self.scale)
-
-    def is_near(self, place: Array | None) -> bool:
+    def is_near(self, place: Array | None) -> TypeGuard[Array]:
         """True if a place [m] is on the sheet."""
         if place is None:
             return False
@@ -176,23 +162,18 @@ def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
             raise CrankcheckError(f"--link {link}: no such link; there are {known}")
         circles = curvature_circles(drawn, link)
         curves = _centrodes_of(drawn, link)
-    _check_room(drawn, paper, with_curves=bool(link))
-    scale, middle = _frame(drawn, centres, circles, paper)
-    return CentreSheet(drawn, centres, link, circles, curves, scale, middle, paper)
-
-
-def _check_room(drawn: DrawnPolygons, paper: Paper, *, with_curves: bool) -> None:
-    """Refuse paper on which the column on the right does not fit. Raises CrankcheckError."""
+    box, column = inner_box(paper).side_by_side(COLUMN_MM, GAP)
     bodies = len(body_numbers(drawn))
-    column = _boxes(paper)[1]
-    needed = height_of_column(bodies, with_curves=with_curves)
+    needed = POLYGON_MM + ROW_MM * (bodies + (CURVE_ROWS if link else 0.0) + 1.0)
     if column.height < needed:
         tall = math.ceil(paper.height - column.height + needed)
         raise CrankcheckError(
             f"--paper {paper.width:g}x{paper.height:g}: too low for the names of {bodies} bodies"
-            + (" and of the curves" if with_curves else "")
+            + (" and of the curves" if link else "")
             + f"; {paper.width:g}x{tall} would do"
         )
+    fitted = box.fitted(_shown(drawn, centres, circles), PADDING)
+    return CentreSheet(box, *fitted, drawn, centres, link, circles, curves, column, paper)
 
 
 def _centrodes_of(drawn: DrawnPolygons, link: str) -> Centrodes:
@@ -208,13 +189,10 @@ def _centrodes_of(drawn: DrawnPolygons, link: str) -> Centrodes:
     return Centrodes(fixed, moving)
 
 
-def _frame(
-    drawn: DrawnPolygons,
-    centres: Mapping[Pair, Centre],
-    circles: CurvatureCircles | None,
-    paper: Paper,
-) -> tuple[float, Array]:
-    """The scale [m/mm], and the middle [m], of the mechanism and of places near it."""
+def _shown(
+    drawn: DrawnPolygons, centres: Mapping[Pair, Centre], circles: CurvatureCircles | None
+) -> Array:
+    """The mechanism, and the centres near it [m], (n, 2)."""
     points = extent_of(drawn.placement)
     low, high = points.min(axis=0), points.max(axis=0)
     about, size = (low + high) / 2, float(np.max(high - low))
@@ -222,47 +200,30 @@ def _frame(
     if circles is not None:
         more += [circles.pole, circles.acceleration_pole, circles.inflection.middle]
     near = [at for at in more if np.abs(at - about).max() < FAR * size]
-    return _boxes(paper)[0].fitted(np.array([*points, *near]), PADDING)
-
-
-def _boxes(paper: Paper) -> tuple[Box, Box]:
-    inner = inner_box(paper)
-    wide = inner.width - COLUMN_MM - GAP
-    left = inner.left + wide + GAP
-    return (
-        Box(inner.left, inner.bottom, wide, inner.height),
-        Box(left, inner.bottom, COLUMN_MM, inner.height),
-    )
+    return np.array([*points, *near])
 
 
 def draw_centres(sheet: CentreSheet, note: str) -> Canvas:
     """The sheet, in layers."""
-    canvas = Canvas(sheet.paper)
-    _head(canvas.layer("frame"), sheet, note)
-    if sheet.centrodes is not None:
-        _draw_centrodes(canvas.layer("centrodes"), sheet, sheet.centrodes)
-    if sheet.circles is not None:
-        _circles(canvas.layer("circles"), sheet, sheet.circles)
-    draw_scheme(canvas.layer("mechanism"), sheet.drawn.placement, sheet.at)
-    _centres(canvas.layer("centres"), sheet)
-    column = _boxes(sheet.paper)[1]
-    numbers = body_numbers(sheet.drawn)
-    draw_polygon_of_centres(canvas.layer("polygon-of-centres"), sheet.centres, numbers, column)
-    write_legend(canvas.layer("legend"), numbers, sheet.link, column)
-    write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
-    return canvas
-
-
-def _head(axes: Axes, sheet: CentreSheet, note: str) -> None:
     scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
     angle = math.degrees(driver.theta) % 360.0
     title = (
         f"{scene.name}: instant centres, {scene.driver.link} at {angle:.6g}°, "
         f"K_l = {sheet.scale:g} m/mm"
     )
-    write_head(axes, sheet.paper, title, note)
-    for box in _boxes(sheet.paper):
-        draw_border(axes, box)
+    canvas, _ = headed(sheet.paper, title, note, sheet.box, sheet.column)
+    if sheet.centrodes is not None:
+        _draw_centrodes(canvas.layer("centrodes"), sheet, sheet.centrodes)
+    if sheet.circles is not None:
+        _circles(canvas.layer("circles"), sheet, sheet.circles)
+    draw_scheme(canvas.layer("mechanism"), sheet.drawn.placement, sheet.at)
+    _centres(canvas.layer("centres"), sheet)
+    numbers = body_numbers(sheet.drawn)
+    axes = canvas.layer("polygon-of-centres")
+    draw_polygon_of_centres(axes, sheet.centres, numbers, sheet.column)
+    write_legend(canvas.layer("legend"), numbers, sheet.link, sheet.column)
+    write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
+    return canvas
 
 
 def _draw_centrodes(axes: Axes, sheet: CentreSheet, curves: Centrodes) -> None:
@@ -284,15 +245,10 @@ def _circles(axes: Axes, sheet: CentreSheet, circles: CurvatureCircles) -> None:
     edge = Rectangle((box.left, box.bottom), box.width, box.height, transform=axes.transData)
     for circle, colour in ((circles.inflection, INFLECTION), (circles.still_speed, NO_TANGENTIAL)):
         if circle is not None:
-            arc = _arc_near(sheet.at(circle.middle), circle.radius / sheet.scale, box)
+            middle, radius = sheet.at(circle.middle), circle.radius / sheet.scale
+            arc = arc_places(middle, radius, *near_angles(middle, radius, *box.corners))
             drawn = axes.plot(arc[:, 0], arc[:, 1], color=colour, lw=0.7)[0]
             drawn.set_clip_path(edge)
-
-
-def _arc_near(middle: Array, radius: float, box: Box) -> Array:
-    """The part of a circle [mm] that may be in a box, (n, 2), finely sampled."""
-    start, end = near_angles(middle, radius, *box.corners)
-    return arc_places(middle, radius, start, end)
 
 
 def _centres(axes: Axes, sheet: CentreSheet) -> None:
@@ -300,12 +256,11 @@ def _centres(axes: Axes, sheet: CentreSheet) -> None:
     for centre in sheet.centres.values():
         if not sheet.is_near(centre.place):
             continue
-        assert centre.place is not None
         here = sheet.at(centre.place)
         for pairs in centre.by:
             for pair in pairs:
                 other = sheet.centres[pair].place
-                if other is not None and sheet.is_near(other):
+                if sheet.is_near(other):
                     line(axes, here, sheet.at(other), color=THEOREM, linewidth=0.5)
         axes.add_patch(Round(tuple(here), CENTRE_MM, fc="white", ec=POLE, lw=0.8, zorder=7))
     if sheet.circles is not None and sheet.is_near(sheet.circles.acceleration_pole):
@@ -318,10 +273,6 @@ def _letters(sheet: CentreSheet) -> list[Letter]:
     places = {centre_name(pair, numbers): centre.place for pair, centre in sheet.centres.items()}
     if circles is not None:
         places |= {"P": circles.pole, "Q": circles.acceleration_pole}
-    at = {
-        name: sheet.at(place)
-        for name, place in places.items()
-        if place is not None and sheet.is_near(place)
-    }
-    joined = together(at, NEAR_MM)
+    near = {name: place for name, place in places.items() if sheet.is_near(place)}
+    joined = together({name: sheet.at(place) for name, place in near.items()}, NEAR_MM)
     return [Letter(name, spot, CENTRE_MM, CENTRE_SIZE) for name, spot in joined.items()]

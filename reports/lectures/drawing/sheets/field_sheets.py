@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,21 +14,20 @@ from analytic.lectures.chains.layout import joints_at
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism, quarter_turn
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.figures.style import INK, QUIET, SMALL, TINY, cut, width_in
+from reports.figures.style import INK, QUIET, SMALL, TINY
 from reports.lectures.drawing.sheets.letters import write_letters
 from reports.lectures.drawing.sheets.paper import (
-    MM_PER_IN,
     SIZES,
     Box,
     Canvas,
     Paper,
-    draw_border,
+    ToScale,
+    headed,
     inner_box,
     line,
-    text,
-    write_head,
+    write_middle,
 )
-from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
+from reports.lectures.drawing.sheets.scheme import draw_block, draw_scheme, extent_of, point_letters
 
 PIN_MM, BLOCK_MM = 0.75, (3.4, 2.2)
 HATCH_MM, EVERY_MM = 1.1, 1.1
@@ -52,7 +50,10 @@ def draw_chain(
             _plate(axes, corners, is_ground=link == ground)
     for joint in chain.joints:
         if joint in chain.sliders:
-            _block(axes, at[joint], _along(chain, joint, at))
+            place, along = at[joint], _along(chain, joint, at)
+            draw_block(axes, place, along, BLOCK_MM, FRONT)
+            half = 0.5 * BLOCK_MM[0] * along
+            line(axes, place - half, place + half, linewidth=0.5, zorder=FRONT)
         else:
             axes.add_patch(
                 Circle(tuple(at[joint]), PIN_MM, fc="white", ec=INK, lw=0.7, zorder=FRONT)
@@ -86,15 +87,6 @@ def _strokes(axes: Axes, ends: Array, middle: Array) -> None:
         line(axes, at, at + stroke, linewidth=0.45)
 
 
-def _block(axes: Axes, place: Array, along: Array) -> None:
-    """Draw a slider: a block on the bar that it slides on."""
-    half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
-    signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
-    corners = [place + a * half + b * aside for a, b in signs]
-    axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=0.8, zorder=FRONT))
-    line(axes, place - half, place + half, linewidth=0.5, zorder=FRONT)
-
-
 def _along(chain: Chain, joint: Joint, at: Mapping[Joint, Array]) -> Array:
     """The direction of a slider: along an edge of its link with fewer joints, as of a bar."""
     link = min(joint, key=lambda one: chain.degrees[one])
@@ -126,9 +118,9 @@ class DrawnChain:
 
 def check_room(many: int, paper: Paper) -> None:
     """Refuse paper on which so many fields can not be read. Raises CrankcheckError."""
-    field = _fields(many, paper)[0]
-    if field.width >= LEAST_MM[0] and field.height >= LEAST_MM[1]:
+    if _is_enough(many, paper):
         return
+    field = _fields(many, paper)[0]
     fit = [name for name, size in SIZES.items() if _is_enough(many, Paper(*size))]
     cure = f"--paper {fit[0]} would do" if fit else "ask for fewer, or give a larger WIDTHxHEIGHT"
     raise CrankcheckError(
@@ -151,11 +143,9 @@ def _fields(many: int, paper: Paper) -> list[Box]:
 
 def _grid(many: int, columns: int, inner: Box) -> list[Box]:
     """The fields of so many columns, row by row from the top."""
-    rows = math.ceil(many / columns)
-    wide, tall = inner.width / columns, inner.height / rows
-    top = inner.bottom + inner.height
+    wide, tall = inner.width / columns, inner.height / math.ceil(many / columns)
     return [
-        Box(inner.left + (k % columns) * wide, top - (k // columns + 1) * tall, wide, tall)
+        Box(inner.left + (k % columns) * wide, inner.top - (k // columns + 1) * tall, wide, tall)
         for k in range(many)
     ]
 
@@ -163,8 +153,7 @@ def _grid(many: int, columns: int, inner: Box) -> list[Box]:
 def draw_chains(chains: Sequence[DrawnChain], title: str, note: str, paper: Paper) -> Canvas:
     """Draw the sheet, in layers; all chains with bars of one length."""
     check_room(len(chains), paper)
-    canvas = Canvas(paper)
-    write_head(canvas.layer("frame"), paper, title, note)
+    canvas, _ = headed(paper, title, note)
     schemes, letters = canvas.layer("chains"), canvas.layer("letters")
     fields = _fields(len(chains), paper)
     places = [joints_at(one.chain) for one in chains]
@@ -172,20 +161,12 @@ def draw_chains(chains: Sequence[DrawnChain], title: str, note: str, paper: Pape
     sizes = [np.ptp(np.array(list(at.values())), axis=0) for at in places]
     bar = min(BAR_MM, *(float(np.min(room / np.maximum(size, 0.3))) for size in sizes))
     for one, field, at in zip(chains, fields, places, strict=True):
-        middle = np.array(
-            [field.middle[0], field.bottom + WORDS_MM + (field.height - WORDS_MM) / 2]
-        )
-        draw_chain(
-            schemes, one.chain, {joint: middle + bar * way for joint, way in at.items()}, one.ground
-        )
-        low = field.bottom + WORDS_MM - LINE_MM
-        for words, size, color, y in (
-            (one.name, NAME, "black", low),
-            (one.words, TINY, QUIET, low - LINE_MM),
-        ):
-            short = cut(words, (field.width - 2.0) / MM_PER_IN, size)
-            left = field.middle[0] - MM_PER_IN * width_in(short, size) / 2
-            text(letters, left, y, short, size, color=color)
+        low = field.bottom + WORDS_MM
+        middle = np.array([field.middle[0], low + (field.height - WORDS_MM) / 2])
+        there = {joint: middle + bar * way for joint, way in at.items()}
+        draw_chain(schemes, one.chain, there, one.ground)
+        write_middle(letters, field, low - LINE_MM, one.name, NAME, color="black")
+        write_middle(letters, field, low - LINE_MM - LINE_MM, one.words, TINY, color=QUIET)
     return canvas
 
 
@@ -207,30 +188,20 @@ def draw_assemblies(
             f"{len(drawn)} assemblies do not fit on {paper.width:g} x {paper.height:g} mm; take a "
             "larger --paper, such as A2"
         )
-    canvas = Canvas(paper)
-    frame = canvas.layer("frame")
-    write_head(frame, paper, title, note)
+    canvas, frame = headed(paper, title, note, *fields)
     schemes, letters = canvas.layer("mechanism"), canvas.layer("letters")
     boxes = [Box(one.left, one.bottom + NAME_MM, one.width, one.height - NAME_MM) for one in fields]
     everything = np.concatenate([extent_of(placement) for placement, _, _ in drawn])
-    scale, middle = boxes[0].fitted(everything, PADDING)
-    for (placement, words, is_own), field, box in zip(drawn, fields, boxes, strict=True):
-        draw_border(frame, field)
-        at = partial(_at, box=box, scale=scale, middle=middle)
-        draw_scheme(schemes, placement, at)
-        short = cut(words, (field.width - 4.0) / MM_PER_IN, SMALL)
-        left = field.middle[0] - MM_PER_IN * width_in(short, SMALL) / 2
-        weight, color = ("bold", INK) if is_own else ("normal", QUIET)
-        text(frame, left, field.bottom + 2.5, short, weight=weight, color=color)
-    for (placement, _, _), box in zip(drawn, boxes, strict=True):
-        places = {name: _at(place, box, scale, middle) for name, place in placement.points.items()}
-        write_letters(canvas, letters, point_letters(placement, places), box)
+    fitted = boxes[0].fitted(everything, PADDING)
+    views = [ToScale(box, *fitted) for box in boxes]
+    for (placement, words, is_own), field, view in zip(drawn, fields, views, strict=True):
+        draw_scheme(schemes, placement, view.at)
+        look = {"weight": "bold", "color": INK} if is_own else {"color": QUIET}
+        write_middle(frame, field, field.bottom + 2.5, words, SMALL, margin=2.0, **look)
+    for (placement, _, _), view in zip(drawn, views, strict=True):
+        places = {name: view.at(place) for name, place in placement.points.items()}
+        write_letters(canvas, letters, point_letters(placement, places), view.box)
     return canvas
-
-
-def _at(places: Array, box: Box, scale: float, middle: Array) -> Array:
-    """Places [m], (..., 2), on the sheet [mm]."""
-    return np.asarray(box.middle + (places - middle) / scale)
 
 
 def _square_fields(many: int, paper: Paper) -> list[Box]:

@@ -16,6 +16,7 @@ from reports.lectures.drawing.sheets.graph_span import ON_END, GraphSpan
 from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.map_file import Map, read_map
+from reports.output.numbers import count
 
 BESIDE = 4
 """Rows on both sides of the period that the spline also passes."""
@@ -146,11 +147,11 @@ def needed(log: GraphLog, order: Order, parts: int) -> None:
     rows = log.rows[order].time_s
     slack = ON_END * (log.span.end - log.span.start)
     within = (rows >= log.span.start - slack) & (rows <= log.span.end + slack)
-    count = int(np.sum(within))
-    if count < parts:
+    held_rows = int(np.sum(within))
+    if held_rows < parts:
         raise CrankcheckError(
-            f"--divisions {parts}: {log.source} has {count} row{'s' * (count != 1)} in the period; "
-            "draw fewer parts, or log more often"
+            f"--divisions {parts}: {log.source} has {count(held_rows, 'row')} in the period; draw "
+            "fewer parts, or log more often"
         )
 
 

@@ -17,7 +17,7 @@ from reports.lectures.drawing.sheets.graph_drawing import DrawnGraphs, GraphLog,
 from reports.lectures.drawing.sheets.graph_page import DRAWN, RAY
 from reports.lectures.drawing.sheets.graph_span import GraphSpan
 from reports.lectures.drawing.sheets.graph_words import NOTHING, share
-from reports.lectures.drawing.sheets.paper import Canvas, Paper, inner_box, write_head
+from reports.lectures.drawing.sheets.paper import Canvas, Paper, headed, inner_box
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.console import grid
 from reports.results.floor_fit import straight
@@ -99,23 +99,21 @@ def _lines(drawings: Sequence[DrawnGraphs]) -> list[ErrorLine]:
     for order in first.derived:
         errors = tuple(each.off(each.logged, order) for each in drawings if each.logged)
         found.append(ErrorLine("log", symbols[order], errors, own[order]))
-    return [
-        *found,
-        *(
-            ErrorLine("its own part", symbols[order], own[order], own[order])
-            for order in first.derived
-        ),
-    ]
+    for order in first.derived:
+        found.append(ErrorLine("its own part", symbols[order], own[order], own[order]))
+    return found
 
 
 def show_errors(console: Console, errors: GraphErrors) -> None:
     """Print the table, a row for each number of divisions, and the fitted orders under it."""
-    table = grid(["\nparts:", *(f"{each.of}\n{each.symbol}:" for each in errors.lines)])
-    for k, count in enumerate(errors.divisions):
-        table.add_row(str(count), *(share(each.errors[k]) for each in errors.lines))
+    heads = ["\nparts:", *(f"{each.of}\n{each.symbol}:" for each in errors.lines)]
+    rows = [
+        (str(count), *(share(each.errors[k]) for each in errors.lines))
+        for k, count in enumerate(errors.divisions)
+    ]
     if len(errors.divisions) > 1:
-        table.add_row("order", *(order_words(each, errors.divisions) for each in errors.lines))
-    console.print(table)
+        rows.append(("order", *(order_words(each, errors.divisions) for each in errors.lines)))
+    console.print(grid(heads, rows))
 
 
 def order_words(line: ErrorLine, divisions: Sequence[int]) -> str:
@@ -151,11 +149,9 @@ GUIDE = 0.5
 def draw_errors(errors: GraphErrors, paper: Paper, note: str) -> Canvas:
     """Draw a line for each drawn graph, of the reference and of a log. Raises CrankcheckError where
     all are right to rounding."""
-    canvas = Canvas(paper)
-    frame = canvas.layer("frame")
     of = errors.span
     title = f"{of.scene.name}: {of.quantity.name} by {errors.by}, errors over divisions"
-    write_head(frame, paper, title, note)
+    canvas, _ = headed(paper, title, note)
     box = inner_box(paper)
     left, below = AROUND_MM
     place = (

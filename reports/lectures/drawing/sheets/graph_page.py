@@ -11,21 +11,16 @@ from analytic.lectures.drawings.graphical import Plotted, ThreeGraphs
 from reports.figures.style import INK, LARGE, QUIET, SMALL, TINY, cut, width_in
 from reports.lectures.drawing.sheets import graph_words
 from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
-from reports.lectures.drawing.sheets.graph_sheet import (
-    CAPTION_MM,
-    GraphSheet,
-    Panel,
-    graph_sheet,
-)
+from reports.lectures.drawing.sheets.graph_sheet import CAPTION_MM, GraphSheet, Panel, graph_sheet
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
     Canvas,
     Paper,
+    headed,
     line,
     of_elastic,
     round_scale,
     text,
-    write_head,
 )
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.numbers import readable
@@ -43,23 +38,21 @@ TANGENT = 0.35
 
 def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None:
     """Draw axes of a graph, its divisions with their numbers, values on the right, and the pole."""
-    box, top = panel.box, panel.box.bottom + panel.box.height
-    room = (box.left + box.width - sheet.legend.left) / MM_PER_IN
+    box, top = panel.box, panel.box.top
+    room = (box.right - sheet.legend.left) / MM_PER_IN
     size = SMALL if width_in(caption) <= room else TINY
     words = cut(caption, room, size)
     text(axes, sheet.legend.left, top + CAPTION_MM - 3.2, words, size, color=QUIET)
-    along = np.linspace(box.left, box.left + box.width, sheet.drawn.parts + 1)
-    names, every = _names(sheet), _every(sheet)
+    along = np.linspace(box.left, box.right, sheet.drawn.parts + 1)
+    names, every = _names(sheet), math.ceil(LABELS_APART_MM * sheet.drawn.parts / box.width)
     for k, x in enumerate(along):
-        line(axes, np.array([x, box.bottom]), np.array([x, top]), color=FAINT, linewidth=0.3)
-        half = np.array([0.0, 0.7])
-        at = np.array([x, panel.axis_mm])
-        line(axes, at - half, at + half, linewidth=0.4)
+        line(axes, (x, box.bottom), (x, top), color=FAINT, linewidth=0.3)
+        line(axes, (x, panel.axis_mm - 0.7), (x, panel.axis_mm + 0.7), linewidth=0.4)
         if k % every == 0:
             text(axes, x, box.bottom - 2.6, names[k], TINY, ha="center", color=QUIET)
-    end = np.array([box.left + box.width + 2.0, panel.axis_mm])
+    end = np.array([box.right + 2.0, panel.axis_mm])
     line(axes, panel.origin, end, linewidth=0.6)
-    line(axes, np.array([box.left, box.bottom]), np.array([box.left, top]), linewidth=0.6)
+    line(axes, (box.left, box.bottom), (box.left, top), linewidth=0.6)
     _write_values(axes, panel)
     if not math.isnan(panel.pole_mm):
         pole = panel.origin - np.array([panel.pole_mm, 0.0])
@@ -68,29 +61,21 @@ def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None
 
 
 def _names(sheet: GraphSheet) -> list[str]:
-    """Labels of the divisions: their numbers, or the angles of the driver."""
     of, parts = sheet.drawn.span, sheet.drawn.parts
     if of.over == "time":
         return [str(k) for k in range(parts + 1)]
     return [f"{each:.4g}" for each in np.round(of.driver_at(of.divisions(parts)), 2) + 0.0]
 
 
-def _every(sheet: GraphSheet) -> int:
-    """Number of divisions from label to label."""
-    return math.ceil(LABELS_APART_MM * sheet.drawn.parts / sheet.panels[0].box.width)
-
-
 def _write_values(axes: Axes, panel: Panel) -> None:
-    """Write round values on an axis right of the graph."""
-    right, bottom = panel.box.left + panel.box.width + 2.0, panel.box.bottom
-    line(axes, np.array([right, bottom]), np.array([right, bottom + panel.box.height]),
-         linewidth=0.4, color=QUIET)  # fmt: skip
+    right, bottom = panel.box.right + 2.0, panel.box.bottom
+    line(axes, (right, bottom), (right, panel.box.top), linewidth=0.4, color=QUIET)
     step = round_scale(VALUES_APART_MM * panel.scale, 1.0)
     lowest = panel.axis + (bottom - panel.axis_mm) * panel.scale
     first, last = lowest / step, lowest / step + panel.box.height * panel.scale / step
     for k in range(math.ceil(first), math.floor(last) + 1):
         y = float(panel.height_mm(np.array(k * step)))
-        line(axes, np.array([right, y]), np.array([right + 0.9, y]), linewidth=0.4, color=QUIET)
+        line(axes, (right, y), (right + 0.9, y), linewidth=0.4, color=QUIET)
         text(axes, right + 1.4, y, readable(k * step), TINY, va="center", color=QUIET)
 
 
@@ -112,15 +97,14 @@ def draw_rays(
     axes = canvas.layer(f"rays-{panel.symbol}{layer}")
     slopes = drawn.slopes[0 if panel.order == 1 else 1]
     pole = panel.origin - np.array([panel.pole_mm, 0.0])
-    for k, (x, y) in enumerate(zip(sheet.along_mm(slopes.x), panel.height_mm(slopes.y),
-                                   strict=True)):  # fmt: skip
-        cut_off, carried = np.array([panel.box.left, y]), np.array([x, y])
+    ends = zip(sheet.along_mm(slopes.x), panel.height_mm(slopes.y), strict=True)
+    for k, (x, y) in enumerate(ends):
+        cut_off, carried = (panel.box.left, y), (x, y)
         gid = f"ray-{panel.symbol}{layer}-{k}"
         line(axes, pole, cut_off, gid, color=color, linewidth=0.35)
         line(axes, cut_off, carried, color=color, linewidth=0.2, alpha=0.5)
         if sheet.drawn.by == "integration":
-            foot = np.array([x, panel.axis_mm])
-            line(axes, foot, carried, color=color, linewidth=0.35)
+            line(axes, (x, panel.axis_mm), carried, color=color, linewidth=0.35)
     _clip(axes, panel, axes.lines, left=panel.pole_mm)
 
 
@@ -191,9 +175,8 @@ def laid_out(drawn: DrawnGraphs, paper: Paper) -> GraphSheet:
 
 def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
     """Draw the sheet, a layer for each graph and for the construction of each from the last."""
-    canvas, drawn = Canvas(sheet.paper), sheet.drawn
-    frame = canvas.layer("frame")
-    write_head(frame, sheet.paper, _title(drawn), note)
+    drawn = sheet.drawn
+    canvas, frame = headed(sheet.paper, _title(drawn), note)
     _write_legend(frame, sheet)
     graph_words.draw_table(frame, drawn, sheet.table)
     for panel in sheet.panels:
@@ -255,15 +238,15 @@ def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
         entries.append((f"log by {drawn.by}", LOGGED, 0.8, "o"))
         if any(each in drawn.log.rows for each in drawn.derived):
             entries.append(("as logged", LOGGED, 0.0, "D"))
-    x = box.left + box.width - 1.0
+    x = box.right - 1.0
     for words, color, width, marker in reversed(entries):
         x -= width_in(words, TINY) * MM_PER_IN
         text(axes, x, base, words, TINY, color=QUIET)
         x -= 10.0
         if width:
-            start, end = np.array([x, base + 0.6]), np.array([x + 8.0, base + 0.6])
+            ends = (x, base + 0.6), (x + 8.0, base + 0.6)
             style = DASHED if color == LOGGED else "-"
-            line(axes, start, end, color=color, linewidth=width, linestyle=style)
+            line(axes, *ends, color=color, linewidth=width, linestyle=style)
         if marker:
             look = {"mfc": "none", "mec": color, "mew": 0.5} if marker == "D" else {"mew": 0.0}
             axes.plot(x + 4.0, base + 0.6, marker=marker, ms=1.8, color=color, **look)
@@ -273,9 +256,9 @@ def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
 def _along(sheet: GraphSheet) -> str:
     of = sheet.drawn.span
     part = (of.end - of.start) / sheet.drawn.parts
-    name, unit = (
-        ("time", "s") if of.over == "time" else (f"angle of {of.scene.driver.joint}", "deg")
-    )
+    name, unit = f"angle of {of.scene.driver.joint}", "deg"
+    if of.over == "time":
+        name, unit = "time", "s"
     since = f" from {of.start:.6g} s on" if of.start and not of.analogues else ""
     return (
         f"along: {name}{since}, {readable(of.shown * sheet.scale_x)} {unit} per mm; a part is "

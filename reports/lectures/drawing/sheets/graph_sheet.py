@@ -143,32 +143,20 @@ def graph_sheet(drawn: DrawnGraphs, paper: Paper, table_mm: float) -> GraphSheet
         )
     scale_x = (drawn.span.end - drawn.span.start) / (drawn.parts * part_mm)
     high = (inner.height - LEGEND_MM - 2 * GAP) / 3
-    boxes = [
-        Box(
-            inner.left + POLE_ROOM,
-            inner.bottom + k * (high + GAP) + NUMBERS_MM,
-            drawn.parts * part_mm,
-            high - CAPTION_MM - NUMBERS_MM,
-        )
-        for k in (2, 1, 0)
-    ]
-    return GraphSheet(
-        drawn,
-        paper,
-        scale_x,
-        _panels(drawn, scale_x, boxes),
-        Box(inner.left, inner.bottom + inner.height - LEGEND_MM, inner.width, LEGEND_MM),
-        Box(
-            boxes[0].left + boxes[0].width + VALUES_MM + GAP,
-            inner.bottom,
-            table_mm,
-            inner.height - LEGEND_MM,
-        ),
+    left, width, tall = (
+        inner.left + POLE_ROOM,
+        drawn.parts * part_mm,
+        high - CAPTION_MM - NUMBERS_MM,
     )
+    bottoms = [inner.bottom + k * (high + GAP) + NUMBERS_MM for k in (2, 1, 0)]
+    panels = _panels(drawn, scale_x, [Box(left, bottom, width, tall) for bottom in bottoms])
+    legend = Box(inner.left, inner.top - LEGEND_MM, inner.width, LEGEND_MM)
+    beside = panels[0].box.right + VALUES_MM + GAP
+    table = Box(beside, inner.bottom, table_mm, inner.height - LEGEND_MM)
+    return GraphSheet(drawn, paper, scale_x, panels, legend, table)
 
 
 def _panels(drawn: DrawnGraphs, scale_x: float, boxes: list[Box]) -> tuple[Panel, ...]:
-    """The graphs in their boxes, the read graph at the top."""
     axes = _axis_of_places(drawn), 0.0, 0.0
     reaches = [_reach(drawn, order, axes[order]) for order in ORDERS]
     first, second, third = (high - low for low, high in reaches)

@@ -184,7 +184,6 @@ def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -
 
 
 def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
-    """The span of a period of the driver."""
     if duration_s is not None:
         raise CrankcheckError(
             f"--duration: {scene.name} is driven, and drawn over its period of "
@@ -221,7 +220,6 @@ def _by_angle(scene: Scene, quantity: GraphedQuantity) -> GraphSpan:
 
 
 def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
-    """The span of the first seconds of a free motion."""
     if scene.elastic:
         raise CrankcheckError(
             f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and graphs "

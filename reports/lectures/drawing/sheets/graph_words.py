@@ -13,7 +13,7 @@ from models.scene.driver import driver_unit
 from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, line, text
-from reports.output.console import grid, say_whole
+from reports.output.console import grid
 from reports.output.numbers import listed
 
 ROW_MM = 2.55
@@ -74,7 +74,7 @@ def draw_table(axes: Axes, drawn: DrawnGraphs, box: Box) -> None:
     columns = table_cells(drawn)
     rows, room = len(columns[0]) - 2, int(box.height / ROW_MM) - 4
     every = math.ceil(rows / room)
-    top = box.bottom + box.height - ROW_MM
+    top = box.top - ROW_MM
     right = box.left
     for column in columns:
         right += _width_mm(column)
@@ -84,7 +84,7 @@ def draw_table(axes: Axes, drawn: DrawnGraphs, box: Box) -> None:
             text(axes, right, top - ROW_MM * (k + (k >= 2) * 0.4), cell, TINY, ha="right",
                  color=look)  # fmt: skip
     under = top - ROW_MM * 1.45
-    line(axes, np.array([box.left, under]), np.array([right, under]), linewidth=0.4, color=QUIET)
+    line(axes, (box.left, under), (right, under), linewidth=0.4, color=QUIET)
     if every > 1:
         foot = top - ROW_MM * (3.4 + math.ceil(rows / every))
         text(axes, right, foot, f"1 row in {every}", TINY, ha="right", color=QUIET)
@@ -174,8 +174,3 @@ def _cells(drawn: DrawnGraphs, graphs: ThreeGraphs, order: Order, places: Array)
     texts = written(graph.y, drawn.sizes[order])
     at = dict(zip(numbers(drawn, graph.x).tolist(), texts, strict=True))
     return [at.get(each, "") for each in numbers(drawn, places).tolist()]
-
-
-def tell(console: Console, line: str) -> None:
-    """Print a sentence in one line, whatever its characters."""
-    say_whole(console, line)

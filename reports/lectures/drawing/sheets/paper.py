@@ -23,7 +23,7 @@ from matplotlib.patches import Polygon as Patch
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.figures.style import FRONT, INK, LARGE, QUIET, SMALL, TINY, cut, saved
+from reports.figures.style import FRONT, INK, LARGE, QUIET, SMALL, TINY, cut, saved, width_in
 from reports.output.write import crankcheck_version
 
 STEPS = (1.0, 2.0, 5.0)
@@ -103,6 +103,14 @@ class Box:
     height: float
 
     @property
+    def top(self) -> float:
+        return self.bottom + self.height
+
+    @property
+    def right(self) -> float:
+        return self.left + self.width
+
+    @property
     def middle(self) -> tuple[float, float]:
         return self.left + self.width / 2, self.bottom + self.height / 2
 
@@ -112,6 +120,15 @@ class Box:
         low = np.array([self.left, self.bottom])
         return low, low + np.array([self.width, self.height])
 
+    def side_by_side(self, width: float, gap: float) -> tuple[Box, Box]:
+        """The box in two, with a gap between: the right one so wide [mm]."""
+        rest = self.width - width - gap
+        right = self.left + rest + gap
+        return (
+            Box(self.left, self.bottom, rest, self.height),
+            Box(right, self.bottom, width, self.height),
+        )
+
     def fitted(self, places: Array, padding: float) -> tuple[float, Array]:
         """The finest round scale [unit/mm] at which places (n, 2) have so much room around them
         [mm] in the box, 1 for places that coincide; and their middle (2,)."""
@@ -119,6 +136,19 @@ class Box:
         room = np.array([self.width, self.height]) - 2 * padding
         scales = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
         return max(scales, default=1.0), (low + high) / 2
+
+
+@dataclass(frozen=True)
+class ToScale:
+    """A drawing in a box at a scale [m/mm], a place [m] in the middle of the box."""
+
+    box: Box
+    scale: float
+    middle: Array
+
+    def at(self, places: Array) -> Array:
+        """Places [m], (..., 2), on the sheet [mm]."""
+        return np.asarray(self.box.middle + (places - self.middle) / self.scale)
 
 
 def sheet_note(scene: Scene) -> str:
@@ -228,7 +258,10 @@ def layer_words(title: str) -> str:
     return "".join(c if c.isalnum() else "-" for c in title).strip("-")
 
 
-def line(axes: Axes, start: Array, end: Array, gid: str = "", **look: Any) -> None:
+Place = Array | tuple[float, float]
+
+
+def line(axes: Axes, start: Place, end: Place, gid: str = "", **look: Any) -> None:
     """Draw a straight line [mm]."""
     drawn = Line2D([start[0], end[0]], [start[1], end[1]], **({"color": INK} | look))
     if gid:
@@ -275,6 +308,25 @@ def write_head(axes: Axes, paper: Paper, title: str, note: str) -> None:
     text(axes, MARGIN, paper.height - MARGIN - 4.0, title, LARGE, weight="bold")
     room = (paper.width - 2 * MARGIN) / MM_PER_IN
     text(axes, MARGIN, MARGIN, cut(note, room, TINY), TINY, color=QUIET)
+
+
+def headed(paper: Paper, title: str, note: str, *boxes: Box) -> tuple[Canvas, Axes]:
+    """A sheet, and its first layer: title, note at the foot, and borders of boxes."""
+    canvas = Canvas(paper)
+    frame = canvas.layer("frame")
+    write_head(frame, paper, title, note)
+    for box in boxes:
+        draw_border(frame, box)
+    return canvas, frame
+
+
+def write_middle(
+    axes: Axes, box: Box, y: float, words: str, size: float, margin: float = 1.0, **look: Any
+) -> None:
+    """Write words in the middle of a box on a base line at ``y``, cut to its width [mm]."""
+    short = cut(words, (box.width - 2 * margin) / MM_PER_IN, size)
+    left = box.middle[0] - MM_PER_IN * width_in(short, size) / 2
+    text(axes, left, y, short, size, **look)
 
 
 def draw_border(axes: Axes, box: Box) -> None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -29,7 +28,6 @@ from reports.drawing.shape import true_motion
 from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.channel import OwnLog, Reading, logged_motion
 from reports.logs.log_beside import EVEN
-from reports.logs.map_file import Map
 
 AT_DEG = 90.0
 """Default angle of the driver [deg]."""
@@ -141,17 +139,7 @@ class LogInstants:
     driver_rad: Array
 
     @staticmethod
-    def of_file(scene: Scene, path: Path, map_: Map) -> LogInstants:
-        """Read a file, as `judge` does. Raises CrankcheckError for no log of the scene."""
-        return LogInstants._of(SheetLog.of_file(scene, path, map_, "polygons"))
-
-    @staticmethod
-    def of_log(log: OwnLog) -> LogInstants:
-        """Take a log that was read. Raises CrankcheckError as `SheetLog.of_log`."""
-        return LogInstants._of(SheetLog.of_log(log))
-
-    @staticmethod
-    def _of(beside: SheetLog) -> LogInstants:
+    def of(beside: SheetLog) -> LogInstants:
         return LogInstants(beside.log, beside.truth, beside.driver_rad(beside.log.time_s))
 
     def at_angle(self, at_deg: float) -> LoggedInstant:
@@ -215,19 +203,15 @@ class LogInstants:
     def _errors(self, order: Order, rows: slice) -> dict[str, Array]:
         """Errors of places or rates of points in some rows, (n, 2) each, for points with both
         coordinates in the log."""
-        each_of: dict[str, set[int | None]] = {}
-        for reading in self.log.readings:
-            channel = reading.channel
-            if channel.kind.body_kind == "point" and channel.kind.order == order:
-                each_of.setdefault(channel.of, set()).add(channel.kind.axis)
-        whole = [name for name in _points(self.log.scene) if each_of.get(name) == {0, 1}]
-        kept = [
-            Reading(each.channel, each.values[rows], each.instants[rows])
-            for each in self.log.readings
-            if each.channel.kind.body_kind == "point"
-            and each.channel.kind.order == order
-            and each.channel.of in whole
-        ]
+        axes: dict[str, set[int | None]] = {name: set() for name in _points(self.log.scene)}
+        readings = []
+        for each in self.log.readings:
+            kind, point = each.channel.kind, each.channel.of
+            if kind.body_kind == "point" and kind.order == order and point in axes:
+                axes[point].add(kind.axis)
+                readings.append(Reading(each.channel, each.values[rows], each.instants[rows]))
+        whole = [name for name, own in axes.items() if own == {0, 1}]
+        kept = [each for each in readings if each.channel.of in whole]
         if not kept:
             return {}
         part = replace(self.log, time_s=self.log.time_s[rows], readings=tuple(kept))

@@ -175,10 +175,7 @@ def fitted(
 
 
 def frame_of(
-    polygons: Sequence[Polygon],
-    box: Box,
-    scale: float | None = None,
-    beside: Sequence[Array] = (),
+    polygons: Sequence[Polygon], box: Box, scale: float | None = None, beside: Sequence[Array] = ()
 ) -> tuple[float, Array]:
     """The scale, and the place of the pole [mm], of polygons in a box; as `fitted`."""
     corners = np.array([*(corner for each in polygons for corner in extent(each)), *beside])

@@ -223,7 +223,6 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
 
 
 def _missing(drawn: Sequence[drawn_polygons.DrawnPolygons]) -> str:
-    """The number of instants at which polygons are not determined, in words."""
     some = sum(bool(each.undetermined) for each in drawn)
     return f"At {count(some, 'instant')} of {len(drawn)} not all is determined." if some else ""
 
@@ -235,12 +234,9 @@ def _embedded(
     every = [each.velocity if quantity == "velocity" else each.acceleration for each in drawn]
     whole = max(every, key=lambda each: (len(each.steps), len(each.vectors)))
     vectors = {vector.name: vector for each in [whole, *every] for vector in each.vectors}
-    step_of = {
-        v.name: n for each in every for n, step in enumerate(each.steps) for v in step.vectors
-    }
-    node_of = {
-        name: n for each in every for n, step in enumerate(each.steps) for name in step.nodes
-    }
+    steps = [numbered for each in every for numbered in enumerate(each.steps)]
+    step_of = {vector.name: n for n, step in steps for vector in step.vectors}
+    node_of = {name: n for n, step in steps for name in step.nodes}
     points = [name for name in whole.ends if name in node_of or np.any(whole.ends[name])]
     row_of = {name: 4 * number for number, name in enumerate(vectors)}
     rows = np.full((4 * len(vectors), len(every)), np.nan)
@@ -283,7 +279,6 @@ def _images(polygon: Polygon, points: Sequence[str]) -> list[list[int]]:
 
 
 def _box(rows: Array, places: Array) -> list[float]:
-    """The corners of the box around the polygon at all instants."""
     xs = np.concatenate([rows[::2].ravel(), places[::2].ravel(), [0.0]])
     ys = np.concatenate([rows[1::2].ravel(), places[1::2].ravel(), [0.0]])
     return [np.nanmin(xs), np.nanmin(ys), np.nanmax(xs), np.nanmax(ys)]
@@ -295,7 +290,6 @@ def _links(drawn: Sequence[drawn_polygons.DrawnPolygons]) -> dict[str, object]:
     rows = np.full((2 * len(names), len(drawn)), np.nan)
     for at, each in enumerate(drawn):
         for number, name in enumerate(names):
-            if name not in each.rates:
-                continue
-            rows[2 * number : 2 * number + 2, at] = drawn_polygons.link_rates(each, name)
+            if name in each.rates:
+                rows[2 * number : 2 * number + 2, at] = drawn_polygons.link_rates(each, name)
     return {"names": names, "rows": packed(rows)}

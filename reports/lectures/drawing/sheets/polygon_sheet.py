@@ -31,11 +31,10 @@ from reports.lectures.drawing.sheets.paper import (
     Canvas,
     Paper,
     book_scales,
-    draw_border,
+    headed,
     inner_box,
     of_elastic,
     text,
-    write_head,
 )
 from reports.lectures.drawing.sheets.polygon_drawing import draw_polygon, polygon_letters
 from reports.lectures.drawing.sheets.polygon_instant import LoggedInstant
@@ -143,7 +142,7 @@ def _boxes(paper: Paper) -> dict[str, Box]:
     right, rest = left + wide + GAP, inner.width - wide - GAP
     half = (inner.height - GAP) / 2
     return {
-        "scheme": Box(left, bottom + inner.height - tall, wide, tall),
+        "scheme": Box(left, inner.top - tall, wide, tall),
         "table": Box(left, bottom, wide, inner.height - tall - GAP),
         "velocity": Box(right, bottom + half + GAP, rest, half),
         "acceleration": Box(right, bottom, rest, half),
@@ -171,9 +170,13 @@ def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
 
 def draw_lines(sheet: PolygonSheet, note: str) -> Canvas:
     """Draw the sheet without its letters and its table, whose layers are present."""
-    canvas = Canvas(sheet.paper)
-    _frame(canvas.layer("frame"), sheet, note)
-    _scheme(canvas.layer("scheme"), sheet)
+    canvas, frame = headed(sheet.paper, heading(sheet), note, *sheet.boxes.values())
+    _caption(frame, sheet)
+    scheme, placement = canvas.layer("scheme"), sheet.drawn.placement
+    draw_scheme(scheme, placement, sheet.place)
+    if (log := sheet.misplaced) is not None:
+        links = (link.points for link in placement.scene.links.values())
+        polygon_on_paper.draw_errors(scheme, log, links, "scheme-error")
     canvas.layer("table")
     draw_polygon(canvas, sheet.velocity, sheet.boxes["velocity"])
     draw_polygon(canvas, sheet.acceleration, sheet.boxes["acceleration"])
@@ -193,8 +196,7 @@ def heading(sheet: PolygonSheet) -> str:
     )
 
 
-def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
-    write_head(axes, sheet.paper, heading(sheet), note)
+def _caption(axes: Axes, sheet: PolygonSheet) -> None:
     captions = {
         "scheme": f"scheme, K_l = {sheet.length_scale:g} m/mm",
         "velocity": f"velocities, K_v = {sheet.velocity.scale:g} m/s per mm",
@@ -202,8 +204,7 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
         "table": "lengths on paper, and values",
     }
     for name, box in sheet.boxes.items():
-        draw_border(axes, box)
-        x, y = box.left + 1.5, box.bottom + box.height - 3.2
+        x, y = box.left + 1.5, box.top - 3.2
         text(axes, x, y, captions[name], SMALL, color=QUIET)
         if told := _logged(sheet).get(name):
             room = (box.width - 3.0) / MM_PER_IN
@@ -225,7 +226,6 @@ def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
 
 
 def _logged(sheet: PolygonSheet) -> dict[str, str]:
-    """The words on a log in the boxes where it is drawn."""
     log, misplaced = sheet.log, sheet.misplaced
     if log is None or misplaced is None:
         return {}
@@ -240,17 +240,7 @@ def _logged(sheet: PolygonSheet) -> dict[str, str]:
     return told
 
 
-def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
-    scene = sheet.drawn.placement.scene
-    draw_scheme(axes, sheet.drawn.placement, sheet.place)
-    if (log := sheet.misplaced) is not None:
-        polygon_on_paper.draw_errors(
-            axes, log, (x.points for x in scene.links.values()), "scheme-error"
-        )
-
-
 def _letters(sheet: PolygonSheet) -> dict[str, list[Letter]]:
-    """The letters of the scheme and of both polygons."""
     placement = sheet.drawn.placement
     places = {name: sheet.place(at) for name, at in placement.points.items()}
     of_scheme = point_letters(placement, places)

@@ -139,21 +139,16 @@ def _pitch(size: float) -> float:
 
 def _parts(column: list[Row], size: float) -> tuple[float, float]:
     """The widths of names and of lengths on paper [mm]."""
-    wide = [
-        (width_in(row.name, size) * MM_PER_IN, width_in(row.on_paper, size) * MM_PER_IN)
-        for row in column
-        if row.on_paper
-    ]
-    if not wide:
-        return 0.0, 0.0
-    return max(each[0] for each in wide), max(each[1] for each in wide)
+    sized = [row for row in column if row.on_paper]
+    names = max((width_in(row.name, size) for row in sized), default=0.0)
+    lengths = max((width_in(row.on_paper, size) for row in sized), default=0.0)
+    return MM_PER_IN * names, MM_PER_IN * lengths
 
 
 def _width(column: list[Row], size: float) -> float:
-    """The width of a column [mm]."""
     name, on_paper = _parts(column, size)
     return max(
-        name + on_paper + 2 * GAP / 2 + width_in(row.value, size) * MM_PER_IN
+        name + on_paper + GAP + width_in(row.value, size) * MM_PER_IN
         if row.on_paper
         else row.indent_mm + width_in(f"{row.name} {row.value}", size) * MM_PER_IN
         for row in column

@@ -21,14 +21,7 @@ from models.scene import Scene
 from reports.figures.style import INK, QUIET
 from reports.lectures.drawing.sheets import scheme
 from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
-from reports.lectures.drawing.sheets.paper import (
-    Box,
-    Canvas,
-    Paper,
-    draw_border,
-    inner_box,
-    write_head,
-)
+from reports.lectures.drawing.sheets.paper import Canvas, Paper, ToScale, headed, inner_box
 
 PADDING = 12.0
 LEAST_APART_MM = 2.5
@@ -43,26 +36,15 @@ FAINT, LOCI = "#a9b3bf", "#b7791f"
 
 
 @dataclass(frozen=True)
-class PositionSheet:
-    """The mechanism at ``angles`` of the driver (n,), its points there and along the loci [m], and
-    the scale of lengths [m/mm]."""
+class PositionSheet(ToScale):
+    """The mechanism at ``angles`` of the driver (n,), its points there and along the loci [m]."""
 
     scene: Scene
     placement: PlacedMechanism
     angles: Array
     points: dict[str, Array]
     loci: dict[str, Array]
-    scale: float
-    middle: Array
     paper: Paper
-
-    @property
-    def box(self) -> Box:
-        return inner_box(self.paper)
-
-    def at(self, place: Array) -> Array:
-        """Places [m], (..., 2), on the sheet [mm]."""
-        return np.asarray(self.box.middle + (place - self.middle) / self.scale)
 
 
 def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
@@ -85,8 +67,9 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     points, loci = (_points(scene, each) for each in (angles, dense))
     placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), sense))
     places = np.concatenate([*loci.values(), scheme.extent_of(placement)])
-    fitted = inner_box(paper).fitted(places, PADDING)
-    sheet = PositionSheet(scene, placement, angles, points, loci, *fitted, paper)
+    box = inner_box(paper)
+    fitted = box.fitted(places, PADDING)
+    sheet = PositionSheet(box, *fitted, scene, placement, angles, points, loci, paper)
     _check_apart(sheet, divisions)
     return sheet
 
@@ -99,7 +82,6 @@ def _points(scene: Scene, angles: Array) -> dict[str, Array]:
 
 
 def _check_apart(sheet: PositionSheet, divisions: int) -> None:
-    """Refuse divisions that fall together on the paper. Raises CrankcheckError."""
     apart = max(
         float(np.hypot(*np.diff(sheet.at(sheet.points[name])[:2], axis=0)[0]))
         for name in _driven(sheet.scene)
@@ -123,21 +105,17 @@ def _driven(scene: Scene) -> tuple[str, ...]:
 
 def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
     """Draw the sheet, in layers: loci, positions, construction, the mechanism, letters."""
-    canvas = Canvas(sheet.paper)
-    _frame(canvas.layer("frame"), sheet, note)
-    _loci(canvas.layer("loci"), sheet)
+    joint, count = sheet.scene.driver.joint, len(sheet.angles)
+    title = f"{sheet.scene.name}: {count} positions of {joint}, K_l = {sheet.scale:g} m/mm"
+    canvas, _ = headed(sheet.paper, title, note, sheet.box)
+    loci = canvas.layer("loci")
+    for name, way in _ways(sheet):
+        loci.plot(way[:, 0], way[:, 1], color=LOCI, lw=0.8, gid=f"locus-{name}")
     _positions(canvas.layer("positions"), sheet)
     _construction(canvas.layer("construction"), sheet)
     scheme.draw_scheme(canvas.layer("mechanism"), sheet.placement, sheet.at)
     write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
     return canvas
-
-
-def _frame(axes: Axes, sheet: PositionSheet, note: str) -> None:
-    count, driver = len(sheet.angles), sheet.scene.driver
-    told = f"{sheet.scene.name}: {count} positions of {driver.joint}, K_l = {sheet.scale:g} m/mm"
-    write_head(axes, sheet.paper, told, note)
-    draw_border(axes, sheet.box)
 
 
 def _ways(sheet: PositionSheet) -> Iterator[tuple[str, Array]]:
@@ -146,12 +124,6 @@ def _ways(sheet: PositionSheet) -> Iterator[tuple[str, Array]]:
         places = sheet.at(way)
         if np.ptp(places, axis=0).max() > LEAST_WAY_MM:
             yield name, places
-
-
-def _loci(axes: Axes, sheet: PositionSheet) -> None:
-    for name, places in _ways(sheet):
-        drawn = axes.plot(places[:, 0], places[:, 1], color=LOCI, lw=0.8)[0]
-        drawn.set_gid(f"locus-{name}")
 
 
 def _positions(axes: Axes, sheet: PositionSheet) -> None:
@@ -186,7 +158,6 @@ def _arc(axes: Axes, centre: Array, through: Array) -> None:
 
 
 def _letters(sheet: PositionSheet) -> list[Letter]:
-    """Letters of points in the first position, numbers on the driver's path, names of loci."""
     spots = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
     letters = scheme.point_letters(sheet.placement, spots)
     pivot = sheet.scene.driver_pivot if sheet.scene.driver.is_crank else ""

@@ -194,7 +194,7 @@ def draw_scheme(
             bar = [places[point] for point in scene.links[slider.link].points]
             _rails(axes, np.mean(bar, axis=0), along)
             continue
-        _block(axes, places[slider.point], along)
+        draw_block(axes, places[slider.point], along, BLOCK_MM)
         if slider.on == GROUND:
             _rails(axes, places[slider.point], along)
     for link in scene.links.values():
@@ -277,15 +277,14 @@ def _hatched(axes: Axes, start: Array, end: Array) -> None:
         line(axes, at, at + stroke, linewidth=0.5)
 
 
-def _block(axes: Axes, place: Array, along: Array) -> None:
-    half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
-    corners = [
-        place + half + aside,
-        place - half + aside,
-        place - half - aside,
-        place + half - aside,
-    ]
-    axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=0.8, zorder=3))
+def draw_block(
+    axes: Axes, place: Array, along: Array, size: tuple[float, float], zorder: int = 3
+) -> None:
+    """Draw a block of a length and width [mm] along a unit vector."""
+    half, aside = 0.5 * size[0] * along, 0.5 * size[1] * quarter_turn(along)
+    signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+    corners = [place + a * half + b * aside for a, b in signs]
+    axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=0.8, zorder=zorder))
 
 
 def _rails(axes: Axes, place: Array, along: Array) -> None:

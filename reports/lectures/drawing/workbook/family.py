@@ -71,8 +71,7 @@ def member_columns(
     rates somewhere on the path of the crank; ``asked`` is the user's name for ``one``."""
     found = []
     for value in values:
-        inputs = [replace(i, value=value) if i is one else i for i in table.inputs]
-        member = replace(table, inputs=inputs)
+        member = table.with_input(one, value=value)
         _check_way(member, asked, value)
         found.append(evaluated(member))
     return found
@@ -83,9 +82,8 @@ def _check_way(member: FormulaTable, name: str, value: float) -> None:
     (step,) = (each for each in member.inputs if each.name == "step_deg")
     way_deg = min(step.value * (member.count - 1), 360.0)
     count = math.ceil(way_deg / CLOSE_DEG)
-    closely = replace(step, value=way_deg / count)
-    inputs = [closely if each is step else each for each in member.inputs]
-    columns = evaluated(replace(member, inputs=inputs, count=count + 1))
+    closely = replace(member.with_input(step, value=way_deg / count), count=count + 1)
+    columns = evaluated(closely)
     wrong = columns[STATE] != ASSEMBLED
     if wrong.any():
         at = int(np.argmax(wrong))
@@ -284,19 +282,15 @@ def scene_curves(family: SceneFamily) -> FamilyCurves:
     """The curves of the output: the last slider on the ground, else the last link."""
     scene, motions = family.scene, family.motions
     sliders = [each.name for each in scene.sliders.values() if each.on == GROUND]
+    name = sliders[-1] if sliders else list(scene.links)[-1]
     if sliders:
-        last = [motion.sliders[sliders[-1]] for motion in motions]
-        labels = "displacement [m]", "speed [m/s]", "acceleration [m/s²]"
-        series = [[each.displacement, each.speed, each.acceleration] for each in last]
-        name = sliders[-1]
+        heads = {"displacement": "[m]", "speed": "[m/s]", "acceleration": "[m/s²]"}
     else:
-        name = list(scene.links)[-1]
-        labels = "theta [rad]", "omega [rad/s]", "alpha [rad/s²]"
-        turned = [motion.links[name] for motion in motions]
-        series = [[each.theta, each.omega, each.alpha] for each in turned]
+        heads = {"theta": "[rad]", "omega": "[rad/s]", "alpha": "[rad/s²]"}
+    moved = [(motion.sliders if sliders else motion.links)[name] for motion in motions]
     charts = [
-        FamilyChart(kind, f"{name}: {label}", [each[k] for each in series])
-        for k, (kind, label) in enumerate(zip(KINDS, labels, strict=True))
+        FamilyChart(kind, f"{name}: {rate} {unit}", [getattr(each, rate) for each in moved])
+        for kind, (rate, unit) in zip(KINDS, heads.items(), strict=True)
     ]
     angles = [np.degrees(motion.links[scene.driver.link].theta) for motion in motions]
     return FamilyCurves(family.name, family.unit, family.values, angles, charts)

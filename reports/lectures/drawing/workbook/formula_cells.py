@@ -119,17 +119,15 @@ def write_columns(book: Workbook, table: formula_table.FormulaTable) -> None:
     values = formula_table.evaluated(table)
     for place, column in enumerate(table.columns, 1):
         shape = _number_format(values[column.name])
-        letter = table.letter(column.name)
         says = column.name in table.states
-        sheet.column_dimensions[letter].width = 20 if says else 15
+        sheet.column_dimensions[table.letter(column.name)].width = 20 if says else 15
         for (cell,) in sheet.iter_rows(min_row=2, min_col=place, max_col=place):
             cell.number_format = shape
             if says:
                 cell.alignment = Alignment(horizontal="center")
     whole = f"A2:{table.letter(table.columns[-1].name)}{table.count + 1}"
     sheet.conditional_formatting.add(whole, FormulaRule(["ISNA(A2)"], font=SOFT))
-    for name in table.states:
-        letter = table.letter(name)
+    for letter in map(table.letter, table.states):
         rule = FormulaRule([f'{letter}2<>"{formula_table.ASSEMBLED}"'], font=RED)
         sheet.conditional_formatting.add(f"{letter}2:{letter}{table.count + 1}", rule)
     _finish(sheet, "D2", len(table.columns))
@@ -151,7 +149,6 @@ def _finish(sheet: Worksheet, frozen: str, columns: int) -> None:
 
 
 def _number_format(values: Array) -> str:
-    """The number format by the largest number of a column."""
     if values.dtype.kind != "f":
         return "General"
     if np.all(values == np.round(values)):

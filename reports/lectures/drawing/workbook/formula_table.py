@@ -6,10 +6,12 @@ A formula is written with names: ``{AB}`` an input, ``[phi]`` the same row's val
 ``[phi-1]`` the value of the row before. The first row may have another formula.
 """
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -71,6 +73,11 @@ class FormulaTable:
     columns: Sequence[Column]
     count: int
     charts: Mapping[str, Sequence[str]]
+
+    def with_input(self, one: Input, *, value: float) -> FormulaTable:
+        """The table with another value of one of its inputs."""
+        inputs = [replace(each, value=value) if each is one else each for each in self.inputs]
+        return replace(self, inputs=inputs)
 
     def place(self, column: str) -> int:
         """The number of a column by its name, from 1."""

@@ -90,11 +90,7 @@ SLIDER_CRANK_COLUMNS = (
     Column("cosine", "cos f", "{branch}*SQRT(IF([inside]<0,NA(),[inside]))"),
     Column("f", "f rad", "ATAN2([cosine],[aside]/{L})"),
     Column("f_rate", "f' rad/s", "{omega}*{R}*COS([t])/({L}*[cosine])"),
-    Column(
-        "f_gain",
-        "f'' rad/s^2",
-        "([f_rate]^2*[aside]-{omega}^2*{R}*SIN([t]))/({L}*[cosine])",
-    ),
+    Column("f_gain", "f'' rad/s^2", "([f_rate]^2*[aside]-{omega}^2*{R}*SIN([t]))/({L}*[cosine])"),
     Column("X", "X m", "{R}*COS([t])+{L}*[cosine]"),
     Column("X_rate", "X' m/s", "-{omega}*{R}*SIN([t])-[f_rate]*[aside]"),
     Column(
@@ -163,11 +159,7 @@ SLOTTED_LEVER_COLUMNS = (
         "lever alpha rad/s^2",
         "(-({omega}^2)*{R}*SIN([turn])-[coriolis]+[omega3]^2*{o})/[rho]",
     ),
-    Column(
-        "gain",
-        "rho'' m/s^2",
-        "-({omega}^2)*{R}*COS([turn])+[alpha3]*{o}+[omega3]^2*[rho]",
-    ),
+    Column("gain", "rho'' m/s^2", "-({omega}^2)*{R}*COS([turn])+[alpha3]*{o}+[omega3]^2*[rho]"),
     Column("s", "displacement m", "[rho]-{rho0}"),
 )
 SLOTTED_LEVER_CHARTS = {

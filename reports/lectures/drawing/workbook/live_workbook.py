@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
+from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs
 from openpyxl.chart import (  # type: ignore[import-untyped]  # as above
     Reference,
     ScatterChart,
@@ -50,18 +50,12 @@ class Curves:
     rows: int
 
 
-def _on_one_page(sheet: Any) -> Any:
-    sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
-    return sheet
-
-
 def add_chart(book: Workbook, number: int, title: str, curves: Curves) -> None:
     """Add the chart below ``number`` others."""
-    sheet = (
-        book[CHART_SHEET]
-        if CHART_SHEET in book.sheetnames
-        else _on_one_page(book.create_sheet(CHART_SHEET))
-    )
+    if CHART_SHEET not in book.sheetnames:
+        on_one_page = PageSetupProperties(fitToPage=True)
+        book.create_sheet(CHART_SHEET).sheet_properties.pageSetUpPr = on_one_page
+    sheet = book[CHART_SHEET]
     source, last = book[curves.sheet], curves.rows + 1
     chart = ScatterChart()
     chart.title, chart.style, chart.scatterStyle = title, 2, "lineMarker"
@@ -114,9 +108,6 @@ def widen(sheet: Any) -> None:
         sheet.column_dimensions[cell.column_letter].width = width
 
 
-TIME_COLUMN = "time"
-
-
 def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | None:
     """The formulas of a four-bar, a slider-crank or a slotted lever at constant speed; None for any
     other scene, and for one with change points: formulas stay on one branch there."""
@@ -136,7 +127,6 @@ def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | Non
 
 
 def _is_four_bar(scene: Scene) -> bool:
-    """True if two links of constant length connect the crank and the ground."""
     try:
         FourBar.of(scene)
     except StructureError:
@@ -174,8 +164,8 @@ def add_live(book: Workbook, table: FormulaTable) -> None:
 
 def _time_of(column: str, table: FormulaTable) -> str:
     """The column of times of a column: its member's, where members have their own."""
-    own = f"{TIME_COLUMN}_{column.rpartition('_')[2]}"
-    return own if any(each.name == own for each in table.columns) else TIME_COLUMN
+    own = f"time_{column.rpartition('_')[2]}"
+    return own if any(each.name == own for each in table.columns) else "time"
 
 
 def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
@@ -202,9 +192,12 @@ MOST_LIVE, MOST_DRAWN = 20_000, 100_000
 """Most rows that a spreadsheet computes, and draws, at once."""
 
 
-def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callable[[Any], None]:
-    """The function that puts formulas and charts into the workbook of a motion over ``time_s``,
-    evenly spaced from 0, whose first sheet has the ``columns``."""
+def live_sheet(
+    scene: Scene, time_s: Array, columns: Sequence[str]
+) -> tuple[str, Callable[[Any], None]]:
+    """The parts missing from the workbook of a motion over ``time_s``, evenly spaced from 0, in
+    words; and the function that puts formulas and charts beside the ``columns`` of its first
+    sheet."""
     count = time_s.size
     table = None
     if 1 < count <= MOST_LIVE:
@@ -219,7 +212,7 @@ def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callab
         elif 1 < count <= MOST_DRAWN:
             add_value_charts(book, values.title, columns, count)
 
-    return put
+    return left_out(count), put
 
 
 def left_out(count: int) -> str:
@@ -228,13 +221,6 @@ def left_out(count: int) -> str:
         return ""
     charts = f", and charts of {MOST_DRAWN}" * (count > MOST_DRAWN)
     return f"; values alone: formulas are of at most {MOST_LIVE} rows{charts}"
-
-
-def live_sheet(
-    scene: Scene, time_s: Array, columns: Sequence[str]
-) -> tuple[str, Callable[[Any], None]]:
-    """The parts missing from a workbook, in words, and the function that fills the rest."""
-    return left_out(time_s.size), beside_values(scene, time_s, columns)
 
 
 SHEET, TIME = "family", "time_s"

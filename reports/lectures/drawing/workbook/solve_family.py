@@ -2,12 +2,10 @@
 
 import base64
 import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
@@ -64,30 +62,28 @@ def run_family(scene: Scene, request: SolveOptions, console: Console) -> None:
             f"{MOST_LIVE} of all together: take fewer turns, or fewer steps in a turn"
         )
     origin = {"scene": scene.name, "source": scene.source, "family": request.family}
-    is_workbook = request.output.suffix.lower() == solving.WORKBOOK
+    ending = request.output.suffix.lower()
+    is_workbook = ending == solving.WORKBOOK
     step_deg = math.degrees(float(time_s[1]) * scene.pace_rad_s)
     table = formulas_of(scene, time_s.size, step_deg)
     if table is not None and is_workbook:
         content: bytes | str = live_workbook(family(table, name, values), origin)
-    elif table is not None:
-        content = _drawn(scene, request.output, family_curves(table, name, values))
+    elif is_workbook:
+        content = scene_family_workbook(scene_family(scene, name, values, time_s), origin)
     else:
-        members = scene_family(scene, name, values, time_s)
+        curves = (
+            scene_curves(scene_family(scene, name, values, time_s))
+            if table is None
+            else family_curves(table, name, values)
+        )
         content = (
-            scene_family_workbook(members, origin)
-            if is_workbook
-            else _drawn(scene, request.output, scene_curves(members))
+            family_page_of(scene, curves)
+            if ending == solving.PAGE
+            else family_drawing(scene, curves, ending[1:])
         )
     write(request.output, content)
     told = f"{request.output}: {len(values)} members of {scene.name}, {time_s.size} rows"
     say_whole(console, told)
-
-
-def _drawn(scene: Scene, path: Path, curves: FamilyCurves) -> bytes | str:
-    ending = path.suffix.lower()
-    if ending == solving.PAGE:
-        return family_page_of(scene, curves)
-    return family_drawing(scene, curves, ending[1:])
 
 
 NO_FAMILY = {"elastic": "has elastic links", "let go": "is let go"}
@@ -135,12 +131,12 @@ def draw_family(
     rows = [curves.of_kind(kind) for kind in kinds]
     wide = len(rows[0])
     looks = [_look(k) for k in range(len(curves.values))]
-    entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **look), member) for look, member in zip(looks, curves.members, strict=True)
-    ]
+    lines = [Line2D([], [], **look) for look in looks]
+    entries = list(zip(lines, curves.members, strict=True))
     height = 1.25 if len(rows) > 1 else 1.9
     panels = Panels(len(rows), wide, height, 0.52, 0.08, 0.12, between=(0.5, 0.13))
     width = COLUMN_IN if wide == 1 else PAGE_IN
+    ends = [end for angle in curves.angles_deg for end in (np.min(angle), np.max(angle))]
     with styled():
         figure, axes = sheet(width, panels, title, entries, notes)
         for at, one in enumerate(axes):
@@ -148,7 +144,8 @@ def draw_family(
             mark_zero(one, *chart.curves)
             for angle, curve, look in zip(curves.angles_deg, chart.curves, looks, strict=True):
                 one.plot(angle, curve, **look)
-            _mark_angles(one, curves)
+            one.set_xlim(min(ends), max(ends))
+            one.xaxis.set_major_locator(MaxNLocator(9, steps=TICKS_DEG))
             shorten(one)
             one.set_ylabel(chart.label)
             is_lowest = at // wide == len(rows) - 1
@@ -156,12 +153,6 @@ def draw_family(
             if is_lowest:
                 one.set_xlabel("angle of the crank [deg]")
     return figure
-
-
-def _mark_angles(axes: Any, curves: FamilyCurves) -> None:
-    ends = [end for angle in curves.angles_deg for end in (np.min(angle), np.max(angle))]
-    axes.set_xlim(min(ends), max(ends))
-    axes.xaxis.set_major_locator(MaxNLocator(9, steps=TICKS_DEG))
 
 
 def _look(k: int) -> dict[str, Any]:
@@ -172,11 +163,15 @@ def _look(k: int) -> dict[str, Any]:
     return {"color": colour, "linestyle": (0, dashes) if dashes else "-", "linewidth": 1.0}
 
 
-def build(
-    scene: Scene, curves: FamilyCurves, notes: Sequence[str], figures: Mapping[str, bytes]
-) -> Section:
-    """The section; ``figures`` are SVG files by their kind."""
-    return Section(
+def family_page_of(scene: Scene, curves: FamilyCurves) -> str:
+    """The page as HTML: a figure each of position, velocity and acceleration."""
+    title = _title(scene, curves)
+    figures = []
+    for kind in KINDS:
+        svg = saved(draw_family(curves, "", [], [kind]), "svg", f"{title}: {kind}")
+        words = f"{kind.capitalize()} over the angle of the crank."
+        figures.append((kind, words, base64.b64encode(svg).decode("ascii")))
+    section = Section(
         anchor="family",
         title=f"Members over {curves.name}",
         template="scene_family.html",
@@ -185,31 +180,14 @@ def build(
             "name": curves.name,
             "labels": [chart.label for chart in curves.charts],
             "rows": extremes(curves),
-            "notes": notes,
-            "figures": [
-                (kind, f"{kind.capitalize()} over the angle of the crank.", _encoded(svg))
-                for kind, svg in figures.items()
-            ],
+            "notes": _notes(scene, curves),
+            "figures": figures,
         },
         styles=("forces.css",),
     )
-
-
-def _encoded(svg: bytes) -> str:
-    return base64.b64encode(svg).decode("ascii")
-
-
-def family_page(
-    scene: Scene, curves: FamilyCurves, notes: Sequence[str], figures: Mapping[str, bytes]
-) -> str:
-    """The page; ``figures`` are SVG files by their kind."""
-    head = Head(
-        title=f"crankcheck: {scene.name}, family",
-        facts=(count(len(curves.values), "member"), f"crankcheck {crankcheck_version()}"),
-        made="",
-        first="family",
-    )
-    return assembled(head, [build(scene, curves, notes, figures)])
+    facts = (count(len(curves.values), "member"), f"crankcheck {crankcheck_version()}")
+    head = Head(f"crankcheck: {scene.name}, family", facts, made="", first="family")
+    return assembled(head, [section])
 
 
 def family_drawing(scene: Scene, curves: FamilyCurves, kind: str) -> bytes:
@@ -217,16 +195,6 @@ def family_drawing(scene: Scene, curves: FamilyCurves, kind: str) -> bytes:
     title = _title(scene, curves)
     notes = [f"{scene.source}. {scene.note}".rstrip(), *_notes(scene, curves)]
     return saved(draw_family(curves, title, notes), kind, title)
-
-
-def family_page_of(scene: Scene, curves: FamilyCurves) -> str:
-    """The page as HTML: a figure each of position, velocity and acceleration."""
-    title = _title(scene, curves)
-    figures = {
-        kind: saved(draw_family(curves, "", [], [kind]), "svg", f"{title}: {kind}")
-        for kind in KINDS
-    }
-    return family_page(scene, curves, _notes(scene, curves), figures)
 
 
 def _title(scene: Scene, curves: FamilyCurves) -> str:

@@ -13,14 +13,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.synthesis.design import (
-    Dot,
-    DrawingStep,
-    DrawnCircle,
-    DrawnCurve,
-    Proposal,
-    Segment,
-)
+from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.examine import examine
 from models.array import Array
 from models.errors import CrankcheckError
@@ -33,11 +26,7 @@ from reports.lectures.design.construction_view import (
     strokes,
     xy,
 )
-from reports.lectures.design.pages import (
-    INSTANTS,
-    MOVES,
-    construction_page,
-)
+from reports.lectures.design.pages import INSTANTS, MOVES, construction_page
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
     Canvas,
@@ -89,7 +78,7 @@ def test_every_line_of_a_step_stands_where_the_construction_has_it() -> None:
     checked = 0
     for number, step in enumerate(sheet.view.steps, 1):
         for k, element in enumerate(step.elements, 1):
-            if not isinstance(element, Segment):
+            if not isinstance(element, design.Segment):
                 continue
             line = measured("three positions")[f"step-{number}.{k}"][0]
             ends = [sheet.at(xy(end)) for end in (element.start, element.end)]
@@ -112,7 +101,7 @@ def test_the_radius_of_the_drawn_circle_is_the_crank() -> None:
 def test_the_mechanism_stands_in_the_positions_that_are_asked_for() -> None:
     view = ConstructionView.of(made.three_positions())
     step = view.steps[0]
-    asked = {each.letter: xy(each.place) for each in step.elements if isinstance(each, Dot)}
+    asked = {each.letter: xy(each.place) for each in step.elements if isinstance(each, design.Dot)}
     for number, placed in enumerate(view.placements, 1):
         for name in "CD":
             assert placed.points[name] == pytest.approx(asked[f"{name}{number}"], abs=1e-9)
@@ -167,13 +156,13 @@ def test_no_letter_is_on_a_line_and_all_stays_in_its_box(case: tuple[str, Paper]
 def test_an_arc_goes_from_its_one_angle_to_the_other() -> None:
     low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
     for start, end in ((0.2, 1.4), (5.0, 0.5), (-1.0, 2.0), (7.0, 7.5)):
-        (line,) = strokes(DrawnCircle(0.1j, 0.5, arc=(start, end)), low, high)
+        (line,) = strokes(design.DrawnCircle(0.1j, 0.5, arc=(start, end)), low, high)
         for place, angle in ((line[0], start), (line[-1], end)):
             exact = xy(0.1j + 0.5 * np.exp(1j * angle))
             assert place == pytest.approx(exact, abs=1e-12)
     # of a large one, as much as is in the box, wherever its angles begin
     for turn in (-math.tau, 0.0, math.tau):
-        (line,) = strokes(DrawnCircle(-50.0 + 0j, 50.0, arc=(turn, turn + 0.01)), low, high)
+        (line,) = strokes(design.DrawnCircle(-50.0 + 0j, 50.0, arc=(turn, turn + 0.01)), low, high)
         assert line[0] == pytest.approx((0.0, 0.0), abs=1e-9)
         assert line[-1] == pytest.approx(xy(-50.0 + 50.0 * np.exp(0.01j)), abs=1e-9)
 
@@ -195,7 +184,9 @@ def test_what_is_far_off_is_told_and_does_not_shrink_the_figure() -> None:
 def test_curves_that_run_to_infinity_do_not_shrink_the_figure_or_jump_across_it() -> None:
     proposal = made.burmester_curves()
     steps = [
-        replace(step, elements=tuple(e for e in step.elements if not isinstance(e, DrawnCurve)))
+        replace(
+            step, elements=tuple(e for e in step.elements if not isinstance(e, design.DrawnCurve))
+        )
         for step in proposal.steps
     ]
     plain = replace(proposal, steps=tuple(steps))
@@ -209,7 +200,7 @@ def test_curves_that_run_to_infinity_do_not_shrink_the_figure_or_jump_across_it(
 
 def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
     proposal = made.three_positions()
-    long = replace(proposal, steps=(*proposal.steps, DrawingStep("many words " * 300, ())))
+    long = replace(proposal, steps=(*proposal.steps, design.DrawingStep("many words " * 300, ())))
     with pytest.raises(CrankcheckError, match=r"210x148: the words of 5 steps .* such as A3"):
         laid_out(long, A5)
     assert laid_out(long, Paper.of("A3")).scale > 0.0
@@ -231,25 +222,25 @@ def embedded(page: str) -> dict[str, Any]:
 @pytest.mark.parametrize(
     "make", [made.three_positions, made.rocker_by_angle, made.burmester_curves]
 )
-def test_the_page_holds_every_step_and_its_words(make: Callable[[], Proposal]) -> None:
+def test_the_page_holds_every_step_and_its_words(make: Callable[[], design.Proposal]) -> None:
     proposal = make()
     page = construction_page(proposal)
     words = re.findall(r"<li><button type=\"button\">(.*?)</button></li>", page)
     assert words == [*(step.words for step in proposal.steps), MOVES]
     for step, drawn in zip(proposal.steps, embedded(page)["steps"], strict=True):
         for element, own in zip(step.elements, drawn, strict=True):
-            if isinstance(element, Dot):
+            if isinstance(element, design.Dot):
                 assert own["at"] == pytest.approx(xy(element.place), rel=1e-5, abs=1e-12)
                 assert own["letter"] == element.letter
-            if isinstance(element, Segment) and not element.beyond:
+            if isinstance(element, design.Segment) and not element.beyond:
                 (ends,) = own["lines"]
                 length = math.dist(ends[:2], ends[2:])
                 assert length == pytest.approx(abs(element.end - element.start), rel=1e-5)
-            if isinstance(element, DrawnCircle):
+            if isinstance(element, design.DrawnCircle):
                 places = np.concatenate(own["lines"]).reshape(-1, 2)
                 away = np.hypot(*(places - xy(element.centre)).T)
                 assert away == pytest.approx(element.radius, rel=1e-5)
-            if isinstance(element, DrawnCurve):
+            if isinstance(element, design.DrawnCurve):
                 assert own["look"].startswith("curve-")
                 assert own["lines"]
 
@@ -288,7 +279,7 @@ def test_the_asked_link_stands_in_each_pose() -> None:
 def test_hostile_words_are_text() -> None:
     proposal = made.three_positions()
     evil = "</script><script>window.hacked=1</script><img src=x>"
-    steps = (*proposal.steps, DrawingStep(evil, (Dot(0j, evil),)))
+    steps = (*proposal.steps, design.DrawingStep(evil, (design.Dot(0j, evil),)))
     page = construction_page(replace(proposal, steps=steps, doubt=evil, chosen={evil: evil}))
     assert "<img" not in page
     assert "<script>window" not in page

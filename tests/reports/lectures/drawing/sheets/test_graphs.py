@@ -16,11 +16,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from reports.figures.style import SMALL, styled
-from reports.lectures.drawing.sheets.graph_drawing import (
-    DrawnGraphs,
-    drawn_graphs,
-    graph_log,
-)
+from reports.lectures.drawing.sheets.graph_drawing import DrawnGraphs, drawn_graphs, graph_log
 from reports.lectures.drawing.sheets.graph_orders import ErrorLine, draw_errors, graph_errors
 from reports.lectures.drawing.sheets.graph_page import caption, draw_graphs, laid_out
 from reports.lectures.drawing.sheets.graph_sheet import POLES_MM, GraphSheet, graph_scales

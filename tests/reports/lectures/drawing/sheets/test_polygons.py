@@ -45,6 +45,7 @@ from reports.lectures.drawing.sheets.polygon_sheet import (
     draw_sheet,
     laid_out,
 )
+from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.map_file import Map
 from reports.requests.any_log import log_of_motion
 from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines
@@ -240,7 +241,7 @@ def without_rates() -> Motion:
 
 
 def logged(moved: Motion) -> LogInstants:
-    return LogInstants.of_log(log_of_motion(SCENE, moved, "run.csv"))
+    return LogInstants.of(SheetLog.of_log(log_of_motion(SCENE, moved, "run.csv")))
 
 
 def test_what_rates_are_off_by_is_found_at_the_sample_that_is_asked_for() -> None:
@@ -293,7 +294,7 @@ def test_logs_without_points_and_of_links_that_bend_are_refused() -> None:
     with pytest.raises(CrankcheckError, match=r"both coordinates of points that move .*angle of"):
         logged(replace(MOTION, points={})).at_angle(90.0)
     with pytest.raises(CrankcheckError, match="polygons are those of rigid links"):
-        LogInstants.of_file(load_scene("fourbar-elastic"), Path("run.csv"), Map())
+        SheetLog.of_file(load_scene("fourbar-elastic"), Path("run.csv"), Map(), "polygons")
 
 
 def sheet_beside(rates: Mapping[str, Array]) -> PolygonSheet:
