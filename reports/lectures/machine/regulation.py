@@ -205,7 +205,7 @@ def _write(
     if output is None:
         return
     if output.suffix.lower() == PAGE:
-        from reports.lectures.machine.regulation_page import regulation_page
+        from reports.lectures.machine.regulation_figures import regulation_page
 
         write(output, regulation_page(cycle, found))
     elif output.suffix.lower() == NUMBERS:
