@@ -277,7 +277,6 @@ def tangent(form: ReducedForm, edges_s: Array, z: Array, rates: Array) -> Slopes
 
 
 def _with_middles(values: Array) -> Array:
-    """Return values at edges, and means between them."""
     both = np.empty((2 * len(values) - 1, *values.shape[1:]))
     both[::2], both[1::2] = values, 0.5 * (values[1:] + values[:-1])
     return both

@@ -239,7 +239,6 @@ def _started(scene: Scene, law: Released) -> Scene:
 
 
 def _others(scene: Scene) -> tuple[str, str]:
-    """Return the links of a four-bar that are not its driver."""
     one, other = (name for name in scene.links if name != scene.driver.link)
     return one, other
 

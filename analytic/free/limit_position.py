@@ -226,7 +226,6 @@ class _Passing:
         return Dyad(first, second, sine, replace(closure, short_m=short))
 
     def _at(self, index: Index) -> Rates:
-        """Return the rates of u at some of the samples."""
         e = self.rates.error
         each = (self.rates.omega, self.rates.alpha, e.theta, e.omega, e.alpha)
         omega, alpha, *bounds = (np.broadcast_to(one, self.u.shape)[index] for one in each)

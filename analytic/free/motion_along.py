@@ -117,7 +117,6 @@ def places_beside(scene: Scene, history: CoordinateHistory, logged: Motion) -> M
 
 
 def _charts(history: CoordinateHistory) -> list[Chart]:
-    """Return the charts of a motion, each once."""
     charts: dict[tuple[float, tuple[tuple[str, int], ...]], Chart] = {}
     for chart, _, _ in history.legs():
         assert chart.limit is not None

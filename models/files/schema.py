@@ -150,7 +150,6 @@ class NamesInTables:
 
 
 def _points(link: object) -> Iterable[str]:
-    """Yield the points that a raw link lists, by bar or by name."""
     bar = link.get("bar") if isinstance(link, Mapping) else None
     yield from (end for end in (bar if isinstance(bar, list) else []) if isinstance(end, str))
     yield from raw_tables(link, "points")

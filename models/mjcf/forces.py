@@ -106,7 +106,6 @@ def load_actuators(scene: Scene) -> list[str]:
 
 
 def _not_in_the_file(load: Load) -> list[str]:
-    """Write the remark that the size of a load comes from outside."""
     course = "" if isinstance(load.characteristic, Constant) else f" over the {load.over}"
     stroke = "" if load.stroke == "both" else f" on the {load.stroke} stroke"
     slider = "" if load.slider is None else f" of {load.slider}"

@@ -42,11 +42,10 @@ class FixedMapping(dict[K, V]):
         return FixedMapping, (dict(self),)
 
 
-def _fix_mappings(made: object) -> None:
-    """Make every mapping of a frozen dataclass one that cannot be changed, a copy."""
-    for name, value in vars(made).items():
-        if isinstance(value, Mapping):
-            object.__setattr__(made, name, FixedMapping(value))
+def _fix(made: object, *names: str) -> None:
+    """Make mappings of a frozen dataclass ones that cannot be changed, copies. Raises TypeError."""
+    for name in names:
+        object.__setattr__(made, name, FixedMapping(getattr(made, name)))
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,7 @@ class Start:
     shape: Shape | None = None
 
     def __post_init__(self) -> None:
-        _fix_mappings(self)
+        _fix(self, "angles_rad", "rates_rad_s", "displacements_m", "speeds_m_s")
 
     def __bool__(self) -> bool:
         return any(vars(self).values())
@@ -89,7 +88,7 @@ class Link:
     inertia_kg_m2: float
 
     def __post_init__(self) -> None:
-        _fix_mappings(self)
+        _fix(self, "points")
 
 
 @dataclass(frozen=True)
@@ -202,7 +201,8 @@ class Scene:
     beams: Mapping[str, Beam] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        _fix_mappings(self)
+        _fix(self, "ground", "links", "sliders", "branch", "tolerance", "loads", "friction",
+             "springs", "elastic", "beams")  # fmt: skip
 
     @cached_property
     def pins(self) -> Mapping[str, tuple[str, ...]]:

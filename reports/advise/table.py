@@ -99,7 +99,6 @@ def _nothing(advice: Advice) -> str:
 
 
 def _table(advice: Advice, width: int) -> Table:
-    """Return a row for each choice, cheapest first."""
     wide = width >= WIDE
     heads = ("settings", "at the\nframe:", "", "sub-\nsteps:", "their\nerror:", "ms per\nsecond:")
     last = (*["of real\ntime:"] * wide, "times\nbest:")

@@ -106,19 +106,24 @@ def grid(
     style: str = "bold",
     gap: int = 2,
     whole: Container[str] = (),
+    cut: Container[str] = (),
+    wraps: bool = False,
     least: Mapping[str, int] | None = None,
 ) -> Table:
     """Return a `plain_table` of rows. A head that ends in a colon is over numbers, on the right and
-    never wrapped, as is text below a head in ``whole``; ``least`` has widths of columns by head.
+    never wrapped, unless all ``wraps``, as is text below a head in ``whole``. What is too wide ends
+    in an ellipsis there and below a head in ``cut``, and goes on in the next line elsewhere.
+    ``least`` has widths of columns by head.
     `reports.output.formats.table` writes the same heads and rows in Markdown."""
     shown = plain_table(title, style, gap)
     for head in heads:
         number = head.endswith(":")
+        ends = number or head in whole or head in cut
         shown.add_column(
             head.removesuffix(":"),
             justify="right" if number else "left",
-            no_wrap=number or head in whole,
-            overflow="fold",
+            no_wrap=(number and not wraps) or head in whole,
+            overflow="ellipsis" if ends else "fold",
             min_width=(least or {}).get(head),
         )
     for row in rows:

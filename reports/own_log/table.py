@@ -102,9 +102,8 @@ def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
 
 
 def _table(rows: Sequence[LogRow], width: int) -> Table:
-    """Return one row an error, those out of tolerance first."""
     heads = (*HEADS, *["at t\ns:"] * (width >= WIDE))
-    table = grid(heads, gap=1, least={"columns": 12, "read as": 16})
+    table = grid(heads, gap=1, cut=("",), least={"columns": 12, "read as": 16})
     for row in sorted(rows, key=lambda row: row.verdict == "within"):
         mark = Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red")
         names, what, *numbers = _texts(row)

@@ -69,7 +69,8 @@ def _table(judged: JudgedModel, width: int) -> Table:
     if width >= NARROW or any(one.errors is None for one in judged.lines):
         heads.append(HALVED)
     title = f"largest error of place {sentences.steps_text(judged)}"
-    table = grid(heads, (), title, gap=1, whole=("line",), least={"largest of": 12, HALVED: 10})
+    least = {"largest of": 12, HALVED: 10}
+    table = grid(heads, (), title, gap=1, whole=("line",), cut=("",), least=least)
     for one in (*judged.three, *judged.others):
         _add(table, judged, one, wide=wide)
     return table

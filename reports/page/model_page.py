@@ -169,7 +169,6 @@ def _line(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
 
 
 def _limit(judged: JudgedModel) -> float | None:
-    """Return the limit of the quantity with the largest error as written."""
     worst = worst_place(judged.own.errors) if judged.own.errors else None
     return None if worst is None else _limit_of(judged, worst.tolerance)
 

@@ -203,8 +203,8 @@ def _time(one: Candidate) -> float:
 
 
 WIDE = 90
-WIDE_HEADS = ("on scene", "steps on\nthe fit:")
 """Columns of a terminal with room for a column of the scene of the worst error."""
+WIDE_HEADS = ("on scene", "steps on\nthe fit:")
 
 
 def recommendation_table(

@@ -86,7 +86,7 @@ def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> T
     wide = width >= WIDE
     heads = ["", "fault", *["what is wrong"] * wide, "planted size", "caught\nby"]
     heads += [f"from on,\n{engine}:" for engine in engines]
-    table = grid(heads, gap=1, whole=("fault", "caught\nby"))
+    table = grid(heads, gap=1, whole=("fault", "caught\nby"), cut=("",))
     for group in dict.fromkeys(one.fault.group for one in verdicts):
         table.add_row("", Text(group, "bold"), *([Text(GROUPS[group], "bold")] if wide else []))
         for one in verdicts:

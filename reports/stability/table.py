@@ -48,7 +48,6 @@ def show(console: Console, matrix: Matrix) -> None:
 
 
 def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
-    """Print one case: its parameter, and how far each engine holds it."""
     unit = f" [{case.unit}]" if case.unit else ""
     console.print(Text.assemble((case.name, "bold"), f"  {case.title}; {case.parameter}{unit}"))
     lines = [critical for critical in matrix.critical if critical.case == case.name]

@@ -71,6 +71,7 @@ class CellTable:
             title=f"{self.title}profile {profile} ({role})",
             gap=1,
             whole=("engine", *after),
+            cut=("",),
             least={first[0]: self.names} | ({HALVED: 15} if apart else {}),
         )
         table.columns[-1].max_width = None if apart else 14

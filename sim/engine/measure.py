@@ -212,7 +212,6 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:
-    """Return the paths of every point on each of its bodies."""
     bodies = body_paths(poses)
     return {
         point: {body: PointPath(bodies[body], local) for body, local in copies.items()}

@@ -181,7 +181,6 @@ class _System:
             self._push(column, slider.on, own.place + arm - guide.place, -direction)
 
     def _column(self) -> Array:
-        """Add an unknown without action."""
         self._columns.append(np.zeros((self._samples, 3 * len(self._row))))
         return self._columns[-1]
 

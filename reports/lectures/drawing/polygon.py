@@ -46,7 +46,7 @@ def show_polygons(console: Console, sheet: PolygonSheet) -> None:
         quantity, unit = drawn.polygon.quantity, UNITS[drawn.polygon.quantity]
         say_whole(console, f"\n{quantity} polygon, {readable(drawn.scale)} {unit} to the mm")
         heads = ("vector", f"{unit}:", "mm:", "towards deg:", "found")
-        console.print(grid(heads, _vector_rows(drawn)))
+        console.print(grid(heads, _vector_rows(drawn), cut=heads, wraps=True))
         if drawn.polygon.largest == 0.0:
             say_whole(console, polygon_table.at_rest(quantity))
         _show_log(console, drawn)
@@ -94,12 +94,13 @@ def _show_log(console: Console, drawn: DrawnPolygon) -> None:
         say_whole(console, f"\nno {drawn.polygon.quantity} of any point in the log")
         return
     say_whole(console, f"\n{drawn.logged_by}: {drawn.logged.words} on the sheet")
-    heads = (unit, "mm", f"logged {unit}", "mm", f"error {unit}", "mm", "towards deg")
+    numbers = (unit, "mm", f"logged {unit}", "mm", f"error {unit}", "mm", "towards deg")
+    heads = ("point", *(f"{head}:" for head in numbers))
     rows = []
     for name, size, own, error in drawn.logged_sizes():
         off, sizes = float(np.hypot(*error)), (*_sizes(size, drawn), *_sizes(own, drawn))
         rows.append((name, *sizes, readable(off * drawn.scale), readable(off), _towards(error)))
-    console.print(grid(("point", *(f"{head}:" for head in heads)), rows))
+    console.print(grid(heads, rows, cut=heads, wraps=True))
 
 
 def _show_links(console: Console, sheet: PolygonSheet) -> None:
@@ -108,13 +109,15 @@ def _show_links(console: Console, sheet: PolygonSheet) -> None:
         (name, *(f"{rate:.7g}" for rate in drawn_polygons.link_rates(drawn, name)))
         for name in links
     )
-    console.print("", grid(("link", "omega rad/s:", "alpha rad/s^2:"), rates), sep="\n")
+    heads = ("link", "omega rad/s:", "alpha rad/s^2:")
+    console.print("", grid(heads, rates, cut=heads, wraps=True), sep="\n")
     quantities = drawn_polygons.QUANTITIES
     images = (
         (name, *(polygon_table.image_words(drawn, name, each) for each in quantities))
         for name in links
     )
-    console.print("", grid(("image of", "in velocities", "in accelerations"), images), sep="\n")
+    heads = ("image of", "in velocities", "in accelerations")
+    console.print("", grid(heads, images, cut=heads), sep="\n")
 
 
 LEAST_K, MOST_K = 1e-3, 1e3

@@ -110,7 +110,9 @@ def _show(console: Console, sheet: CentreSheet) -> None:
         )
         found = f"where {crossing} cross" if crossing else "a joint"
         rows.append((centre_name(pair, numbers), *_place(centre.place), found))
-    console.print(grid(("centre", "x m:", "y m:", "found"), rows))
+    console.print(
+        grid(("centre", "x m:", "y m:", "found"), rows, cut=("centre", "found"), wraps=True)
+    )
     if sheet.circles is not None:
         _show_circles(console, sheet.link, sheet.circles)
 
@@ -131,7 +133,7 @@ def _show_circles(console: Console, link: str, circles: CurvatureCircles) -> Non
         ),
     ]
     heads = (f"of {link}, driver steady", "x m:", "y m:", "radius m:")
-    console.print("", grid(heads, rows), sep="\n")
+    console.print("", grid(heads, rows, cut=heads, wraps=True), sep="\n")
 
 
 def _circle(circle: CentreCircle) -> tuple[str, str, str]:
@@ -234,4 +236,5 @@ def _show_assortments(console: Console, request: ChainsRequest, every: list[Chai
         (assortment_in_words(counts), str(sum(chain.assortment == counts for chain in every)))
         for counts in assortments(request.links, request.mobility)
     )
-    console.print("", grid(("assortment of links", "chains:"), rows), sep="\n")
+    heads = ("assortment of links", "chains:")
+    console.print("", grid(heads, rows, cut=heads, wraps=True), sep="\n")

@@ -206,7 +206,8 @@ def _show_assemblies(console: Console, every: list[SceneAssembly], at: str) -> N
     for one in every:
         angles = (math.degrees(math.remainder(one.placement.angles[n], math.tau)) for n in links)
         rows.append(("*" * one.is_own, one.words, *(f"{round(a, 9) + 0.0:.6g}" for a in angles)))
-    console.print(grid(("", "branch", *(f"{name} deg:" for name in links)), rows))
+    heads = ("", "branch", *(f"{name} deg:" for name in links))
+    console.print(grid(heads, rows, cut=("",), wraps=True))
 
 
 def _counted(every: list[SceneAssembly]) -> str:

@@ -113,7 +113,7 @@ def show_errors(console: Console, errors: GraphErrors) -> None:
     ]
     if len(errors.divisions) > 1:
         rows.append(("order", *(order_words(each, errors.divisions) for each in errors.lines)))
-    console.print(grid(heads, rows))
+    console.print(grid(heads, rows, wraps=True))
 
 
 def order_words(line: ErrorLine, divisions: Sequence[int]) -> str:

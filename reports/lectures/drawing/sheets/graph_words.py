@@ -158,7 +158,8 @@ def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
         elif order != READ[drawn.by]:
             heads.append("exact")
             columns.append(written(of.exact(order, places), drawn.sizes[order]))
-    console.print(grid((f"{head}:" for head in heads), zip(*columns, strict=True)))
+    rows = zip(*columns, strict=True)
+    console.print(grid((f"{head}:" for head in heads), rows, wraps=True))
 
 
 def _places(drawn: DrawnGraphs) -> Array:
