@@ -75,7 +75,8 @@ class FreeRun:
 
 @dataclass(frozen=True)
 class FreeRuns:
-    """The runs of a scene beside the reference, whose driver has ``angle`` and ``omega`` (T,)."""
+    """The runs of a scene beside the reference; its driver has ``angle`` [rad] and ``omega``
+    [rad/s] at ``time_s``, (T,)."""
 
     scene: Scene
     runs: tuple[FreeRun, ...]

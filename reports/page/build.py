@@ -128,7 +128,6 @@ def assembled(head: Head, shown: Iterable[Section | None]) -> str:
 
 
 def _template(environment: Environment, template: str | Path) -> Template:
-    """Return the template of a section: a name for our own, a file for others."""
     if isinstance(template, Path):
         return environment.from_string(template.read_text(encoding="utf-8"))
     return environment.get_template(f"sections/{template}")

@@ -253,7 +253,11 @@ def asked(request: SweepRequest) -> Study:
         _numbers("--dt", request.dt_s, float, "numbers", "2e-3,1e-3"),
         request.duration_s,
         _numbers("--segments", request.segments, _segments, "whole numbers", "4,8,16"),
-        [*map(chosen_springs, filter(None, map(str.strip, (request.springs or "").split(","))))],
+        [
+            chosen_springs(each.strip())
+            for each in (request.springs or "").split(",")
+            if each.strip()
+        ],
     )
     return chosen_study(study, choice, is_shipped=request.study is None)
 

@@ -129,7 +129,7 @@ FAULTS = (
            fault.in_settings("first-order"), needs=fault.can_set("first-order")),
     _fault("float32-arithmetic", "the state is kept in float32", "CC102",
            done_to(lambda tools: tools.round_state, lambda n: range(1, n)), 2.0**-24, "of it",
-           scenes=(fault.FOURBAR,)),
+           scenes=(fault.FOURBAR,)),  # each of its runs is cut into 360 stretches
     _fault("state-lost", "a velocity in the engine becomes NaN", "CC101",
            after_a_third(lambda tools: lambda session, size: tools.lose(session) if size else None),
            says=("diverged",)),

@@ -82,7 +82,6 @@ def as_held(
 
 
 def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
-    """Convert the value to the type of the profile's own."""
     kind = type(model)
     try:
         converted = kind(value)

@@ -164,7 +164,6 @@ def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
 
 
 def _pins(scene: Scene) -> Iterator[tuple[object, ...]]:
-    """Yield the hinges, with the places on both bodies."""
     for hinge in hinges(scene, GROUND):
         start, end = (
             _from_centre(scene, body, pairs.local_point(scene, body, hinge.point))

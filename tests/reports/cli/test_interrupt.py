@@ -42,6 +42,25 @@ Moment = tuple[str, str, int]
 IMPORTS: Moment = ("import", "numpy", 1)
 FIRST_STARTS: Moment = ("subprocess.Popen", "python", 1)
 SECOND_STARTS: Moment = ("subprocess.Popen", "python", 2)
+BRIEF = ("verify", "fourbar-lecture-1", "-o", "out")
+"""Work that comes to its end."""
+DEAF = ("sh", "-c", 'trap "" INT; exec "$@"', "sh")
+"""Starts a program that ignores Ctrl-C, as `nohup` and a script's background do."""
+
+
+def ended(
+    start: Start, folder: Path, kill: str, moment: Moment, times: int, *, deaf: bool = False
+) -> tuple[int, str, str]:
+    """Exit code, output and complaint of a run that is told to end at a moment, so many times."""
+    arguments = BRIEF if deaf else LONG
+    code = script(SCRIPT.format(kill=kill, moment=moment, times=times, arguments=arguments))
+    (folder / "run.py").write_text(code, encoding="utf-8")
+    running = start(*(DEAF if deaf else ()), PYTHON, "-P", folder / "run.py", cwd=folder)
+    # The pipes end when the last process that holds them does: no worker outlives the command.
+    output, complaint = running.communicate()
+    return running.returncode, output, complaint
+
+
 FIRST_ANSWER: Moment = ("pickle.find_class", "reports.judge.cell", 1)
 LONG = ("verify", "--turns", "4", "--jobs", "2", "-o", "out")
 """Some ten seconds of work, which ends in its first moments."""
@@ -67,14 +86,17 @@ def test_a_signal_ends_the_workers_with_one_line_and_nothing_written(
     programs: Start, tmp_path: Path, case: tuple[str, Moment]
 ) -> None:
     kill, times, exit_code = ENDED[case[0]]
-    code = script(SCRIPT.format(kill=kill, moment=case[1], times=times, arguments=LONG))
-    (tmp_path / "run.py").write_text(code, encoding="utf-8")
-    running = programs(PYTHON, "-P", tmp_path / "run.py", cwd=tmp_path)
-    # The pipes end when the last process that holds them does: no worker outlives the command.
-    output, complaint = running.communicate()
+    code, output, complaint = ended(programs, tmp_path, kill, case[1], times)
     assert complaint.splitlines() == [f"crankcheck: {case[0]}"]
-    assert (running.returncode, output) == (exit_code, "")
+    assert (code, output) == (exit_code, "")
     assert not (tmp_path / "out").exists()
+
+
+@slow("a second with a shell that ignores it, as `nohup` does; a process that does is below")
+def test_ctrl_c_stays_ignored_where_the_parent_ignores_it(programs: Start, tmp_path: Path) -> None:
+    code, _, complaint = ended(programs, tmp_path, GROUP, IMPORTS, times=2, deaf=True)
+    assert (code, complaint) == (0, "")
+    assert (tmp_path / "out" / "verify.csv").exists()
 
 
 START = """

@@ -54,6 +54,12 @@ def test_the_table_says_that_mujoco_as_shipped_does_not_shrink() -> None:
     assert "does not shrink" in told(line, code=1).partition("profile as-shipped")[2]
 
 
+def test_no_line_is_wider_than_a_hundred_columns() -> None:
+    output = told("verify slider-crank-excel-350 --turns 1")
+    assert max(len(line.rstrip()) for line in output.splitlines()) <= 100
+    assert "slider-crank-excel-350" in output.partition("profile tuned")[2]
+
+
 def test_all_files_of_a_folder_hold_the_same_cells_of_the_last_run(tmp_path: Path) -> None:
     """Of a scene in a file, which a first run had out of tolerance."""
     folder = tmp_path / "out"

@@ -117,6 +117,15 @@ def test_parts_have_one_schema_whatever_is_missing(tmp_path: Path, outcome: Meas
     assert first == second
 
 
+def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: MeasuredCell) -> None:
+    with Writer(tmp_path, Manifest()) as writer:
+        writer.trajectory("k1", outcome.run)
+    found = pq.read_table(tmp_path / "trajectories" / "k1.parquet").to_pandas()
+    np.testing.assert_array_equal(found.time_s, outcome.run.motion.time_s)
+    np.testing.assert_array_equal(found.rocker_theta_rad, outcome.run.motion.links["rocker"].theta)
+    np.testing.assert_array_equal(found.C_gap_m, outcome.run.gaps["C"])
+
+
 def test_a_changed_scene_of_the_same_name_is_refused(tmp_path: Path, outcome: MeasuredCell) -> None:
     name = str(outcome.row["scene"])
     with Writer(tmp_path, Manifest({name: TEXT})) as writer:

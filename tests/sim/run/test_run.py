@@ -182,7 +182,8 @@ def test_a_link_without_mass_is_unsupported_and_named_unless_it_is_driven(
     if drive == "servo" and name != "mujoco":  # which moves no body without
         done = ran(scene, name, steps=100)
         exact = solve(scene, done.motion.time_s).links["rocker"].theta
-        np.testing.assert_allclose(done.motion.links["rocker"].theta, exact, atol=1e-4)
+        off = {"exudyn": 1e-11, "pymunk": 1e-4}[name]
+        np.testing.assert_allclose(done.motion.links["rocker"].theta, exact, rtol=0, atol=off)
 
 
 def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
