@@ -222,14 +222,19 @@ Piece = TypeVar("Piece", bound=SmoothPiece)
 
 
 @np.errstate(all="ignore")
-def widest(halves: Iterable[float], made: Callable[[float], Piece]) -> Piece | None:
+def widest(
+    halves: Iterable[float],
+    made: Callable[[float], Piece],
+    beyond: tuple[type[Exception], ...] = (OpenError,),
+) -> Piece | None:
     """Return the widest piece that is about as certain as any, as narrower ones lose digits; None
-    where the motion is not certainly smooth. Half-widths [rad] out of reach are left out."""
+    where the motion is not certainly smooth. Half-widths [rad] out of reach, for which
+    making a piece raises ``beyond``, are left out."""
     best, least = None, math.inf
     for half in halves:
         try:
             piece = made(half)
-        except OpenError:
+        except beyond:
             continue
         if piece.doubt < least:
             best, least = piece, piece.doubt

@@ -23,7 +23,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.change_points.sign import HALVES, LEAST_CERTAIN, Index, Rates, SignPiece, Unknown, put
+from analytic.change_points.sign import HALVES, Index, Rates, SignPiece, Unknown, put, widest
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Dyad, First, OpenError, Second
 from analytic.dyads.plane import EPS, EXACT_ANGLE, AngleError
@@ -121,20 +121,11 @@ class LimitPosition:
     def piece(self) -> SignPiece:
         """Unknowns of the dyad about the limit, over u. Raises CrankcheckError where they are not
         smooth to within rounding."""
-        best, least = None, math.inf
-        with np.errstate(all="ignore"):
-            for half in HALVES:
-                try:
-                    piece = SignPiece.of(self._solved, 0.0, half, self.scene.longest_m)
-                except (OpenError, ReachError):
-                    continue
-                if piece.doubt < least:
-                    best, least = piece, piece.doubt
-                elif piece.doubt > 4.0 * least and least < LEAST_CERTAIN:
-                    break
-        if best is None or least >= LEAST_CERTAIN:
+        size_m, beyond = self.scene.longest_m, (OpenError, ReachError)
+        found = widest(HALVES, lambda half: SignPiece.of(self._solved, 0.0, half, size_m), beyond)
+        if found is None:
             raise self._unclear()
-        return best
+        return found
 
     def _unclear(self) -> CrankcheckError:
         return CrankcheckError(
