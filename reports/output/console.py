@@ -144,8 +144,8 @@ def show_failed(
 
 def hanging(console: Console, head: str, text: str, style: str = "") -> None:
     """Print a paragraph whose later lines stand below its text."""
-    grid = Table.grid(padding=0)
-    grid.add_column(no_wrap=True)
-    grid.add_column(overflow="fold")
-    grid.add_row(Text(head, style), Text(text, style))
-    console.print(grid)
+    laid = Table.grid(padding=0)
+    laid.add_column(no_wrap=True)
+    laid.add_column(overflow="fold")
+    laid.add_row(Text(head, style), Text(text, style))
+    console.print(laid)

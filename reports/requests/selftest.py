@@ -1,6 +1,5 @@
 """`crankcheck selftest`: plant faults, find the rule that catches each, show, write."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from reports.judge.cell import Checked
-from reports.output.formats import csv
+from reports.output.formats import csv, json_text
 from reports.output.write import Outputs, provenance
 from reports.plan.chosen import chosen_engines
 from reports.requests.options import Jobs, option, output_option
@@ -119,4 +118,4 @@ def _json(
             for one in passed
         ],
     }
-    return json.dumps(content, indent=1) + "\n"
+    return json_text(content)
