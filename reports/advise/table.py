@@ -24,7 +24,7 @@ ABOUT = "~"
 COLOURS = {"within": "green", "over": "yellow"}
 
 
-def show(console: Console, advice: Advice) -> None:
+def show_advice(console: Console, advice: Advice) -> None:
     """Print all of it, but for its provenance."""
     console.print(Text(title(advice), "bold"))
     console.print(_table(advice, console.width), highlight=False)

@@ -137,7 +137,7 @@ def _over(off: Array, series: Array) -> float:
     return float(np.nanmax(off, initial=0.0)) / (largest or 1.0)
 
 
-def certainty(motion: ElasticHistory) -> list[str]:
+def beam_certainty(motion: ElasticHistory) -> list[str]:
     """Return the uncertainty of a motion, in sentences. Raises CrankcheckError where no other can
     be computed."""
     if isinstance(motion.by, Segments):

@@ -20,7 +20,7 @@ NARROW = 76
 STYLES = {"worse": "bold red", "better": "green"}
 
 
-def show(console: Console, diff: Diff, strict: bool = False) -> None:
+def show_diff(console: Console, diff: Diff, strict: bool = False) -> None:
     """Print the whole diff."""
     style = STYLES["worse"] if diff.code(strict) else "bold green"
     console.print(Text(f"{words.verdict(diff, strict)}: {words.headline(diff)}", style))

@@ -17,7 +17,7 @@ from models.scene.driver import driver_unit
 from models.scene.laws import ConstantSpeed
 from reports.describe import elastic_course, with_forces
 from reports.describe.elastic_course import ElasticCourse
-from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
+from reports.describe.elastic_words import beam_certainty, elastic_facts, elastic_warnings, start_words
 from reports.describe.force_tables import friction_words, largest_of
 from reports.describe.free_motion import free_notes, instants
 from reports.drawing.force_arrows import force_arrows
@@ -206,7 +206,7 @@ def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, 
     drawn = drawing(scene, course.time_s, course.base)
     if not isinstance(scene.driver.law, ConstantSpeed) or turns > 1.0 + 1e-9:
         drawn |= {"until_s": motion.until_s}
-    notes = [start_words(scene, elastic_course.start_of(motion)), *certainty(motion)]
+    notes = [start_words(scene, elastic_course.start_of(motion)), *beam_certainty(motion)]
     return _moving(
         "scene_elastic",
         {

@@ -14,7 +14,7 @@ from reports.advise.advice import Advice, offers, prices, timings
 from reports.advise.demand import choices, demanded
 from reports.advise.evidence import MeasuredStudy, evidence, stored_choices, stored_scenes
 from reports.advise.search import SearchResult, search_all
-from reports.advise.table import document, show
+from reports.advise.table import document, show_advice
 from reports.output.console import say_whole, tell
 from reports.output.write import Outputs, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
@@ -76,7 +76,7 @@ class AdviseRequest:
         named = bool(self.scenes or stored)
         advice = Advice(demand, offers(found, priced), priced.noise, known, facts, named)
         with outputs.written({"--json": lambda: document(advice)}):
-            show(console, advice)
+            show_advice(console, advice)
         return 0 if advice.promises else 1
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.diff.document import markdown, show, suite
+from reports.diff.document import markdown, show_diff, suite
 from reports.output.console import tell
 from reports.output.formats import junit
 from reports.output.write import Outputs
@@ -81,5 +81,5 @@ class DiffRequest:
             if self.format == "md" and not self.output:
                 console.print(page, end="", markup=False, highlight=False, soft_wrap=True)
             else:
-                show(console, diff, self.strict)
+                show_diff(console, diff, self.strict)
         return diff.code(self.strict)

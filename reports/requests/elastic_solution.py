@@ -18,7 +18,7 @@ from models.errors import CrankcheckError, StructureError
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe import elastic_course
-from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
+from reports.describe.elastic_words import beam_certainty, elastic_facts, elastic_warnings, start_words
 from reports.describe.facts import describe_law
 from reports.describe.force_tables import motion_force_tables
 from reports.describe.motion_tables import cleaned
@@ -54,7 +54,7 @@ class ElasticSolution(Solution):
     @cached_property
     def certainty(self) -> list[str]:
         """Possible errors of the motion, in sentences."""
-        return certainty(self.vibration)
+        return beam_certainty(self.vibration)
 
     def frame(self) -> pd.DataFrame:
         """Table of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic

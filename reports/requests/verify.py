@@ -74,7 +74,7 @@ class VerifyRequest(VerifyOptions):
         with outputs.written(contents(checked, facts, digests, diff)):
             show(console, checked, facts)
             if diff:
-                from reports.diff.document import show as show_diff
+                from reports.diff.document import show_diff
 
                 console.print()
                 show_diff(console, diff)

@@ -14,7 +14,7 @@ from reports.advise.advice import Advice, Offer, Price, Prices, offers
 from reports.advise.demand import choices, demanded
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy
 from reports.advise.search import SearchResult, TriedRun, Worst
-from reports.advise.table import document, show, word
+from reports.advise.table import document, show_advice, word
 from tests.worlds.command_line import flat
 
 DEMAND = demanded(
@@ -64,7 +64,7 @@ def labels(every: Iterable[Offer]) -> str:
 
 def printed(every: Advice, width: int = 100) -> str:
     stream = io.StringIO()
-    show(Console(file=stream, width=width), every)
+    show_advice(Console(file=stream, width=width), every)
     return stream.getvalue()
 
 

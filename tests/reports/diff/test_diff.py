@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.diff.document import markdown, show, suite
+from reports.diff.document import markdown, show_diff, suite
 from reports.diff.words import cost_text, left_out, lines
 from reports.output.formats import junit
 from reports.requests.diff import DiffRequest
@@ -213,7 +213,7 @@ def test_a_mistake_is_refused_before_anything_is_written(
 def shown(diff: Diff, width: int = 100) -> str:
     console = Console(width=width)
     with console.capture() as captured:
-        show(console, diff)
+        show_diff(console, diff)
     return captured.get()
 
 
