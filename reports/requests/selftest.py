@@ -17,7 +17,7 @@ from reports.plan.chosen import chosen_engines
 from reports.requests.options import Jobs, option, output_option
 from reports.selftest import trial
 from reports.selftest.fault import PROFILE, RunKind
-from reports.selftest.table import place_row, show
+from reports.selftest.table import place_row, show_faults
 from sim.registry import engine, offering
 
 KINDS_ASKED: tuple[RunKind, ...] = ("forces", "free", "elastic")
@@ -68,7 +68,7 @@ class SelftestRequest:
             "selftest.json": lambda: _json(verdicts, sound, passed, rows, facts),
         }
         with outputs.written(contents):
-            show(console, sound, verdicts, engines, facts, passed)
+            show_faults(console, sound, verdicts, engines, facts, passed)
         return int(not all(one.caught for one in verdicts) or any(one.nothing for one in passed))
 
 

@@ -21,7 +21,7 @@ FEW = 3
 """Number of faults up to which each is shown with the text of its rule."""
 
 
-def show(
+def show_faults(
     console: Console,
     healthy: Sequence[Checked],
     verdicts: Sequence[Verdict],

@@ -16,7 +16,7 @@ from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence, Finding, Level
 from reports.selftest import trial
 from reports.selftest.fault import FOURBAR, Fault
-from reports.selftest.table import show
+from reports.selftest.table import show_faults
 from reports.selftest.trial import FAULTS, FaultTrial, Verdict, healthy
 from reports.selftest.unseen import UNSEEN
 from reports.workers.isolated import Lost
@@ -259,7 +259,7 @@ def every_fault() -> list[Verdict]:
 def shown(found: list[Verdict], width: int) -> str:
     stream = io.StringIO()
     sound = [healthy("fourbar-lecture-1", engine) for engine in ENGINES]
-    show(Console(file=stream, width=width), sound, found, ENGINES, {"crankcheck": "1"})
+    show_faults(Console(file=stream, width=width), sound, found, ENGINES, {"crankcheck": "1"})
     return stream.getvalue()
 
 
