@@ -64,10 +64,8 @@ if TYPE_CHECKING:
     from reports.judge.rules.rule import Finding
     from reports.lectures.design.synth import Synthesis, synth
     from reports.lectures.machine.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
-    from reports.requests.check import CellVerdict, check
-    from reports.requests.compare import Comparison, compare
-    from reports.requests.elastic_solution import ElasticSolution
-    from reports.requests.free_solution import FreeSolution
+    from reports.requests.compare import CellVerdict, Comparison, check, compare
+    from reports.requests.free_solution import ElasticSolution, FreeSolution
     from reports.requests.judge import LogVerdict, judge
     from reports.requests.report import report
     from reports.requests.run import Simulation, run
@@ -142,11 +140,11 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "Error" | "Errors":
                 from reports.compare import errors as home
             case "CellVerdict" | "check":
-                from reports.requests import check as home
+                from reports.requests import compare as home
             case "Comparison" | "compare":
                 from reports.requests import compare as home
             case "ElasticSolution":
-                from reports.requests import elastic_solution as home
+                from reports.requests import free_solution as home
             case "FreeSolution":
                 from reports.requests import free_solution as home
             case "LogVerdict" | "judge":

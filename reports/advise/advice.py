@@ -5,11 +5,10 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 
-from reports.advise.demand import Demand
-from reports.advise.evidence import MeasuredStudy
+from reports.advise.demand import Demand, MeasuredStudy
 from reports.advise.search import LIMITS, SearchResult
-from reports.output.numbers import count, short
-from reports.results.cost import apart, equal, noise_of
+from reports.output.console import count, short
+from reports.results.candidates import apart, equal, noise_of
 from reports.results.runs import grouped
 from reports.sweep.measured import Repeats, timed_in_turns
 from reports.workers.isolated import Isolated

@@ -7,9 +7,8 @@ from functools import partial
 
 from models.errors import CrankcheckError, EngineError
 from models.scene import Scene
-from reports.advise.demand import Choice, Demand
-from reports.advise.evidence import MeasuredStudy
-from reports.compare.beside import Truth
+from reports.advise.demand import Choice, Demand, MeasuredStudy
+from reports.compare.compare import Truth
 from reports.judge.cell import Cell
 from reports.plan.steps import coarsest
 from reports.stability.error_series import ErrorSeries, error_series

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
 
 

@@ -13,7 +13,7 @@ from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.channel import Channel
 from reports.logs.log_beside import AtCrank
 

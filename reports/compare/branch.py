@@ -11,7 +11,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion
-from reports.compare.beside import Beside
+from reports.compare.compare import Beside
 from reports.compare.errors import Departure
 from reports.compare.free_truth import FreeBeside
 from reports.quantities.free_and_elastic import GEOMETRY

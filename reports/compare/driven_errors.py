@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from models.errors import ReachError
-from reports.compare.beside import Beside
 from reports.compare.branch import departure
+from reports.compare.compare import Beside
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import DRIVEN, Error, Errors
 from reports.compare.hardness import conditioning, loading, uneven

@@ -6,11 +6,10 @@ from functools import partial
 import numpy as np
 
 from models.motion import Motion
-from reports.compare.beside import Beside
-from reports.compare.elastic_facts import ElasticFacts
+from reports.compare.compare import Beside
 from reports.compare.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
-from reports.compare.errors import Error, Errors
+from reports.compare.errors import ElasticFacts, Error, Errors
 from reports.compare.tracks import length
 from reports.quantities import QUANTITIES, named
 

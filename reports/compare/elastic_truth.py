@@ -26,7 +26,7 @@ from models.scene import Scene, as_bytes
 from models.scene.cut_links import CutScene
 from models.scene.cut_scenes import BeamedScene, SegmentedScene
 from reports.compare.beam_theory import LEAST, BeamTheory, ExactChain, shape_of
-from reports.compare.beside import Beside, Truth, kept
+from reports.compare.compare import Beside, Truth, kept
 from sim.engine import Run
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from models.array import Array, Mask
 from models.motion import Motion
-from reports.compare.beside import EPSILON, Beside
+from reports.compare.compare import EPSILON, Beside
 from reports.compare.errors import Error, ErrorKind
 from reports.compare.hardness import WINDOW_RAD, near
 from reports.compare.tracks import Track, length, rate, second_rate, size

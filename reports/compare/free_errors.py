@@ -11,8 +11,8 @@ from analytic.forces.late_impulses import late_impulses
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.joints import has_loops
-from reports.compare.beside import Beside
 from reports.compare.branch import free_departure
+from reports.compare.compare import Beside
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import Error, Errors
 from reports.compare.free_facts import FreeFacts, energy_rows, momentum_rows, window_s

@@ -14,7 +14,7 @@ from models.array import Array
 from models.motion import Motion, State
 from models.scene import Driver, Scene, as_bytes
 from models.scene.driver import LONGEST_S, Released
-from reports.compare.beside import Beside, Truth, first_samples, incomplete
+from reports.compare.compare import Beside, Truth, first_samples, incomplete
 from reports.compare.tracks import Track
 from reports.quantities.free_and_elastic import PHASE
 from sim.engine import Run

@@ -17,7 +17,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Truth, each_at
+from reports.compare.compare import Truth, each_at
 from reports.compare.free_truth import FreeBeside
 from reports.compare.tracks import Track
 from reports.quantities import named

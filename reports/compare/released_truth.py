@@ -28,7 +28,7 @@ from models.scene.cut_links import with_rigid_links
 from models.scene.cut_scenes import SegmentedScene
 from reports.compare import elastic_truth, free_truth
 from reports.compare.beam_theory import FreeBeamTheory
-from reports.compare.beside import Beside, first_samples
+from reports.compare.compare import Beside, first_samples
 from reports.compare.free_truth import FreeBeside, FreeTruth
 from reports.quantities.free_and_elastic import PHASE
 from sim.engine import Run

@@ -14,8 +14,7 @@ from models.errors import EngineError
 from models.motion import Forces, State
 from models.scene import Same, Scene
 from models.scene.laws import Law
-from reports.compare.beside import Beside, truth_of
-from reports.compare.compare import compare
+from reports.compare.compare import Beside, compare, truth_of
 from reports.compare.errors import Errors
 from sim.engine import Drive, Engine, ForceSession, Poses, Run, Session, Settings
 from sim.engine.settings import SettingError, profile_of, resolved

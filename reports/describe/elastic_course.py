@@ -22,7 +22,7 @@ from models.scene.cut_links import line_of, with_rigid_links
 from models.scene.driver import Controlled
 from models.scene.elastic import Shape
 from reports.describe.elastic_words import described
-from reports.describe.motion_tables import Columns, tables_over_time
+from reports.describe.free_motion import Columns, tables_over_time
 from reports.output.console import plain_table
 
 SHARES = np.linspace(0.0, 1.0, 41)

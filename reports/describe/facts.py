@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from analytic.kinematics import reach
-from analytic.mechanism.cycle import Along, Output
+from analytic.mechanism.cycle import Along, ExtremeSpeed, Output, Travel, extreme_speeds, travels
 from analytic.mechanism.fourbar import FourBar
-from analytic.mechanism.travel import ExtremeSpeed, Travel, extreme_speeds, travels
 from analytic.structure.mobility import Structure
 from models.errors import CrankcheckError, StructureError
 from models.scene import Scene

@@ -13,15 +13,14 @@ from models.errors import CrankcheckError
 from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.driver import driver_course, driver_place, driver_shown, driver_unit
-from reports.describe.motion_tables import (
+from reports.describe.free_motion import (
     Columns,
     acted_on,
     add_numbers,
     head_table,
     tables_over_time,
 )
-from reports.output.console import plain_table
-from reports.output.numbers import listed
+from reports.output.console import listed, plain_table
 
 
 def position_friction_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:

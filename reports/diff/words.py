@@ -5,10 +5,10 @@ import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.output.numbers import count
+from reports.output.console import count
 from reports.results import runs
+from reports.results.candidates import equal, noise_of
 from reports.results.changes import CellPair, Diff, ErrorChange, Word, other_settings
-from reports.results.cost import equal, noise_of
 
 REASON = 120
 """Characters of an engine's reason for its ending."""

@@ -13,13 +13,13 @@ from matplotlib.patches import Patch
 from models.array import Array
 from models.scene.driver import driver_course
 from reports.describe.force_tables import cycle_of, cycle_words, flow_of
-from reports.describe.motion_tables import acted_on
+from reports.describe.free_motion import acted_on
 from reports.drawing.shape import colours_of
 from reports.figures.drawing import DASHES
 from reports.figures.force_turn import ForceTurn, hodographs, loaded
 from reports.figures.sheet import Curve, LinePanel, line_figure
 from reports.figures.style import FRONT, INK, QUIET, FigureSet, Look
-from reports.output.numbers import readable
+from reports.output.console import readable
 
 TORQUE: Look = {"color": "#1f5f9e", "linewidth": 1.4}
 MEAN: Look = {"color": INK, "linewidth": 0.8, "linestyle": (0, (5.0, 2.0))}

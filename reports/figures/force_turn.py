@@ -19,7 +19,7 @@ from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.driver import driver_axis, driver_shown, driver_stands
 from models.scene.laws import ConstantSpeed
-from reports.describe.motion_tables import acted_on
+from reports.describe.free_motion import acted_on
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import goes_round
@@ -28,7 +28,7 @@ from reports.figures import style
 from reports.figures.mechanism import mechanism_at
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import INK, TINY
-from reports.output.numbers import readable
+from reports.output.console import readable
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,7 @@ from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene
 from models.scene.driver import place_in_words
-from reports.compare.beside import Truth
-from reports.compare.compare import compare, not_asked_for
+from reports.compare.compare import Truth, compare, not_asked_for
 from reports.compare.errors import Departure
 from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge

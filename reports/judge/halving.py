@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Truth, incomplete
-from reports.compare.compare import places
+from reports.compare.compare import Truth, incomplete, places
 from reports.compare.errors import Error, Errors, largest
 from reports.compare.whole_errors import force_rows
 from reports.judge.rules.reference import too_good

@@ -12,7 +12,7 @@ import numpy as np
 from models.array import Array
 from models.motion import ElasticMotion, LinkMotion, Motion, Order, PointMotion, SliderMotion
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.force_columns import LogForces
 from reports.logs.kinds import Kind
 

@@ -157,7 +157,7 @@ class Kind:
 
     @property
     def column(self) -> str:
-        """Our own name of a column, after that of the body (`reports.describe.motion_tables`)."""
+        """Our own name of a column, after that of the body (`reports.describe.free_motion`)."""
         name = self.field if self.body_kind == "link" else self.name
         unit = si(self.dimension).replace("/", "_").replace("^", "")
         return f"slider_{name}_{unit}" if self.body_kind == "slider" else f"{name}_{unit}"

@@ -17,7 +17,7 @@ from analytic.kinematics import solve_driven
 from models.array import Array
 from models.motion import Forces, Motion, Order
 from models.scene import Scene
-from reports.compare.beside import Beside, Truth
+from reports.compare.compare import Beside, Truth
 from reports.compare.errors import Error
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Channel, OwnLog, Reading, logged_motion

@@ -11,7 +11,7 @@ from models.array import Array
 from models.errors import cut
 from models.files.inputs import UnreadableError
 from reports.logs import text_lines
-from reports.logs.text_header import TITLE, Header, header_of, marked_rows
+from reports.logs.text_lines import TITLE, Header, header_of, marked_rows
 
 DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
 """Part of a number on either side of its decimal comma."""

@@ -11,8 +11,13 @@ import pandas as pd
 
 from models.errors import cut, few, suggestion
 from models.files.inputs import UnreadableError
-from reports.logs.text_header import units_below, with_units
-from reports.logs.text_lines import are_numbers, refuse_columns, refuse_rows
+from reports.logs.text_lines import (
+    are_numbers,
+    refuse_columns,
+    refuse_rows,
+    units_below,
+    with_units,
+)
 
 MOST_SHEET_BYTES = 400_000_000
 """Limit of an unpacked workbook."""

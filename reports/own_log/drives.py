@@ -12,7 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError, shown
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.log_beside import MANY, AtCrank
 

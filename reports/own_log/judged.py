@@ -10,8 +10,7 @@ import numpy as np
 from models.errors import CrankcheckError, cut, few, harmless
 from models.scene import Scene
 from reports.causes.cause import Cause
-from reports.compare.beside import Truth
-from reports.compare.compare import compare
+from reports.compare.compare import Truth, compare
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import left_words
 from reports.judge.rows import flat_error
@@ -23,7 +22,7 @@ from reports.judge.tolerance import Limit, refuse_forces_unasked
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import UNITS
 from reports.logs.log_beside import LogBeside, beside_truth, lacking, readings_of
-from reports.output.numbers import error_text
+from reports.output.console import error_text
 from reports.own_log.drives import DriveFit, LogDrive
 from reports.own_log.log_limits import (
     HeldLog,

@@ -8,7 +8,7 @@ from typing import Protocol, cast
 from models.errors import CrankcheckError, few, shown, suggestion
 from models.scene import Scene
 from reports.causes.cause import Cause
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.compare.errors import Error, Errors
 from reports.judge.rules.limits import start_limit
 from reports.judge.rules.rule import Evidence

@@ -14,7 +14,7 @@ from analytic.kinematics import repeats_after, solve
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.scene import Same, Scene
-from reports.compare.beside import Beside, truth_of
+from reports.compare.compare import Beside, truth_of
 from reports.compare.last_turn import Trace, trace
 from reports.compare.tracks import length
 from reports.judge.cell import Cell, Checked, examined

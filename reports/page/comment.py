@@ -5,11 +5,11 @@ import math
 from collections.abc import Iterator
 
 from reports.judge.rules import RULES
+from reports.output.console import count, listed, short
 from reports.output.formats import code, fitted, folded, plain, table
-from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.protocol.length import clock_of
-from reports.results.cost import MEANS, Costs
+from reports.results.candidates import MEANS, Costs
 from reports.results.lines import Line, called, label, named
 from reports.results.overview import Report, made, settings_of, study, versions
 from reports.results.recommend import Recommendation, noise_line, short_target

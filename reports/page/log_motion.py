@@ -14,7 +14,7 @@ import numpy as np
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.drawing.moving import FARTHEST, INSTANTS, drawing, drawn_links, moving_points, packed
 from reports.logs.channel import Reading
 from reports.own_log.judged import JudgedLog, log_rows

@@ -10,8 +10,8 @@ from models.errors import harmless
 from reports.drawing.moving import INSTANTS, displacements, drawing, singles
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
-from reports.output.numbers import count
-from reports.own_model import sentences
+from reports.output.console import count
+from reports.own_model import table
 from reports.own_model.account import CheckedLine
 from reports.own_model.judged import PARTS, JointGap, JudgedModel, errors_of
 from reports.page.build import Head, assembled
@@ -80,17 +80,17 @@ def _verdict(judged: JudgedModel) -> Section:
         title="Verdict",
         template="model_verdict.html",
         words={
-            "verdict": sentence_text(sentences.verdict_text(judged)),
+            "verdict": sentence_text(table.verdict_text(judged)),
             "level": "within" if judged.verdict == "within" else "out",
             "failures": [
                 (each.rule, RULES[each.rule].title, sentence_text(each.text))
                 for each in judged.failures
             ],
             "cure": sentence_text(judged.own.remedy),
-            "steps": sentences.steps_text(judged),
-            "heads": sentences.step_heads(judged),
+            "steps": table.steps_text(judged),
+            "heads": table.step_heads(judged),
             "rows": [_row(judged, one) for one in (*judged.three, *judged.others)],
-            "still_out": sentence_text(sentences.still_out(judged)),
+            "still_out": sentence_text(table.still_out(judged)),
             "lines": [one.cell.profile for one in judged.three],
             "joints": [_joint(judged, joint) for joint in judged.joints()],
         },
@@ -100,7 +100,7 @@ def _verdict(judged: JudgedModel) -> Section:
 
 def _row(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
     worst = worst_place(one.errors) if one.errors else None
-    steps = len(sentences.step_heads(judged))
+    steps = len(table.step_heads(judged))
     first = math.nan if worst is None else worst.pure
     gains = [math.nan] * steps if one is judged.own else judged.gains(one)[:steps]
     ended = one.convergence.words if one.convergence else ""
@@ -117,7 +117,7 @@ def _row(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
 
 
 def _gain(factor: float) -> str:
-    return "" if math.isnan(factor) else sentences.factor_text(factor)
+    return "" if math.isnan(factor) else table.factor_text(factor)
 
 
 def _joint(judged: JudgedModel, joint: JointGap) -> dict[str, object]:
@@ -128,7 +128,7 @@ def _joint(judged: JudgedModel, joint: JointGap) -> dict[str, object]:
         "open_m": joint.open_m,
         "gaps": [joint.gap_m.get(name, math.nan) for name in names],
         "share": joint.share,
-        "share_told": sentences.share_text(joint.share) if math.isfinite(joint.share) else "",
+        "share_told": table.share_text(joint.share) if math.isfinite(joint.share) else "",
         "out": joint.share > 1.0,
     }
 
@@ -228,7 +228,7 @@ MOST = 300
 
 def _disturbing(judged: JudgedModel) -> Section | None:
     """Return parts beside the linkage that can disturb the comparison, by kind; None if none."""
-    found = sentences.groups(judged)
+    found = table.groups(judged)
     if not found:
         return None
     return Section(
@@ -245,7 +245,7 @@ def _disturbing(judged: JudgedModel) -> Section | None:
                 }
                 for group in found
             ],
-            "each": sentences.EACH,
+            "each": table.EACH,
         },
         styles=("log.css",),
     )
@@ -259,12 +259,12 @@ def _recommended(judged: JudgedModel) -> Section:
         title="Recommended settings" if judged.account.helps else "No settings help",
         template="model_recommended.html",
         words={
-            "head": sentences.recommended_head(judged),
+            "head": table.recommended_head(judged),
             "patch": harmless(judged.patch),
-            "is_diff": sentences.is_diff(judged.patch),
+            "is_diff": table.is_diff(judged.patch),
             "file": name_text(judged.account.request.path.name),
             "within": last.verdict == "within",
-            "gain": sentences.factor_words(gain) if gain == gain else "",
+            "gain": table.factor_words(gain) if gain == gain else "",
         },
         scripts=("copying.js",),
         styles=("log.css",),
@@ -273,7 +273,7 @@ def _recommended(judged: JudgedModel) -> Section:
 
 def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
     account = judged.account
-    told = {"file": str(account.request.path), **sentences.reading(account)}
+    told = {"file": str(account.request.path), **table.reading(account)}
     rows = setting_rows([one.settings for one in judged.lines], judged.own.settings)
     return Section(
         anchor="made",
@@ -287,7 +287,7 @@ def _made(judged: JudgedModel, facts: Mapping[str, str]) -> Section:
                 for name, values in rows
             ],
             "facts": {name_text(k): name_text(str(v)) for k, v in facts.items() if k != "made"},
-            "means": [sentence_text(text) for text in sentences.footer(judged)],
+            "means": [sentence_text(text) for text in table.footer(judged)],
         },
         styles=("log.css",),
     )

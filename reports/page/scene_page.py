@@ -17,13 +17,18 @@ from models.scene.driver import driver_unit
 from models.scene.laws import ConstantSpeed
 from reports.describe import elastic_course, with_forces
 from reports.describe.elastic_course import ElasticCourse
-from reports.describe.elastic_words import beam_certainty, elastic_facts, elastic_warnings, start_words
+from reports.describe.elastic_words import (
+    beam_certainty,
+    elastic_facts,
+    elastic_warnings,
+    start_words,
+)
 from reports.describe.force_tables import friction_words, largest_of
 from reports.describe.free_motion import free_notes, instants
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points, packed
 from reports.drawing.shape import size_of_motion, turn_of
-from reports.output.numbers import count
+from reports.output.console import count
 from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words

@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from models.errors import CrankcheckError, shown
-from reports.plan.chosen import chosen_engines
-from reports.plan.requirements import free_names
+from reports.plan.requirements import chosen_engines, free_names
 from reports.plan.steps import FREE_STEPS_S, TIMES_HELD
 from reports.plan.study import Study, StudyValue, Variant
 from sim.engine.settings import profile_of

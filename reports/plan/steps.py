@@ -13,7 +13,7 @@ from numbers import Real
 
 from models.errors import CrankcheckError, shown
 from models.scene import Scene
-from reports.compare.beside import SETTLING
+from reports.compare.compare import SETTLING
 from reports.protocol.length import LEAST_STEPS
 
 LEAST_STEPS_PER_TURN = 8

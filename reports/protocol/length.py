@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from models.scene import Scene
-from reports.compare.beside import SETTLING
-from reports.output.numbers import duration
+from reports.compare.compare import SETTLING
+from reports.output.console import duration
 
 Springs = Literal["plain", "corrected", "beam"]
 """Springs between segments: with the beam's stiffness over a segment, or such that the chain has

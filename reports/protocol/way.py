@@ -15,7 +15,7 @@ from typing import Any, NoReturn, Protocol, cast
 from models.array import Array
 from models.motion import Forces, Motion, State
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.protocol.length import Clock, GivenAs, Length, Planned, Springs, clock_of
 from reports.quantities.quantity import Role, Tolerance
 from sim.engine import Drive

@@ -135,7 +135,7 @@ def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
     """A frame, its times among its columns, and its name in messages. Raises CrankcheckError."""
     import pandas as pd
 
-    from reports.logs.time_columns import time_of
+    from reports.logs.meanings import time_of
 
     if isinstance(log, pd.DataFrame):
         levels = [each for each in log.index.names if each is not None]

@@ -16,7 +16,7 @@ from reports.history.table import page, show, table_text
 from reports.judge.cell import Cell
 from reports.output.console import say_whole
 from reports.output.write import check_folder, provenance, refuse_link, write
-from reports.plan.chosen import left_out_note
+from reports.plan.requirements import left_out_note
 from reports.protocol.length import clock_of
 from reports.requests import options
 from reports.requests.options import argument, option

@@ -1,8 +1,9 @@
-"""`judge`: a log of the user's own, or a run, compared with the closed form."""
+"""`judge`: a log of the user's own, or a run, compared with the closed form; and its files."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, overload
@@ -15,20 +16,20 @@ from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.judge import tolerance
-from reports.logs.map_file import Map, read_map
-from reports.output.console import say_whole
-from reports.output.write import Outputs, check_file, provenance
+from reports.logs.map_file import Map, map_text, read_map
+from reports.output.console import finite, say_whole
+from reports.output.formats import junit
+from reports.output.write import Outputs, check_file, provenance, write
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log, row_table
 from reports.own_log.log_limits import EVERY, LogRequest
-from reports.own_log.table import markdown, show
+from reports.own_log.table import markdown, show, suite
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
 from reports.protocol.way import way_of
 from reports.requests import any_log, arguments, options
 from reports.requests.any_log import LogLike, MapLike
-from reports.requests.check import CellVerdict, verdict_of_run
-from reports.requests.judge_files import contents, write_log_map
+from reports.requests.compare import CellVerdict, verdict_of_run
 from reports.requests.options import argument, option, output_option, seconds
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
@@ -36,6 +37,65 @@ from sim.engine import Run
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
+    """Write the map of a log, or a form of it to be filled in; return a description of it.
+
+    Raises CrankcheckError for a log that no map alone can mend.
+    """
+    from reports.logs.columns import read_columns  # pandas, which takes a third of a second
+    from reports.logs.meanings import blank_map, understood, wanted
+
+    columns = read_columns(log, map_.layout, wanted(scene, map_))
+    try:
+        text = map_text(understood(columns, scene, map_), map_.file)
+    except CrankcheckError:
+        blank = blank_map(columns, scene, map_)
+        if blank is None:
+            raise
+        text, lacks = blank
+        write(path, text)
+        return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
+    write(path, text)
+    return f"what {log} says, as it was understood"
+
+
+def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[[], str]]:
+    """The contents of the files, by option."""
+
+    def page() -> str:
+        from reports.page.log_page import log_page  # the drawings, which nothing else here needs
+
+        return log_page(judged, facts)
+
+    return {
+        "--json": lambda: _json(judged, facts),
+        "--junit": lambda: junit(suite(judged, facts)),
+        "-o": page,
+    }
+
+
+def _json(judged: JudgedLog, facts: Mapping[str, str]) -> str:
+    """Facts, verdict, findings, causes and errors; numbers that are not finite are null."""
+    fit = judged.fit
+    document = {
+        "facts": facts,
+        "log": judged.log.source,
+        "scene": judged.scene.name,
+        "verdict": judged.verdict,
+        "drive": judged.drive,
+        "fit": vars(fit) if fit else None,
+        "samples": judged.log.time_s.size,
+        "findings": [vars(finding) for finding in judged.findings],
+        "causes": [{**vars(each), "correction": dict(each.correction)} for each in judged.causes],
+        "not_judged": judged.not_judged,
+        "not_used": dict(judged.log.unused),
+        "notes": judged.notes,
+        "errors": row_table(judged),
+    }
+    return json.dumps(finite(document), indent=2) + "\n"
+
 
 Target = float | Mapping[str, float] | None
 """The largest error as a pure number, for all quantities together or for each."""

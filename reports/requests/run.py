@@ -52,12 +52,12 @@ class Simulation(Shown, Run):
         Where velocities or accelerations belong to other instants than the places,
         ``velocity_time_s`` and ``acceleration_time_s`` have these.
         """
-        from reports.describe.motion_tables import run_frame
+        from reports.describe.free_motion import run_frame
 
         return run_frame(self)
 
     def show(self, console: Console) -> None:
-        from reports.describe.motion_tables import motion_tables
+        from reports.describe.free_motion import motion_tables
 
         way = way_of(self.mechanism)
         per_turn = way.turn_s(self.mechanism) / self.dt_s

@@ -20,7 +20,7 @@ from models.scene import Scene
 from models.scene.driver import driver_place
 from reports.describe import force_tables
 from reports.describe.facts import describe_law, facts, speed_facts
-from reports.describe.motion_tables import (
+from reports.describe.free_motion import (
     certainty,
     cleaned,
     motion_tables,
@@ -63,7 +63,7 @@ class Solution(Shown, Motion):
 
     def frame(self) -> pd.DataFrame:
         """Table of samples, a row each, with units: ``rocker_theta_rad``, ``C_x_m``."""
-        from reports.describe.motion_tables import motion_frame
+        from reports.describe.free_motion import motion_frame
 
         return motion_frame(self)
 

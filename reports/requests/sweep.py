@@ -15,14 +15,13 @@ from rich.console import Console
 from models.errors import CrankcheckError, shown
 from models.files.inputs import names_in
 from reports.output.console import say_whole
-from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
-from reports.plan.requirements import chosen_segments, chosen_springs
+from reports.plan.requirements import chosen_segments, chosen_springs, left_out_note
 from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
 from reports.protocol.way import way_of
-from reports.requests import arguments, options, sweep_arguments
+from reports.requests import arguments, options
 from reports.requests.options import argument, option, output_option
 from reports.requests.shown import Shown
 from reports.workers.isolated import checked_limits
@@ -142,23 +141,23 @@ def sweep(
 
     where = arguments.path_of(folder, "folder")
     chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
-    sweep_arguments.refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
-    manner = sweep_arguments.manner_of(
+    arguments.refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
+    manner = arguments.manner_of(
         limit_s, memory_gb, jobs, timing=timing, keep_trajectories=keep_trajectories, again=again
     )
     named = names_in(engines, "engines")
     told = load_study(None if study is None else arguments.path_of(study, "study"))
     with ExitStack() as kept:
         choice = StudyChoice(
-            sweep_arguments.scene_names(scenes, kept),
+            arguments.scene_names(scenes, kept),
             named,
             names_in(profiles, "profiles"),
-            sweep_arguments.numbers_of(steps_per_turn, "--steps-per-turn"),
+            arguments.numbers_of(steps_per_turn, "--steps-per-turn"),
             None if turns is None else positive("--turns", turns, "turns of the driver"),
-            sweep_arguments.overrides_of(settings, study_engines(told, named)),
+            arguments.overrides_of(settings, study_engines(told, named)),
             arguments.is_true(forces, "forces"),
             arguments.is_true(free, "free"),
-            sweep_arguments.numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
+            arguments.numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
             None if duration_s is None else positive("--duration", duration_s, "seconds"),
             [chosen_segments(count) for count in arguments.each_of(segments)],
             [chosen_springs(text) for text in names_in(springs, "springs")],
@@ -167,7 +166,7 @@ def sweep(
         console = terminal(stderr=True)
         console.quiet = not arguments.is_true(progress, "progress")
         laid, done = swept(
-            asked, where, manner, sweep_arguments.command_of(choice, where, study), console
+            asked, where, manner, arguments.command_of(choice, where, study), console
         )
     return Sweep(where, len(laid.tasks), done)
 

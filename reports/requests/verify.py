@@ -18,7 +18,7 @@ from reports.judge.rows import cell_frame, cell_row, error_frame
 from reports.output.console import say_whole, tell
 from reports.output.formats import csv, json_text, junit, parquet
 from reports.output.write import Outputs, provenance
-from reports.plan import chosen, requirements
+from reports.plan import requirements
 from reports.plan.singular import gives_forces, silent_note
 from reports.protocol.length import Length
 from reports.protocol.way import driven_by, laid_out, way_of
@@ -56,8 +56,12 @@ class VerifyRequest(VerifyOptions):
 
             Outputs(self.files).check(stored_files(self.baseline))
         digests = _digests(self)
-        silent = silent_note(chosen.chosen_engines(())) if self.forces and not self.engines else ""
-        for note in filter(None, (*passages(cells), silent, chosen.left_out_note(self.names))):
+        silent = (
+            silent_note(requirements.chosen_engines(())) if self.forces and not self.engines else ""
+        )
+        for note in filter(
+            None, (*passages(cells), silent, requirements.left_out_note(self.names))
+        ):
             say_whole(progress, note)
         base = _baseline(self, cells, digests)
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
@@ -102,8 +106,8 @@ def plan(request: VerifyOptions) -> list[Cell]:
     scenes = _scenes(request)
     _refuse_options(request, scenes)
     tolerance.refuse_of_other_kinds("--tol", limits, (way_of(scene).limits for scene in scenes))
-    engines = chosen.chosen_engines(request.engines)
-    profiles = chosen.chosen_profiles(request.profiles, engines)
+    engines = requirements.chosen_engines(request.engines)
+    profiles = requirements.chosen_profiles(request.profiles, engines)
     given = requirements.given_of(scenes, request.segments, request.springs)
     length = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
     laid = [(each, *laid_out(each, length, given, with_forces=request.forces)) for each in scenes]
@@ -136,10 +140,11 @@ def _scenes(request: VerifyOptions) -> list[Scene]:
     def check(scene: Scene) -> None:
         tolerance.check_names(scene)
         if not scene.is_free:
-            chosen.refuse_unfollowed(scene)
+            requirements.refuse_unfollowed(scene)
 
     return [
-        requirements.under_control(scene) for scene in chosen.chosen_scenes(request.scenes, check)
+        requirements.under_control(scene)
+        for scene in requirements.chosen_scenes(request.scenes, check)
     ]
 
 

@@ -21,8 +21,7 @@ from reports.output.write import Outputs, check_file, provenance
 from reports.own_model.account import read
 from reports.own_model.assembly import ModelRequest
 from reports.own_model.judged import JudgedModel, run_lines
-from reports.own_model.sentences import is_diff, recommended_head
-from reports.own_model.table import document, show
+from reports.own_model.table import document, is_diff, recommended_head, show
 from reports.plan.steps import TURNS, positive
 from reports.requests import arguments
 from reports.requests.options import PRESCRIBED, VerifyOptions, given

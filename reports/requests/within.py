@@ -10,7 +10,7 @@ from reports.plan.steps import positive
 from reports.quantities.limits import DEFAULTS
 from reports.requests.any_log import LogLike, LogOptions, MapLike
 from reports.requests.arguments import SceneLike, is_true, told_at_the_call
-from reports.requests.check import CellVerdict
+from reports.requests.compare import CellVerdict
 from reports.requests.judge import LogVerdict, Target, judged, target_of
 from sim.engine import Run
 

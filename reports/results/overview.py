@@ -12,12 +12,11 @@ from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
 from models.files.reading import parse_scene
 from models.scene import Scene
-from reports.output.numbers import count, duration, listed
+from reports.output.console import count, duration, listed
 from reports.plan.requirements import under_control
 from reports.protocol.length import SECONDS, TURNS, clock_of, common_clock
 from reports.protocol.way import TARGETS, WAYS, way_of_row
-from reports.results.candidates import Candidate, candidates
-from reports.results.cost import Costs, costs_of, noise
+from reports.results.candidates import Candidate, Costs, candidates, costs_of, noise
 from reports.results.lines import (
     OWN,
     Line,

@@ -13,12 +13,19 @@ from rich.markup import escape
 from rich.text import Text
 
 from models.errors import few
-from reports.output.console import grid
-from reports.output.numbers import short
+from reports.output.console import grid, short
 from reports.protocol.length import clock_of
 from reports.protocol.way import WAYS, ResultKind, way
-from reports.results.candidates import NOT_RUN, Candidate, candidates
-from reports.results.cost import SHARE, equal, noise, pairs, reached
+from reports.results.candidates import (
+    NOT_RUN,
+    SHARE,
+    Candidate,
+    candidates,
+    equal,
+    noise,
+    pairs,
+    reached,
+)
 from reports.results.lines import Line, called, left_out, lines, machine
 from reports.store.reader import Stored
 from sim.registry import offering

@@ -11,10 +11,10 @@ from typing import TypeVar
 from models.errors import few
 from reports.judge.cell import Cell, Checked
 from reports.judge.rows import cell_row
-from reports.output.numbers import count
+from reports.output.console import count
 from reports.protocol.length import SECONDS, TURNS, Clock, clock_of, common_clock
 from reports.quantities.limits import EVERY
-from reports.results.cost import apart
+from reports.results.candidates import apart
 
 COMPARED = EVERY
 """Compared quantities: the largest error of each, as a pure number."""

@@ -22,7 +22,7 @@ from reports.judge.cell import Cell
 from reports.protocol.length import Springs
 from reports.protocol.way import way_of
 from reports.selftest.fault import PROFILE, Items, Plant, SceneChange, in_scene, planting
-from reports.selftest.log_edits import WHEN, moved
+from reports.selftest.log_faults import WHEN, moved
 from sim.engine import Run
 from sim.run import run
 

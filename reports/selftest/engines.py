@@ -13,7 +13,7 @@ from models.array import Array
 from models.scene import Scene, span
 from reports.judge.cell import CellRunner
 from reports.selftest import fault
-from reports.selftest.log_edits import last, moved
+from reports.selftest.log_faults import last, moved
 from sim.engine import Run, Session
 from sim.registry import engine
 from sim.run import run

@@ -17,7 +17,7 @@ from models.scene import Scene
 from models.scene.characteristics import Sine
 from models.scene.loads import Load
 from reports.selftest.fault import Plant, SceneChange, in_log
-from reports.selftest.log_edits import last, moved, spoilt
+from reports.selftest.log_faults import last, moved, spoilt
 from sim.engine import Run
 from sim.registry import engine
 

@@ -8,7 +8,7 @@ from reports.compare.whole_errors import OF_STEPS
 from reports.selftest import force_changes as change
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault
 from reports.selftest.free_changes import lighter_by, of_coupler, turning_light
-from reports.selftest.log_edits import WHEN, noisy
+from reports.selftest.log_faults import WHEN, noisy
 from sim.registry import engine
 
 SLIDING = (SLIDER, SHAPER)

@@ -19,8 +19,7 @@ from reports.selftest.fault import (
     in_settings,
     switched,
 )
-from reports.selftest.log_edits import moved, of_output, taken
-from reports.selftest.log_faults import late
+from reports.selftest.log_faults import late, moved, of_output, taken
 from sim.engine import Energy, Run
 
 SWING, PULSE = "fourbar-swing", "fourbar-pulse"

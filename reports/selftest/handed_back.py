@@ -12,7 +12,7 @@ from models.array import Array
 from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from reports.selftest import fault
-from reports.selftest.log_edits import last, moved, noisy, taken, to_digits, with_link
+from reports.selftest.log_faults import last, moved, noisy, taken, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
 

@@ -15,7 +15,7 @@ from models.scene.laws import ConstantSpeed
 from models.scene.moved import scaled, with_link
 from reports.selftest import fault
 from reports.selftest.free_changes import long_by, of_coupler, scaled_points
-from reports.selftest.log_edits import every_series, last, moved, with_points
+from reports.selftest.log_faults import every_series, last, moved, with_points
 from sim.engine import Run
 
 

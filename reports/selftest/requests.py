@@ -10,7 +10,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Scene
 from reports.selftest import fault
-from reports.selftest.log_edits import moved, taken
+from reports.selftest.log_faults import moved, taken
 from sim.engine import Run
 from sim.registry import available, engine, offering
 from sim.run import run, setup

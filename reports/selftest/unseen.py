@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from models.scene import Same, Scene
-from reports.compare.beside import truth_of
+from reports.compare.compare import truth_of
 from reports.selftest import free_changes
 from reports.selftest.elastic_changes import at_quarter, in_chain_log, in_given
+from reports.selftest.elastic_faults import segments, springs, stiffer
 from reports.selftest.engines import after_a_third
 from reports.selftest.fault import Plant, Unseen, in_log, in_scene, planting, switched
-from reports.selftest.log_edits import moved, of_output, taken
+from reports.selftest.log_faults import moved, of_output, taken
 from reports.selftest.requests import other_engine
-from reports.selftest.segment_changes import segments, springs, stiffer
 from sim.engine import Cost, Energy, Run
 from sim.registry import engine, offering
 from sim.run import run, setup

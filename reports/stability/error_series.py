@@ -10,8 +10,8 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.joints import joints
-from reports.compare.beside import Beside, Truth, incomplete
 from reports.compare.branch import HERE_RAD, departure
+from reports.compare.compare import Beside, Truth, incomplete
 from reports.compare.errors import Departure
 from reports.compare.tracks import length
 from sim.engine import Run

@@ -11,7 +11,7 @@ from types import TracebackType
 
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError
-from reports.describe.motion_tables import run_frame
+from reports.describe.free_motion import run_frame
 from reports.output.formats import parquet
 from reports.output.write import check_folder, refuse_link, write
 from reports.store import manifest as manifests

@@ -18,10 +18,17 @@ from sim.engine import Drive, Engine, Poses, Session, Settings
 from sim.engine.measure import gaps
 from sim.engine.tree_poses import body_poses
 from sim.mujoco.own_model import variants
-from sim.mujoco.own_model.closures import ModelError, body_name, name_of, scene_name
 from sim.mujoco.own_model.component import component, loose_joints
 from sim.mujoco.own_model.disturbing import disturbances
-from sim.mujoco.own_model.file import files, load, text_of
+from sim.mujoco.own_model.file import (
+    ModelError,
+    body_name,
+    files,
+    load,
+    name_of,
+    scene_name,
+    text_of,
+)
 from sim.mujoco.own_model.linkage import linkage, nearly
 from sim.mujoco.own_model.planar_model import PlanarModel, limbs_of
 from sim.mujoco.own_model.scene import scene_of

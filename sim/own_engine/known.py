@@ -11,8 +11,7 @@ from typing import Any, get_args
 
 from models.errors import EngineError, shown, suggestion
 from sim.engine import Engine, ForcesOf, Placing, Profile, Setting
-from sim.own_engine.spelling import WRITTEN, found, installed, only_one, spelling_of
-from sim.own_engine.watched import watched
+from sim.own_engine.watched import WRITTEN, found, installed, only_one, spelling_of, watched
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 """Pattern safe as the name of a file, in a table and in `--set NAME.setting=value`."""

@@ -11,7 +11,7 @@ from typing import Literal, cast
 from models.errors import EngineError
 from sim.engine import Engine
 from sim.own_engine.known import own_engine
-from sim.own_engine.spelling import installed
+from sim.own_engine.watched import installed
 
 ENGINES: Mapping[str, str] = {
     "mujoco": "..mujoco",

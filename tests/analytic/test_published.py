@@ -11,8 +11,7 @@ import pytest
 
 from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
-from analytic.mechanism.cycle import Along
-from analytic.mechanism.travel import coriolis, travel
+from analytic.mechanism.cycle import Along, coriolis, travel
 from models.array import Array
 from models.files.reading import load_scene, parse_scene, shipped
 from models.scene import Scene

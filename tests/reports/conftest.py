@@ -10,8 +10,7 @@ import pytest
 from analytic.kinematics import solve
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.compare.beside import Beside, Truth
-from reports.compare.compare import compare
+from reports.compare.compare import Beside, Truth, compare
 from reports.compare.errors import Errors
 from sim.engine import Poses, Run
 from sim.run import run

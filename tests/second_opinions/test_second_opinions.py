@@ -19,7 +19,7 @@ from models.motion import Motion
 from models.scene import Same, Scene
 from models.scene.hard import WindowChain
 from models.scene.joints import centre_of, frames
-from reports.compare.beside import truth_of
+from reports.compare.compare import truth_of
 from reports.contract.oscillators import centres
 from tests.analytic.chain import coordinates
 from tests.analytic.imported import reached

@@ -15,7 +15,7 @@ from analytic.kinematics import solve
 from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Link, Scene
-from reports.lectures.drawing.workbook.formula_table import FormulaTable
+from reports.lectures.drawing.workbook.formulas import FormulaTable
 from reports.lectures.drawing.workbook.live_workbook import formulas_of, live_workbook
 
 ROWS, STEP_DEG = 13, 27.5

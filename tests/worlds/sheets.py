@@ -18,7 +18,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.causes.cause import Cause, LogCase
 from reports.causes.find import causes
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
 

@@ -20,7 +20,7 @@ from analytic.lectures.drawings.dyad_polygon import (
     Origin,
     dyad_polygon,
 )
-from analytic.lectures.drawings.placed_mechanism import (
+from analytic.lectures.drawings.polygon import (
     STILL,
     BodyRates,
     DriverState,

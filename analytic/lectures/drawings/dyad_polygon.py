@@ -22,8 +22,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.lectures.drawings.placed_mechanism import BodyRates, PlacedMechanism, quarter_turn
-from analytic.lectures.drawings.polygon import EquationSide, Kind, Term
+from analytic.lectures.drawings.polygon import (
+    BodyRates,
+    EquationSide,
+    Kind,
+    PlacedMechanism,
+    Term,
+    quarter_turn,
+)
 from analytic.structure.groups import Group
 from models.array import Array
 from models.scene import GROUND

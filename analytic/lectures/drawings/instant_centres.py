@@ -30,7 +30,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, link_rates
-from analytic.lectures.drawings.placed_mechanism import BodyRates, PlacedMechanism, quarter_turn
+from analytic.lectures.drawings.polygon import BodyRates, PlacedMechanism, quarter_turn
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion

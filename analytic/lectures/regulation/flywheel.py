@@ -23,9 +23,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.regulation.cycle_search import cycle_of, steady_cycle
 from analytic.lectures.regulation.periodic_solution import StallError
-from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_of, steady_cycle
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.array import Array
 from models.errors import CrankcheckError

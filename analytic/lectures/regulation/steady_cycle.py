@@ -1,18 +1,31 @@
-"""Cycle that a machine repeats: its speed over the angle, its evenness, its works by source.
+"""Cycle that a machine repeats: its search, its speed over the angle, its works by source.
 
 Source: problem book "Bai tap co hoc may", chapter on real motion and its regulation;
 I. I. Artobolevskii, Theory of Mechanisms, on the regulation of periodic fluctuations.
+
+A scene whose driver is driven at constant speed runs with that mean speed: its drive is taken as a
+constant torque, which closes the balance of work. A free machine has its loads alone: loads that
+follow the speed settle it, else they have to balance, and the speed of its start is the mean one.
 """
 
+import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
-from analytic.lectures.regulation.periodic_solution import PeriodicSolution
+from analytic.lectures.regulation.angle_cells import AngleCells, breaks, rated_breaks
+from analytic.lectures.regulation.periodic_solution import (
+    PeriodicSolution,
+    WantedSpeed,
+    repeated,
+    resolved,
+)
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.array import Array
+from models.errors import CrankcheckError
 from models.scene import Driver, Scene
 from models.scene.characteristics import Constant
 from models.scene.driver import Released
@@ -163,3 +176,199 @@ def cycle_scene(cycle: SteadyCycle, cycles: float = 5.0, *, flywheel: bool = Tru
         torque = Constant(machine.way * cycle.drive_n_m)
         loads[name] = Load(name, scene.driver.link, None, torque)
     return replace(scene, driver=Driver(scene.driver.link, law), loads=loads)
+
+
+SLOWEST, FASTEST, SPEEDS = 1e-3, 1e5, 81
+"""Scanned speeds [rad/s]; a factor of 1.26 lies between two of them."""
+HALVINGS = 60
+
+
+@lru_cache(maxsize=16)
+def settled_speed(machine: TurningMachine) -> float:
+    """Return the speed at which the work of a cycle is 0, from the speed of a machine's start
+    [rad/s]. Raises CrankcheckError as `MeanBalance.settled`."""
+    start = abs(float(machine.scene.driver.law.at(np.zeros(1))[1][0]))
+    return MeanBalance(machine, AngleCells.of(machine.cycle_rad, breaks(machine))).settled(start)
+
+
+class MeanBalance:
+    """Work of all torques over a cycle [J], with the driver at constant speed."""
+
+    def __init__(self, machine: TurningMachine, cells: AngleCells) -> None:
+        self.machine, self.cells = machine, cells
+        self.steady = cells.integral(machine.steady_torque(cells.nodes))
+
+    def work(self, speed: float) -> float:
+        """Return the work at a speed [rad/s]; NaN where a table of a load does not reach as far."""
+        nodes = self.cells.nodes
+        try:
+            rated = self.machine.rated_torque(nodes, np.full_like(nodes, speed))
+        except CrankcheckError:
+            return math.nan
+        return self.steady + self.cells.integral(rated)
+
+    def settled(self, start: float) -> float:
+        """Return the speed at which the work is 0, from the machine's start [rad/s]: upwards where
+        it gains there, downwards where it loses. Raises CrankcheckError where there is none, or for
+        a table that does not reach its start."""
+        start = max(start, SLOWEST)
+        self.machine.rated_torque(self.cells.nodes, np.full_like(self.cells.nodes, start))
+        speeds = np.unique(np.append(np.geomspace(SLOWEST, FASTEST, SPEEDS), start))
+        works = np.array([self.work(each) for each in speeds.tolist()])
+        speeds, works = self._to_the_ends(speeds, works)
+        first = int(np.argmin(np.abs(speeds - start)))
+        if works[first] > 0.0:
+            ahead = np.flatnonzero(works[first:] <= 0.0)
+            pair = (first + int(ahead[0]) - 1, first + int(ahead[0])) if ahead.size else None
+        else:
+            behind = np.flatnonzero(works[: first + 1] > 0.0)
+            pair = (int(behind[-1]), int(behind[-1]) + 1) if behind.size else None
+        if pair is None:
+            raise CrankcheckError(self._never(speeds, works, first))
+        low, high = (float(speeds[k]) for k in pair)
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.work(middle) > 0.0 else (low, middle)
+        return 0.5 * (low + high)
+
+    def _to_the_ends(self, speeds: Array, works: Array) -> tuple[Array, Array]:
+        """Return the speeds that all tables reach, as far as they do."""
+        known = np.flatnonzero(np.isfinite(works))
+        kept, own = speeds[known].tolist(), works[known].tolist()
+        for inside, outside, at in (
+            (known[0], known[0] - 1, 0), (known[-1], known[-1] + 1, len(kept)),
+        ):  # fmt: skip
+            if not 0 <= outside < len(speeds):
+                continue
+            good, bad = float(speeds[inside]), float(speeds[outside])
+            for _ in range(HALVINGS):
+                middle = 0.5 * (good + bad)
+                good, bad = (good, middle) if math.isnan(self.work(middle)) else (middle, bad)
+            kept.insert(at, good)
+            own.insert(at, self.work(good))
+        return np.array(kept), np.array(own)
+
+    def _never(self, speeds: Array, works: Array, first: int) -> str:
+        scene, gains = self.machine.scene, works[first] > 0.0
+        end = -1 if gains else 0
+        comes = "goes faster and faster" if gains else "comes to rest"
+        way = "gain" if gains else "lose"
+        cure = (
+            "a load that grows with the speed, or rows of its table up to there"
+            if gains
+            else "a torque that drives more than they take"
+        )
+        return (
+            f"{scene.name}: no steady cycle: the loads {way} at every speed from "
+            f"{speeds[first]:.4g} to {speeds[end]:.4g} rad/s of {scene.driver.link}, "
+            f"{abs(works[first]):.4g} to {abs(works[end]):.4g} J a cycle, so that it {comes}; "
+            f"give {cure}"
+        )
+
+
+CLOSED = 1e-6
+"""Allowed imbalance of loads alone in a cycle, over the driving work: tables have six digits. A
+constant torque makes it up."""
+ROUNDS = 6
+"""Most searches for the places of the extremes."""
+ROUGHLY, CLOSELY = 18, 40
+"""Halvings of an interval of nodes for them: speeds do not change there to first order."""
+STILL = 1e-11
+"""Fluctuation below which it is rounding."""
+
+
+def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> SteadyCycle:
+    """Find the cycle that a machine repeats with an added flywheel on its driver. Raises StallError
+    where its masses hold too little energy to carry it round; CrankcheckError for loads that do not
+    balance at any speed, or have tables that end before."""
+    cells = AngleCells.of(machine.cycle_rad, breaks(machine))
+    scene = machine.scene
+    law_speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
+    if scene.is_free and machine.is_rated:
+        wanted = WantedSpeed(None)
+        speed = settled_speed(machine)
+    elif law_speed == 0.0:
+        raise CrankcheckError(
+            f"{scene.name}: no load follows the speed, and it starts from rest: any speed would "
+            "do, and it has no cycle of its own; give the mean one as speed_rad_s in [driver], or "
+            "a load over the speed, such as that of a motor"
+        )
+    else:
+        wanted, speed = WantedSpeed(law_speed), law_speed
+    solution = repeated(machine, cells, flywheel_kg_m2, speed, wanted)
+    if scene.is_free:
+        _check_closed(solution)
+    if machine.is_rated:
+        # Rows of tables over the speed are passed somewhere on the way: cut there.
+        more = rated_breaks(machine, solution.speed_at)
+        cells = AngleCells.of(machine.cycle_rad, np.concatenate([cells.borders, more]))
+        solution = repeated(machine, cells, flywheel_kg_m2, solution, wanted)
+    return _with_extremes(resolved(solution, wanted), wanted)
+
+
+def _with_extremes(solution: PeriodicSolution, wanted: WantedSpeed) -> SteadyCycle:
+    """Return the solution with the mean speed right to rounding, and the places of its largest and
+    smallest speed."""
+    mean = wanted.mean_rad_s
+    for _ in range(ROUNDS):
+        if mean is None:
+            break
+        rough = SteadyCycle(solution, *_extremes(solution, ROUGHLY))
+        if abs(rough.mean_rad_s / mean - 1.0) <= 1e-14:
+            break
+        wanted = WantedSpeed(mean, (rough.fastest, rough.slowest))
+        solution = repeated(solution.machine, solution.cells, solution.flywheel, solution, wanted)
+    return SteadyCycle(solution, *_extremes(solution, CLOSELY))
+
+
+def _extremes(solution: PeriodicSolution, halvings: int) -> tuple[float, float]:
+    """Return the angles u at which the speed is largest and smallest, where its slope is 0."""
+    u = np.sort(np.concatenate([solution.cells.borders, solution.cells.nodes.ravel()]))
+    speed = solution.speed_at(u)
+    if np.ptp(speed) <= STILL * speed.max():
+        return 0.0, 0.0
+    at = np.array([np.argmax(speed), np.argmin(speed)])
+    low, high = u[np.maximum(at - 1, 0)], u[np.minimum(at + 1, len(u) - 1)]
+    signs = np.array([1.0, -1.0])
+    for _ in range(halvings):
+        middle = 0.5 * (low + high)
+        rising = _pull(solution, middle) * signs > 0.0
+        low, high = np.where(rising, middle, low), np.where(rising, high, middle)
+    best = 0.5 * (low + high)
+    return float(best[0]), float(best[1])
+
+
+def _pull(solution: PeriodicSolution, u: Array) -> Array:
+    """Return J w dw/du: the torque that changes the speed [N m]."""
+    inertia, slope = solution.machine.inertia(u)
+    speed = np.sqrt(2.0 * solution.energy_at(u) / (inertia + solution.flywheel))
+    torque = solution.machine.torque(u, speed) + solution.drive
+    return np.asarray(torque - 0.5 * slope * speed**2)
+
+
+def _check_closed(solution: PeriodicSolution) -> None:
+    machine = solution.machine
+    whole = machine.cycle_rad
+    put_in = solution.cells.integral(np.maximum(solution.torque, 0.0))
+    short = solution.drive * whole
+    if abs(short) > CLOSED * put_in:
+        scene = machine.scene
+        way = "lose" if short > 0.0 else "gain"
+        raise CrankcheckError(
+            f"{scene.name}: no steady cycle: over {np.degrees(whole):.6g} deg its loads {way} "
+            f"{abs(short):.6g} J at any speed; add a torque on {scene.driver.link} of "
+            f"{machine.way * solution.drive:.12g} N m, or a load that follows the speed"
+        )
+
+
+def cycle_of(machine: TurningMachine) -> SteadyCycle:
+    """Return the steady cycle; a machine at rest starts to the side that its loads drive it to.
+    Raises as `steady_cycle`."""
+    try:
+        return steady_cycle(machine)
+    except CrankcheckError:
+        if machine.scene.driver.law.at(np.zeros(1))[1][0] != 0.0:
+            raise
+        with suppress(CrankcheckError):
+            return steady_cycle(replace(machine, way=-machine.way))
+        raise

@@ -14,7 +14,6 @@ from analytic.lectures.synthesis.examine import Examined, examine, ranked
 from analytic.lectures.synthesis.function.designs import function_designs
 from analytic.lectures.synthesis.function.generator import FunctionProposal, structural_error
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction
-from analytic.lectures.synthesis.line_draft import peaucellier
 from analytic.lectures.synthesis.path.fit import Progress
 from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
@@ -22,7 +21,8 @@ from analytic.lectures.synthesis.quick_return import quick_return_proposals
 from analytic.lectures.synthesis.rocker import rocker_proposals
 from analytic.lectures.synthesis.slider_crank_strokes import stroke_proposals
 from analytic.lectures.synthesis.straight_line import hoeken, straight_line
-from analytic.mechanism.travel import Travel, travel
+from analytic.lectures.synthesis.straight_part import peaucellier
+from analytic.mechanism.cycle import Travel, travel
 from models.errors import CrankcheckError, ReachError
 from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks.curves import FunctionTable, PathTable, StraightLineTable

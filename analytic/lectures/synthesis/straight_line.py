@@ -36,9 +36,15 @@ from typing import Literal
 
 from scipy.optimize import minimize_scalar  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.synthesis.line_draft import StraightLinkage, placed, refuse_none
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
-from analytic.lectures.synthesis.straight_part import StraightPart, longest, measured
+from analytic.lectures.synthesis.straight_part import (
+    StraightLinkage,
+    StraightPart,
+    longest,
+    measured,
+    placed,
+    refuse_none,
+)
 from models.errors import CrankcheckError
 
 Kind = Literal["chebyshev", "watt", "roberts", "evans"]

@@ -12,8 +12,7 @@ from models.scene import Same, Scene
 from models.scene.joints import bodies, centre_of
 from models.scene.laws import ConstantSpeed, Oscillating
 from models.scene.moved import mirrored, moved, rotated, scaled
-from reports.compare.beside import Beside, truth_of
-from reports.compare.compare import places
+from reports.compare.compare import Beside, places, truth_of
 from reports.compare.errors import largest
 from reports.contract.oscillators import centres
 from reports.contract.subject import NotTriedError, Subject, clause

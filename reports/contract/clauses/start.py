@@ -12,7 +12,7 @@ from models.scene import Scene
 from reports.contract.subject import NotTriedError, Subject, clause
 from sim.engine import Drive
 from sim.engine.measure import motion
-from sim.own_engine.spelling import failure
+from sim.own_engine.watched import failure
 from sim.run.check import refuse_other_model
 
 PLACE = 1e-12

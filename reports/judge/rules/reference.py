@@ -5,8 +5,7 @@ import math
 import sys
 from collections.abc import Iterator
 
-from reports.compare.elastic_facts import ElasticFacts
-from reports.compare.errors import Error, Errors, largest
+from reports.compare.errors import ElasticFacts, Error, Errors, largest
 from reports.judge.rules.rule import Evidence, Finding, Level, measure
 from reports.quantities import named
 from reports.quantities.quantity import BodyKind

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
+from analytic.lectures.drawings.polygon import PlacedMechanism
 from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
@@ -17,9 +17,9 @@ from reports.drawing.shape import turn_of
 from reports.lectures.design import construction_view
 from reports.lectures.design.design_tables import proof_rows, remarks
 from reports.lectures.design.proof import Met
-from reports.lectures.drawing.sheets.field_sheets import draw_assemblies
 from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
-from reports.output.numbers import count, listed
+from reports.lectures.drawing.sheets.position_sheet import draw_assemblies
+from reports.output.console import count, listed
 from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section

@@ -10,8 +10,7 @@ import numpy as np
 from rich.console import Console
 
 from analytic.lectures.drawings import drawn_polygons
-from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.lectures.drawings.polygon import UNITS
+from analytic.lectures.drawings.polygon import UNITS, PlacedMechanism
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError
@@ -19,6 +18,7 @@ from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.drawing.sheet_requests import LogMap
 from reports.lectures.drawing.sheets import polygon_instant, polygon_table
+from reports.lectures.drawing.sheets.graph_drawing import SheetLog
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic
 from reports.lectures.drawing.sheets.polygon_on_paper import DrawnPolygon
 from reports.lectures.drawing.sheets.polygon_page import (
@@ -31,10 +31,8 @@ from reports.lectures.drawing.sheets.polygon_page import (
     turning_file,
 )
 from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
-from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.map_file import Map, read_map
-from reports.output.console import grid, say_whole
-from reports.output.numbers import readable
+from reports.output.console import grid, readable, say_whole
 from reports.output.write import check_file, write
 from reports.requests.options import PaperSize, SceneName, option, output_option, seconds
 

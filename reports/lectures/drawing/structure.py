@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 
 from analytic.lectures.chains.assur_groups import ClassedGroup, by_drivers, classed
-from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
+from analytic.lectures.drawings.polygon import DriverState, PlacedMechanism
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
 from models.errors import CrankcheckError, ReachError, StructureError
@@ -22,10 +22,9 @@ from models.scene.cut_links import with_rigid_links
 from models.scene.laws import ConstantSpeed
 from reports.describe.facts import place_at
 from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.field_sheets import draw_assemblies
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
-from reports.output.console import grid, say
-from reports.output.numbers import count, roman
+from reports.lectures.drawing.sheets.position_sheet import draw_assemblies
+from reports.output.console import count, grid, roman, say
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName, option, output_option
 

@@ -9,9 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 
 from rich.console import Console
 
-from analytic.lectures.regulation.cycle_search import cycle_of
 from analytic.lectures.regulation.flywheel import CoefficientError, WantedFlywheel, wanted_flywheel
-from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, with_flywheel
+from analytic.lectures.regulation.steady_cycle import (
+    SteadyCycle,
+    cycle_of,
+    cycle_scene,
+    with_flywheel,
+)
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from reports.output.numbers import count, error_text
+from reports.output.console import count, error_text
 from reports.page.sections.section import Section
 from reports.protocol.way import TARGETS
 from reports.quantities import QUANTITIES
 from reports.quantities.quantity import tolerance_name
-from reports.results.candidates import Candidate, front, front_over_all
-from reports.results.cost import MEANS, Costs
+from reports.results.candidates import MEANS, Candidate, Costs, front, front_over_all
 from reports.results.line_fit import LineFit
 from reports.results.lines import Line, lines
 from reports.results.overview import Report

@@ -13,7 +13,7 @@ from models.errors import CrankcheckError
 from models.motion import Forces, Motion, State
 from models.scene import Same, Scene
 from models.scene.laws import MOST_TURNS
-from reports.compare.beside import Truth, truth_of
+from reports.compare.compare import Truth, truth_of
 from reports.compare.errors import DRIVEN
 from reports.plan import singular
 from reports.plan.steps import TURNS, counted

@@ -10,11 +10,11 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.causes.cause import Cause, Excerpt, LogCase
 from reports.causes.find import causes
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.compare.errors import Error, Errors, largest
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import AtCrank, LogBeside
-from reports.output.numbers import error_text, listed
+from reports.output.console import error_text, listed
 from reports.own_log.drives import DriveFit, truth_of_log
 from reports.own_log.judged import column_text
 from reports.own_log.log_limits import HeldLog, LogRequest, limits_by_column

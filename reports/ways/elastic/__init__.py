@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from models.motion import State
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.plan import requirements
 from reports.protocol.length import SEGMENTS, GivenAs, Length, Planned
 from reports.protocol.way import ResultKind, StudyLengths, StudyLinks

@@ -1,7 +1,7 @@
 """The columns of cells whose links bend: engines' models of them, and the parts of the deflection's
 error, as shares of the largest."""
 
-from reports.compare.elastic_facts import ElasticFacts
+from reports.compare.errors import ElasticFacts
 from reports.judge.cell import Checked
 
 

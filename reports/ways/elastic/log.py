@@ -7,7 +7,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from models.scene.driver import Controlled, Released
 from reports.causes.cause import Cause
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.compare.elastic_truth import ElasticBeside, ElasticTruth, elastic_truth
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import LogBeside

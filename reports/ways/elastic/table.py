@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from reports.compare.elastic_facts import BENT, ElasticFacts
+from reports.compare.errors import BENT, ElasticFacts
 from reports.judge.cell import Checked
 from reports.judge.rules.reference import TruthEnds
 from reports.quantities import QUANTITIES

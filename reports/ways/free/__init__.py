@@ -12,7 +12,7 @@ from models.errors import CrankcheckError
 from models.motion import Forces, Motion, State
 from models.scene import Scene
 from models.scene.driver import LONGEST_S
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.compare.free_facts import FreeFacts
 from reports.compare.free_truth import kept_motion, released_state
 from reports.plan.requirements import refuse_unreleased, under_control

@@ -11,14 +11,14 @@ from models.errors import CrankcheckError, few
 from models.motion import Motion, Order
 from models.scene import Scene
 from reports.causes.cause import Cause
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.compare.errors import Error, Errors
 from reports.compare.free_truth import BEYOND, FreeBeside, FreeTruth, free_truth_until
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
 from reports.logs.kinds import KINDS
 from reports.logs.log_beside import LogBeside
-from reports.output.numbers import error_text, listed, short
+from reports.output.console import error_text, listed, short
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_limits import EVERY, HeldLog, LogRequest
 from reports.plan.requirements import refuse_unreleased

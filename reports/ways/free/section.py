@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from reports.output.numbers import duration
+from reports.output.console import duration
 from reports.page.sections.errors import drawn
-from reports.page.sections.free_courses import FreeCourses, sizes_of
+from reports.page.sections.motion import FreeCourses, sizes_of
 from reports.page.sections.section import BUDGET, Section, WaySection, steps_held
 from reports.protocol.length import clock_of
 from reports.results.lines import Line, lines

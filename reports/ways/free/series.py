@@ -7,8 +7,8 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion, State
-from reports.compare.beside import first_samples
 from reports.compare.branch import free_departure
+from reports.compare.compare import first_samples
 from reports.compare.free_facts import window_means
 from reports.compare.free_truth import FreeBeside, FreeTruth, free_truth
 from reports.compare.tracks import Track, length, tracks

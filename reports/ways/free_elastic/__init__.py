@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.plan import requirements
 from reports.protocol.length import GivenAs, Length, Planned
 from reports.protocol.way import StudyLengths

@@ -1,5 +1,5 @@
 """The reference of scenes in free motion, with links that bend."""
 
-from reports.requests.elastic_solution import ReleasedElasticSolving
+from reports.requests.free_solution import ReleasedElasticSolving
 
 SOLVING = ReleasedElasticSolving()

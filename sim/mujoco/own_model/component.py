@@ -12,7 +12,7 @@ import numpy as np
 
 from models.array import Array
 from models.errors import few, suggestion
-from sim.mujoco.own_model.closures import (
+from sim.mujoco.own_model.file import (
     IDLE,
     Coupling,
     ModelClosure,

@@ -8,7 +8,6 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import few
-from sim.mujoco.own_model.closures import body_name, equalities, name_of, tendon_bodies
 from sim.mujoco.own_model.component import (
     PARALLEL_DEG,
     WORLD,
@@ -17,6 +16,7 @@ from sim.mujoco.own_model.component import (
     joint_name,
     rigid,
 )
+from sim.mujoco.own_model.file import body_name, equalities, name_of, tendon_bodies
 from sim.mujoco.own_model.linkage import NEAR, Linkage, size
 from sim.registry.own_models import Disturbance
 

@@ -9,8 +9,8 @@ import numpy as np
 from models.scene import GROUND, Driver, Link, Scene, Slider
 from models.scene.joints import block_name
 from models.scene.laws import ConstantSpeed
-from sim.mujoco.own_model.closures import ModelError, body_name, scene_name
 from sim.mujoco.own_model.component import WORLD, joint_name, rigid
+from sim.mujoco.own_model.file import ModelError, body_name, scene_name
 from sim.mujoco.own_model.linkage import (
     Linkage,
     ModelGuide,

@@ -22,8 +22,8 @@ from models.scene import Scene
 from models.scene.joints import bodies
 from sim.engine import Drive, Facts, Log, Poses, Settings
 from sim.engine.tree_poses import body_poses
-from sim.mujoco.own_model.closures import ModelError, body_name, name_of
 from sim.mujoco.own_model.component import is_hinge, joint_name, rigid
+from sim.mujoco.own_model.file import ModelError, body_name, name_of
 from sim.mujoco.own_model.linkage import size
 from sim.mujoco.own_model.planar_model import PlanarModel, coordinates
 from sim.mujoco.own_model.variants import applied, held

@@ -13,7 +13,7 @@ from mpmath import mp, mpf
 
 from analytic import prepared
 from analytic.kinematics import reach, solve, solve_driven
-from analytic.mechanism.travel import travel
+from analytic.mechanism.cycle import travel
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files.reading import parse_scene

@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve, solve_driven
-from analytic.mechanism.cycle import Along, Output, series
+from analytic.mechanism.cycle import (
+    Along,
+    Output,
+    Travel,
+    coriolis,
+    extreme_speeds,
+    series,
+    travel,
+    travels,
+)
 from analytic.mechanism.fourbar import (
     FourBar,
     four_bar_type,
@@ -16,7 +25,6 @@ from analytic.mechanism.fourbar import (
     inverted_slider_crank_type,
     slider_crank_type,
 )
-from analytic.mechanism.travel import Travel, coriolis, extreme_speeds, travel, travels
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files.reading import load_scene, parse_scene
 from models.scene import Driver

@@ -21,7 +21,7 @@ from models.mjcf.options import Writing
 from models.motion import Crossing, Motion
 from models.scene.hard import WindowChain
 from models.scene.laws import ConstantSpeed
-from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
+from reports.plan.requirements import chosen_engines, chosen_profiles, chosen_scenes
 from sim.run import run
 from tests.second_opinions import newton
 

@@ -11,8 +11,7 @@ from rich.console import Console
 
 from models.files.reading import load_scene
 from reports.advise.advice import Advice, Offer, Price, Prices, offers
-from reports.advise.demand import choices, demanded
-from reports.advise.evidence import MeasuredSteps, MeasuredStudy
+from reports.advise.demand import MeasuredSteps, MeasuredStudy, choices, demanded
 from reports.advise.search import SearchResult, TriedRun, Worst
 from reports.advise.table import document, show_advice, word
 from tests.worlds.command_line import flat

@@ -13,8 +13,7 @@ from typer.testing import Result
 from models.files.reading import find_scene, load_scene, read_text
 from models.scene import Scene
 from reports.advise.demand import at_speed
-from reports.compare.beside import Beside, Truth
-from reports.compare.compare import places
+from reports.compare.compare import Beside, Truth, places
 from reports.judge.cell import Cell
 from reports.quantities import named
 from sim.run import run

@@ -13,10 +13,16 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene, parse_scene, scene_texts
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
-from reports.advise.demand import MOST_SUBSTEPS, OWN, Choice, Demand, at_speed, choices, demanded
-from reports.advise.evidence import (
+from reports.advise.demand import (
+    MOST_SUBSTEPS,
+    OWN,
+    Choice,
+    Demand,
     MeasuredSteps,
     MeasuredStudy,
+    at_speed,
+    choices,
+    demanded,
     evidence,
     stored_choices,
     stored_scenes,

@@ -10,11 +10,9 @@ import pytest
 
 from models.files.reading import load_scene
 from reports.advise.advice import ROUNDS, Prices, prices, timings
-from reports.advise.demand import Choice, choices, demanded
-from reports.advise.evidence import MeasuredSteps, MeasuredStudy
+from reports.advise.demand import Choice, MeasuredSteps, MeasuredStudy, choices, demanded
 from reports.advise.search import WORDS, SearchResult, TriedRun, Worst, _reached, _seen, look
-from reports.compare.beside import Beside, Truth
-from reports.compare.compare import compare
+from reports.compare.compare import Beside, Truth, compare
 from reports.compare.errors import Departure
 from reports.judge.cell import Cell
 from reports.quantities import named

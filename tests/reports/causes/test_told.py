@@ -19,7 +19,7 @@ from models.motion import Motion
 from reports.causes.account import change
 from reports.causes.cause import Cause, LogCase
 from reports.causes.find import causes
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS, UNITS
 from reports.logs.log_beside import AtCrank, beside_truth

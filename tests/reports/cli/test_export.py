@@ -19,7 +19,7 @@ from models.motion import Motion
 from models.scene.laws import Oscillating
 from reports.drawing import gif
 from reports.drawing.shape import COLOURS
-from reports.requests import engines
+from reports.requests import export
 from sim.registry import Availability
 from tests.worlds.command_line import told
 from tests.worlds.tiers import few
@@ -100,7 +100,7 @@ def test_engines_lists_versions_profiles_and_settings_with_reasons_and_what_is_m
     assert [word for word in ("mujoco", "tuned", "as-shipped") if word not in plain] == []
     assert len(full.splitlines()) > len(plain.splitlines()) + 5
     missing = (Availability("mujoco", None, "pip install mujoco"),)
-    monkeypatch.setattr(engines, "available", lambda: missing)
+    monkeypatch.setattr(export, "available", lambda: missing)
     assert "not installed: pip install mujoco" in told("engines")
 
 

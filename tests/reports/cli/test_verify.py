@@ -97,7 +97,7 @@ def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     missing = EngineError("engine mujoco: not installed; pip install mujoco")
-    monkeypatch.setattr("reports.plan.chosen.engine", raising(missing))
+    monkeypatch.setattr("reports.plan.requirements.engine", raising(missing))
     refused(crank(*ONE.split()), "engine mujoco: not installed", "pip install mujoco")
 
 

@@ -16,8 +16,8 @@ from models.files.reading import load_scene, parse_scene, shipped
 from models.motion import Crossing
 from models.scene import Scene
 from models.scene.hard import fourbar, slider_crank, slotted_lever
-from reports.compare.beside import Beside, Truth
 from reports.compare.branch import departure
+from reports.compare.compare import Beside, Truth
 from reports.compare.errors import Errors, SceneFacts
 from reports.compare.hardness import WINDOW_RAD, conditioning, near
 from reports.judge.cell import Checked, check

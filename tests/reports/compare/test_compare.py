@@ -16,8 +16,7 @@ from models.files.reading import load_scene
 from models.motion import LinkMotion
 from models.scene import Scene
 from models.scene.moved import mirrored, moved, rotated, scaled
-from reports.compare.beside import SETTLING, Beside, Truth, incomplete
-from reports.compare.compare import compare
+from reports.compare.compare import SETTLING, Beside, Truth, compare, incomplete
 from reports.compare.errors import ErrorKind, Errors
 from reports.judge.cell import check
 from reports.judge.tolerance import limits

@@ -17,8 +17,7 @@ from models.scene import Scene
 from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.scene.loads import ConstantFriction, Load
 from models.scene.tabulated import Tabulated
-from reports.compare.beside import Beside, Truth
-from reports.compare.compare import compare
+from reports.compare.compare import Beside, Truth, compare
 from reports.compare.errors import Errors
 from reports.compare.hardness import inertia_share, load_slopes, loading
 from reports.compare.whole_errors import NEAR, force_rows, near_jumps

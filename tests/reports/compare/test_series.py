@@ -10,8 +10,7 @@ import pytest
 
 from models.array import Array
 from models.scene import Scene
-from reports.compare.beside import Beside, Truth
-from reports.compare.compare import compare
+from reports.compare.compare import Beside, Truth, compare
 from reports.compare.last_turn import trace
 from reports.compare.tracks import angle_error, length, rate, second_rate, size, tracks
 from sim.engine import Run

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from reports.drawing.moving import LEVELS, embedded, packed, policy, singles, size_of
-from reports.output import numbers
-from reports.output.numbers import DIGITS, NONE, count, finite, listed
+from reports.output import console
+from reports.output.console import DIGITS, NONE, count, finite, listed
 from tests.reports.drawing.test_moving import unpacked
 
 HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""
@@ -82,7 +82,7 @@ def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
 def test_numbers_have_no_needless_exponent_errors_two_digits_and_times_three(
     way: str, value: float | None, text: str
 ) -> None:
-    assert getattr(numbers, way)(value) == text
+    assert getattr(console, way)(value) == text
 
 
 def test_things_are_counted_and_listed() -> None:

@@ -13,8 +13,7 @@ from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.joints import mass_ratio
 from models.scene.laws import ConstantSpeed, Oscillating
-from reports.compare.beside import SETTLING, Beside, Truth
-from reports.compare.compare import compare
+from reports.compare.compare import SETTLING, Beside, Truth, compare
 from reports.compare.errors import Errors, SceneFacts
 from reports.compare.whole_errors import OF_STEPS, summed
 from reports.judge.cell import check

@@ -13,7 +13,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.describe.motion_tables import motion_frame, run_frame
+from reports.describe.free_motion import motion_frame, run_frame
 from reports.logs import force_columns
 from reports.logs.columns import columns_of
 from reports.logs.meanings import understood

@@ -13,15 +13,14 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.compare.beside import Truth
-from reports.describe.motion_tables import motion_frame
+from reports.compare.compare import Truth
+from reports.describe.free_motion import motion_frame
 from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of
 from reports.logs.kinds import KINDS, LENGTH, Meaning
 from reports.logs.map_file import FileTable, map_of, map_text, read_map
-from reports.logs.meanings import understood
+from reports.logs.meanings import time_of, understood
 from reports.logs.names import SceneNames, meaning
-from reports.logs.time_columns import time_of
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 1.2, 400)

@@ -15,7 +15,7 @@ from crankcheck.testing import assert_within
 from models.array import Array
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.describe.motion_tables import motion_frame
+from reports.describe.free_motion import motion_frame
 from reports.describe.with_forces import with_forces
 from reports.judge.rules import RULES
 from reports.own_log import drives

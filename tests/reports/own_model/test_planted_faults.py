@@ -10,8 +10,7 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.own_model.account import ModelAccount
 from reports.own_model.judged import JudgedModel
-from reports.own_model.sentences import NO_HELP, verdict_text
-from reports.own_model.table import show
+from reports.own_model.table import NO_HELP, show, verdict_text
 from reports.page.model_page import model_page
 from tests.worlds.own_four_bar import BY_SITES, CLOSED, planted, rocker
 from tests.worlds.own_models import FACTS, judged, line, read_text, texts

@@ -21,7 +21,7 @@ from models.scene import Driver, Scene
 from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell, check
 from reports.own_model.assembly import ModelRequest, assembled
-from sim.mujoco.own_model.closures import ModelError
+from sim.mujoco.own_model.file import ModelError
 from sim.mujoco.own_model.variants import advice, patched
 from sim.mujoco.reader import read_model
 from sim.registry.own_models import Advised

@@ -8,8 +8,8 @@ import pytest
 from rich.console import Console
 
 from reports.judge.cell import unfinished
-from reports.output.numbers import short
-from reports.own_model import account, sentences
+from reports.output.console import short
+from reports.own_model import account, table
 from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, errors_of, judged_model
 from reports.own_model.table import show
@@ -58,14 +58,14 @@ def test_lines_and_their_gains_are_whole_at_every_width(rubbing: JudgedModel, wi
             numbers = [f"{float(word):.1e}" for word in row[2:5]]
             assert numbers == [f"{error:.1e}" for error in errors_of(one)]
         for one in rubbing.three[1:]:
-            assert ["gain", *map(sentences.factor_text, rubbing.gains(one))] in cells
+            assert ["gain", *map(table.factor_text, rubbing.gains(one))] in cells
 
 
 def test_failures_come_first_and_the_verdict_last(rubbing: JudgedModel) -> None:
     lines = printed(rubbing)
     assert lines[0].startswith("OUT  ")
     assert lines[1].startswith("  CC103 angle: link rod: ")
-    verdict = lines.index(sentences.verdict_text(rubbing))
+    verdict = lines.index(table.verdict_text(rubbing))
     order = ["CC103", "read as:", "as-written ", "joints:", "can disturb", "Recommended,", "+++ "]
     places = [*(place(lines, word) for word in order), verdict]
     assert places == sorted(places)
@@ -79,13 +79,13 @@ def test_gains_are_the_error_as_written_over_that_of_a_line(rubbing: JudgedModel
     assert min(rubbing.gains(last)) > 100
     assert rubbing.gains(rubbing.own) == (1.0, 1.0, 1.0)
     assert rubbing.verdict == "out"
-    assert "recommended: within, " in sentences.verdict_text(rubbing)
+    assert "recommended: within, " in table.verdict_text(rubbing)
 
 
 def test_what_disturbs_is_told_by_kind_and_short(crowded: JudgedModel) -> None:
-    found = {group.kind: group for group in sentences.groups(crowded)}
+    found = {group.kind: group for group in table.groups(crowded)}
     assert len(found["actuators"].texts) == ACTUATORS
-    assert f"and {ACTUATORS - sentences.EACH} more" in found["actuators"].short()
+    assert f"and {ACTUATORS - table.EACH} more" in found["actuators"].short()
     lines = printed(crowded)
     assert sum("acts on" in line for line in lines) <= 2
     assert "less error" in found["limits"].effect
@@ -101,7 +101,7 @@ def test_how_open_the_pose_is_and_which_joint_is_worst_are_told(crowded: JudgedM
     assert worst.name == "toe"
     assert worst.share > 1.0
     assert f"{worst.open_m:.1e}" == "1.0e-03"
-    assert "open at toe by 1.00e-3 m" in sentences.reading(crowded.account)["pose"]
+    assert "open at toe by 1.00e-3 m" in table.reading(crowded.account)["pose"]
     assert {joint.name for joint in crowded.joints()} == set(crowded.account.open_m)
     assert "joints: the widest as written is toe, " in "\n".join(printed(crowded))
 
@@ -131,7 +131,7 @@ def test_a_line_that_did_not_end_has_its_reason(rubbing: JudgedModel, status: st
 def test_a_line_that_ends_where_the_model_does_not_says_so(rubbing: JudgedModel) -> None:
     one = with_own(rubbing, "timeout")
     assert one.others == list(one.lines[2:-1])
-    assert {group.effect for group in sentences.groups(one)} == {"without: it runs to its end"}
+    assert {group.effect for group in table.groups(one)} == {"without: it runs to its end"}
 
 
 def test_settings_that_are_there_already_and_those_in_words_are_told(rubbing: JudgedModel) -> None:
@@ -157,16 +157,16 @@ def test_without_finer_steps_there_is_one_column_of_errors(rubbing: JudgedModel)
 @pytest.mark.parametrize(
     ("told", "words"),
     [
-        (sentences.factor_words(1.0), "the same error"),
-        (sentences.factor_words(27.3), "27 x less error"),
-        (sentences.factor_words(1.2e5), "1.2e5 x less error"),
-        (sentences.factor_words(0.25), "4 x more error"),
-        (sentences.factor_words(math.inf), "no error at all"),
-        (sentences.factor_words(0.0), "all of the error"),
-        (sentences.factor_words(math.nan), "not to be told"),
-        (sentences.share_text(0.0), "below 0.1% of its limit"),
-        (sentences.share_text(0.123), "12.3% of its limit"),
-        (sentences.share_text(137.2), "137 times its limit"),
+        (table.factor_words(1.0), "the same error"),
+        (table.factor_words(27.3), "27 x less error"),
+        (table.factor_words(1.2e5), "1.2e5 x less error"),
+        (table.factor_words(0.25), "4 x more error"),
+        (table.factor_words(math.inf), "no error at all"),
+        (table.factor_words(0.0), "all of the error"),
+        (table.factor_words(math.nan), "not to be told"),
+        (table.share_text(0.0), "below 0.1% of its limit"),
+        (table.share_text(0.123), "12.3% of its limit"),
+        (table.share_text(137.2), "137 times its limit"),
     ],
 )
 def test_factors_and_shares_of_a_limit_in_words(told: str, words: str) -> None:
@@ -189,12 +189,12 @@ def test_a_long_course_keeps_its_largest_error(
 
 
 def test_why_the_recommended_settings_are_out_is_told(rubbing: JudgedModel) -> None:
-    assert sentences.still_out(rubbing) == ""
+    assert table.still_out(rubbing) == ""
     own, last = rubbing.own, rubbing.lines[-1]
     failing = replace(last, findings=own.findings)
     one = replace(rubbing, lines=[*rubbing.lines[:-1], failing])
     worst = max(own.failures, key=lambda finding: finding.number / finding.limit)
-    assert sentences.still_out(one).startswith(f"out by {worst.rule} ")
-    assert sentences.still_out(one).endswith(f"; and by {len(own.failures) - 1} more rules")
+    assert table.still_out(one).startswith(f"out by {worst.rule} ")
+    assert table.still_out(one).endswith(f"; and by {len(own.failures) - 1} more rules")
     text = " ".join(" ".join(printed(one)).split())
     assert f"recommended: out by {worst.rule}" in text

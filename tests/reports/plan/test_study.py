@@ -17,9 +17,9 @@ from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.loads import ConstantFriction, Load
 from reports.judge.cell import Cell
-from reports.plan.chosen import chosen_scenes, left_out_note
 from reports.plan.chosen_study import StudyChoice, chosen_study
 from reports.plan.grid import digest, grid, line_key
+from reports.plan.requirements import chosen_scenes, left_out_note
 from reports.plan.steps import FINER, RESOLUTION, coarsest
 from reports.plan.study import Study, Variant, load_study
 from reports.requests.sweep import SweepRequest, asked

@@ -11,8 +11,17 @@ from rich.console import Console
 
 from models.files.reading import load_scene
 from reports.judge.cell import Cell
-from reports.results.candidates import candidates, front, front_over_all, performance_profile
-from reports.results.cost import costs_of, equal, noise, reached, time_to
+from reports.results.candidates import (
+    candidates,
+    costs_of,
+    equal,
+    front,
+    front_over_all,
+    noise,
+    performance_profile,
+    reached,
+    time_to,
+)
 from reports.results.lines import Line, lines
 from reports.results.recommend import noise_line, recommendation_table, recommendations
 from reports.sweep.measured import timed

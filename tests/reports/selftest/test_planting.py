@@ -18,7 +18,7 @@ from models.scene.joints import line_ends, mass_of
 from models.scene.loads import PinSpring
 from reports.compare.free_truth import free_truth
 from reports.judge.cell import CellRunner, examined
-from reports.selftest import segment_changes
+from reports.selftest import elastic_faults
 from reports.selftest.elastic_changes import (
     BEAM_RUNS,
     BENT,
@@ -40,7 +40,7 @@ from reports.selftest.free_changes import (
     turned_gravity,
 )
 from reports.selftest.free_faults import FREE_RUNS, PRESS, PULSE, SQUEEZER, SWING
-from reports.selftest.log_edits import WHEN, moved, output, rows
+from reports.selftest.log_faults import WHEN, moved, output, rows
 from reports.selftest.trial import FAULTS, RUNS, _passed, chosen_faults
 from reports.selftest.unseen import UNSEEN_ELASTIC, UNSEEN_FREE
 from sim.engine import Run
@@ -362,16 +362,16 @@ def test_the_springs_are_those_that_are_meant() -> None:
     first = next(iter(GIVEN.springs))
 
     def rate(changed: object) -> float:
-        spring = segment_changes.springs(changed)(GIVEN, 1.0).springs[first]  # type: ignore[arg-type]
+        spring = elastic_faults.springs(changed)(GIVEN, 1.0).springs[first]  # type: ignore[arg-type]
         assert isinstance(spring, PinSpring)
         return spring.rate / GIVEN.springs[first].rate  # type: ignore[union-attr]
 
-    assert rate(segment_changes.of_as_many_springs) == pytest.approx(3.0 / 4.0)
-    assert rate(segment_changes.as_corrected) == pytest.approx(1.0 + math.pi**2 / 192.0)
+    assert rate(elastic_faults.of_as_many_springs) == pytest.approx(3.0 / 4.0)
+    assert rate(elastic_faults.as_corrected) == pytest.approx(1.0 + math.pi**2 / 192.0)
 
 
 def test_a_rod_has_a_third_of_the_inertia_of_its_mass_in_two_ends() -> None:
-    part = segment_changes.segments(segment_changes.at_its_ends)(GIVEN, 1.0).links["coupler-1"]
+    part = elastic_faults.segments(elastic_faults.at_its_ends)(GIVEN, 1.0).links["coupler-1"]
     length = 0.75 / 4.0
     assert part.inertia_kg_m2 == pytest.approx(part.mass_kg * length**2 / 4.0)
 

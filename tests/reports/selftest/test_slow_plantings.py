@@ -14,7 +14,7 @@ from analytic.free.release import release
 from models.files.reading import load_scene
 from models.scene import Link, Scene
 from models.scene.cut_scenes import SegmentedScene
-from reports.selftest import elastic_changes, segment_changes
+from reports.selftest import elastic_changes, elastic_faults
 from reports.selftest.elastic_changes import BEAM_RUNS, BENT, LOOSE, elastic_cell
 from reports.selftest.free_faults import SWING
 from reports.selftest.trial import FAULTS
@@ -116,7 +116,7 @@ def test_another_elastic_machine_starts_on_its_own_periodic_motion(
     given: Given,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(segment_changes, "segment_start", lambda *asked: asked)
+    monkeypatch.setattr(elastic_faults, "segment_start", lambda *asked: asked)
     wrong, (chain, shape) = given(name, ELASTIC.given)
     other = SegmentedScene(change(ELASTIC.scene), 4)
     assert (chain.scene, chain.count, shape) == (other.scene, 4, "periodic")

@@ -19,7 +19,7 @@ from models.motion import State
 from models.scene import Scene
 from reports.own_model.assembly import ModelRequest, assembled
 from sim.mujoco.own_model import session
-from sim.mujoco.own_model.closures import ModelError
+from sim.mujoco.own_model.file import ModelError
 from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.own_model.variants import (
     RECOMMENDED,

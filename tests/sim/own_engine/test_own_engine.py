@@ -12,7 +12,7 @@ from models.errors import EngineError
 from models.files.reading import load_scene
 from sim import registry
 from sim.engine import Run
-from sim.own_engine import known, spelling
+from sim.own_engine import known, watched
 from sim.own_engine.watched import BrokenContractError
 from sim.registry import brought, capability, declaration, engine
 from sim.run import run, time_run
@@ -152,7 +152,7 @@ def test_nothing_is_looked_up_for_an_engine_of_ours(monkeypatch: pytest.MonkeyPa
         raise AssertionError
 
     monkeypatch.setattr(known, "installed", looked)
-    monkeypatch.setattr(spelling, "installed", looked)
+    monkeypatch.setattr(watched, "installed", looked)
     assert registry.usual() == ["mujoco", "pymunk"]
     assert all(engine(name) for name in registry.usual())
     assert registry.available()

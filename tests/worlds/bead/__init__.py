@@ -10,7 +10,7 @@ from typing import Any
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.protocol.length import Planned
 from reports.protocol.way import ResultKind
 from reports.ways.free import FreeWay

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from reports.compare.beside import Beside
+from reports.compare.compare import Beside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, Errors, MotionFacts
 from reports.compare.whole_errors import ComparedParts, force_rows, whole_errors

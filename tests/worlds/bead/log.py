@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from models.scene import Scene
 from reports.causes.cause import Cause
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import LogBeside
 from reports.own_log.drives import DriveFit

@@ -8,7 +8,7 @@ import numpy as np
 
 from models.array import Array
 from models.motion import Motion, State
-from reports.compare.beside import Beside, Truth
+from reports.compare.compare import Beside, Truth
 from sim.engine import Run
 from tests.worlds.bead.swing import Swing, moved, swing_of
 

@@ -10,9 +10,12 @@ import numpy as np
 
 from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.function.equal_ripple import equal_ripple
-from analytic.lectures.synthesis.function.fourbar import fourbars
 from analytic.lectures.synthesis.function.generator import STARTS, FunctionProposal, Generator
-from analytic.lectures.synthesis.function.slider_crank import SliderCrankGenerator, slider_cranks
+from analytic.lectures.synthesis.function.linkages import (
+    SliderCrankGenerator,
+    fourbars,
+    slider_cranks,
+)
 from analytic.lectures.synthesis.function.task import FunctionTask
 from models.array import Array
 from models.errors import CrankcheckError

@@ -1,4 +1,4 @@
-"""Atlas of coupler curves: four-bars that draw a closed curve like a given one.
+"""Atlas of coupler curves and of pieces of them: four-bars whose path is like a given one.
 
 It is generated on first use, from numbers spread evenly over the shapes of four-bars with a crank
 and over places in their couplers, and kept while the process lives. Only curves of one assembly are
@@ -20,6 +20,10 @@ Source: J. R. McGarva and G. Mullineux, Harmonic representation of closed curves
 Mathematical Modelling 17 (1993), pages 213 to 218; I. Ullah and S. Kota, Optimal synthesis of
 mechanisms for path generation using Fourier descriptors and global search methods, Journal of
 Mechanical Design 119 (1997), pages 504 to 510.
+
+An open path has no Fourier descriptor. Pieces are compared by places at even shares of their
+length, about their middle and over their size: the similarity of two is |sum of conj(z_i) w_i|,
+from 0 to 1, which no turn changes.
 """
 
 import math
@@ -32,14 +36,15 @@ from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]  # shi
 
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, real_size
 from analytic.lectures.synthesis.path.fit import Fitted, placed
-from analytic.lectures.synthesis.path.task import UnitPath, refuse_points
-from analytic.lectures.synthesis.path.unit_four_bar import (
+from analytic.lectures.synthesis.path.task import (
     BOUNDS,
     FULL,
     Complexes,
     Family,
+    UnitPath,
     direction,
     lengths,
+    refuse_points,
 )
 from models.array import Array
 
@@ -257,3 +262,94 @@ def similar(points: Sequence[complex], count: int = 10) -> list[Similar]:
         Similar(similarity, real_size(fit)[0].moved(complex(radius), middle))
         for similarity, fit in ranked(unit, count, _over)
     ]
+
+
+PIECES: dict[Family, int] = {"crank-rocker": 60000, "double-crank": 30000, "limited": 40000}
+PIECE_LOOKS = 24
+"""Number of crank angles at which a piece is drawn."""
+PLACES = 12
+"""Number of places at which pieces are compared."""
+SPAN = (math.radians(25.0), math.radians(355.0))
+"""Span of a crank that turns fully."""
+NARROW = math.radians(8.0)
+"""Least span of a crank with limits."""
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Pieces of one family: the numbers of shapes (3, E), coupler points (E,) over the ground, the
+    crank's angles at both ends (2, E), and places in standard form (E, PLACES)."""
+
+    family: Family
+    x: Array
+    arm: Complexes
+    ends: Array
+    places: Complexes
+
+
+@cache
+def pieces(family: Family) -> Pieces:
+    """Return the pieces of a family, drawn by growing angles of the crank."""
+    share = spread(PIECES[family], 7, seed=0)
+    x = between(share[:, :3], BOUNDS[family])
+    arm = arms(lengths(family, x)[1], share[:, 3:5])
+    if family == "limited":
+        ends = _within_limits(lengths(family, x), share[:, 5:])
+    else:
+        start = math.tau * share[:, 5]
+        ends = np.array([start, start + SPAN[0] + (SPAN[1] - SPAN[0]) * share[:, 6]])
+    wide = ends[1] - ends[0] > NARROW
+    x, arm, ends = x[:, wide], arm[wide], ends[:, wide]
+    drawn = curves(family, x, arm, _angles(ends))
+    even = np.tile(np.linspace(0.0, 1.0, PLACES), (len(drawn), 1))
+    return Pieces(family, x, arm, ends, standard(at_shares(shares(drawn), drawn, even)))
+
+
+def _angles(ends: Array) -> Array:
+    """Return angles from end to end, (E, LOOKS)."""
+    part = np.linspace(0.0, 1.0, PIECE_LOOKS)
+    return np.asarray(ends[0][:, None] + (ends[1] - ends[0])[:, None] * part)
+
+
+def _within_limits(shape: tuple[Array, Array, Array], share: Array) -> Array:
+    """Return ends of pieces between the limits of cranks, (2, E); two equal ones where none closes.
+    A is |1 - a exp(i phi)| from O4, by the cosine of phi, and has to be within |b - c| to b + c."""
+    a, b, c = shape
+    high, low = (
+        np.clip((1.0 + a**2 - far**2) / (2.0 * a), -1.0, 1.0) for far in (np.abs(b - c), b + c)
+    )
+    first, last = np.arccos(high), np.arccos(low)
+    # About phi = 0 and phi = pi the two halves are one arc.
+    first, last = np.where(high >= 1.0, -last, first), np.where(low <= -1.0, math.tau - first, last)
+    part = np.sort(share, axis=1).T
+    one, other = first + (last - first) * (0.01 + 0.98 * part)
+    apart = (high < 1.0) & (low > -1.0) & (share[:, 0] > share[:, 1])
+    return np.where(apart, np.array([-other, -one]), np.array([one, other]))
+
+
+def standard(places: Complexes | Array) -> Complexes:
+    """Return places (E, W) about their middles, with a sum of squares of 1."""
+    own = places - np.mean(places, axis=1, keepdims=True)
+    size = np.sqrt(np.sum(np.abs(own) ** 2, axis=1, keepdims=True))
+    return np.asarray(own / np.maximum(size, np.finfo(np.float64).tiny))
+
+
+def open_starts(path: UnitPath, count: int) -> list[Fitted]:
+    """Return the most similar pieces, put over an open path in either sense of turning and in
+    either assembly, the best first."""
+    return [fit for _, fit in ranked(path, count, _over_pieces)]
+
+
+def _over_pieces(points: Complexes, count: int) -> Iterator[tuple[float, Fitted]]:
+    curve, share = smooth(points, closed=False)
+    even = np.linspace(0.0, 1.0, PLACES)[None]
+    own = standard(at_shares(shares(curve[None]), curve[None], even))[0]
+    for family in PIECES:
+        book = pieces(family)
+        similarity = np.abs(book.places @ own.conj())
+        for k in np.argsort(-similarity, kind="stable")[:count].tolist():
+            x, angles = book.x[:, k], _angles(book.ends[:, k : k + 1])
+            drawn = shares(curves(family, x[:, None], book.arm[k : k + 1], angles))
+            phi = np.asarray(at_shares(drawn, angles, share[None])[0].real)
+            placing = placed(lengths(family, x), phi, points)
+            yield float(similarity[k]), Fitted(family, x, placing, phi, math.inf)

@@ -13,8 +13,7 @@ from scipy.optimize import isotonic_regression  # type: ignore[import-untyped]  
 from analytic.lectures.synthesis import design
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, cognates, real_size
 from analytic.lectures.synthesis.path.fit import TOO_LARGE, Fitted
-from analytic.lectures.synthesis.path.task import PathTask
-from analytic.lectures.synthesis.path.unit_four_bar import least_sine
+from analytic.lectures.synthesis.path.task import PathTask, least_sine
 from models.array import Array
 from models.lectures.draft import SPEED_RAD_S, Draft, bar, plate
 

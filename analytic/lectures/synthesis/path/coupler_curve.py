@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.lectures.synthesis.path import unit_four_bar
+from analytic.lectures.synthesis.path import task
 from analytic.lectures.synthesis.path.fit import Fitted
 from models.array import Array
 
@@ -45,9 +45,9 @@ class CouplerCurve:
         return self.crank / self.ground, self.coupler / self.ground, self.rocker / self.ground
 
     @property
-    def family(self) -> unit_four_bar.Family:
+    def family(self) -> task.Family:
         """Family by the rotation of its crank."""
-        return unit_four_bar.family_of(*self.shape)
+        return task.family_of(*self.shape)
 
     @property
     def size(self) -> float:
@@ -55,17 +55,17 @@ class CouplerCurve:
         arms = abs(self.arm), abs(self.arm - self.coupler)
         return max(self.ground, self.crank, self.coupler, self.rocker, *arms)
 
-    def pins(self, crank_rad: Array) -> tuple[unit_four_bar.Complexes, unit_four_bar.Complexes]:
+    def pins(self, crank_rad: Array) -> tuple[task.Complexes, task.Complexes]:
         """Return A and B at angles of the crank [rad]; the dyad stretched where it is open."""
         toward = (self.o4 - self.o2) / self.ground
         phi = self.sign * (crank_rad - cmath.phase(toward))
         a, b, c = (np.array(each) for each in self.shape)
-        u, _ = unit_four_bar.direction((a, b, c), phi)
+        u, _ = task.direction((a, b, c), phi)
         turned = toward * (u if self.sign > 0 else u.conj())
         at = self.o2 + self.crank * np.exp(1j * crank_rad)
         return at, at + self.coupler * turned
 
-    def at(self, crank_rad: Array) -> unit_four_bar.Complexes:
+    def at(self, crank_rad: Array) -> task.Complexes:
         """Return P at angles of the crank [rad]."""
         first, second = self.pins(crank_rad)
         return np.asarray(first + self.arm / self.coupler * (second - first))
@@ -79,7 +79,7 @@ class CouplerCurve:
         if self.family != "limited":
             return True
         phi = crank_rad - cmath.phase(self.o4 - self.o2)
-        return unit_four_bar.closes_between(self.shape, float(np.min(phi)), float(np.max(phi)))
+        return task.closes_between(self.shape, float(np.min(phi)), float(np.max(phi)))
 
     def moved(self, by: complex, onto: complex) -> CouplerCurve:
         """Return it turned and scaled by one complex number, then moved by another [m]."""
@@ -97,7 +97,7 @@ class CouplerCurve:
 
 def real_size(fit: Fitted) -> tuple[CouplerCurve, Array]:
     """Return the four-bar of a fit, in the unit of its path, and the crank's angles [rad]."""
-    a, b, c = (float(each) for each in unit_four_bar.lengths(fit.family, fit.x))
+    a, b, c = (float(each) for each in task.lengths(fit.family, fit.x))
     origin, ground, arm = (complex(each) for each in fit.placing)
     length, turn = abs(ground), cmath.phase(ground)
     own = CouplerCurve(

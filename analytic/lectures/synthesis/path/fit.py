@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.synthesis.path import unit_four_bar
+from analytic.lectures.synthesis.path import task
 from analytic.lectures.synthesis.path.task import MOST, UnitPath
 from models.array import Array
 
@@ -42,9 +42,9 @@ class Fitted:
     the crank's angles [rad] from the ground on. ``cost`` is the mean square of the distances,
     ``mirrored`` is True for the mirror image of the points."""
 
-    family: unit_four_bar.Family
+    family: task.Family
     x: Array
-    placing: unit_four_bar.Complexes
+    placing: task.Complexes
     phi: Array
     cost: float
     mirrored: bool = False
@@ -53,16 +53,16 @@ class Fitted:
     def size(self) -> float:
         """Longest of its links, over the radius of the path."""
         _, ground, arm = self.placing
-        shape = unit_four_bar.lengths(self.family, self.x)
+        shape = task.lengths(self.family, self.x)
         far = np.abs([arm, arm - ground * shape[1]])
         return float(max(np.abs(ground) * max(1.0, *(float(each) for each in shape)), *far))
 
 
 def placed(
-    lengths_of: tuple[Array, Array, Array], phi: Array, points: unit_four_bar.Complexes
-) -> unit_four_bar.Complexes:
+    lengths_of: tuple[Array, Array, Array], phi: Array, points: task.Complexes
+) -> task.Complexes:
     """Return the placing numbers O, G, Q that fit points best, by linear least squares, (3,)."""
-    u, _ = unit_four_bar.direction(lengths_of, phi)
+    u, _ = task.direction(lengths_of, phi)
     columns = np.stack([np.ones_like(u), lengths_of[0] * np.exp(1j * phi), u], axis=1)
     return np.asarray(np.linalg.lstsq(columns, points, rcond=1e-9)[0])
 
@@ -93,14 +93,14 @@ def refit(start: Fitted, path: UnitPath, evaluations: int, transmission_rad: flo
 class _Problem:
     """Residuals over the unknowns, both as real numbers."""
 
-    family: unit_four_bar.Family
+    family: task.Family
     path: UnitPath
     transmission_rad: float = 0.0
 
     @property
     def box(self) -> tuple[Array, Array]:
         """Middle and half width of shape and placing numbers, (9,)."""
-        low, high = np.array(unit_four_bar.BOUNDS[self.family]).T
+        low, high = np.array(task.BOUNDS[self.family]).T
         middle = np.concatenate([0.5 * (low + high), np.zeros(6)])
         return middle, np.concatenate([0.5 * (high - low), np.full(6, LARGEST)])
 
@@ -122,8 +122,8 @@ class _Problem:
     def residuals(self, z: Array) -> Array:
         """Return the distances from the points, then the gap of the dyad where it may be open."""
         fit = self.unpacked(z)
-        a, b, c = (float(each) for each in unit_four_bar.lengths(self.family, fit.x))
-        at = unit_four_bar.turn((a, b, c), fit.phi)
+        a, b, c = (float(each) for each in task.lengths(self.family, fit.x))
+        at = task.turn((a, b, c), fit.phi)
         origin, ground, arm = fit.placing
         off = origin + ground * a * np.exp(1j * fit.phi) + arm * at.u - self.path.points
         opened = [PENALTY * at.excess] if self.family == "limited" else []
@@ -133,11 +133,11 @@ class _Problem:
     def jacobian(self, z: Array) -> Array:
         """Return their derivatives, (residuals, unknowns)."""
         fit = self.unpacked(z)
-        a, b, c = (float(each) for each in unit_four_bar.lengths(self.family, fit.x))
-        at = unit_four_bar.turn((a, b, c), fit.phi)
+        a, b, c = (float(each) for each in task.lengths(self.family, fit.x))
+        at = task.turn((a, b, c), fit.phi)
         _, ground, arm = fit.placing
         e, one = a * np.exp(1j * fit.phi), np.ones_like(at.u)
-        by_shape = unit_four_bar.lengths_jacobian(self.family, fit.x)
+        by_shape = task.lengths_jacobian(self.family, fit.x)
         by_angle = 1j * ground * e + arm * at.d_phi
         by_lengths = arm * at.d_shape
         by_lengths[0] += ground * e / a
@@ -188,7 +188,7 @@ class _Problem:
         turned = self.path.turned
         return z[9:].copy() if turned is None else np.asarray(z[9] + turned)
 
-    def _spread(self, column: unit_four_bar.Complexes) -> unit_four_bar.Complexes:
+    def _spread(self, column: task.Complexes) -> task.Complexes:
         """Return a derivative by each point's own angle, or by the one that all share."""
         return np.diag(column) if self.path.turned is None else column[:, None]
 
@@ -287,7 +287,7 @@ def _apart(fits: Sequence[Fitted]) -> list[Fitted]:
     """Return fits without those near a better one: they would end in the same mechanism."""
     kept: list[Fitted] = []
     for fit in fits:
-        low, high = np.array(unit_four_bar.BOUNDS[fit.family]).T
+        low, high = np.array(task.BOUNDS[fit.family]).T
         near = (
             one.family == fit.family
             and one.mirrored == fit.mirrored

@@ -21,7 +21,7 @@ import numpy as np
 
 from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.examine import Examined, examine
-from analytic.lectures.synthesis.path.atlas import between, closed_starts, spread
+from analytic.lectures.synthesis.path.atlas import between, closed_starts, open_starts, spread
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, candidates, proposed
 from analytic.lectures.synthesis.path.fit import (
     LARGEST,
@@ -31,13 +31,13 @@ from analytic.lectures.synthesis.path.fit import (
     fitted,
     placed,
 )
-from analytic.lectures.synthesis.path.pieces import open_starts
-from analytic.lectures.synthesis.path.task import PathTask, UnitPath
-from analytic.lectures.synthesis.path.unit_four_bar import (
+from analytic.lectures.synthesis.path.task import (
     BOUNDS,
     FULL,
     Complexes,
     Family,
+    PathTask,
+    UnitPath,
     direction,
     lengths,
 )

@@ -13,12 +13,16 @@ from analytic.lectures.drawings.graphical import Method
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SIZE, logarithmic, styled
-from reports.lectures.drawing.sheets.graph_drawing import DrawnGraphs, GraphLog, drawn_graphs
+from reports.lectures.drawing.sheets.graph_drawing import (
+    LOGGED,
+    DrawnGraphs,
+    GraphLog,
+    drawn_graphs,
+)
 from reports.lectures.drawing.sheets.graph_page import DRAWN, RAY
 from reports.lectures.drawing.sheets.graph_span import GraphSpan
 from reports.lectures.drawing.sheets.graph_words import NOTHING, share
 from reports.lectures.drawing.sheets.paper import Canvas, Paper, headed, inner_box
-from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.console import grid
 from reports.results.floor_fit import straight
 

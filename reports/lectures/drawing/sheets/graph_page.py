@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 from analytic.lectures.drawings.graphical import Plotted, ThreeGraphs
 from reports.figures.style import INK, LARGE, QUIET, SMALL, TINY, cut, width_in
 from reports.lectures.drawing.sheets import graph_words
-from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
+from reports.lectures.drawing.sheets.graph_drawing import LOGGED, READ, DrawnGraphs
 from reports.lectures.drawing.sheets.graph_sheet import CAPTION_MM, GraphSheet, Panel, graph_sheet
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
@@ -22,8 +22,7 @@ from reports.lectures.drawing.sheets.paper import (
     round_scale,
     text,
 )
-from reports.lectures.drawing.sheets.sheet_log import LOGGED
-from reports.output.numbers import readable
+from reports.output.console import readable
 
 EXACT, DRAWN, RAY, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#e6e6e6"
 DASHED = (0, (4, 2))

@@ -21,7 +21,7 @@ from models.motion import Motion, Order
 from models.scene import Scene
 from models.scene.driver import driver_shown
 from models.scene.laws import ConstantSpeed, Oscillating
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.logs.kinds import KINDS, Kind, LoggedKind
 
 AXES = ("x", "y")

@@ -11,8 +11,8 @@ from analytic.lectures.drawings.polygon import SUPERSCRIPTS, Kind, Polygon, Quan
 from models.array import Array
 from reports.figures.style import INK, QUIET, SIZE, SMALL, TINY, width_in
 from reports.lectures.drawing.sheets import paper, polygon_on_paper
+from reports.lectures.drawing.sheets.graph_drawing import LOGGED
 from reports.lectures.drawing.sheets.letters import Letter, together
-from reports.lectures.drawing.sheets.sheet_log import LOGGED
 
 COLOURS: dict[Kind, str] = {
     "whole": INK,

@@ -13,19 +13,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
-from analytic.lectures.drawings.polygon import Quantity
+from analytic.lectures.drawings.polygon import DriverState, PlacedMechanism, Quantity
 from models.array import Array
 from models.errors import CrankcheckError, few
 from models.motion import Motion, Order
 from models.scene import Scene
 from models.scene.laws import Oscillating
-from reports.compare.beside import Truth
+from reports.compare.compare import Truth
 from reports.compare.free_truth import LOOK, kept_motion
 from reports.compare.tracks import rate, second_rate
 from reports.describe.facts import angle_at, driver_at, time_at
 from reports.drawing.shape import true_motion
-from reports.lectures.drawing.sheets.sheet_log import SheetLog
+from reports.lectures.drawing.sheets.graph_drawing import SheetLog
 from reports.logs.channel import OwnLog, Reading, logged_motion
 from reports.logs.log_beside import EVEN
 

@@ -15,8 +15,8 @@ from analytic.lectures.drawings.polygon import Polygon, Vector
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import power_of_ten
+from reports.lectures.drawing.sheets.graph_drawing import LOGGED
 from reports.lectures.drawing.sheets.paper import Box, arrow, line
-from reports.lectures.drawing.sheets.sheet_log import LOGGED
 
 MOST_MM = 8.0
 """Greatest length of the largest error [mm], ten times its least; it may be longer to scale."""

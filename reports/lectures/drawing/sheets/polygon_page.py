@@ -14,8 +14,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from analytic.lectures.drawings import drawn_polygons
-from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.lectures.drawings.polygon import UNITS, Polygon, Quantity
+from analytic.lectures.drawings.polygon import UNITS, PlacedMechanism, Polygon, Quantity
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
@@ -28,7 +27,7 @@ from reports.lectures.drawing.sheets import polygon_sheet
 from reports.lectures.drawing.sheets.paper import sheet_note
 from reports.lectures.drawing.sheets.polygon_drawing import POLES, lower_case
 from reports.lectures.drawing.sheets.polygon_table import drawn_links
-from reports.output.numbers import count
+from reports.output.console import count
 from reports.output.write import crankcheck_version
 
 

@@ -24,6 +24,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SMALL, TINY, cut
 from reports.lectures.drawing.sheets import polygon_on_paper, polygon_table
+from reports.lectures.drawing.sheets.graph_drawing import LOGGED
 from reports.lectures.drawing.sheets.letters import Letter, ink_of, write_letters
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,
@@ -39,8 +40,7 @@ from reports.lectures.drawing.sheets.paper import (
 from reports.lectures.drawing.sheets.polygon_drawing import draw_polygon, polygon_letters
 from reports.lectures.drawing.sheets.polygon_instant import LoggedInstant
 from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
-from reports.lectures.drawing.sheets.sheet_log import LOGGED
-from reports.output.numbers import readable
+from reports.output.console import readable
 
 GAP = 4.0
 LEFT_SHARE, SCHEME_SHARE = 0.38, 0.5

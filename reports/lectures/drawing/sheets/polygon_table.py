@@ -12,11 +12,11 @@ from analytic.lectures.drawings.polygon import SYMBOLS, UNITS, Quantity
 from models.errors import CrankcheckError
 from models.scene import GROUND
 from reports.figures.style import POINTS, QUIET, TINY, width_in
+from reports.lectures.drawing.sheets.graph_drawing import LOGGED
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper, text
 from reports.lectures.drawing.sheets.polygon_drawing import lower_case
 from reports.lectures.drawing.sheets.polygon_on_paper import STAR, DrawnPolygon
-from reports.lectures.drawing.sheets.sheet_log import LOGGED
-from reports.output.numbers import readable
+from reports.output.console import readable
 
 RATES = {"velocity": "1/s", "acceleration": "1/s^2"}
 REASONS = {"velocity": "as omega is 0", "acceleration": "as omega and alpha are 0"}

@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon as Patch
 from matplotlib.path import Path
 
 from analytic.kinematics import reach, solve_driven
-from analytic.lectures.drawings.placed_mechanism import PlacedMechanism, quarter_turn
+from analytic.lectures.drawings.polygon import PlacedMechanism, quarter_turn
 from models.array import Array, Mask
 from models.errors import CrankcheckError, ReachError
 from models.scene import GROUND, Link, Scene

@@ -13,7 +13,7 @@ from models.errors import CrankcheckError, ReachError, suggestion
 from models.motion import Motion
 from models.scene import GROUND, Scene, span
 from models.scene.laws import ConstantSpeed
-from reports.lectures.drawing.workbook.formula_table import (
+from reports.lectures.drawing.workbook.formulas import (
     ASSEMBLED,
     NAME,
     STATE,
@@ -22,7 +22,7 @@ from reports.lectures.drawing.workbook.formula_table import (
     Input,
     evaluated,
 )
-from reports.output.numbers import readable
+from reports.output.console import readable
 
 MOST_MEMBERS = 20
 CLOSE_DEG = 0.1

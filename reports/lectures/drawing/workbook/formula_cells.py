@@ -26,7 +26,7 @@ from openpyxl.worksheet.properties import (  # type: ignore[import-untyped]  # a
 from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]  # as above
 
 from models.array import Array
-from reports.lectures.drawing.workbook import formula_table
+from reports.lectures.drawing.workbook import formulas
 
 INPUTS, TABLE = "inputs", "live"
 TAKEN = re.compile(r"[rc]|[a-z]{1,3}\d+", re.IGNORECASE)
@@ -47,7 +47,7 @@ def cell_name(name: str) -> str:
     return f"{name}_" if TAKEN.fullmatch(name) else name
 
 
-def write_inputs(book: Workbook, table: formula_table.FormulaTable) -> None:
+def write_inputs(book: Workbook, table: formulas.FormulaTable) -> None:
     """Write the sheet of inputs, one a row: name, value, unit, meaning, and its name in formulas;
     below them the outcome of the table of columns."""
     sheet = book.create_sheet(INPUTS)
@@ -65,7 +65,7 @@ def write_inputs(book: Workbook, table: formula_table.FormulaTable) -> None:
     _finish(sheet, "A2", len(WIDTHS))
 
 
-def _open(sheet: Worksheet, row: int, each: formula_table.Input) -> None:
+def _open(sheet: Worksheet, row: int, each: formulas.Input) -> None:
     """Let the value of an input be changed, within its range."""
     cell = sheet.cell(row, 2)
     cell.fill, cell.protection = OPEN, Protection(locked=False)
@@ -83,7 +83,7 @@ def _open(sheet: Worksheet, row: int, each: formula_table.Input) -> None:
     sheet.add_data_validation(validation)
 
 
-def _append_outcome(sheet: Worksheet, table: formula_table.FormulaTable) -> None:
+def _append_outcome(sheet: Worksheet, table: formulas.FormulaTable) -> None:
     """Write the outcome of the inputs: the range of the rows, and whether all can be assembled."""
     first, last = 2, table.count + 1
 
@@ -96,9 +96,9 @@ def _append_outcome(sheet: Worksheet, table: formula_table.FormulaTable) -> None
     for name in table.states:
         row = sheet.max_row + 1
         member = name.partition("_")[2]
-        head = f"rows {formula_table.ASSEMBLED}" + (f", member {member}" if member else "")
+        head = f"rows {formulas.ASSEMBLED}" + (f", member {member}" if member else "")
         sheet.append(
-            [head, f'=COUNTIF({column(name)},"{formula_table.ASSEMBLED}")', f"of {table.count}"]
+            [head, f'=COUNTIF({column(name)},"{formulas.ASSEMBLED}")', f"of {table.count}"]
         )
         told = f'=IF(B{row}={table.count},"all","#N/A: no position, or no rates, with this crank")'
         sheet.cell(row, 4, told)
@@ -106,7 +106,7 @@ def _append_outcome(sheet: Worksheet, table: formula_table.FormulaTable) -> None
         sheet.conditional_formatting.add(f"A{row}:D{row}", rule)
 
 
-def write_columns(book: Workbook, table: formula_table.FormulaTable) -> None:
+def write_columns(book: Workbook, table: formulas.FormulaTable) -> None:
     """Write the sheet of columns; rows not assembled have #N/A, which charts leave out."""
     sheet = book.create_sheet(TABLE)
     sheet.append([_head(each.head, table) for each in table.columns])
@@ -116,7 +116,7 @@ def write_columns(book: Workbook, table: formula_table.FormulaTable) -> None:
             plain = column.first if row == 2 and column.first is not None else column.formula
             cells.append("=" + _placed(plain, table, row))
         sheet.append(cells)
-    values = formula_table.evaluated(table)
+    values = formulas.evaluated(table)
     for place, column in enumerate(table.columns, 1):
         shape = _number_format(values[column.name])
         says = column.name in table.states
@@ -128,7 +128,7 @@ def write_columns(book: Workbook, table: formula_table.FormulaTable) -> None:
     whole = f"A2:{table.letter(table.columns[-1].name)}{table.count + 1}"
     sheet.conditional_formatting.add(whole, FormulaRule(["ISNA(A2)"], font=SOFT))
     for letter in map(table.letter, table.states):
-        rule = FormulaRule([f'{letter}2<>"{formula_table.ASSEMBLED}"'], font=RED)
+        rule = FormulaRule([f'{letter}2<>"{formulas.ASSEMBLED}"'], font=RED)
         sheet.conditional_formatting.add(f"{letter}2:{letter}{table.count + 1}", rule)
     _finish(sheet, "D2", len(table.columns))
 
@@ -159,12 +159,12 @@ def _number_format(values: Array) -> str:
     return "0." + "0" * (DIGITS - 1 - math.floor(math.log10(largest)))
 
 
-def _head(head: str, table: formula_table.FormulaTable) -> str:
+def _head(head: str, table: formulas.FormulaTable) -> str:
     """A head; a head with an input in it shows its present value."""
     return _placed(head, table, 0) if head.startswith("=") else head
 
 
-def _placed(formula: str, table: formula_table.FormulaTable, row: int) -> str:
+def _placed(formula: str, table: formulas.FormulaTable, row: int) -> str:
     """The formula with cells in place of columns, and the names of cells in place of inputs."""
 
     def cell(match: re.Match[str]) -> str:
@@ -173,4 +173,4 @@ def _placed(formula: str, table: formula_table.FormulaTable, row: int) -> str:
             return cell_name(given)
         return f"{table.letter(column)}{row - 1 if before else row}"
 
-    return formula_table.NAME.sub(cell, formula)
+    return formulas.NAME.sub(cell, formula)

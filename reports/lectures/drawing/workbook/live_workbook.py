@@ -27,11 +27,11 @@ from models.array import Array
 from models.errors import StructureError
 from models.scene import GROUND, Scene
 from models.scene.laws import ConstantSpeed
-from reports.describe.motion_tables import motion_frame
+from reports.describe.free_motion import motion_frame
 from reports.lectures.drawing.workbook import formulas
 from reports.lectures.drawing.workbook.family import SceneFamily
 from reports.lectures.drawing.workbook.formula_cells import TABLE, write_columns, write_inputs
-from reports.lectures.drawing.workbook.formula_table import FormulaTable
+from reports.lectures.drawing.workbook.formulas import FormulaTable
 from reports.output.formats import workbook
 from reports.output.write import clean, crankcheck_version
 

@@ -13,8 +13,7 @@ from analytic.lectures.drawings import graphical
 from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, draw_polygons, similarity
 from analytic.lectures.drawings.graphical import Method, Plotted, by_chords, three_graphs
 from analytic.lectures.drawings.instant_centres import centrodes, curvature_circles, instant_centres
-from analytic.lectures.drawings.placed_mechanism import DriverState
-from analytic.lectures.drawings.polygon import Vector
+from analytic.lectures.drawings.polygon import DriverState, Vector
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped

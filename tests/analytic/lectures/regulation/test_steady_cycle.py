@@ -11,10 +11,15 @@ from scipy.integrate import solve_ivp
 
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
-from analytic.lectures.regulation.cycle_search import cycle_of, steady_cycle
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.periodic_solution import StallError
-from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, with_flywheel
+from analytic.lectures.regulation.steady_cycle import (
+    SteadyCycle,
+    cycle_of,
+    cycle_scene,
+    steady_cycle,
+    with_flywheel,
+)
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from analytic.structure.mobility import sides_of
 from models.errors import CrankcheckError

@@ -10,7 +10,7 @@ from pylinkage.synthesis import Pose as TheirPose
 from pylinkage.synthesis import compute_pole, function_generation, motion_generation
 
 from analytic.lectures.synthesis.burmester import five_positions, four_positions
-from analytic.lectures.synthesis.function.fourbar import fourbars
+from analytic.lectures.synthesis.function.linkages import fourbars
 from analytic.lectures.synthesis.pose import PlanePose, PoseDyad, about_circumcentre, pole
 from models.errors import CrankcheckError
 from tests.analytic.assur.homotopy import Equation, finite_solutions

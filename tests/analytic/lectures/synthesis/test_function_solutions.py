@@ -10,9 +10,13 @@ import pytest
 from scipy.optimize import fsolve  # type: ignore[import-untyped]
 
 from analytic.lectures.synthesis.burmester import five_positions
-from analytic.lectures.synthesis.function.fourbar import FourBarGenerator, fourbars
 from analytic.lectures.synthesis.function.generator import Generator
-from analytic.lectures.synthesis.function.slider_crank import SliderCrankGenerator, slider_cranks
+from analytic.lectures.synthesis.function.linkages import (
+    FourBarGenerator,
+    SliderCrankGenerator,
+    fourbars,
+    slider_cranks,
+)
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction, MechanismKind
 from analytic.lectures.synthesis.pose import PlanePose
 from models.array import Array

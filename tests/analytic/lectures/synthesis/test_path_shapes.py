@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
-from analytic.lectures.synthesis.path import unit_four_bar as unit
+from analytic.lectures.synthesis.path import task as unit
 from analytic.lectures.synthesis.path.atlas import (
     at_shares,
     atlas,
@@ -15,6 +15,8 @@ from analytic.lectures.synthesis.path.atlas import (
     curves,
     descriptors,
     match,
+    open_starts,
+    pieces,
     shares,
     similar,
     smooth,
@@ -23,10 +25,15 @@ from analytic.lectures.synthesis.path.atlas import (
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, drafted, in_order
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
 from analytic.lectures.synthesis.path.fit import _Problem, placed
-from analytic.lectures.synthesis.path.pieces import open_starts, pieces
 from analytic.lectures.synthesis.path.search import _costs, timed_starts
-from analytic.lectures.synthesis.path.task import PathTask, UnitPath
-from analytic.lectures.synthesis.path.unit_four_bar import FULL, Complexes, Family, lengths
+from analytic.lectures.synthesis.path.task import (
+    FULL,
+    Complexes,
+    Family,
+    PathTask,
+    UnitPath,
+    lengths,
+)
 from models.array import Array
 from models.errors import CrankcheckError
 

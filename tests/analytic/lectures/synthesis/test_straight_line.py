@@ -11,8 +11,7 @@ import pytest
 
 from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.examine import examine
-from analytic.lectures.synthesis.line_draft import StraightLinkage, peaucellier
-from analytic.lectures.synthesis.path.unit_four_bar import Complexes
+from analytic.lectures.synthesis.path.task import Complexes
 from analytic.lectures.synthesis.straight_line import (
     TEXTBOOK,
     Kind,
@@ -21,7 +20,7 @@ from analytic.lectures.synthesis.straight_line import (
     hoeken_of,
     straight_line,
 )
-from analytic.lectures.synthesis.straight_part import measured
+from analytic.lectures.synthesis.straight_part import StraightLinkage, measured, peaucellier
 from models.errors import CrankcheckError
 from models.scene import Scene
 

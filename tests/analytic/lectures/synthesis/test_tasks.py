@@ -13,7 +13,7 @@ from analytic.lectures.synthesis.examine import Examined, examine, passing_times
 from analytic.lectures.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
 from analytic.lectures.synthesis.slider_crank_strokes import stroke_proposals
 from analytic.lectures.synthesis.solutions import Solutions, followed, solutions_of
-from analytic.mechanism.travel import travel
+from analytic.mechanism.cycle import travel
 from models.errors import CrankcheckError, ReachError
 from models.lectures.tasks import load_task
 from models.lectures.tasks.positions import StrokeTask

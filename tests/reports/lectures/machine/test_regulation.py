@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import crankcheck
-from analytic.lectures.regulation.cycle_search import cycle_of
+from analytic.lectures.regulation.steady_cycle import cycle_of
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.files.assemble import scene_text
 from models.files.reading import load_scene

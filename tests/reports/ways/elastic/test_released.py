@@ -18,7 +18,7 @@ from reports.requests.compare import compare
 from reports.requests.judge import judge
 from reports.requests.run import run as simulated
 from reports.selftest.elastic_changes import in_given
-from reports.selftest.segment_changes import springs, stiffer
+from reports.selftest.elastic_faults import springs, stiffer
 from reports.verify.table import footer
 from tests.worlds.facts import with_facts
 from tests.worlds.tiers import slowly

@@ -15,7 +15,7 @@ from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.plan.requirements import held_steps
 from reports.selftest.elastic_changes import in_beam, in_given, stiffer_beam
-from reports.selftest.segment_changes import springs, stiffer
+from reports.selftest.elastic_faults import springs, stiffer
 from tests.worlds.tiers import few, slow, slowly
 from tests.worlds.turns import of_turns
 

@@ -18,12 +18,13 @@ from PIL import Image
 
 from analytic.kinematics import solve, solve_driven
 from analytic.lectures.drawings.drawn_polygons import draw_polygons, polygons_of
-from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
+from analytic.lectures.drawings.polygon import DriverState, PlacedMechanism
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.motion import Motion
 from reports.drawing.shape import true_motion
+from reports.lectures.drawing.sheets.graph_drawing import SheetLog
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.lectures.drawing.sheets.polygon_instant import (
     DIFFERENCED,
@@ -45,7 +46,6 @@ from reports.lectures.drawing.sheets.polygon_sheet import (
     draw_sheet,
     laid_out,
 )
-from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.map_file import Map
 from reports.requests.any_log import log_of_motion
 from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines

@@ -10,7 +10,7 @@ import pytest
 
 from analytic.kinematics import reach
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
-from analytic.lectures.drawings.placed_mechanism import DriverState
+from analytic.lectures.drawings.polygon import DriverState
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene import Scene

@@ -23,7 +23,7 @@ from reports.lectures.drawing.workbook.family import (
     scene_family,
     varied_scene,
 )
-from reports.lectures.drawing.workbook.formula_table import Input, evaluated
+from reports.lectures.drawing.workbook.formulas import Input, evaluated
 from reports.lectures.drawing.workbook.live_workbook import (
     formulas_of,
     left_out,

@@ -11,7 +11,7 @@ import numpy as np
 import openpyxl
 import pytest
 
-from reports.lectures.drawing.workbook.formula_table import ASSEMBLED, FormulaTable, evaluated
+from reports.lectures.drawing.workbook.formulas import ASSEMBLED, FormulaTable, evaluated
 from reports.lectures.drawing.workbook.live_workbook import formulas_of
 from tests.worlds.live_tables import (
     CHANGES,
