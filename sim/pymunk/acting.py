@@ -14,10 +14,17 @@ from models.scene.joints import Slot, block_name, joints, riding_body, sliding_a
 from models.scene.loads import ConstantFriction, Load
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
-from sim.pymunk.bodies import Course, Frames, SliderCourse, frames_at_end
+from sim.pymunk.bodies import (
+    ChainSprings,
+    Course,
+    Frames,
+    SliderCourse,
+    SpringSteps,
+    chain_springs,
+    frames_at_end,
+)
 from sim.pymunk.native import NONE, Pushes
 from sim.pymunk.space import SpaceModel
-from sim.pymunk.spring_steps import ChainSprings, SpringSteps, chain_springs
 
 
 class LoadSteps:

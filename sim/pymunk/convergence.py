@@ -26,9 +26,9 @@ from models.array import Array
 from models.errors import EngineError
 from models.scene import Scene
 from sim.engine import Settings
+from sim.pymunk.bodies import chain_springs
 from sim.pymunk.native import moves_freely
 from sim.pymunk.space import SpaceModel
-from sim.pymunk.spring_steps import chain_springs
 
 HALVINGS = 3.0
 """Least number of halvings of an error in a step, in the position of the start. One is enough

@@ -18,13 +18,12 @@ from sim.engine.settings import as_held
 from sim.pymunk import settings as own
 from sim.pymunk.acting import Acting
 from sim.pymunk.arcs import Arcs
-from sim.pymunk.bodies import FIELDS, WIDTH, finite, pose, rows_of
+from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, finite, pose, rows_of
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.space import build
-from sim.pymunk.spring_steps import chain_springs
 
 ROOM = 64
 """Spare numbers of memory: the buffer may not grow memory that is not its own."""

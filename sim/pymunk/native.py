@@ -158,7 +158,7 @@ class NativeSpring:
     """A spring between two bodies of a space, by name: pymunk's length is the spring's q less
     ``q_at_zero`` [m or rad]. Along a line, ``block`` is the slider of a pulled block without mass.
 
-    It pulls with the length at the end of a step, as `sim.pymunk.spring_steps` does. It damps the
+    It pulls with the length at the end of a step, as `sim.pymunk.bodies` does. It damps the
     velocity before the joints of the step have corrected it, by turns with them, so that damping is
     of first order (numbers: the reason in `sim.pymunk.settings`); by an exponential, so that a
     damper of any stiffness is stable.

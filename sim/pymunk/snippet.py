@@ -19,7 +19,7 @@ DRIVES: Mapping[Drive, str] = {
 OF_FREE = {
     ("springs", "forces"): (
         "Dampers: not those of DampedSpring and DampedRotarySpring, but forces set before each "
-        "step, from the lengths at its end (crankcheck, sim/pymunk/spring_steps.py). Springs "
+        "step, from the lengths at its end (crankcheck, sim/pymunk/bodies.py). Springs "
         "without damping need nothing of the kind."
     ),
     ("free_paths", "arcs"): (

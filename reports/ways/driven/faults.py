@@ -5,7 +5,7 @@ from functools import partial
 
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.selftest import engines, forces, handed_back, requests
+from reports.selftest import engines, forces, requests
 from reports.selftest.fault import PROFILE, STEPS, FaultRuns, FaultSet
 from reports.selftest.log_faults import CLOCK, MISSING, VALUES
 from reports.selftest.mechanism import MECHANISM, MISPLACED
@@ -36,8 +36,8 @@ GROUPS = {
 }
 FAULTS = FaultSet(
     (
-        *requests.FAULTS,
-        *handed_back.FAULTS,
+        *requests.RUN_FAULTS,
+        *requests.LOG_FAULTS,
         *MECHANISM,
         *engines.FAULTS,
         *CLOCK,

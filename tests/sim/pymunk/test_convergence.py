@@ -18,10 +18,10 @@ from models.scene.cut_scenes import SegmentedScene
 from models.scene.loads import LineSpring, PinSpring, Spring
 from sim.engine import Run
 from sim.pymunk import acting, convergence
+from sim.pymunk.bodies import chain_springs
 from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.space import SpaceModel, build
-from sim.pymunk.spring_steps import chain_springs
 from sim.registry.offers import remedies
 from sim.run import run
 from tests.worlds.runs import opened, ran, start_of
