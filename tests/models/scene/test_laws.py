@@ -88,10 +88,8 @@ def test_a_turn_of_a_steady_acceleration_is_the_first_away_from_the_start(
     (lambda: ConstantSpeed(0.0, 0.0), "drives nothing"),
     (lambda: ConstantSpeed(math.nan, 1.0), "start_rad is nan"),
     (lambda: Oscillating(0.0, 0.0, 1.0), "amplitude"),
-    (lambda: Oscillating(0.0, 1.0, math.inf), "frequency_rad_s is inf"),
     (lambda: FromRest(0.0, 1.0, 0.0), "rise_s"),
     (lambda: Accelerating(0.0, 1.0, 0.0), 'use law = "constant"'),
-    (lambda: Accelerating(0.0, math.inf, 1.0), "speed_rad_s is inf"),
     (lambda: SpeedChange(0.0, 1.0, 0.0, 0.1, 0.1), "after_rad_s"),
     (lambda: SpeedChange(0.0, 1.0, 2.0, 0.1, -0.1), "rise_s"),
 ])  # fmt: skip
@@ -105,13 +103,9 @@ PASSED: list[tuple[Law, float, bool]] = [
     (FromRest(0.1, 12.0, 0.4), 1.0, False),
     (Oscillating(0.5, 0.4, 9.0, -1.5), 0.02, False),
     (Oscillating(0.5, 0.4, 9.0, 0.2), 0.3, True),
-    (Oscillating(0.5, -0.4, 9.0, 0.2), 0.05, True),
     (Accelerating(0.3, 2.0, 9.0), 0.1, False),
     (Accelerating(0.3, -2.0, 9.0), 0.05, False),
     (Accelerating(0.3, -2.0, 9.0), 0.05, True),
-    (Accelerating(0.3, -2.0, 9.0), 0.7, False),
-    (Accelerating(0.3, 2.0, -9.0), 0.3, True),
-    (Accelerating(0.3, 0.0, -9.0), 0.1, False),
     (Accelerating(0.3, 0.0, -9.0), 0.0, False),
 ]
 
