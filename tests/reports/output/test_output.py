@@ -93,7 +93,8 @@ def test_a_folder_may_be_a_link_but_not_to_nothing(tmp_path: Path) -> None:
     (tmp_path / "real").mkdir()
     for name in ("real", "nothing"):
         (tmp_path / f"to {name}").symlink_to(tmp_path / name)
-    check_folder(tmp_path / "to real", "-o", ["out.csv"])
+    check_folder(tmp_path / "to real" / "to be made", "-o", ["out.csv"])
+    assert not list((tmp_path / "real").iterdir())
     write(tmp_path / "to real" / "out.csv", "new")
     assert (tmp_path / "real" / "out.csv").read_text() == "new"
     for deeper in ("", "deeper"):
@@ -113,7 +114,7 @@ def test_what_the_shell_made_a_pipe_of_is_written_into() -> None:
 
 
 @where("/proc/self/fd")
-@pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"])
+@pytest.mark.parametrize("name", ["/dev/stdout", "/proc/self/fd/1"])
 def test_what_the_shell_made_a_file_of_is_written_into(name: str, tmp_path: Path) -> None:
     """In its turn: what the process prints there before and after stays."""
     script = f"""
@@ -176,11 +177,6 @@ def test_what_can_not_be_written_is_refused_before_the_work(
     refused(message, check, tmp_path / name, "-o", *more)
 
 
-def test_a_folder_that_has_to_be_made_is_fine_and_is_not_made_yet(tmp_path: Path) -> None:
-    check_folder(tmp_path / "a" / "b", "-o")
-    assert not (tmp_path / "a").exists()
-
-
 def test_a_place_that_may_not_be_looked_at_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -236,10 +232,11 @@ def test_every_number_is_read_back_to_the_last_bit(tmp_path: Path, ending: str) 
 
 def test_a_workbook_says_where_it_comes_from_and_holds_no_formula() -> None:
     frame = pd.DataFrame({"=x\x00": [1.5, math.nan], "text": ["=1+1", "b"]})
-    book = openpyxl.load_workbook(io.BytesIO(workbook(frame, "log", {"scene": "=2+2"})))
+    facts = {"scene": "=2+2", "source": "bell \x07"}
+    book = openpyxl.load_workbook(io.BytesIO(workbook(frame, "log", facts)))
     assert book.sheetnames == ["log", "source"]
     rows = list(book["source"].iter_rows(values_only=True))
-    assert rows[1] == ("scene", "=2+2")
+    assert rows[1:3] == [("scene", "=2+2"), ("source", "bell \ufffd")]
     assert rows[-1][0] == "crankcheck"
     assert book["source"]["B2"].data_type == "s"
     assert (book["log"]["A2"].value, book["log"]["A2"].data_type) == (1.5, "n")

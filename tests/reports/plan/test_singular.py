@@ -7,7 +7,7 @@ import pytest
 
 from analytic.kinematics import reach
 from models.errors import CrankcheckError
-from models.files.reading import load_scene, shipped
+from models.files.reading import load_scene
 from models.scene.laws import Oscillating
 from reports.plan.singular import passage_note, refuse_singular
 from tests.worlds.command_line import crank, edited, refused
@@ -86,12 +86,6 @@ def test_a_note_tells_only_what_is_passed_and_verify_prints_it_once_and_runs(
     result = crank("verify", path, "--steps-per-turn", "90", "--engine", "mujoco")
     assert result.exit_code in (0, 1)
     assert result.stderr.count("passes the change points of C at driver 0, 180 deg") == 1
-
-
-@pytest.mark.parametrize("name", list(shipped()))
-def test_no_shipped_scene_is_refused(name: str) -> None:
-    scene = load_scene(name)
-    refuse_singular(scene, 2 * scene.driver.law.period_s)
 
 
 def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(

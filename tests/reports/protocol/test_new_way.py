@@ -86,28 +86,24 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> House:
     return House(json.loads(done.stdout.splitlines()[-1]), folder)
 
 
-@pytest.mark.parametrize(
-    ("name", "code", "words"),
-    [
-        (
-            "verify",
-            0,
-            ["beads, profile tuned", "off by", "order 2.0", "swing in elliptic functions"],
-        ),
-        ("refused", 2, ["the bead starts with 1 rad/s", "leave speed_rad_s out"]),
-        ("judge", 0, ["phase of spoke, the driver", "WITHIN TOLERANCE", "energy of bead"]),
-        ("sweep", 0, ["1 cell: 1 run now"]),
-        ("report", 0, ["page.html: 1 cell"]),
-        ("figures", 0, ["each as .svg and .pdf"]),
-        ("stability", 0, ["BEADS", "bead-top", "holds all", "a bead, rad or over the spoke"]),
-        ("selftest", 0, ["caught bead-ahead", "beads on wires", "beads: 1 ms, 1 s"]),
-    ],
-)
-def test_it_goes_through(house: House, name: str, code: int, words: list[str]) -> None:
-    found, text = house.told[name]
-    assert found == code, text
+SAID = {
+    "verify": "beads, profile tuned | off by | order 2.0 | swing in elliptic functions",
+    "refused": "the bead starts with 1 rad/s | leave speed_rad_s out",
+    "judge": "phase of spoke, the driver | WITHIN TOLERANCE | energy of bead",
+    "sweep": "1 cell: 1 run now",
+    "report": "page.html: 1 cell",
+    "figures": "each as .svg and .pdf",
+    "stability": "BEADS | bead-top | holds all | a bead, rad or over the spoke",
+    "selftest": "caught bead-ahead | beads on wires | beads: 1 ms, 1 s",
+}
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_it_goes_through(house: House, name: str) -> None:
+    code, text = house.told[name]
+    assert code == (2 if name == "refused" else 0), text
     told = " ".join(text.split())
-    assert [word for word in words if word not in told] == []
+    assert [words for words in SAID[name].split(" | ") if words not in told] == []
 
 
 def test_it_has_columns_a_section_and_a_figure_of_its_own(house: House) -> None:
