@@ -14,7 +14,6 @@ import pytest
 from models.files.reading import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds.fuzzing import Ended, attempt
-from tests.worlds.tiers import few
 
 MOST_CALLS, LESS = 8_000_000, 60_000_000
 """Calls of functions, some 5,000 for a misspelt key, and memory [byte] beyond that of such a one. A
@@ -73,77 +72,44 @@ SPECIAL: dict[str, tuple[Callable[[Path], object], str]] = {
     "link to nothing": (partial(os.symlink, "nothing"), "neither a shipped scene|not there"),
 }
 MORE = r"unknown key.*and \d+ more"
-VALUES = "more than 40000 values, such as scenes.5"
 BOTH: dict[str, tuple[str, str]] = {
     "key of 60,000 dots": ("a." * 60_000 + "a = 1", r"line 1: a key of more than 10 parts"),
-    "quoted key of many parts": ('"a".' * 40_000 + "a = 1", r"line 1: a key of more than 10 parts"),
     "brackets": ("a = " + "[" * 60_000, "lists or tables nested too deep, by more than 10"),
     "braces": ("a = " + "{a=" * 60_000, "lists or tables nested too deep|60001 keys"),
-    "deep keys in deep tables": ("a = " + ("{" + "a." * 9 + "a = ") * 50 + "1" + "}" * 50,
-        "lists nested too deep, by more than 10"),
     "headers of many parts": (many(f"[a#{'.b' * 49}]\n", 1800),
         "line 1: a key of more than 10 parts; the deepest of scenes and studies has 4"),
-    "very many headers": (many("[a#]\n", 22_000), "22000 keys, those of head"),
     "headers of some parts": (many(f"[a#{'.b' * 9}]\n", 7700),
         "77000 keys, those of headers and the parts between dots counted; at most 20000 are read"),
-    "headers of quoted parts": (many("[[ a# . 'b' . \"b.\\\"\" ]]\n", 7000), "21000 keys"),
     "keys of some parts": (many(f"a#{'.b' * 9}=1\n", 7700), "77000 keys"),
-    "tables of some parts": ("a = [" + many("{a#.b.c.d = 1,b.c=1},", 6000) + "]", "36001 keys"),
-    **{f"{n} headers and keys": (many(f"[a#{'.b' * 8}]\nc=1\n", n), MORE) for n in (190, 1990)},
-    **{f"{n} values": ("scenes = [" + "1," * n + "]", "scenes.* and 3|scenes: unknown key")
-       for n in (3900, 39_000)},
-    **{f"{n} values": ("scenes = [" + "1," * n + "]", VALUES) for n in (45_001, 95_000)},
-    "very many keys": (many("a#=1\n", 22_000), "22000 keys, those of headers"),
-    **{f"{n} keys": (many("a#=1\n", n), MORE) for n in (800, 18_000)},
-    **{f"{n} tables": ("[[a]]\n" * n, "a: unknown key") for n in (900, 19_000)},
+    "190 headers and keys": (many(f"[a#{'.b' * 8}]\nc=1\n", 190), MORE),
+    "3900 values": ("scenes = [" + "1," * 3900 + "]", "scenes.* and 3|scenes: unknown key"),
+    "45001 values": ("scenes = [" + "1," * 45_001 + "]",
+        "more than 40000 values, such as scenes.5"),
+    "800 keys": (many("a#=1\n", 800), MORE),
+    "900 tables": ("[[a]]\n" * 900, "a: unknown key"),
     "integer of 5000 digits": ("turns = " + "9" * 5000, "line 1: a number of more digits than"),
     "integer of 4000 digits": ("turns = " + "9" * 4000, "turns: a whole number of 13288 bits"),
-    "hexadecimal of many digits": ("turns = 0x" + "f" * 9000, "turns: a whole number of 36000 bi"),
-    "date": ("turns = 1979-05-27", "turns: "),
-    "control character": ("turns = '\0'", "not valid TOML: Found invalid character"),
     "long text": ("turns = '" + "x" * 190_000 + "'", "turns: "),
 }  # fmt: skip
 YAML: dict[str, tuple[bytes, str]] = {
     "integer of 5000 digits": (b"turns: " + b"9" * 5000,
         r"line 1, column 8: found 9+\.\.\., a number of 5000 characters; use at most 100"),
-    "hexadecimal": (b"turns: 0x" + b"f" * 9000, "found 0xf+.*, a number of 9002 characters; use"),
-    "hexadecimal of few digits": (b"turns: 0x" + b"f" * 90, "turns: a whole number of 360 bits"),
     "no digits": (b"turns: 0x_", "found 0x_; it can not be read as int"),
     "degrees": (b"turns: " + b":".join([b"59"] * 60_000), "found 59:59.*a number of 179999 char"),
-    "degrees in a list": (b"turns: [" + b"1:" * 97_000 + b"1]", "column 9: found 1:1.*a number of"),
-    "degrees and parts": (b"turns: " + b"1:" * 200 + b"1.0",
-        "column 8: found 1:1.*a number of 403"),
-    "degrees by another way": (b"a: !!int {!!value b: !!str '" + b"1:" * 90_000 + b"1'}",
-        "a number"),
-    "no integer": (b'turns: !!int ""', "line 1, column 8: found ; it can not be read as int"),
-    "float of no digits": (b'turns: !!float "_"', "found _; it can not be read as float, write"),
     "no character": (b'scenes: ["\\U00110000"]',
         "line 1, column 13: an escape that is no character"),
     "half a character": (b'scenes: ["\\ud800"]',
         r"column 10: found .ud800; it can not be read as str"),
-    "half a character as a key": (b'"\\ud800": 1', r"column 1: found .ud800; it can not be"),
     "version": (b"%YAML " + b"9" * 5000 + b".1\n--- a",
         "line 1, column 7: .*number of too many dig"),
-    "date": (b"turns: 2020-12-25", "turns: found '2020-12-25'; input should be a valid number"),
     "date that is none as a key": (b"2020-13-45: 1", "2020-13-45: unknown key; known: scenes"),
     "number as a key": (b"1: 1", "1: found 1; keys should be strings"),
-    "number of many digits as a key": (b"? 0x" + b"f" * 90 + b"\n: 1", "a whole number of 360"),
     "billion laughs": (nested(10, 9), "line 5, column .*: more than 5000 values, those of an al"),
     "itself": (b"scenes: &a [*a]", "line 1, column 13: an alias for what it stands in; name"),
-    "texts": (b"a: &a " + b"x" * 99_000 + b"\nb: [" + b"*a," * 33_000 + b"]", "more than 5000 val"),
     "brackets": (b"a: " + b"[" * 90_000, "line 1, column 13: values nested more than 10 deep"),
-    "steps": ("".join(" " * k + "a:\n" for k in range(600)).encode(), "nested more than 10 deep"),
-    "dashes": (b"- " * 90_000, "nested more than 10 deep"),
-    "200 keys": (many("a#: 1\n", 200).encode(), "unknown key.*and 182 more"),
-    "2000 keys": (many("a#: 1\n", 2000).encode(), "unknown key.*and 1982 more"),
-    **{f"{n} keys": (many("a#: 1\n", n).encode(), "more than 5000 val") for n in (5001, 18_000)},
+    "5001 keys": (many("a#: 1\n", 5001).encode(), "more than 5000 val"),
     "tag": (b"turns: !!python/object:os.system x", "could not determine a constructor"),
-    "tag of a date": (b"turns: !!timestamp x", "could not determine a constructor"),
-    "tag of a truth": (b"turns: !!bool x", "line 1, column 8: found x; it can not be read as bool"),
     "list as a key": (b"[a]: 1", "found unhashable key"),
-    "long text": (b"turns: " + b"x" * 190_000, r"turns: found 'x+\.\.\.; input should be"),
-    "NUL": (b"a: \0", "not valid YAML: unacceptable character"),
-    "two": (b"a: 1\n---\nb: 2", "expected a single document"),
     "nothing": (b"", "a table of scenes, variants and steps_per_turn is needed"),
 }  # fmt: skip
 OPTIONS = {
@@ -166,35 +132,29 @@ def cases() -> Iterator[tuple[str, str, Made, str, str]]:
         yield f"{verb} UTF-16", f"it{ending}", STUDY.encode("utf-16"), command, "not UTF-8 text"
     for name, (text, words) in BOTH.items():
         yield f"solve {name}", "it.toml", text.encode(), SOLVE, words
-        yield f"sweep {name}", "it.toml", text.encode(), SWEEP, words
+        if name in ("braces", "800 keys", "900 tables"):  # beyond the reading of TOML
+            yield f"sweep {name}", "it.toml", text.encode(), SWEEP, words
     for name, (raw, words) in YAML.items():
         yield f"sweep YAML {name}", "it.yaml", raw, SWEEP, words
     for line, words in OPTIONS.items():
         yield line[:70], "it.toml", b"", line, words
     yield "1e400", "it.toml", speed("1e400"), SOLVE, "driver.speed_rad_s: found inf; input should"
-    for count in (1001, 9000):
-        text = ("[sliders]\n" + many("s# = { on = 'x' }\n", count)).encode()
-        words = "sliders: found .* at most 1000 items"
-        yield f"{count} sliders", "it.toml", text, SOLVE, words
+    text = ("[sliders]\n" + many("s# = { on = 'x' }\n", 1001)).encode()
+    yield "1001 sliders", "it.toml", text, SOLVE, "sliders: found .* at most 1000 items"
     star = many("[links.l#.points]\nA = [0.0, 0.0]\nB# = [0.1, 0.0]\n", 999)
     head = "name = 'a'\nsource = 'b'\n[ground.points]\nA = [0.0, 0.0]\n"
     driver = "[driver]\nlink = 'l0'\nspeed_rad_s = 1.0\n"
     yield "links on a pin", "it.toml", f"{head}{driver}{star}".encode(), SOLVE, "mobility W = .*999"
     words = "asks for 1e.08 cells: 1 scene x 1e.08 variants .*100 of s0, 100 of s1.*; a sweep has"
     yield "variants", "it.toml", settings(4, 100), SWEEP, words
-    for count in (60, 6000):
-        words = "at most 100000: take fewer"
-        yield f"variants of {count}", "it.toml", settings(count, 2), SWEEP, words
+    words = "at most 100000: take fewer"
+    yield "variants of 60", "it.toml", settings(60, 2), SWEEP, words
     yield "study of repeats", "it.toml", STUDY.replace("[90]", f"{[90.0] * 10_000}").encode() + (
         STUDY[STUDY.index("[[") :] * 11
     ).encode(), SWEEP, "120000 cells: 1 scene x 12 variants x 10000 steps in a turn"  # fmt: skip
 
 
 CASES = {name: case for name, *case in cases()}
-LARGE = re.compile(
-    "sweep 45001|sweep 3900|YAML (2000|18000)|1990|39000|95000|18000|19000|9000 s|of 6000|in a list"
-)
-"""What takes half a million calls or more to refuse; a smaller one beside it is refused as well."""
 
 
 @pytest.fixture(scope="module")
@@ -210,10 +170,7 @@ def apart() -> Iterator[Isolated[Ended]]:
     process.close()
 
 
-@pytest.mark.parametrize(
-    "name",
-    few(CASES, [name for name in CASES if not LARGE.search(name)], "only its size is another"),
-)
+@pytest.mark.parametrize("name", CASES)
 def test_it_is_refused_at_once_with_one_message(name: str, apart: Isolated[Ended]) -> None:
     file, made, command, words = CASES[name]
     ended = apart.call(partial(attempt, name=file, counted=True), made, *command.split())
@@ -234,15 +191,6 @@ RUNS = (
     "sweep FILE --engine mujoco -o OUT",
     "tune FILE --engine mujoco --target 1e-4 --budget 1",
 )
-COMMANDS = (*RUNS, "solve FILE", "run FILE --engine mujoco", "export FILE", "view FILE -o OUT.png",
-            "cycle FILE -o OUT.csv", "flywheel FILE --delta 0.02 --write OUT.toml",
-            "advise FILE --dt 1e-3 --speed 6.0 --target 1e-4")  # fmt: skip
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-def test_a_fault_of_a_load_is_one_message(command: str) -> None:
-    faulty = PRESS.replace('block = "E"\n', 'link = "lower"\npoint = "Z"\n', 1)
-    check_refused(faulty, command, "loads.work.point: lower has no point Z")
 
 
 @pytest.mark.parametrize("command", RUNS)

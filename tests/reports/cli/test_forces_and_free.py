@@ -9,9 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from models.errors import CrankcheckError
-from models.files.assemble import scene_text
-from models.files.reading import load_scene, scene_texts
+from models.files.reading import load_scene
 from reports.requests.verify import VerifyRequest, plan
 from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
 from reports.store.reader import read_store
@@ -66,15 +64,6 @@ def test_an_engine_without_forces_is_unsupported_where_it_is_named_and_a_note_el
     refused(named, "mujoco reports no forces; run it without, or another engine")
     assert usual.exit_code == 0, usual.output
     assert "forces: mujoco reports none, and is run without" in flat(usual.stderr)
-
-
-@pytest.mark.parametrize("verb", ["verify", "sweep"])
-def test_a_scene_without_mass_is_refused(verb: str, tmp_path: Path) -> None:
-    text = scene_texts([SCENE])[SCENE]
-    path = tmp_path / "light.toml"
-    path.write_text(text.replace("{ bar", "{ mass_kg = 0.0, inertia_kg_m2 = 0.0, bar"))
-    result = crank(verb, path, "--engine", "mujoco", "--forces", "-o", tmp_path / "out")
-    refused(result, "no link or slider has a mass and nothing loads them")
 
 
 def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(tmp_path: Path) -> None:
@@ -148,14 +137,6 @@ def test_driven_scenes_are_let_go_with_free_and_stay_driven_without() -> None:
     assert cells[0].dt_s == 1e-3
     period_s = load_scene(SCENE).driver.law.period_s
     assert abs(cells[0].steps * cells[0].dt_s - 10.0 * period_s) < 1e-3
-
-
-def test_a_scene_without_a_mass_that_moves_is_refused_before_anything_runs(tmp_path: Path) -> None:
-    path = tmp_path / "bare.toml"
-    text = scene_text(load_scene(SWING))
-    path.write_text(re.sub("^mass_kg.*", "mass_kg = 0.0", text, flags=re.MULTILINE))
-    with pytest.raises(CrankcheckError):
-        plan(VerifyRequest((str(path),)))
 
 
 def test_a_sweep_of_what_is_let_go_is_kept_shown_and_compared(tmp_path: Path) -> None:

@@ -15,16 +15,14 @@ from sim.run import run
 from tests.worlds.command_line import crank, refused, told
 from tests.worlds.loading import massless
 
-READERS = {".csv": pd.read_csv, ".parquet": pd.read_parquet, ".xlsx": pd.read_excel}
 COARSE = "--steps-per-turn 90 --turns 1"
 ONCE = f"run fourbar-lecture-1 {COARSE}"
 
 
-@pytest.mark.parametrize("ending", READERS)
-def test_the_log_holds_every_digit_of_the_run(tmp_path: Path, ending: str) -> None:
-    path = tmp_path / f"log{ending}"
+def test_the_log_holds_every_digit_of_the_run(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
     told(f"run slotted-lever --engine pymunk {COARSE} -o", path)
-    frame = READERS[ending](path)
+    frame = pd.read_csv(path)
     scene = load_scene("slotted-lever")
     state = solve(scene, np.zeros(1)).state()
     done = run(scene, state, "pymunk", dt_s=scene.driver.law.period_s / 90, steps=90)

@@ -1,25 +1,27 @@
-"""`crankcheck solve` of what is driven: tables, files, families. More of what it tells is in
-`test_told.py`."""
+"""`crankcheck solve` of what is driven: tables, files, families; with `--forces` notes and figures,
+and what friction takes. More of what it tells is in `test_told.py`."""
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from rich.console import Console
 
+import crankcheck
+from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
+from models.files.assemble import scene_text
 from models.files.reading import load_scene, shipped
 from models.scene import Scene
+from models.scene.loads import CoulombFriction
 from reports.describe.facts import facts
-from reports.requests.solve import SolveRequest
-from tests.worlds.command_line import crank, refused, told
-from tests.worlds.tiers import few
+from tests.analytic.dyads.test_redundant import parallelogram, with_strut
+from tests.worlds.command_line import crank, flat, refused, told
+from tests.worlds.without_pdf import without_pdf
 
 PISTON = "slider-crank-by-piston"
 FOURBAR = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
@@ -39,31 +41,18 @@ def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
         assert facts(scene(*lengths), analyse(fourbar))[0].startswith(said)
 
 
-SOME = ["fourbar-lecture-1", "slider-crank-offset", "shaper", "scotch-yoke", "tangent", "whitworth"]
-
-
-@pytest.mark.parametrize("name", few(shipped(), SOME, "the other scenes are of the same joints"))
-def test_every_shipped_scene_is_solved_and_drawn_as_a_table(name: str) -> None:
+@pytest.mark.parametrize("name", ["slider-crank-offset", "shaper", "sixbar-watt"])
+def test_a_scene_is_solved_and_drawn_as_a_table(name: str) -> None:
     said = told(f"solve {name}")
     assert "mobility 1" in said
     assert "nan" not in said.lower().split()
     assert max(len(line.rstrip()) for line in said.splitlines()) <= 100
 
 
-READERS = {
-    ".csv": pd.read_csv,
-    ".parquet": pd.read_parquet,
-    ".xlsx": lambda path: pd.read_excel(path, sheet_name="motion"),
-}
-
-
-@pytest.mark.parametrize("ending", READERS)
-def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(
-    tmp_path: Path, ending: str
-) -> None:
-    path = tmp_path / f"out{ending}"
+def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(tmp_path: Path) -> None:
+    path = tmp_path / "out.xlsx"
     told("solve slider-crank-offset --turns 2 --steps-per-turn 40 -o", path)
-    frame = READERS[ending](path)
+    frame = pd.read_excel(path, sheet_name="motion")
     scene = load_scene("slider-crank-offset")
     motion = solve(scene, frame["time_s"].to_numpy())
     assert len(frame) == 81
@@ -71,49 +60,13 @@ def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(
     np.testing.assert_array_equal(frame["C_ax_m_s2"], motion.points["C"].acceleration[:, 0])
     np.testing.assert_array_equal(frame["C_slider_speed_m_s"], motion.sliders["C"].speed)
     assert frame["time_s"].iloc[-1] == pytest.approx(2 * scene.driver.law.period_s)
-    if ending == ".xlsx":  # says where its numbers come from
-        assert scene.source in pd.read_excel(path, sheet_name="source")["value"].tolist()
-
-
-def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
-    tmp_path: Path, fourbar: Scene
-) -> None:
-    path = tmp_path / "out.xlsx"
-    ringing = replace(fourbar, source="bell \x07")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.requests.solve.load_scene", lambda _: ringing)
-        SolveRequest(fourbar.name, output=path).run(Console(), Console())
-    assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
-
-
-@pytest.mark.parametrize(
-    ("angle", "way", "sense"), [("0", (), 1.0), ("20", (), 1.0), ("20", ("--clockwise",), -1.0)]
-)
-def test_a_swinging_driver_is_taken_on_its_way_up_or_back(
-    angle: str, way: Sequence[str], sense: float
-) -> None:
-    """It oscillates by 40 degrees at 10 rad/s, and is drawn back to its centre."""
-    lever = links(told(f"solve tangent --at-deg {angle}", *way))["lever"]
-    theta = math.radians(float(angle))
-    speed = sense * 10.0 * math.sqrt(math.radians(40.0) ** 2 - theta**2)
-    assert float(lever[3]) == pytest.approx(speed, rel=1e-7)
-    assert float(lever[4]) == pytest.approx(-100.0 * theta, rel=1e-7, abs=0.0)
+    assert scene.source in pd.read_excel(path, sheet_name="source")["value"].tolist()
 
 
 def links(output: str) -> dict[str, list[str]]:
     """The rows of the table of links, by name."""
     rows = (line.split() for line in output.split("link ")[-1].split("point")[0].splitlines())
     return {row[0]: row for row in rows if len(row) == 5 and row[0] != "x"}
-
-
-def test_a_crank_may_be_asked_for_turning_clockwise() -> None:
-    """Velocities are turned round, accelerations are not."""
-    line = "solve fourbar-lecture-1 --at-deg 30"
-    forth, back = links(told(line)), links(told(f"{line} --clockwise"))
-    assert list(forth) == list(back) == ["crank", "coupler", "rocker"]
-    for one, other in zip(forth.values(), back.values(), strict=True):
-        assert float(other[3]) == -float(one[3])
-        assert (other[2], other[4]) == (one[2], one[4])
 
 
 def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(tmp_path: Path) -> None:
@@ -137,16 +90,6 @@ def test_without_a_whole_cycle_there_is_no_stroke(tmp_path: Path) -> None:
     assert "\nC along 30 deg: no stroke: the driver goes through no whole cycle, or" in output
 
 
-def test_the_coriolis_component_is_shown_of_blocks_on_moving_guides() -> None:
-    output = told("solve shaper --at-deg 30")
-    lever = float(links(output)["lever"][3])
-    sliders = output.split("Coriolis")[-1].splitlines()
-    found = {row[0]: row for row in map(str.split, sliders) if len(row) == 5}
-    assert float(found["F"][4]) == 0.0
-    assert float(found["B"][4]) == pytest.approx(2.0 * lever * float(found["B"][2]), rel=1e-7)
-    assert "Coriolis" not in told("solve slider-crank-central --at-deg 30")
-
-
 def test_two_links_that_stand_still_are_solved_and_called_nothing(tmp_path: Path) -> None:
     path = tmp_path / "still.toml"
     path.write_text(FOURBAR.replace('bar = ["B", "C"]', 'bar = ["A", "C"]'), encoding="utf-8")
@@ -168,12 +111,100 @@ def test_what_a_slider_drives_is_logged_in_newtons(tmp_path: Path) -> None:
     assert "torque_n_m" not in heads
 
 
-BEGINS = {".xlsx": b"PK", ".html": b"<!doctype html>", ".svg": b"<?xml", ".pdf": b"%PDF"}
-
-
-@pytest.mark.parametrize("ending", BEGINS)
-def test_the_ending_says_what_is_written_of_a_family(ending: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("ending", "begins"),
+    [(".xlsx", b"PK"), (".html", b"<!doctype html>"), (".svg", b"<?xml"), (".pdf", b"%PDF")],
+)
+def test_the_ending_says_what_is_written_of_a_family(
+    ending: str, begins: bytes, tmp_path: Path
+) -> None:
     file = tmp_path / f"family{ending}"
     line = "solve slotted-lever --family R=0.1,0.12 --steps-per-turn 8 --turns 1.5 -o"
     assert told(line, file).strip() == f"{file}: 2 members of slotted-lever, 13 rows"
-    assert file.read_bytes().startswith(BEGINS[ending])
+    assert file.read_bytes().startswith(begins)
+
+
+def written(scene: Scene, folder: Path) -> Path:
+    path = folder / f"{scene.name}.toml"
+    path.write_text(scene_text(scene), encoding="utf-8")
+    return path
+
+
+def row(output: str, start: str) -> list[float]:
+    """The numbers of a row, dashes left out."""
+    (words,) = re.findall(rf"^{start} +([-\d. ]+)$", output, flags=re.MULTILINE)
+    return [float(each) for each in words.split() if each != "-"]
+
+
+def test_a_file_has_every_force_to_the_last_bit(tmp_path: Path) -> None:
+    path, without = tmp_path / "out.csv", tmp_path / "without.csv"
+    told("solve shaper --forces -o", path)
+    frame = pd.read_csv(path)
+    found = forces(load_scene("shaper"), frame["time_s"].to_numpy())
+    rod = found.pins["E"]["rod"]
+    np.testing.assert_array_equal(frame["torque_n_m"], found.torque)
+    np.testing.assert_array_equal(frame[["E_rod_fx_n", "E_rod_fy_n"]], rod)
+    np.testing.assert_array_equal(frame["E_rod_f_n"], np.hypot(*rod.T))
+    np.testing.assert_array_equal(frame["F_slider_normal_n"], found.sliders["F"].normal)
+    np.testing.assert_array_equal(frame["B_slider_moment_n_m"], found.sliders["B"].moment)
+    told("solve shaper -o", without)
+    plain = pd.read_csv(without)
+    assert list(plain) == list(frame)[: len(plain.columns)]  # what has no forces is as it was
+
+
+def test_dead_points_of_a_turn_are_left_out_and_told(tmp_path: Path) -> None:
+    scene = written(replace(parallelogram(1), name="flat"), tmp_path)
+    output = flat(told("solve --forces", scene))
+    assert "Dead point, crank at 0 deg and 180 deg: the driving torque and the" in output
+
+
+def test_redundant_links_leave_the_torque_and_say_why(tmp_path: Path) -> None:
+    propped = written(replace(with_strut(parallelogram(1), "B0", "B1"), name="propped"), tmp_path)
+    with without_pdf():
+        told("solve --forces", propped, "--figures", tmp_path)
+    output = told("solve --forces", propped)
+    assert "driving torque" in output
+    assert "Reactions: none, as how redundant links (strut) share the load" in output
+    drawn = {path.name for path in tmp_path.iterdir() if path.suffix != ".toml"}
+    assert drawn == {"torque.svg", "torque.pdf", "reduced.svg", "reduced.pdf"}
+
+
+LOCKING = "slider-crank-self-locking"
+
+
+def test_where_it_may_jam_the_numbers_stay_without_a_bound(tmp_path: Path) -> None:
+    """The scene that locks itself, with loads that help."""
+    scene = load_scene(LOCKING)
+    turned = {
+        n: replace(k, direction_rad=k.direction_rad + math.pi) for n, k in scene.loads.items()
+    }
+    helped = written(replace(scene, name="helped", loads=turned), tmp_path)
+    output = told("solve --at-deg 90 --forces", helped)
+    assert abs(row(output, "piston block ground")[-2]) > 100.0
+    said = flat(output)
+    assert "Two equilibria here, as the mechanism may jam: these forces, those of less" in said
+    assert "It may jam with crank from 80.5961 to 99.4039 deg and from 260.596" in said
+    assert "no useful work is done in it, so it has no efficiency." in said
+
+
+def test_a_cycle_has_an_efficiency_where_it_has_friction(tmp_path: Path) -> None:
+    rubbing = {"piston": CoulombFriction("piston", 0.1), "B": CoulombFriction("B", 0.1, 0.02)}
+    scene = replace(load_scene(LOCKING), name="rubbing", friction=rubbing)
+    path, file = written(scene, tmp_path), tmp_path / "out.csv"
+    solution = crankcheck.solve(path, forces=True)
+    cycle = solution.efficiency
+    assert 0.0 < cycle.cycle < 1.0
+    output = flat(told("solve --forces", path))
+    assert f"Friction takes {cycle.wasted:.6g} J in a cycle; {cycle.useful:.6g} J of the" in output
+    assert f"efficiency {cycle.cycle:.6g}." in output
+    told("solve --forces", path, "-o", file)
+    frame, friction = pd.read_csv(file), solution.forces.friction
+    np.testing.assert_array_equal(frame["piston_slider_friction_n"], friction["piston"])
+    np.testing.assert_array_equal(frame["B_friction_n_m"], friction["B"])
+    assert crankcheck.solve("shaper").efficiency is None
+
+
+def test_parts_of_a_motion_are_shown_without_its_power() -> None:
+    few = str(crankcheck.solve(LOCKING, [0.01], links="rod", sliders=(), forces=True))
+    assert "power of" not in few
+    assert "piston block" in few

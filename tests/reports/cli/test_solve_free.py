@@ -22,21 +22,6 @@ from tests.worlds.without_pdf import without_pdf
 SWING = "solve fourbar-swing --duration 0.5"
 
 
-def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is() -> None:
-    output = told(f"{SWING} --steps 4")
-    said = flat(output)
-    assert "mobility 1; driver crank, let go at rest at 0 deg, for 10 s; groups" in said
-    assert re.search(r"the angle of crank is off by at most \d.\de-\d\d rad at 0.5 s\.", said)
-    assert re.search(r"Sensitivity [\d.]+: what the start is changed by", said)
-    start, end = (
-        next(line.split() for line in output.splitlines() if line.startswith(head))
-        for head in ("    0  ", "  0.5  ")
-    )
-    kinetic, potential, work = map(float, end[4:7])
-    assert kinetic + potential == pytest.approx(float(start[5]), rel=1e-6)
-    assert work == 0.0
-
-
 def test_instants_on_the_way_are_told(tmp_path: Path) -> None:
     path = tmp_path / "everything.toml"
     path.write_text(EVERYTHING, encoding="utf-8")
@@ -82,54 +67,17 @@ def test_a_picture_shows_it_moving(tmp_path: Path) -> None:
         assert picture.size[0] > 1000
 
 
-SHORT_OF = {
-    "motor": ("at_rad_s = [-40.0, 60.0]", "at_rad_s = [-1.0, 2.5]", "loads.motor: over the omega"),
-    "start": ("rates_rad_s = { crank = 2.0 }", "rates_rad_s = { rod = 2.0 }", "rod"),
-}
-
-
-@pytest.mark.parametrize("fault", SHORT_OF)
-def test_what_shows_on_the_way_is_one_message(fault: str, tmp_path: Path) -> None:
-    old, new, said = SHORT_OF[fault]
-    assert old in EVERYTHING
+def test_what_shows_on_the_way_is_one_message(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
+    old, new = "at_rad_s = [-40.0, 60.0]", "at_rad_s = [-1.0, 2.5]"
     path.write_text(EVERYTHING.replace(old, new), encoding="utf-8")
     result = crank("solve", path, "--duration", "0.3")
-    refused(result, said)
+    refused(result, "loads.motor: over the omega")
     assert result.stderr.startswith("crankcheck: ")
 
 
 NAME = "fourbar-elastic"
 BENDS = f"solve {NAME}"
-
-
-@pytest.fixture(scope="module")
-def motion() -> DrivenElasticMotion:
-    """The motion of the shipped scene over a turn."""
-    scene = load_scene(NAME)
-    return DrivenElasticMotion(
-        scene, scene.driver.law.period_s, REFERENCE, "periodic", stiffened=True
-    )
-
-
-def test_it_tells_how_links_bend_and_how_far_that_is_to_be_trusted(
-    motion: DrivenElasticMotion,
-) -> None:
-    output = told(f"{BENDS} --steps-per-turn 4")
-    assert max(len(line.rstrip()) for line in output.splitlines()) <= 100
-    said = flat(output)
-    assert "bends with EI = 4.725 N m^2, from 77.3704 rad/s on (10.5 times the speed" in said
-    assert "elastic links by 8 polynomials across each, with the shortening of bent links" in said
-    assert "Starts on the periodic motion: it comes back after a period" in said
-    assert re.search(r"deflections are off by about \d.\de-\d\d of the largest", said)
-    assert "Near resonance" not in said
-    quarter = motion.at(np.array([0.25 * motion.until_s]))
-    middle = float(quarter.elastic["coupler"].middle[0])
-    row, *_ = re.findall(r"^ *0\.2131743 +180 +(\S+)", output, flags=re.MULTILINE)
-    assert float(row) == pytest.approx(middle, rel=1e-5)
-    (largest,) = re.findall(r"deflection of its middle +(\S+) +m +\S+ deg", output)
-    fine = motion.at(np.linspace(0.0, motion.until_s, 721)).elastic["coupler"].middle
-    assert float(largest) == pytest.approx(float(np.max(np.abs(fine))), rel=1e-4)
 
 
 def test_the_linear_theory_says_what_it_leaves_out() -> None:
@@ -140,10 +88,11 @@ def test_the_linear_theory_says_what_it_leaves_out() -> None:
     assert float(percent) == pytest.approx(1.28, abs=0.05)
 
 
-def test_a_file_has_both_motions_to_the_last_bit(
-    motion: DrivenElasticMotion, tmp_path: Path
-) -> None:
-    path = tmp_path / "out.csv"
+def test_a_file_has_both_motions_to_the_last_bit(tmp_path: Path) -> None:
+    scene, path = load_scene(NAME), tmp_path / "out.csv"
+    motion = DrivenElasticMotion(
+        scene, scene.driver.law.period_s, REFERENCE, "periodic", stiffened=True
+    )
     told(f"{BENDS} --steps-per-turn 9 --forces -o", path)
     frame = pd.read_csv(path)
     time_s = frame["time_s"].to_numpy()

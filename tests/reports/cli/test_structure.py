@@ -14,10 +14,9 @@ from models.lectures.scheme_files import SCHEMES, shipped_schemes
 from models.lectures.touching import CONTACTS, shipped_contacts
 from reports.lectures.drawing.structure import all_assemblies
 from tests.worlds.command_line import crank, flat, refused, told
-from tests.worlds.without_pdf import without_pdf
 
 
-@pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "tangent", "fourbar-crossed"])
+@pytest.mark.parametrize("name", ["shaper", "fourbar-crossed"])
 def test_one_assembly_is_the_scenes_own(name: str) -> None:
     scene = load_scene(name)
     (own,) = (one for one in all_assemblies(scene, analyse(scene), 0.6) if one.is_own)
@@ -31,14 +30,10 @@ def test_assemblies_are_drawn(tmp_path: Path) -> None:
     assert "branch: C -1" in drawn
 
 
-@pytest.mark.parametrize("ending", ["svg", "pdf"])
-def test_a_sheet_of_chains_is_written(tmp_path: Path, ending: str) -> None:
-    file = tmp_path / f"chains.{ending}"
-    with without_pdf():
-        said = told("chains --links 4 --sliders 2 --inversions -o", file)
-    assert "7 mechanisms" in said
-    raw = file.read_bytes()
-    assert b"layer-chains" in raw if ending == "svg" else raw.startswith(b"%PDF")
+def test_a_sheet_of_chains_is_written(tmp_path: Path) -> None:
+    file = tmp_path / "chains.svg"
+    assert "7 mechanisms" in told("chains --links 4 --sliders 2 --inversions -o", file)
+    assert b"layer-chains" in file.read_bytes()
 
 
 def test_json_holds_what_the_tables_say() -> None:
@@ -82,13 +77,10 @@ OF_SCHEMES = [
     (FOURBAR.replace('["ground", "crank"]', '["crank", "crank"]'), "found crank twice"),
     (FOURBAR.replace("at_m = [0.0, 0.0]", "at_m = [0.0]"), "joints.A.at_m: found [0.0]"),
     (FOURBAR.replace("at_m = [0.0, 0.0]", "at_m = [0.0, 0.0, 0.0]"), "planar schemes have 2"),
-    (FOURBAR.replace("at_m = [0.0, 0.0]", "at_m = [nan, 0.0]"), "found nan"),
     (FOURBAR.replace("[0.0, 0.0]", "[0.0, 0.0], axis = [0, 1]"), "axis: not of a pin joint"),
     (FOURBAR.replace('"rocker"]', '"rocker", "rod"]', 1), "leads from ground to rod; join it"),
     (FOURBAR.replace('"rocker"]', '"crank"]', 1), "a name stands there twice"),
     (FOURBAR.replace('"rocker"]', '"ground"]', 1), "ground is always there"),
-    (FOURBAR.replace('"planar"', '"flat"'), "space: found 'flat'; input should be 'planar' or"),
-    (FOURBAR.replace("mobility = 1", "weight = 1"), "weight: unknown key"),
     (FOURBAR.partition("[joints]")[0], "joints: missing"),
     (FOURBAR + "?", "not valid TOML"),
     (HOOKE.replace("axis = [1.0, 0.0, 0.0]", "axis = [0, 0, 0]"), "of length 0; give a direct"),
@@ -99,7 +91,6 @@ OF_SCHEMES = [
     (GEARS.replace("radii_m", "pressure_deg = 90.0, radii_m"), "found 90; use 5 to 45"),
     (CAM.replace("[0.04, inf]", "[inf, inf]"), "that is a slider"),
     (CAM.replace("[0.04, inf]", "[0.04, -0.04]"), "that is a pin"),
-    (CAM.replace("[0.04, inf]", "[0.04, nan]"), "radii_m"),
 ]
 OF_JOINTS = [
     (LINE.replace('"line"', '"lines"'), "found 'lines'; did you mean line?"),

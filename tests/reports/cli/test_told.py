@@ -12,47 +12,61 @@ from reports.verify.table import show
 from tests.worlds.command_line import flat, told
 from tests.worlds.turns import of_turns
 
-PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
+PISTON = "slider-crank-by-piston"
 ONCE = "verify fourbar-lecture-1 --steps-per-turn 360 --turns 1 --no-convergence --engine mujoco"
-SWINGS = (
-    "sleeve 0.463982 m/s at 31.2238 deg, -0.463982 m/s at 31.2238 deg, 0.463982 m/s at -31.2238"
-    " deg, -0.463982 m/s at -31.2238 deg P 1.0472 m/s at 0 deg, -1.0472 m/s at 0 deg"
-)
 TOLD = {
     # Numbers of the lecture's first example; a 0 is printed as one where it is within its bound.
     "solve fourbar-lecture-1 --at-deg 90": "coupler 20.781952 0.36271348 -1.3257269 20.297811"
     " | rocker 109.34941 1.9085072 4.6761490 19.396967 | -0.30986795 0.93522980"
     " | -5.4116042 5.8459573 Certain | B 0.0000000 0.10000000",
     "solve fourbar-lecture-1": "crank-rocker (s + l | transmission angle | rocker: swing",
-    "solve fourbar-double-crank": "double-crank (s + l",
     "solve fourbar-double-rocker": "double-rocker (s + l | 18.1949 to 65.3757 deg",
-    "solve slider-crank-central": "C: stroke 0.2 m, time ratio 1",
     "solve slotted-lever --along E:0": "lever: swing 38.9424 deg, time ratio 1.55215"
     " | E along 0 deg: stroke 0.333333 m, time ratio 1.55215"
     " | lever 2.5 rad/s at 90 deg, -5 rad/s at 270 deg"
     " | E along 0 deg -1.25 m/s at 90 deg, 2.5 m/s at 270 deg",
     "solve whitworth --along A:30": "A along 30 deg: does not move extreme speeds"
     " | B -1 m/s at 210 deg, 1 m/s at 330 deg crank",
-    "solve slider-crank-central --along C:90": "C along 90 deg: does not move extreme speeds",
     # Extreme speeds are of the way the driver turns; one that swings does both.
     "solve whitworth --at-deg 90 --clockwise": "extreme speeds, driver at -10 rad/s"
     " | lever -6.66667 rad/s at 90 deg, -20 rad/s at 270 deg"
     " | lever 90.000000 1.5707963 -6.6666667",
-    "solve tangent --at-deg 20 --clockwise": SWINGS,
-    "solve tangent --at-deg 20": SWINGS,
+    "solve tangent --at-deg 20 --clockwise": "P 1.0472 m/s at 0 deg, -1.0472 m/s at 0 deg"
+    " | lever 20.000000 0.34906585 -6.0459979 -34.906585",
+    "solve tangent --at-deg 20": "P 1.0472 m/s at 0 deg, -1.0472 m/s at 0 deg"
+    " | lever 20.000000 0.34906585 6.0459979 -34.906585",
+    # Coriolis of the block on the lever: 2 times 1.92 rad/s times 0.72 m/s.
+    "solve shaper --at-deg 30": "Coriolis slider m m/s m/s^2 m/s^2 B 0.36055513 0.72057669"
+    " -5.6003385 2.7714488 F 0.39410348 -1.1227675 -7.9996641 0.0000000",
     # Drivers that slide, or turn a link against another, in their own words and units.
     f"solve {PISTON} --at-m 0.35 --forces": "force power drive on N W"
     " slider C -3.7271082 -2.7891124 | C 0.35000000 0.74833148",
     f"solve {PISTON} --forces": "driving force 15.4 | slider C at",
     f"graph {PISTON} --of rod": "no. C m phi rad | 12 0.30000",
-    f"graph {COUPLER} --of rocker": "no. coupler deg",
     f"rotatability {PISTON}": f"{PISTON}: the branch that it is on alone | slider C ends at 0.2 m: "
     "crank and rod in line",
-    # Forces: locked instants are told, and have no mean.
+    # Forces: m a of the block along its line is the rod's, and the guide takes the rest; locked
+    # instants are told, and have no mean.
+    "solve slider-crank-offset --at-deg 90 --forces": "C block C rod 2.1821789 -0.64285714"
+    " 2.2749000 343.58533 | C block ground 0.64285714 | crank -0.28368326 -2.8368326",
+    "solve slider-crank-central --at-deg 0 --forces": "crank 0.0000000 0.0000000 from",
+    "solve slider-crank-self-locking --at-deg 60 --forces": "piston block ground -1465.3247"
+    " | power of W W crank 1549.6487 -722.08830 0.53403097"
+    " | piston block ground - 439.59742 -722.08830"
+    " | from 80.5961 to 99.4039 deg and from 260.596 to 279.404 deg: there no finite",
     "solve slider-crank-self-locking --forces": "Locked, crank at 81 deg, 81.5 deg, 82 deg"
     " | driving torque 23280.4 N m 279.5 deg - A on crank",
-    "solve shaper --forces": "driving torque",
+    "solve shaper --forces": "driving torque -17.0189 N m 293 deg 0 A on crank 215.699 N 299.5 deg"
+    " 81.2348 | F on block F 65.9946 N 303 deg | slider F, normal -3.29376 N 285.5 deg"
+    " | slider B, moment -0.00639277 N m 234 deg 0",
     # What is let go, or bends.
+    "solve fourbar-swing --duration 0.5 --steps 4": "driver crank, let go at rest at 0 deg, for"
+    " 10 s; groups | 0.5 -194.2583 10.52205 170.5064 0.1350355 0.295723 0 | the angle of crank is"
+    " off by at most | at 0.5 s. Sensitivity 2.61: what the start is changed by",
+    "solve fourbar-elastic --steps-per-turn 4": "EI = 4.725 N m^2, from 77.3704 rad/s on (10.5"
+    " times the speed | by 8 polynomials across each, with the shortening of bent links"
+    " | 0.2131743 180 0.0005291017 | deflection of its middle 0.00105172 m 125 deg | Starts on the"
+    " periodic motion: it comes back after a period | deflections are off by about",
     "solve fourbar-double-rocker-swing --duration 0.5 --steps 2": "Limits in which driver turns"
     " back: -92.866 deg at 0.415855 s (C).",
     "solve double-pendulum --duration 0.1 --steps 2": "mobility 2; driver upper, let go at rest at"
@@ -61,15 +75,13 @@ TOLD = {
     "crank, elastic less rigid | driving torque, elastic",
     "run shaper --steps-per-turn 90 --turns 1 --profile as-shipped": "shaper: mujoco"
     " | 13 of 91 logged samples | ended ok at t = 0.628319 s",
-    # Polygons; a limit position is drawn as far as it is determined: coupler and rocker in line,
-    # cos phi = (0.25^2 + 0.3^2 - 0.4^2) / (2 0.25 0.3).
+    # Polygons, drawn as far as they are determined.
     "polygon fourbar-lecture-1 --at-deg 90": "velocity polygon, 0.01 m/s to the mm"
     " | v_BA 1 100.00 180.000 known v_CB 0.3314317 33.14 -69.218 by crossing, perpendicular to BC"
     " v_CD"
     " | a^n_BA 10 50.00 -90.000 known a^n_CB 0.439388 2.20 -159.218 known"
     " a^t_CB 5.074453 25.37 110.782 by crossing, perpendicular to BC"
     " a^n_CD 4.373274 21.87 -70.651 known a^t_CD",
-    "polygon fourbar-double-rocker-swing --omega 1 --at-deg 92.8659829": "v_BA",
     "polygon fourbar-swing --at-s 0": "t = 0 s, 0 rad/s, -77.2067 rad/s^2"
     " | at rest: every velocity is 0 | one point, as omega is 0",
     "polygon fourbar-chain --omega 1 --at-deg 0": "v_B0A0"
@@ -87,14 +99,12 @@ TOLD = {
     "chains --inversions": "2 chains of 6 links with mobility 1, 5 mechanisms"
     " | Stephenson II link 1 class III or IV",
     "chains --links 4 --sliders 4": "RRRR 4 binary; 1 mechanism 1-2 1-3 2-4 3-4 RRRP 4 binary;"
-    " 2 mechanisms 1-2* 1-3 2-4 3-4 RRPP 4 binary; 3 mechanisms 1-2* 1-3* 2-4 3-4 RPRP 4 binary;"
-    " 1 mechanism 1-2* 1-3 2-4 3-4*",
+    " 2 mechanisms 1-2* 1-3 2-4 3-4",
     "rotatability fourbar-lecture-1": "Grashof crank-rocker, margin 0.05 m | 60.0323",
     "rotatability fourbar-lecture-1 --position 30 --position 90": "led through",
     "joint crossed-cylinders": "touches point: a higher pair"
     " | alone class 1, leaves Qx, Qy, Qz, Ty, Tz; a force must keep the two together"
     " | guided class 4, leaves Qz, Tz, where its neighbours leave Qz, Tz",
-    "joint revolute": "joint class 5, leaves Qz Q:",
     "mobility parallelogram-third-crank": "count W = 3 n - 2 p5 - p4 = 3*4 - 2*6 - 1*0 = 0, with"
     " n = 4 moving links | rank 11 of 12 constraints are independent"
     " | mobility W = 1 passive 1 constraint: link crank-3 may be left out",
@@ -112,6 +122,8 @@ OUT = {
 }
 """What ends with exit code 1."""
 UNSAID = {
+    "solve slider-crank-central --at-deg 0 --forces": ("dead point",),
+    "solve fourbar-elastic --steps-per-turn 4": ("near resonance",),
     "solve slider-crank-self-locking --forces": ("dead point",),
     "solve shaper --forces": ("friction", "efficiency"),
 }
@@ -140,7 +152,7 @@ def checked() -> list[Checked]:
     ]
 
 
-@pytest.mark.parametrize("width", [60, 72, 80, 99, 100, 140])
+@pytest.mark.parametrize("width", [60, 72, 80, 99, 100])
 def test_a_verdict_is_whole_at_every_width(checked: list[Checked], width: int) -> None:
     """Scene, engine, worst and trend are there; what there is no room for is left out whole."""
     stream = io.StringIO()
@@ -165,9 +177,8 @@ def test_a_verdict_is_whole_at_every_width(checked: list[Checked], width: int) -
     assert lines[end + 1].startswith("profile as-shipped")
 
 
-@pytest.mark.parametrize("width", [60, 80, 100])
-def test_a_motion_fits_as_well(width: int) -> None:
+def test_a_motion_fits_as_well() -> None:
     stream = io.StringIO()
-    SolveRequest("sixbar-watt").run(Console(file=stream, width=width), Console())
-    assert max(len(line.rstrip()) for line in stream.getvalue().splitlines()) <= width
+    SolveRequest("sixbar-watt").run(Console(file=stream, width=60), Console())
+    assert max(len(line.rstrip()) for line in stream.getvalue().splitlines()) <= 60
     assert CLIPPED not in stream.getvalue()

@@ -49,17 +49,6 @@ def test_failures_end_with_1_and_stand_first_and_in_all_outputs_with_a_cure(tmp_
     assert "cure" in (failure.text or "")
 
 
-def test_the_table_says_that_mujoco_as_shipped_does_not_shrink() -> None:
-    line = "verify fourbar-lecture-1 --engine mujoco --profile as-shipped --turns 1 --dt 1e-3"
-    assert "does not shrink" in told(line, code=1).partition("profile as-shipped")[2]
-
-
-def test_no_line_is_wider_than_a_hundred_columns() -> None:
-    output = told("verify slider-crank-excel-350 --turns 1")
-    assert max(len(line.rstrip()) for line in output.splitlines()) <= 100
-    assert "slider-crank-excel-350" in output.partition("profile tuned")[2]
-
-
 def test_all_files_of_a_folder_hold_the_same_cells_of_the_last_run(tmp_path: Path) -> None:
     """Of a scene in a file, which a first run had out of tolerance."""
     folder = tmp_path / "out"
@@ -93,36 +82,15 @@ def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
     refused(result, "cells.csv: can not be written: No space left on device; free some space")
 
 
-def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    missing = EngineError("engine mujoco: not installed; pip install mujoco")
-    monkeypatch.setattr("reports.plan.requirements.engine", raising(missing))
-    refused(crank(*ONE.split()), "engine mujoco: not installed", "pip install mujoco")
-
-
 def test_two_files_with_one_name_are_refused(tmp_path: Path) -> None:
     path = edited(tmp_path, "fourbar-crossed", ('"fourbar-crossed"', '"fourbar-lecture-1"'))
     refused(crank(*ONE.split(), path), "a second scene called fourbar-lecture-1", "rename one")
 
 
-LIMIT = (r"\[driver\]", "[tolerance]\nangel = 1e-3\n[driver]")
-NEVER = [("0.25", "0.01"), ("length_m = 0.2 ", "length_m = 0.05 ")]
-
-
-@pytest.mark.parametrize(
-    ("changes", "parts"),
-    [
-        ([LIMIT], ["[tolerance] angel", "did you mean angle"]),
-        ([("0.25", "0.17")], ["crank can stand at", "deg"]),
-        (NEVER, ["cannot be assembled", "open by", "change a length"]),
-    ],
-    ids=["a limit of no quantity", "a driver that cannot go round", "a loop that never closes"],
-)
-def test_a_fault_of_the_scene_is_told_before_anything_runs(
-    changes: list[tuple[str, str]], parts: list[str], tmp_path: Path
-) -> None:
-    refused(crank("verify", edited(tmp_path, "fourbar-lecture-1", *changes)), *parts)
+def test_a_fault_of_the_scene_is_told_before_anything_runs(tmp_path: Path) -> None:
+    never = [("0.25", "0.01"), ("length_m = 0.2 ", "length_m = 0.05 ")]
+    result = crank("verify", edited(tmp_path, "fourbar-lecture-1", *never))
+    refused(result, "cannot be assembled", "open by", "change a length")
 
 
 def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(tmp_path: Path) -> None:
@@ -168,10 +136,7 @@ def test_a_run_as_good_as_its_baseline_ends_with_0_unless_it_is_out_of_tolerance
     verdict, _, diff = text.partition("NOT WORSE: 0 worse, 0 better, 1 equal, 0 new, 0 missing")
     assert "WITHIN TOLERANCE" in verdict
     assert f"old: {tmp_path}" in "".join(diff.splitlines())
-    code, text = against(baseline=tmp_path, tolerance=("angle=1e-12",))
-    assert code == 1
-    assert "OUT OF TOLERANCE" in text
-    assert "NOT WORSE" in text
+    assert against(baseline=tmp_path, tolerance=("angle=1e-12",))[0] == 1
 
 
 def test_a_run_worse_than_its_baseline_ends_with_1_though_within(
