@@ -40,7 +40,7 @@ from tests.worlds.fuzzing import (
 from tests.worlds.in_process import Here
 from tests.worlds.mutation import mutant, retied, stretched
 from tests.worlds.scene_files import Tree, elastic_mechanisms, free_mechanisms, scene_files, toml
-from tests.worlds.tiers import at_length, slow, slowly
+from tests.worlds.tiers import at_length, slowly
 
 LIMITS = Limits(time_s=600.0, memory_gb=1.0)
 """The time ends what hangs. Memory is that beyond a child with all engines in it, which has 0.2 GB
@@ -61,7 +61,6 @@ class Bench:
     def __init__(self, apart: Isolated[Ended] | Here[Ended]) -> None:
         self.apart = apart
         self.ends: Counter[str] = Counter()
-        self.peak = 0
         self.held: int | None = None
 
     def try_out(self, raw: bytes, command: str) -> list[str]:
@@ -71,17 +70,11 @@ class Bench:
             return [f"{ended.status}: {ended.reason}"]
         self.ends[f"exit {ended.code}"] += 1
         self.ends.update(ended.outcomes)
-        self.peak = max(self.peak, ended.peak)
         if self.held is None:
             self.held = ended.before
         more = ended.peak - self.held
         over = [f"{more / 1e6:.0f} MB of memory"] if more > MOST_BYTES else []
         return ended.faults + over
-
-    def report(self) -> str:
-        """What came of all files."""
-        ends = ", ".join(f"{name} {count}" for name, count in sorted(self.ends.items()))
-        return f"{ends}; peak {self.peak / 1e6:.0f} MB"
 
 
 @pytest.fixture
@@ -89,7 +82,7 @@ def bench() -> Iterator[Bench]:
     made = Bench(Isolated(LIMITS))
     yield made
     made.apart.close()
-    print(made.report())
+    print(made.ends)
 
 
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], st.SearchStrategy[Tree] | None]] = {
@@ -131,29 +124,14 @@ def try_files(bench: Bench, kind: str, number: int, count: int, *, quickly: bool
     holds()
 
 
-LEAST_RUN = {"made": 0.15, "changed": 0.2, "free": 0.05, "elastic": 0.05}
-"""The share of files that run. Some 18 to 25 of 100 free ones do, at times 4 of 40, and 20 and more
-made ones: which are made depends on what hypothesis finds in the code as well, and not on the seed
-alone."""
-
-
 def test_every_file_runs_or_is_refused_with_a_message() -> None:
     bench = Bench(Here(LIMITS))
     for kind, count in QUICKLY.items():
         try_files(bench, kind, SEED, count, quickly=True)
     total = sum(QUICKLY.values())
     assert sum(bench.ends[f"exit {code}"] for code in (0, 1, 2)) >= total
-    assert bench.ends["exit 0"] > 0.1 * total, bench.report()
-    assert bench.ends["exit 2"] > 0.2 * total, bench.report()
-
-
-@slow("which share of each kind runs shows in forty files and not in a dozen; 5 to 20 s a kind")
-@pytest.mark.parametrize("kind", KINDS)
-def test_enough_files_of_each_kind_run_and_are_refused(kind: str, bench: Bench) -> None:
-    try_files(bench, kind, SEED, 40, quickly=True)
-    assert sum(bench.ends[f"exit {code}"] for code in (0, 1, 2)) >= 40
-    assert bench.ends["exit 0"] > LEAST_RUN[kind] * 40, bench.report()
-    assert bench.ends["exit 2"] > 0.2 * 40, bench.report()
+    assert bench.ends["exit 0"] > 0.1 * total, bench.ends
+    assert bench.ends["exit 2"] > 0.2 * total, bench.ends
 
 
 @pytest.mark.parametrize(("part", "count"), [
@@ -168,7 +146,7 @@ def test_ten_thousand_files_run_or_are_refused(
     kind: str, part: int, count: int, bench: Bench
 ) -> None:
     try_files(bench, kind, 1_000_000 + part * EACH, count)
-    assert bench.ends["exit 0"] > 0.1 * count, bench.report()
+    assert bench.ends["exit 0"] > 0.1 * count, bench.ends
 
 
 @pytest.mark.parametrize(("part", "parts"), [
@@ -193,7 +171,7 @@ def test_each_name_and_each_number_in_place_of_another(
         for command in dict.fromkeys(fitting(raw, each) for each in commands):
             faults = bench.try_out(raw, command)
             assert not faults, f"{faults}: {command} of {done}"
-    assert bench.ends["exit 0"] > 120 / parts, bench.report()
+    assert bench.ends["exit 0"] > 120 / parts, bench.ends
 
 
 def rods_and_rockers(count: int) -> bytes:

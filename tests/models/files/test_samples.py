@@ -102,15 +102,12 @@ SHAPER = load_scene("shaper")
 
 
 @pytest.mark.parametrize("given", [{"links": "crank"}, {"points": "B"}, {"sliders": "F"}])
-def test_one_name_is_one_body(given: dict[str, str]) -> None:
+def test_one_name_is_one_body_and_several_are_several(given: dict[str, str]) -> None:
     ((kind, name),) = given.items()
     for motion in (solve(SHAPER, 0.1, **given), solve_driven(SHAPER, 1.0, 1.0, 0.0, **given)):
         assert list(getattr(motion, kind)) == [name]
     with pytest.raises(CrankcheckError, match=f"{kind[:-1]} 'crunk' is not in the scene; it has"):
         solve(SHAPER, 0.1, **{kind: "crunk"})
-
-
-def test_several_names_are_several() -> None:
     motion = solve(SHAPER, np.zeros(1), links=iter(["crank"]), points=(), sliders=["F"])
     assert (list(motion.links), list(motion.points), list(motion.sliders)) == (["crank"], [], ["F"])
 
@@ -126,12 +123,10 @@ def test_one_scene_engine_or_profile_is_one() -> None:
     assert [scene.name for scene in chosen_scenes("shaper")] == ["shaper"]
     assert chosen_engines("pymunk") == ["pymunk"]
     assert chosen_profiles("tuned", ["pymunk"]) == [("tuned", True)]
-
-
-@pytest.mark.parametrize("given", [1, None, [1], ["a", None]])
-def test_what_is_no_name_is_refused(given: object) -> None:
-    with pytest.raises(CrankcheckError, match=r"links: found .*; give a name, or a list of names"):
-        names_in(given, "links")
+    words = r"links: found .*; give a name, or a list of names"
+    for given in (1, None, [1], ["a", None]):
+        with pytest.raises(CrankcheckError, match=words):
+            names_in(given, "links")
 
 
 LATER = np.linspace(0.0, 0.3, 7)
@@ -154,7 +149,7 @@ def test_parts_of_a_motion_joined_are_the_whole() -> None:
     assert shapes[0] == shapes[1]
 
 
-def test_what_a_part_lacks_is_left_out() -> None:
+def test_what_a_part_lacks_is_left_out_and_change_points_of_all_are_kept_once() -> None:
     motion = solve(load_scene("fourbar-lecture-1"), LATER)
     bare = replace(motion, points={}, conditioning={}, bound=None)
     for parts in ([motion, bare], [bare, motion]):
@@ -163,9 +158,6 @@ def test_what_a_part_lacks_is_left_out() -> None:
         assert joined.bound is joined.forces is None
         assert joined.links["crank"].theta.shape == (14,)
 
-
-def test_change_points_of_all_parts_are_kept_once() -> None:
-    motion = solve(load_scene("fourbar-lecture-1"), LATER)
     one, other = Crossing("C", 0.1), Crossing("C", 3.2)
     parts = [replace(motion, crossings=seen) for seen in ((one,), (one, other), ())]
     assert Motion.joined(parts).crossings == (one, other)

@@ -90,22 +90,22 @@ def numbered(branch: str) -> str:
     return re.sub(r"\[branch\]\n.*\n", "", TRIAD) + f"\n[branch]\n{branch}\n"
 
 
-@pytest.mark.parametrize("driver", [
-    f'slider = "C"\n{STROKE}',
-    f'slider = "C"\n{WAY}',
-    'slider = "C"\nlaw = "from-rest"\nrise_s = 0.1\n' + WAY,
-    'slider = "C"\nlaw = "accelerating"\nacceleration_m_s2 = 0.1\n' + WAY,
+@pytest.mark.parametrize(("text", "driver", "found"), [
+    *((PISTON, f'slider = "C"\n{driver}', ("C", "block C", "m")) for driver in (
+        STROKE,
+        WAY,
+        f'law = "from-rest"\nrise_s = 0.1\n{WAY}',
+        f'law = "accelerating"\nacceleration_m_s2 = 0.1\n{WAY}',
+    )),
+    *((COUPLER, f'pin = "B"\nlinks = {links}\n{TURN}', (None, links[1], "rad"))
+      for links in (["crank", "coupler"], ["coupler", "crank"])),
 ])  # fmt: skip
-def test_a_driven_slider_is_written_as_it_is_read(driver: str) -> None:
-    scene = parse_scene(driven(PISTON, driver), "test")
-    assert (scene.driver.slider, scene.driver.link, scene.driver.unit) == ("C", "block C", "m")
-    assert parse_scene(scene_text(scene), "test") == scene
-
-
-@pytest.mark.parametrize("links", ['links = ["crank", "coupler"]', 'links = ["coupler", "crank"]'])
-def test_a_driven_pin_is_written_as_it_is_read(links: str) -> None:
-    scene = parse_scene(driven(COUPLER, f'pin = "B"\n{links}\n{TURN}'), "test")
-    assert scene.driver.is_inner
+def test_a_driven_slider_or_pin_is_written_as_it_is_read(
+    text: str, driver: str, found: tuple[str | None, str, str]
+) -> None:
+    scene = parse_scene(driven(text, driver), "test")
+    assert (scene.driver.slider, scene.driver.link, scene.driver.unit) == found
+    assert scene.driver.is_inner == (text == COUPLER)
     assert parse_scene(scene_text(scene), "test") == scene
 
 

@@ -117,10 +117,7 @@ def test_a_law_other_than_constant_speed_brings_a_motor_and_a_servo_a_velocity_a
     assert data.ctrl[0] == pytest.approx(law_alpha, abs=1e-12)
     crank = model.joint(f"{rocking.driver.link}.{rocking.driver_pivot}").dofadr[0]
     assert data.qacc[crank] == pytest.approx(law_alpha, abs=1e-6)
-
-
-def test_a_flywheel_weighs_the_same_against_a_scene_of_any_size() -> None:
-    scene = load_scene("fourbar-lecture-1")
+    # The flywheel weighs the same against a scene of any size.
     model, _ = assembled(build(scene, start_of(scene)))
     armature = model.dof_armature[model.joint("crank.A").dofadr[0]]
     scale = sum(k.mass_kg * 0.25**2 + k.inertia_kg_m2 for k in scene.links.values())
@@ -134,6 +131,19 @@ def test_a_link_too_light_for_mujoco_is_named(mass: float, inertia: float) -> No
     scene = replace(scene, links={**scene.links, "coupler": light})
     with pytest.raises(EngineError, match=r"coupler: mass_kg .* give both"):
         build(scene, start_of(scene))
+
+
+def test_a_link_that_hangs_on_nothing_is_named() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    state = start_of(scene)
+    loose = replace(scene.links["rocker"], name="loose", points={"X": (0.0, 0.0), "Y": (1.0, 0.0)})
+    scene = replace(scene, links={**scene.links, "loose": loose})
+    angles = {key: {**getattr(state, key), "loose": 0.0} for key in ("theta", "omega", "alpha")}
+    still = {"X": (0.0, 0.0), "Y": (0.0, 0.0)}
+    rates = {key: {**getattr(state, key), **still} for key in ("velocity", "acceleration")}
+    state = replace(state, position={**state.position, **loose.points}, **angles, **rates)
+    with pytest.raises(EngineError, match="loose hangs on nothing"):
+        build(scene, state)
 
 
 FOLDER = Path(models.__file__).parent / "canonical"

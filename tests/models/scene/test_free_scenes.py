@@ -32,6 +32,10 @@ def test_what_a_free_scene_says_is_read_and_reads_back_as_itself() -> None:
         "along": SlideSpring("along", 0.0, 0.2, 0.0, "C"),
     }
     assert scene.start.displacements_m == {"C": 0.38}
+    # The start may say again what the driver says.
+    assert scene.start.angles_rad["crank"] == scene.driver.law.offset_rad
+    again = replace(scene, start=replace(scene.start, angles_rad={"crank": math.radians(30.0)}))
+    assert again == scene
 
 
 def test_free_scenes_ship_and_all_of_them_are_let_go() -> None:
@@ -61,13 +65,6 @@ def test_what_has_no_mass_is_not_let_go() -> None:
     with pytest.raises(SceneError, match="links: no body has a mass") as error:
         parse_scene(light, "file")
     assert len(error.value.faults) == 1
-
-
-def test_a_start_may_say_again_what_the_driver_says() -> None:
-    scene = parse_scene(FREE, "good")
-    assert scene.start.angles_rad["crank"] == scene.driver.law.offset_rad
-    again = replace(scene, start=replace(scene.start, angles_rad={"crank": math.radians(30.0)}))
-    assert again == scene
 
 
 @pytest.mark.parametrize("name", ["fourbar-lecture-1", "fourbar-double-rocker", "slotted-lever"])

@@ -51,6 +51,9 @@ def test_start_from_rest_joins_constant_speed_smoothly() -> None:
     assert omega[1:] == pytest.approx([12.0, 12.0], rel=1e-14)
     assert alpha[1:] == pytest.approx([0.0, 0.0], abs=1e-12)
     assert theta[2] - theta[1] == pytest.approx(12.0 * 0.6, rel=1e-14)
+    t = np.linspace(0.0, 1.0, 50)
+    late = SpeedChange(0.1, 0.0, 12.0, 0.2, 0.4).at(t + 0.2)
+    assert np.allclose(late, law.at(t), rtol=0, atol=1e-13)
 
 
 def test_jump_of_speed_is_two_straight_lines() -> None:
@@ -59,12 +62,6 @@ def test_jump_of_speed_is_two_straight_lines() -> None:
     assert theta == pytest.approx([0.2, 2.7, -0.3], rel=1e-14)
     assert list(omega) == [5.0, -3.0, -3.0]
     assert not alpha.any()
-
-
-def test_change_of_speed_from_rest_is_a_start_from_rest() -> None:
-    t = np.linspace(0.0, 1.0, 50)
-    late = SpeedChange(0.1, 0.0, 12.0, 0.2, 0.4).at(t + 0.2)
-    assert np.allclose(late, FromRest(0.1, 12.0, 0.4).at(t), rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -119,13 +116,10 @@ def test_it_is_the_speed_of_the_law_when_it_is_there(
     assert found == pytest.approx((omega, alpha), rel=1e-12, abs=1e-12)
 
 
-def test_a_steady_driver_may_be_turned_round() -> None:
-    assert passing(ConstantSpeed(0.0, 3.0), 1.0, clockwise=True) == (-3.0, 0.0)
-    assert passing(ConstantSpeed(0.0, -3.0), 1.0, clockwise=True) == (-3.0, 0.0)
-
-
-def test_the_start_of_an_acceleration_has_the_speed_that_is_stated_to_the_bit() -> None:
-    """Where it comes back to its start later, too."""
+def test_speeds_that_are_stated_are_there_to_the_bit() -> None:
+    """Of a driver turned round, and of one that comes back to its start later."""
+    for speed in (3.0, -3.0):
+        assert passing(ConstantSpeed(0.0, speed), 1.0, clockwise=True) == (-3.0, 0.0)
     for speed in (0.1, -0.1):
         assert passing(Accelerating(0.3, speed, -0.7), 0.3) == (speed, -0.7)
 

@@ -96,18 +96,19 @@ def test_a_characteristic_of_another_kind_has_no_words() -> None:
         scene_text(replace(scene, loads={"x": Load("x", "crank", None, Own())}))
 
 
-def test_a_table_over_the_angle_goes_on_with_its_period() -> None:
+def test_a_load_acts_over_the_period_the_table_and_the_stroke_that_it_has() -> None:
     """Over two turns here; between the last row and the first of the next period too."""
-    valve = parse_scene(PRESS, "press").loads["valve"]
+    loads = parse_scene(PRESS, "press").loads
+    valve, gas, work = loads["valve"], loads["gas"], loads["work"]
     deg = np.array([45.0, 90.0, 495.0, 495.0 + 720.0, 495.0 - 7200.0, -225.0])
     assert valve.magnitude(np.radians(deg)) == pytest.approx([1.0, 2.0, -0.5, -0.5, -0.5, -0.5])
-
-
-def test_a_table_does_not_go_on_past_its_ends() -> None:
-    gas = parse_scene(PRESS, "press").loads["gas"]
     assert gas.magnitude(np.array([0.15, 0.45 + 1e-11])) == pytest.approx([900.0, 0.0])
     with pytest.raises(CrankcheckError, match=r"loads.gas: over the displacement \[m\] the table"):
         gas.magnitude(np.array([0.2, 0.46]))
+    speed = np.array([-1.0, 0.0, 1.0])
+    assert work.magnitude(np.zeros(3), speed).tolist() == [0.0, 0.0, 500.0]
+    back = replace(work, stroke="backward")
+    assert back.magnitude(np.zeros(3), speed).tolist() == [500.0, 0.0, 0.0]
 
 
 @pytest.mark.parametrize("own", [
@@ -140,14 +141,6 @@ def test_one_value_past_the_end_of_a_table_is_refused_as_in_an_array() -> None:
     load = Load("valve", "crank", None, table, "angle")
     with pytest.raises(CrankcheckError, match=r"loads\.valve: over the angle \[rad\] the table"):
         load.size(0.0, -1.0, {}, 0.0)
-
-
-def test_a_load_acts_on_its_stroke_alone() -> None:
-    work = parse_scene(PRESS, "press").loads["work"]
-    speed = np.array([-1.0, 0.0, 1.0])
-    assert work.magnitude(np.zeros(3), speed).tolist() == [0.0, 0.0, 500.0]
-    back = replace(work, stroke="backward")
-    assert back.magnitude(np.zeros(3), speed).tolist() == [500.0, 0.0, 0.0]
 
 
 def test_interpolation_without_overshoot_worked_by_hand() -> None:
@@ -210,9 +203,7 @@ def test_a_table_repeats_its_kinks(last_row: float) -> None:
     before = list(table.kinks_between(-0.05, 0.0))
     assert before[0] == -0.05
     assert before[-1] == 0.0
-
-
-def test_steps_that_happen_once_are_told_within_alone() -> None:
+    # Steps that happen once are told within alone.
     assert list(Staircase((0.1, 0.2, 0.3), (1.0, 0.0, 2.0)).kinks_between(0.15, 0.3)) == [0.2, 0.3]
 
 

@@ -41,14 +41,6 @@ def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
         assert facts(scene(*lengths), analyse(fourbar))[0].startswith(said)
 
 
-@pytest.mark.parametrize("name", ["slider-crank-offset", "shaper", "sixbar-watt"])
-def test_a_scene_is_solved_and_drawn_as_a_table(name: str) -> None:
-    said = told(f"solve {name}")
-    assert "mobility 1" in said
-    assert "nan" not in said.lower().split()
-    assert max(len(line.rstrip()) for line in said.splitlines()) <= 100
-
-
 def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(tmp_path: Path) -> None:
     path = tmp_path / "out.xlsx"
     told("solve slider-crank-offset --turns 2 --steps-per-turn 40 -o", path)

@@ -93,14 +93,6 @@ def test_a_fault_of_the_scene_is_told_before_anything_runs(tmp_path: Path) -> No
     refused(result, "cannot be assembled", "open by", "change a length")
 
 
-def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(tmp_path: Path) -> None:
-    massless = ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0")
-    result = crank("verify", edited(tmp_path, "fourbar-lecture-1", massless), *FAST.split())
-    refused(result, "coupler", "mass_kg")
-    assert "unsupported" in result.output
-    assert "NONE fourbar-lecture-1" in result.output
-
-
 def test_ctrl_c_ends_with_130_and_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command, "check_all", raising(KeyboardInterrupt()))
     result = crank(*ONE.split())
@@ -155,9 +147,7 @@ def test_a_run_worse_than_its_baseline_ends_with_1_though_within(
     assert ["gap" in failure.get("message", "") for failure in diff.iter("failure")] == [True]
     # The baseline may be the folder that is written, and is the new run then.
     assert [against(baseline=tmp_path, folder=tmp_path)[0] for _ in range(2)] == [1, 0]
-
-
-def test_only_what_is_run_now_is_compared(against: Verify, tmp_path: Path) -> None:
+    # Only what is run now is compared.
     against(folder=tmp_path, profiles=("tuned", "as-shipped"))
     code, text = against(baseline=tmp_path, scenes=("fourbar-lecture-1", "scotch-yoke"))
     assert code == 0
@@ -174,21 +164,14 @@ def test_an_engine_that_can_not_run_ends_with_2_beside_its_diff(
     assert "status" in text.partition("WORSE: 1 worse")[2]
 
 
-def test_a_scene_that_changed_since_the_baseline_is_refused(
-    against: Verify, tmp_path: Path
-) -> None:
-    scene = edited(tmp_path, "fourbar-lecture-1", ("0.25", "0.26"))
-    against(folder=tmp_path)
-    with pytest.raises(CrankcheckError, match="every scene of both changed in between"):
-        against(baseline=tmp_path, scenes=(str(scene),))
-
-
 def test_a_bad_baseline_is_refused_before_the_run(
     against: Verify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     against(folder=tmp_path)
+    scene = edited(tmp_path, "fourbar-lecture-1", ("0.25", "0.26"))
     monkeypatch.setattr(command, "check_all", lambda *_: pytest.fail("it ran"))
     for asked, fault in (
+        ({"baseline": tmp_path, "scenes": (str(scene),)}, "every scene of both changed in between"),
         ({"baseline": tmp_path / "none"}, "none: no such folder"),
         ({"baseline": tmp_path, "steps_per_turn": 180.0}, "no cell in common: .* holds 1 cell"),
         ({"baseline": tmp_path, "factor": 0.5}, "--factor 0.5: give a number of at least 1"),

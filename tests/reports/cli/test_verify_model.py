@@ -49,6 +49,7 @@ REFUSED = {
     f"{DRIVEN} --drive moter": "no joint of that name; did you mean motor",
     f"{DRIVEN} --drive bore": "--drive 'bore': it is a slide, .* drivable: motor",
     f"{DRIVEN} --speed nan": "--speed nan: give",
+    f"{DRIVEN} --start inf": "--start inf: give an angle",
     f"{DRIVEN} --branch piston=2": "--branch 'piston=2': give NAME=1",
     f"{DRIVEN} --key home": "--key 'home': no keyframe of that name",
     f"{DRIVEN} --dt 1e-3 --steps-per-turn 720": "both set the step",

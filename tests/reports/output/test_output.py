@@ -103,7 +103,9 @@ def test_a_folder_may_be_a_link_but_not_to_nothing(tmp_path: Path) -> None:
 
 
 @where("/dev/fd")
-def test_what_the_shell_made_a_pipe_of_is_written_into() -> None:
+def test_a_device_and_what_the_shell_made_a_pipe_of_are_written_into() -> None:
+    write(Path("/dev/null"), "gone")
+    assert not Path("/dev/null").is_file()
     read, into = os.pipe()
     path = Path(f"/dev/fd/{into}")
     check_file(path, "--csv")
@@ -147,12 +149,6 @@ def test_a_link_of_a_user_among_those_of_the_system_is_refused(tmp_path: Path) -
             link.symlink_to(target)
             target.touch()
             refused(r"--csv .*: a link, to .*; name", check_file, link, "--csv")
-
-
-@where("/dev/null")
-def test_a_device_is_written_to_and_not_replaced() -> None:
-    write(Path("/dev/null"), "gone")
-    assert not Path("/dev/null").is_file()
 
 
 @pytest.mark.parametrize(
@@ -242,7 +238,7 @@ def test_a_workbook_says_where_it_comes_from_and_holds_no_formula() -> None:
     assert (book["log"]["A2"].value, book["log"]["A2"].data_type) == (1.5, "n")
 
 
-def test_names_in_markdown_mean_themselves() -> None:
+def test_names_in_markdown_mean_themselves_and_a_fence_is_longer_than_any_in_the_code() -> None:
     text = plain(NASTY)
     assert re.sub(r"\\(.)", r"\1", text).replace("\N{WORD JOINER}", "") == NASTY
     assert "@team" not in text
@@ -252,6 +248,8 @@ def test_names_in_markdown_mean_themselves() -> None:
     assert folded("<b> & @team", "x").startswith(
         "<details><summary>&lt;b&gt; &amp; @\N{WORD JOINER}team</summary>\n\nx\n\n</details>"
     )
+    assert code("a\n````\nb\n", "xml") == "`````xml\na\n````\nb\n`````"
+    assert code("a", "") == "```\na\n```"
 
 
 def test_what_has_no_room_is_counted() -> None:
@@ -262,8 +260,3 @@ def test_what_has_no_room_is_counted() -> None:
     assert shown > 20
     assert counted(["a" * 10] * 3, 25, "lines") == ["a" * 10, "a" * 10, "\nand 1 more lines"]
     assert counted(["a" * 10] * 2, 25, "lines") == ["a" * 10, "a" * 10]
-
-
-def test_a_fence_is_longer_than_any_in_the_code() -> None:
-    assert code("a\n````\nb\n", "xml") == "`````xml\na\n````\nb\n`````"
-    assert code("a", "") == "```\na\n```"

@@ -56,25 +56,6 @@ def test_a_swing_through_a_singular_position_or_to_a_limit_is_refused(tmp_path: 
         refuse_singular(replace(rocker, driver=replace(rocker.driver, law=swing)), swing.period_s)
 
 
-@pytest.mark.parametrize(
-    ("name", "change", "places"),
-    [
-        ("fourbar-lecture-1", RHOMBUS, "points of C at driver 0, 180 deg"),
-        ("slider-crank-excel-210", ("length_m = 2.1", "length_m = 2.0"), "C at driver 90, 270 deg"),
-        ("whitworth", (r"-0\.1\]", "-0.2]"), "point of B at driver 270 deg"),
-    ],
-)
-def test_a_run_through_change_points_is_let_go_and_told(
-    tmp_path: Path, name: str, change: tuple[str, str], places: str
-) -> None:
-    scene = load_scene(edited(tmp_path, name, change))
-    period = scene.driver.law.period_s
-    refuse_singular(scene, 3 * period)
-    note = passage_note(scene, 3 * period)
-    assert note.startswith(f"{name}: passes the change point")
-    assert f"{places}; the reference continues the smooth branch" in note
-
-
 def test_a_note_tells_only_what_is_passed_and_verify_prints_it_once_and_runs(
     tmp_path: Path,
 ) -> None:
@@ -83,6 +64,9 @@ def test_a_note_tells_only_what_is_passed_and_verify_prints_it_once_and_runs(
     period = scene.driver.law.period_s
     assert passage_note(scene, 0.24 * period) == ""
     assert "of C at driver 180 deg;" in passage_note(scene, 0.26 * period)
+    note = passage_note(scene, 3 * period)
+    assert note.startswith("fourbar-lecture-1: passes the change points of C at driver 0, 180 deg;")
+    assert "the reference continues the smooth branch" in note
     result = crank("verify", path, "--steps-per-turn", "90", "--engine", "mujoco")
     assert result.exit_code in (0, 1)
     assert result.stderr.count("passes the change points of C at driver 0, 180 deg") == 1

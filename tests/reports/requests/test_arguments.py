@@ -107,6 +107,7 @@ def test_odd_arguments_are_errors_of_ours_told_at_the_call(
         (lambda: crankcheck.judge(SCENE, LOG, target=0), "^target 0: give a number above 0"),
         (lambda: crankcheck.judge(SCENE, LOG, target=1, require="x"), "^require 'x': neither"),
         (lambda: crankcheck.judge(SCENE, LOG, target=1, map={"time": 1}), "^map: time: found 1"),
+        (lambda: crankcheck.judge(SCENE, "log.xml", target=1), "log log.xml: found '.xml'; use"),
         (lambda: assert_within(SCENE, LOG, angel=1e-3), "^angel: it is no quantity; did you mean"),
         (lambda: crankcheck.judge(SCENE, {}, target=1), "^the log: found no columns; give times"),
         (lambda: crankcheck.sweep(SCENE, __file__), "^folder .*.py is a file; name a folder"),

@@ -246,7 +246,7 @@ def test_processes_apart_give_the_same(model: Path, verdict: crankcheck.ModelVer
     assert apart.patch == verdict.patch
 
 
-def test_a_model_gives_a_verdict_lines_a_scene_a_diff_and_a_frame_of_every_error(
+def test_a_model_gives_a_verdict_lines_a_scene_a_diff_a_frame_of_every_error_and_a_drawing(
     verdict: crankcheck.ModelVerdict,
 ) -> None:
     assert verdict.verdict == "out"
@@ -262,9 +262,6 @@ def test_a_model_gives_a_verdict_lines_a_scene_a_diff_and_a_frame_of_every_error
     assert list(frame["profile"].unique()) == [line.cell.profile for line in verdict.lines]
     gaps = frame[(frame["quantity"] == "gap") & (frame["profile"] == "as-written")]
     assert set(gaps["body"]) == {joint.name for joint in verdict.joints()}
-
-
-def test_a_model_prints_its_table_and_is_drawn(verdict: crankcheck.ModelVerdict) -> None:
     assert str(verdict) == repr(verdict)
     assert "OUT OF TOLERANCE as written" in str(verdict)
     page = verdict._repr_html_()
@@ -287,6 +284,7 @@ REFUSED = {
     "drive: found None; give a name": {"drive": None},
     "speed_rad_s: found 'x'; give a number": {"speed_rad_s": "x"},
     "speed_rad_s 0: give that of the crank": {"speed_rad_s": 0},
+    "branch C: found 2; it is 1 or -1": {"branch": {"C": 2}},
     "branch: found 3; give a dict": {"branch": 3},
     "dt_s: found 'x'; give a number above 0": {"dt_s": "x"},
     "tolerance 'angel': it is no quantity": {"tolerance": {"angel": 1.0}},

@@ -1,7 +1,6 @@
 """`crankcheck.solve`: of what is driven, of what is let go, and of elastic links."""
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -67,10 +66,7 @@ def test_of_free_motion_there_is_what_was_asked_for_from_the_start_on() -> None:
     assert solution.bound is None
     whole = crankcheck.solve(FREE, [0.1, 0.2]).links["rocker"].theta
     assert solution.links["rocker"].theta == pytest.approx(whole[::-1], abs=1e-11)
-    scene = crankcheck.load_scene(FREE)
-    law = replace(scene.driver.law, duration_s=0.1)
-    start = crankcheck.solve(replace(scene, driver=replace(scene.driver, law=law)), 0.0)
-    assert start.links["crank"].omega[0] == pytest.approx(0.0, abs=1e-15)
+    start = crankcheck.solve(FREE, 0.0)
     assert start.links["crank"].alpha[0] == pytest.approx(-77.20667, rel=1e-6)
 
 
