@@ -39,7 +39,7 @@ from tests.worlds.fuzzing import (
 )
 from tests.worlds.in_process import Here
 from tests.worlds.mutation import mutant, retied, stretched
-from tests.worlds.scene_files import Tree, elastic_mechanisms, free_mechanisms, scene_files, toml
+from tests.worlds.scene_files import Tree, elastic_mechanisms, free_mechanisms, scene_files
 from tests.worlds.tiers import at_length, slowly
 
 LIMITS = Limits(time_s=600.0, memory_gb=1.0)
@@ -176,17 +176,14 @@ def test_each_name_and_each_number_in_place_of_another(
 
 def rods_and_rockers(count: int) -> bytes:
     """A crank with as many rods and rockers, all in its pin."""
-    rods = {f"rod{k}": {"bar": ["B", f"C{k}"], "length_m": 0.3} for k in range(count)}
-    rockers = {f"rocker{k}": {"bar": [f"D{k}", f"C{k}"], "length_m": 0.2} for k in range(count)}
-    pivots = {f"D{k}": [0.3, 1e-3 * k] for k in range(count)}
-    tree = {
-        "name": "many",
-        "source": "a test",
-        "ground": {"points": {"A": [0.0, 0.0]} | pivots},
-        "links": {"crank": {"bar": ["A", "B"], "length_m": 0.05}} | rods | rockers,
-        "driver": {"link": "crank", "speed_rad_s": 10.0},
-    }
-    return toml(tree).encode()
+    lines = ['name = "many"', 'source = "a test"', "ground.points.A = [0.0, 0.0]"]
+    lines += ['driver = { link = "crank", speed_rad_s = 10.0 }']
+    lines += ['links.crank = { bar = ["A", "B"], length_m = 0.05 }']
+    for k in range(count):
+        lines += [f"ground.points.D{k} = [0.3, {1e-3 * k}]"]
+        lines += [f'links.rod{k} = {{ bar = ["B", "C{k}"], length_m = 0.3 }}']
+        lines += [f'links.rocker{k} = {{ bar = ["D{k}", "C{k}"], length_m = 0.2 }}']
+    return "\n".join(lines).encode()
 
 
 @pytest.mark.parametrize("count", [1, slowly(6, reason="fifty links at most, as of eight: 2 s")])

@@ -1,7 +1,6 @@
 """What the functions of the face give: values that print themselves, and are drawn in notebooks."""
 
 import dataclasses
-import math
 import pickle
 import re
 import shlex
@@ -101,9 +100,6 @@ PAIRS: dict[str, Callable[[], Shown]] = {
         *COARSE, dt_s=5e-3, drive="servo", tolerance={"angle": 1e-3}, converge=False
     ),
     "solve shaper": lambda: crankcheck.solve("shaper", PERIOD_S / 12 * np.arange(13)),
-    "solve fourbar-lecture-1 --at-deg 90": lambda: crankcheck.solve_driven(
-        SCENE, math.pi / 2, 10.0, 0.0
-    ),
     "run shaper --engine pymunk --steps-per-turn 90 --turns 1 --every 2": lambda: crankcheck.run(
         "shaper", "pymunk", steps_per_turn=90, turns=1, every=2
     ),
