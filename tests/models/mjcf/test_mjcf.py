@@ -177,6 +177,9 @@ def closed(scene: Scene, *close: str) -> list[str]:
 
 @pytest.mark.parametrize(("name", "masses", "points"), [
     ("slider-crank-offset", {}, ["C"]),
+    ("slotted-lever", {}, ["C"]),
+    ("scotch-yoke", {}, ["B"]),
+    ("tangent", {}, ["P"]),
     ("fourbar-lecture-1", {}, ["C"]),
     ("sixbar-stephenson", {}, ["C", "F"]),
     ("slider-crank-offset", {"rod": 1e3}, ["B"]),  # between the crank, which is driven, and it
