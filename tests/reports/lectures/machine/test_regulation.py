@@ -11,14 +11,12 @@ import pandas as pd
 import pytest
 
 import crankcheck
-from analytic.lectures.regulation.steady_cycle import cycle_of
-from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.files.assemble import scene_text
 from models.files.reading import load_scene
-from models.scene.characteristics import Polynomial, Sine
+from models.scene.characteristics import Constant, Polynomial, Sine
 from tests.analytic.lectures.regulation.worked import shaft, yoke
 from tests.worlds.command_line import crank, refused
-from tests.worlds.tiers import few, slowly
+from tests.worlds.tiers import few
 
 
 @pytest.fixture(autouse=True)
@@ -56,12 +54,12 @@ def test_a_cycle_is_told() -> None:
 
 
 def test_the_drive_that_closes_the_balance_is_told() -> None:
-    output = told("cycle compressor")
-    found = cycle_of(TurningMachine.of(load_scene("compressor")))
-    torque, *_ = numbers(output, "torque of the drive")
-    assert torque == pytest.approx(found.drive_n_m, rel=1e-6)
-    assert numbers(output, "drive")[0] == pytest.approx(found.drive_n_m * math.tau, rel=1e-6)
-    assert "here it gives 12.6045 N m" in " ".join(output.split())
+    scene = shaft({"brake": (Constant(-3.0), "time")})
+    Path("braked.toml").write_text(scene_text(scene), encoding="utf-8")
+    output = told("cycle braked.toml")
+    assert numbers(output, "torque of the drive")[0] == 3.0
+    assert numbers(output, "drive")[0] == pytest.approx(3.0 * math.tau, rel=1e-5)
+    assert "here it gives 3 N m" in " ".join(output.split())
 
 
 def test_a_flywheel_is_told() -> None:
@@ -73,9 +71,9 @@ def test_a_flywheel_is_told() -> None:
 
 
 def test_files_hold_all_digits_and_what_is_written_is_shown_as_well() -> None:
-    for line, name in (("cycle shaft.toml", "c"), (FLYWHEEL, "f")):
-        assert crank(*line.split(), "-o", f"{name}.csv").output.endswith(told(line))
-        assert crank(*line.split(), "-o", f"{name}.json").exit_code == 0
+    assert told("cycle shaft.toml -o c.csv").endswith(told("cycle shaft.toml"))
+    for ending in ("csv", "json"):
+        told(f"{FLYWHEEL} -o f.{ending}")
     frame = pd.read_csv("c.csv")
     assert len(frame) == 721
     theta, omega = (frame[f"crank_{name}"].to_numpy() for name in ("theta_rad", "omega_rad_s"))
@@ -89,7 +87,6 @@ def test_files_hold_all_digits_and_what_is_written_is_shown_as_well() -> None:
     assert found["flywheel_kg_m2"]["exact"] == pytest.approx(18.0, rel=1e-11)
     assert found["without"]["delta"] == pytest.approx(0.2, rel=1e-12)
     assert found["cycle"]["largest_at_deg"] == pytest.approx(180.0)
-    assert json.loads(Path("c.json").read_text())["cycle"]["delta"] == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize("free", few([False, True], {True}, "the driven scene: half a second"))
@@ -109,20 +106,14 @@ def pictures(page: str) -> int:
     return Path(page).read_text(encoding="utf-8").count("data:image/svg+xml;base64,")
 
 
-@pytest.mark.parametrize(
-    "figures", ["", slowly("--figures figs", reason="a second for three figures of two kinds")]
-)
-def test_pages_and_figures_are_written(figures: str) -> None:
+def test_a_page_is_written() -> None:
     Path("yoke.toml").write_text(scene_text(yoke(40.0)), encoding="utf-8")
-    told(f"flywheel yoke.toml --delta 0.02 -o p.html {figures}")
+    told("flywheel yoke.toml --delta 0.02 -o p.html")
     assert pictures("p.html") == 3
     text = Path("p.html").read_text(encoding="utf-8")
     body = text.partition("<main")[2].partition("<script")[0]
     assert "Wittenbauer" in body
     assert "nan" not in body.lower().split()
-    names = {f"{name}.{kind}" for name in ("speed", "torques", "energy-mass")
-             for kind in ("svg", "pdf")}  # fmt: skip
-    assert {path.name for path in Path().glob("figs/*")} == (names if figures else set())
 
 
 def test_a_shaft_of_constant_moment_of_inertia_has_no_energy_mass_diagram() -> None:
@@ -135,7 +126,6 @@ def test_a_shaft_of_constant_moment_of_inertia_has_no_energy_mass_diagram() -> N
 MISTAKES = {
     "no cycle": ("cycle toggle-press", "it comes to rest near crank"),
     "no flywheel of 0": ("flywheel shaft.toml --delta 0", "--delta 0: "),
-    "below 0": ("flywheel shaft.toml --delta -1", "--delta -1: "),
     "2": ("flywheel shaft.toml --delta 2 -o f.csv", "--delta 2: "),
     "met": (
         "flywheel shaft.toml --delta 0.3 --write f.toml",
@@ -167,13 +157,11 @@ MOTORISED = shaft(MOTOR, free=True)  # type: ignore[arg-type]  # literals
 def test_in_python_results_are_small_values_that_print_as_the_commands() -> None:
     found = crankcheck.cycle(MOTORISED)
     assert found.mean_rad_s == pytest.approx(10.0, rel=0.01)
-    assert found.drive_n_m == 0.0
     assert "Let go: the loads alone settle the speed." in str(found)
     assert found.frame()["crank_omega_rad_s"].max() == pytest.approx(
         found.extreme_speeds_rad_s[0], rel=1e-5
     )
-    wheel = crankcheck.flywheel(MOTORISED, 0.01)
-    assert wheel.cycle.delta == pytest.approx(0.01, rel=1e-10)
+    wheel = crankcheck.flywheel("shaft.toml", 0.01)
     again = crankcheck.cycle(wheel.scene)
     assert again.delta == pytest.approx(0.01, rel=1e-10)
     assert again.extreme_angles_deg == pytest.approx(wheel.cycle.extreme_angles_deg)

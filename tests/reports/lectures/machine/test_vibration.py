@@ -39,24 +39,20 @@ def words(scene: str, *options: str) -> str:
     return " ".join(result.output.split())
 
 
-def test_a_vibration_is_told() -> None:
-    output = words("fourbar-elastic")
+def test_a_vibration_is_told_and_its_files_hold_all() -> None:
+    output = words("fourbar-elastic", "-o", "out")
     assert "coupler across 1 77.3704 12.3139 10.5" in output
     assert re.search(r"coupler 1\.051 0\.14 % 375 12\d\.\d 1\.051 0\.00366", output)
     assert "mechanism, mode rad/s, least most over speed order from whole multiplier" in output
     assert "Stable, without damping" in output
     assert "No resonance is near: 1 % of stiffness changes the deflection by 1.01 %" in output
-
-
-def test_files_hold_all() -> None:
-    words("fourbar-elastic", "--modes", "2", "-o", "out")
     assert sorted(path.name for path in Path("out").iterdir()) == [
         "deflection.pdf", "deflection.svg", "natural.csv", "spectrum.csv", "spectrum.pdf",
         "spectrum.svg", "turn.csv", "vibration.json",
     ]  # fmt: skip
     told = json.loads(Path("out/vibration.json").read_text(encoding="utf-8"))
     assert told["stable"] is True
-    assert [row["mode"] for row in told["modes"]] == [1, 2]
+    assert [row["mode"] for row in told["modes"]] == [1, 2, 3, 4, 5]
     turn, orders = pd.read_csv("out/turn.csv"), pd.read_csv("out/spectrum.csv")
     largest = told["deflections"][0]["middle_m"]
     assert turn["coupler_middle_m"].abs().max() == pytest.approx(largest, rel=1e-12)
@@ -119,10 +115,8 @@ MAP = "fourbar-elastic --map"
     [
         ("fourbar-lecture-1", "no link of it is elastic"),
         (f"{SPEEDS} 5:40", "write FROM:TO:COUNT like 5:40:200"),
-        (f"{SPEEDS} 5:x:9", "write FROM:TO:COUNT like 5:40:200"),
         (f"{SPEEDS} 40:5:9", "the smaller first"),
         (f"{SPEEDS} 0:5:9", "two numbers above 0"),
-        (f"{SPEEDS} 1:inf:9", "write FROM:TO:COUNT"),
         (f"{SPEEDS} 1:5:1", "give 2 or more"),
         (f"{SPEEDS} 1e-9:5:9", "do not vibrate there; start at 0.0077"),
         (f"{SPEEDS} 1:5:999999", "give 5000 or fewer"),
