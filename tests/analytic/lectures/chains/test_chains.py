@@ -49,12 +49,10 @@ def test_assortments_of_eight_links() -> None:
     assert many == [9, 5, 2]
 
 
-@pytest.mark.parametrize(
-    ("links", "mobility", "message"),
-    [(7, 1, "4, 6, 8, 10 links"), (12, 1, "3 to 10"), (6, -1, "0 to 7")],
-)
-def test_what_has_no_chain_is_refused(links: int, mobility: int, message: str) -> None:
-    with pytest.raises(CrankcheckError, match=message):
+@pytest.mark.parametrize(("links", "mobility"), [(7, 1), (12, 1), (6, -1)])
+def test_what_has_no_chain_is_refused(links: int, mobility: int) -> None:
+    says = {7: "4, 6, 8, 10 links", 12: "3 to 10", 6: "0 to 7"}[links]
+    with pytest.raises(CrankcheckError, match=says):
         chains(links, mobility)
 
 
