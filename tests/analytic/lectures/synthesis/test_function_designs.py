@@ -16,7 +16,6 @@ from analytic.lectures.synthesis.function.designs import function_designs, start
 from analytic.lectures.synthesis.function.generator import FunctionProposal, structural_error
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction, MechanismKind
 from models.errors import CrankcheckError, ReachError
-from models.lectures.draft import Draft
 from tests.analytic.lectures.synthesis.test_function_solutions import known
 from tests.worlds.tiers import slowly
 
@@ -54,11 +53,7 @@ def is_whole(proposal: FunctionProposal, examined: Examined) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("seed", "trials"),
-    [
-        (4, 6),
-        slowly(5, 300, reason="random mechanisms, some near a limit"),
-    ],
+    ("seed", "trials"), [(4, 12), slowly(5, 300, reason="random mechanisms, some near a limit")]
 )
 def test_designs_of_random_solvable_tasks_meet_their_points(seed: int, trials: int) -> None:
     """And one of them makes the function of the mechanism that was drawn."""
@@ -69,6 +64,7 @@ def test_designs_of_random_solvable_tasks_meet_their_points(seed: int, trials: i
         choices = givens[count]
         case = known(rng, kind, count, choices[number % len(choices)])
         found = [(one, examine(one)) for one in function_designs(case.task)]
+        assert 1 <= len(found) <= count - 2
         for _, examined in found:
             if examined.least_sine > 1e-3:
                 assert max(examined.off) < MET, (number, examined.off, case)
@@ -143,15 +139,6 @@ def test_a_function_that_a_mechanism_generates_exactly_has_no_ripples() -> None:
         assert structural_error(proposal, examine(proposal)).largest < 1e-12
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_reference_and_the_closed_form_tell_one_error(kind: MechanismKind) -> None:
-    proposal, _, error = best(power_task(kind, 3))
-    task, own = proposal.task, proposal.generator
-    turns, ways = task.input_turn(error.x), task.output_scales(error.x)
-    wanted = own.error(turns, ways, float(own.signs(turns, ways)[0])) * task.output_scale
-    np.testing.assert_allclose(error.error, wanted, atol=1e-12)
-
-
 def test_the_error_is_nothing_in_the_precision_points_and_has_the_sign_of_the_lecture() -> None:
     proposal, examined, error = best(power_task("fourbar", 3))
     at = np.interp(proposal.x_points, error.x, error.error)
@@ -210,25 +197,14 @@ def test_a_hump_and_a_table_are_generated() -> None:
     assert error.largest < 0.05
 
 
-def test_lengths_go_with_the_ground_and_with_the_sliders_range() -> None:
-    larger = {"ground_m": 3.0}, {"output_range": 0.15, "output_start": 0.075}
-    for kind, change in zip(KINDS, larger, strict=True):
-        task = power_task(kind, 3)
-        (one,), (large,) = function_designs(task), function_designs(replace(task, **change))
-        assert lengths(large.draft) == pytest.approx([3.0 * each for each in lengths(one.draft)])
-
-
-def lengths(draft: Draft) -> list[float]:
-    return [float(str(link["length_m"])) for link in draft.links.values()]
-
-
 @pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
 def test_the_steps_draw_the_links_where_the_reference_has_them(kind: MechanismKind) -> None:
     (proposal,) = function_designs(power_task(kind, 3))
     examined = examine(proposal)
     points, result = proposal.steps
     drawn = [abs(e.end - e.start) for e in result.elements if isinstance(e, Segment)]
-    assert drawn == pytest.approx(lengths(proposal.draft))
+    lengths = [float(str(link["length_m"])) for link in proposal.draft.links.values()]
+    assert drawn == pytest.approx(lengths)
     angles = np.array([position.driver_rad for position in proposal.positions])
     motion = solve_driven(examined.scene, angles, np.ones(1), np.zeros(1), bound=False)
     dots = {e.letter: e.place for e in points.elements if isinstance(e, Dot)}

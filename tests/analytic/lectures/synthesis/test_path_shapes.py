@@ -17,21 +17,11 @@ from analytic.lectures.synthesis.path.atlas import (
     shares,
     similar,
     smooth,
-    spread,
 )
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, drafted, in_order
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, cognates
-from analytic.lectures.synthesis.path.fit import _Problem, placed
-from analytic.lectures.synthesis.path.search import _costs
-from analytic.lectures.synthesis.path.task import (
-    FULL,
-    Complexes,
-    Family,
-    PathTask,
-    UnitPath,
-    lengths,
-)
-from models.array import Array
+from analytic.lectures.synthesis.path.fit import _Problem
+from analytic.lectures.synthesis.path.task import FULL, Complexes, Family, PathTask, UnitPath
 from models.errors import CrankcheckError
 
 LEAST_TRANSMISSION = math.radians(15.0)
@@ -75,15 +65,7 @@ def random_path(
     return PathTask(tuple(points.tolist()), crank, closed)
 
 
-FAMILIES: tuple[Family, ...] = (*FULL, "limited")
-
-
-def shapes(family: Family, count: int) -> Array:
-    low, high = np.array(unit.BOUNDS[family]).T
-    return np.asarray(low[:, None] + (high - low)[:, None] * spread(count, 3, seed=1).T)
-
-
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", [*FULL, "limited"])
 @pytest.mark.parametrize("timed", [True, False])
 def test_the_derivatives_are_those_of_the_residuals(family: Family, timed: bool) -> None:
     rng = np.random.default_rng(2)
@@ -101,16 +83,6 @@ def test_the_derivatives_are_those_of_the_residuals(family: Family, timed: bool)
         near = np.abs(exact) < 1e3  # near a limit they are boundless
         assert exact.shape == (len(rows[0]), len(z))
         assert np.array(rows).T[near] == pytest.approx(exact[near], rel=1e-5, abs=2e-5)
-
-
-@pytest.mark.parametrize("family", FULL)
-def test_the_numbers_of_a_shape_keep_a_crank_that_turns_fully(family: Family) -> None:
-    a, b, c = lengths(family, shapes(family, 500))
-    for each in zip(a.tolist(), b.tolist(), c.tolist(), strict=True):
-        assert unit.family_of(*each) == family
-        short, long_ = min(*each, 1.0), max(*each, 1.0)
-        assert short in (each[0], 1.0)
-        assert 2.0 * (short + long_) < sum(each) + 1.0  # Grashof's rule
 
 
 def test_limits_and_transmission_angles_are_those_of_many_looks() -> None:
@@ -171,28 +143,6 @@ def test_angles_in_order_are_the_nearest_ones() -> None:
     assert np.all(np.diff(mended) > 0.0)
 
 
-def test_the_look_at_timed_shapes_tells_the_least_sum_of_squares() -> None:
-    task = random_path(3, 11, timed=True, closed=True, noise=0.1)
-    path, x, start = task.unit, shapes("crank-rocker", 40), np.linspace(0.0, 6.0, 40)
-    cost = _costs(path, "crank-rocker", x, start)
-    told = np.flatnonzero(np.isfinite(cost))
-    assert len(told) > 20
-    for k in told:
-        phi = start[k] + path.turned
-        a, b, c = lengths("crank-rocker", x[:, k])
-        origin, ground, arm = placed((a, b, c), phi, path.points)
-        u, _ = unit.direction((a, b, c), phi)
-        off = origin + ground * a * np.exp(1j * phi) + arm * u - path.points
-        assert cost[k] == pytest.approx(float(np.sum(np.abs(off) ** 2)), rel=1e-6)
-
-
-def test_numbers_are_spread_evenly() -> None:
-    points = spread(4096, 2, seed=3)
-    counts, _, _ = np.histogram2d(*points.T, bins=8, range=[[0, 1], [0, 1]])
-    assert np.max(np.abs(counts - 64)) < 8  # of random ones it is over 20
-    assert not np.allclose(points, spread(4096, 2, seed=4))
-
-
 def closed_curve(seed: int, count: int = 400, start: float = 0.0) -> Complexes:
     one = random_curve(np.random.default_rng(seed))
     curve = one.at(start + np.linspace(0.0, math.tau, count + 1))
@@ -212,12 +162,8 @@ def test_place_size_turn_and_start_do_not_change_a_descriptor_s_match(seed: int)
     assert match(one, three[None]).similarity[0] < same.similarity[0] - 2e-4
     # What is lacking are the harmonics that are left out.
     assert 0.999 < match(one, one[None]).similarity[0] < 1.0 + 1e-6
-
-
-def test_a_start_is_found_where_it_is() -> None:
-    curve = closed_curve(3)
     later = np.concatenate([curve[100:], curve[1:101]])
-    found = match(descriptors(later[None])[0], descriptors(curve[None]))
+    found = match(descriptors(later[None])[0], one[None])
     assert found.start[0] == pytest.approx(shares(curve[None])[0, 100], abs=1.0 / 64.0)
 
 
