@@ -12,12 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from analytic.lectures.schemes import screws
-from analytic.lectures.schemes.joint_chains import (
-    analyse_joint,
-    chain_of,
-    replaced,
-    teeth_centres,
-)
+from analytic.lectures.schemes.joint_chains import analyse_joint, chain_of, replaced, teeth_centres
 from analytic.lectures.schemes.scheme_loops import IN_PLANE, DrawingFrame, Loops, settled
 from analytic.lectures.schemes.scheme_mobility import SchemeMobility, effect_of, scheme_mobility
 from analytic.lectures.schemes.screws import (
@@ -136,6 +131,19 @@ def test_a_shaft_in_two_bearings_has_one_that_is_passive_and_no_idle_turn() -> N
     mobility = scheme_mobility(Scheme("shaft", "spatial", "", ("shaft",), bearings))
     assert (mobility.scheme.count, mobility.real, mobility.idle_count) == (-4, 1, 0)
     assert mobility.passive.joints == ("B",)
+
+
+def test_a_spare_rod_between_balls_is_redundant_and_has_an_idle_turn() -> None:
+    four_bar = load_scheme("four-bar-in-space")
+    across = {"C": (0.36, 0.08, 0.0), "D": (0.3, 0.0, 0.0)}  # a parallelogram
+    joints = [replace(each, at=across.get(each.name, each.at)) for each in four_bar.joints]
+    ends = (("E", "coupler", (0.2, 0.08, 0.05)), ("F", GROUND, (0.14, 0.0, 0.05)))
+    joints += [SchemeJoint(name, "spherical", (link, "rod"), at) for name, link, at in ends]
+    scheme = replace(four_bar, links=(*four_bar.links, "rod"), joints=tuple(joints))
+    mobility = scheme_mobility(scheme)
+    assert (scheme.count, mobility.real, mobility.useful) == (-2, 2, 1)
+    assert mobility.passive.links == ("rod",)
+    assert len(mobility.passive.single) == 3
 
 
 def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
@@ -360,13 +368,3 @@ def test_freedoms_have_their_place_where_they_are_not_about_the_joints_point() -
     joint = analyse_joint(Touching("", "", (0.0, 0.1, 0.0), (thread,)))
     screw = "screw about (0, 0, 1) through (0.5, 0.2, 0) m, 0.01 m in a turn"
     assert joint.alone.freedoms == (screw,)
-
-
-def test_points_make_the_class_of_the_surface_that_they_stand_for() -> None:
-    def by(*contacts: Contact) -> int:
-        joint = Touching("points", "", (0.0, 0.0, 0.0), contacts)
-        return analyse_joint(joint).alone.constraints
-
-    assert [by(*LEGS[:1]), by(*LEGS[:2]), by(*LEGS), by(contact("plane"))] == [1, 2, 3, 3]
-    in_line = [contact("point", (x, 0.0, 0.0)) for x in (1e-3, 2e-3, 3e-3)]
-    assert by(*in_line) == by(contact("line")) == 2
