@@ -1,4 +1,4 @@
-"""The proof in engines: it sees what is not met, and says of what could not be run why."""
+"""The proof in engines: of what is met, and of what is not."""
 
 import cmath
 import functools
@@ -8,22 +8,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.kinematics import solve
 from analytic.lectures.synthesis.design import Asked
 from analytic.lectures.synthesis.examine import Examined, passing_times
 from analytic.lectures.synthesis.solutions import solutions_of
 from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks import load_task, shipped_tasks
 from models.lectures.tasks.positions import CouplerTask
-from models.scene.laws import ConstantSpeed, Oscillating
 from reports.lectures.design.proof import by_reference, proven
 from tests.worlds.tiers import slowly
 
 QUICK = ("three-positions", "five-positions", "by-angle", "isosceles", "slotted-lever", "whitworth",
-         "power-3-points", "power-5-points", "evans", "peaucellier")  # fmt: skip
-SLOWER = "many solutions, or one more of a kind: seconds"
+         "power-4-points", "power-5-points", "evans", "peaucellier")  # fmt: skip
 EVERY = [
-    (kind, name) if name in QUICK else slowly(kind, name, reason=SLOWER)
+    (kind, name) if name in QUICK else slowly(kind, name, reason="one more of a kind")
     for kind, names in shipped_tasks().items()
     for name in names
 ]
@@ -100,15 +97,6 @@ def test_a_step_that_is_too_long_is_seen_and_tolerances_are_those_of_the_task() 
     assert not all(met.within for met in proven(one, tight, "mujoco"))
 
 
-@pytest.mark.parametrize("sense", [1, -1])
-def test_passing_times_are_those_of_the_law(sense: int) -> None:
-    for law in (ConstantSpeed(0.4, sense * 7.0), Oscillating(0.4, 0.9, 7.0)):
-        angles = 0.4 + sense * np.array([0.0, 0.3, 0.7])
-        at_s = passing_times(law, angles.tolist())
-        assert np.all(np.diff(at_s) > 0.0)
-        assert law.at(at_s)[0] == pytest.approx(angles, abs=1e-12)
-
-
 def test_what_lies_before_the_first_sample_is_not_read() -> None:
     one, task = best("rocker", "by-angle")
     first, second = one.positions
@@ -132,13 +120,3 @@ def test_a_parallelogram_is_driven_the_way_that_its_positions_lie() -> None:
         at_s = passing_times(one.scene.driver.law, [p.driver_rad for p in one.positions])
         assert np.all(np.diff(at_s) > 0.0)
         assert all(met.within for met in proven(one, task, "mujoco"))
-
-
-@pytest.mark.parametrize("linkage", ["hoeken", "watt"])
-def test_a_straight_line_is_gone_from_end_to_end(linkage: str) -> None:
-    one, _ = best("straight-line", linkage)
-    law = one.scene.driver.law
-    time_s = np.linspace(0.0, law.period_s, 2000)
-    x = solve(one.scene, time_s, bound=False).points["P"].position[:, 0]
-    assert x.min() < 1e-6
-    assert x.max() > 0.1 - 1e-6

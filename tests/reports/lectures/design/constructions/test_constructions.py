@@ -114,8 +114,13 @@ def test_positions_that_the_driver_can_not_lead_to_are_drawn_and_told() -> None:
     assert "circuit defect" in [part.words for group in sheet.words for part in group]
 
 
-def test_there_is_a_layer_for_each_step() -> None:
-    svg = sheet_of("rocker by its angle").saved("svg", "layers")
+def test_there_is_a_layer_for_each_step_and_the_words_tell_the_scale_and_the_source() -> None:
+    canvas = sheet_of("rocker by its angle")
+    words = [text.get_text() for text in canvas.named("frame").texts]
+    scale = laid_out(made.rocker_by_angle(), A4).scale
+    assert f"rocker-by-angle: construction, position 1 of 2, K_l = {scale:g} m/mm" in words
+    assert any("example 2" in each and "crankcheck" in each for each in words)
+    svg = canvas.saved("svg", "layers")
     steps = [
         "The-rocker-O4-B-in-its-end-positions--70", "The-line-B1-B2--and-its-extension",
         "O2-is-chosen-on-the-extension", "Half-of-B1-B2-is-the-radius-of-a-circle",
@@ -185,14 +190,6 @@ def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
     with pytest.raises(CrankcheckError, match=r"210x148: the words of 5 steps .* such as A3"):
         laid_out(long, A5)
     assert laid_out(long, Paper.of("A3")).scale > 0.0
-
-
-def test_the_title_tells_the_scale_and_the_note_the_source() -> None:
-    canvas = sheet_of("three positions")
-    words = [text.get_text() for text in canvas.named("frame").texts]
-    scale = laid_out(made.three_positions(), A4).scale
-    assert f"three-positions: construction, position 1 of 3, K_l = {scale:g} m/mm" in words
-    assert any("example 6" in each and "crankcheck" in each for each in words)
 
 
 def embedded(page: str) -> dict[str, Any]:
