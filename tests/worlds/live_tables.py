@@ -21,19 +21,6 @@ from reports.lectures.drawing.workbook.live_workbook import formulas_of, live_wo
 ROWS, STEP_DEG = 13, 27.5
 KINDS = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever")
 Columns = Mapping[str, np.ndarray]
-CHANGES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
-    "fourbar-lecture-1": {
-        "AB": (0.11,), "BC": (0.23, 0.31), "CD": (0.22,), "AD": (0.27,), "AD_deg": (-75.0, 200.0),
-        "branch": (-1.0,), "omega": (7.0, -3.0), "start_deg": (-400.0,), "step_deg": (5.0, 91.0)},
-    "slider-crank-offset": {
-        "R": (0.12,), "L": (0.17, 2.0), "e": (0.0, 0.03, -0.15), "line_deg": (-130.0,),
-        "X0": (0.2,), "branch": (-1.0,), "omega": (0.5, -12.0), "start_deg": (200.0,),
-        "step_deg": (60.0,)},
-    "slotted-lever": {
-        "R": (0.2,), "ACx": (0.25,), "ACy": (-0.2, 0.3), "o": (0.05, -0.1), "rho0": (0.3,),
-        "branch": (-1.0,), "omega": (25.0, -1.0), "start_deg": (-20.0,), "step_deg": (45.0,)},
-}  # fmt: skip
-"""Every input of every kind, and what it is changed to; each mechanism can still be assembled."""
 
 
 @cache

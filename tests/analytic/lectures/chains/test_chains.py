@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic.lectures.chains.assur_groups import Mechanism, assur_groups, inversions
-from analytic.lectures.chains.chain import Chain, assortments, has_rigid_part
+from analytic.lectures.chains.chain import Chain, assortments
 from analytic.lectures.chains.chain_synthesis import (
     chain_names,
     chains,
@@ -35,35 +35,6 @@ def test_as_many_chains_are_found_as_are_published(sizes: tuple[int, int]) -> No
     assert {chain.mobility for chain in every} == {sizes[1]}
 
 
-def test_chains_of_six_links_are_those_of_all_graphs() -> None:
-    """Each graph of seven joints is looked at; isomorphic ones are told by trying every order."""
-    pairs = list(itertools.combinations(range(6), 2))
-    orders = [np.array(order) for order in itertools.permutations(range(6))]
-    seen: set[bytes] = set()
-    many = 0
-    for joints in itertools.combinations(pairs, 7):
-        chain = Chain.of(6, joints)
-        table = _table(chain)
-        if min(chain.degrees) < 2 or table.tobytes() in seen or has_rigid_part(chain):
-            continue
-        if _is_one(chain):  # and in every order of its links
-            seen |= {table[np.ix_(order, order)].tobytes() for order in orders}
-            many += 1
-    assert many == len(chains(6)) == 2
-
-
-def _table(chain: Chain) -> np.ndarray:
-    table = np.zeros((chain.links, chain.links), dtype=np.uint8)
-    for a, b in chain.joints:
-        table[a, b] = table[b, a] = 1
-    return table
-
-
-def _is_one(chain: Chain) -> bool:
-    ways = np.linalg.matrix_power(_table(chain).astype(int) + np.eye(6, dtype=int), 6)
-    return bool((ways > 0).all())
-
-
 def test_chains_in_any_order_of_their_links_are_the_same() -> None:
     draw = np.random.default_rng(3)
     for chain in chains(8):
@@ -78,12 +49,10 @@ def test_assortments_of_eight_links() -> None:
     assert many == [9, 5, 2]
 
 
-@pytest.mark.parametrize(
-    ("links", "mobility", "message"),
-    [(7, 1, "4, 6, 8, 10 links"), (12, 1, "3 to 10"), (6, -1, "0 to 7")],
-)
-def test_what_has_no_chain_is_refused(links: int, mobility: int, message: str) -> None:
-    with pytest.raises(CrankcheckError, match=message):
+@pytest.mark.parametrize(("links", "mobility"), [(7, 1), (12, 1), (6, -1)])
+def test_what_has_no_chain_is_refused(links: int, mobility: int) -> None:
+    says = {7: "4, 6, 8, 10 links", 12: "3 to 10", 6: "0 to 7"}[links]
+    with pytest.raises(CrankcheckError, match=says):
         chains(links, mobility)
 
 
@@ -91,11 +60,6 @@ def mechanisms(links: int) -> list[Mechanism]:
     every = chains(links)
     pairs = zip(every, chain_names(every), strict=True)
     return [one for chain, name in pairs for one in inversions(chain, name)]
-
-
-@pytest.mark.parametrize(("links", "many"), [(4, 1), (6, 5), (8, 71)])
-def test_as_many_mechanisms_are_found_as_are_published(links: int, many: int) -> None:
-    assert len(mechanisms(links)) == many
 
 
 def test_six_bars_have_the_classes_of_the_textbooks() -> None:
@@ -114,8 +78,10 @@ def test_six_bars_have_the_classes_of_the_textbooks() -> None:
     assert {(one.class_number, one.order) for each in groups for one in each} == {(3, 3), (4, 2)}
 
 
-def test_groups_of_all_eight_bars_have_no_freedom() -> None:
-    for one in mechanisms(8):
+def test_all_eight_bars_are_found_and_their_groups_have_no_freedom() -> None:
+    every = mechanisms(8)
+    assert len(every) == 71  # as published
+    for one in every:
         for driver in one.drivers():
             groups = assur_groups(one.chain, one.ground, driver)
             assert sum(len(group.links) for group in groups) == 6
@@ -136,19 +102,11 @@ def test_a_pin_among_three_sliders_does_not_turn_and_those_of_pins_alone_do() ->
 
 
 DRAWN = [*chains(4), *chains(6), *chains(8)]
-FEW = [*DRAWN[:4], DRAWN[5]]
 
 
-@pytest.mark.parametrize("chain", few(DRAWN, FEW, "fourteen more, drawn as the few are"))
+@pytest.mark.parametrize("chain", few(DRAWN, DRAWN[2:5], "sixteen more, drawn as the few are"))
 def test_no_bar_crosses_another(chain: Chain) -> None:
     drawn = layout(chain)
     assert drawn.crossings == 0
     apart = [np.hypot(*(a - b)) for a, b in itertools.combinations(drawn.at, 2)]
     assert min(apart) > 0.25
-
-
-def test_it_is_the_same_every_time() -> None:
-    chain = chains(6)[0]
-    first = layout(chain).at
-    layout.cache_clear()
-    assert np.array_equal(layout(chain).at, first)

@@ -25,14 +25,13 @@ from analytic.structure.mobility import sides_of
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene import GROUND, Driver, Scene
-from models.scene.characteristics import Constant, Polynomial, Pulse, Sine, Staircase
+from models.scene.characteristics import Constant, Polynomial, Sine
 from models.scene.driver import Released
 from models.scene.laws import Accelerating, ConstantSpeed
 from models.scene.loads import ConstantFriction, CoulombFriction, LineSpring, PinSpring, SlideSpring
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
 from tests.analytic.lectures.regulation.worked import shaft, yoke
-from tests.worlds.tiers import few, slowly
 
 PULL = {"pull": (Sine(20.0, math.tau), "angle")}
 """40 J of surplus."""
@@ -88,17 +87,6 @@ def test_a_motor_and_a_fan_by_hand() -> None:
     assert found.works_j["loads.motor"] == pytest.approx(math.tau * (30.0 - speed))
 
 
-def test_a_machine_of_variable_inertia_alone_by_hand() -> None:
-    """A Scotch yoke without loads: T is constant, w = c / sqrt(J), J from 0.5 to 0.62 kg m^2; it is
-    fastest at 0 and 180 deg."""
-    found = cycle(yoke())
-    high, low = found.extreme_speeds_rad_s
-    assert high / low == pytest.approx(math.sqrt(0.62 / 0.5), rel=1e-13)
-    assert high + low == pytest.approx(16.0, rel=1e-14)
-    assert found.inertia_range == pytest.approx((0.5, 0.62))
-    assert found.surplus_j == pytest.approx(0.0, abs=1e-10)
-
-
 def test_a_pushed_yoke_by_hand() -> None:
     """F = 40 N, r = 0.2 m: T = T0 + 8 (cos u - 1), J = 0.5 + 0.12 sin^2 u. w^2 = 2 T / J has
     its largest value at 0 and its smallest beyond 90 deg, where T' J = T J'."""
@@ -108,6 +96,7 @@ def test_a_pushed_yoke_by_hand() -> None:
     square = 2.0 * (start + 8.0 * (np.cos(u) - 1.0)) / (0.5 + 0.12 * np.sin(u) ** 2)
     assert found.extreme_speeds_rad_s[0] ** 2 == pytest.approx(square.max(), rel=1e-8)
     assert found.extreme_speeds_rad_s[1] ** 2 == pytest.approx(square.min(), rel=1e-8)
+    assert found.inertia_range == pytest.approx((0.5, 0.62))
     s = found.slowest
     energy, inertia = start + 8.0 * (math.cos(s) - 1.0), 0.5 + 0.12 * math.sin(s) ** 2
     assert -8.0 * math.sin(s) * inertia == pytest.approx(energy * 0.12 * math.sin(2.0 * s))
@@ -192,12 +181,9 @@ def test_torques_are_those_that_kinetostatics_has_at_constant_speed(backward: bo
     assert machine.way * needed == pytest.approx(found, abs=1e-11 * np.abs(found).max())
 
 
-@pytest.mark.parametrize(
-    "name", few(["shaper-cutting", "compressor"], {"compressor"}, "a table over another place")
-)
-def test_rows_of_tables_are_borders_of_cells(name: str) -> None:
+def test_rows_of_tables_are_borders_of_cells() -> None:
     """So that the quadrature is right: against many trapezoids, whose kinks err by 1e-10."""
-    found, count = cycle(load_scene(name), 1e4), 200_000
+    found, count = cycle(load_scene("compressor"), 1e4), 200_000
     u = (np.arange(count) + 0.5) * (found.machine.cycle_rad / count)
     mean = float(np.mean(found.machine.steady_torque(u)))
     assert found.drive_n_m == pytest.approx(-mean, rel=2e-9)
@@ -211,14 +197,8 @@ def test_shipped_machines_close_their_balance(name: str) -> None:
     assert left == pytest.approx(0.0, abs=1e-9 * max(found.work_j, 1.0))
     speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
     assert found.mean_rad_s == pytest.approx(speed, rel=1e-13)
-
-
-def test_a_mirrored_machine_has_the_mirrored_cycle() -> None:
-    scene = load_scene("compressor")
-    one, other = cycle(scene), cycle(mirrored(scene, sides_of(scene)))
-    assert other.machine.way == -one.machine.way
-    assert other.delta == pytest.approx(one.delta, rel=1e-10)
-    assert (other.fastest, other.slowest) == pytest.approx((one.fastest, one.slowest), rel=1e-8)
+    turns = 2.0 if name == "engine-four-stroke" else 1.0
+    assert found.machine.cycle_rad == pytest.approx(turns * math.tau)
 
 
 def test_from_rest_a_machine_turns_to_the_side_that_its_motor_drives_it_to() -> None:
@@ -226,12 +206,6 @@ def test_from_rest_a_machine_turns_to_the_side_that_its_motor_drives_it_to() -> 
     found = cycle_of(TurningMachine.of(shaft(loads, free=True, speed=0.0)))
     assert found.machine.way == -1.0
     assert found.mean_rad_s == pytest.approx(30.0)
-
-
-def test_two_turns_are_the_cycle_of_a_four_stroke_engine() -> None:
-    found = cycle(load_scene("engine-four-stroke"))
-    assert found.machine.cycle_rad == pytest.approx(2.0 * math.tau)
-    assert found.drive_n_m < 0.0  # the drive takes what the gas gives
 
 
 ROCKING = load_scene("fourbar-double-rocker")
@@ -251,9 +225,7 @@ REFUSED = {
         shaft({"motor": (Tabulated((20.0, 30.0), (9.0, -4.0)), "omega")}, free=True, speed=5.0),
         "the table goes from 20 to 30"),
     "time": (shaft({"pull": (Sine(3.0, 1.0), "time")}), "loads.pull follows time"),
-    "steps": (shaft({"pull": (Staircase((1.0,), (3.0,)), "time")}), "loads.pull follows time"),
     "no period": (shaft({"pull": (Polynomial((1.0, 1.0)), "angle")}), "never repeats"),
-    "one pulse": (shaft({"pull": (Pulse(1.0, 3.0), "angle")}), "never repeats"),
     "no common cycle": (shaft(TWO), "repeat after 114.592 deg, 171.887 deg"),
     "hardly a period": (shaft({"pull": (Sine(1.0, math.tau / 5000), "angle")}),
                         "5000 times in a cycle of 360 deg"),
@@ -296,9 +268,8 @@ def wanted(scene: Scene, delta: float) -> WantedFlywheel:
 
 
 @cache
-def evened(name: str) -> WantedFlywheel:
-    """That of a shipped scene for a coefficient of 0.02."""
-    return wanted(load_scene(name), 0.02)
+def evened_compressor() -> WantedFlywheel:
+    return wanted(load_scene("compressor"), 0.02)
 
 
 def test_the_flywheel_of_a_shaft_by_hand() -> None:
@@ -330,19 +301,11 @@ def test_the_flywheel_of_a_yoke_without_loads_by_hand() -> None:
     assert near.by_tangents == pytest.approx(tangents, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "compressor",
-        slowly("engine-four-stroke", reason="two turns: half a second"),
-        slowly("toggle-press", reason="a press: half a second"),
-    ],
-)
-def test_the_scene_with_the_flywheel_has_the_coefficient(name: str) -> None:
+def test_the_scene_with_the_flywheel_has_the_coefficient() -> None:
     """As a scene of its own, and tangents of the exact slopes say the same: no torque follows the
     speed."""
-    scene, found = load_scene(name), evened(name)
-    again = cycle(with_flywheel(scene, found.inertia_kg_m2))
+    found = evened_compressor()
+    again = cycle(with_flywheel(load_scene("compressor"), found.inertia_kg_m2))
     assert again.delta == pytest.approx(0.02, rel=1e-11)
     assert found.diagram.flywheel(*found.slopes) == pytest.approx(found.inertia_kg_m2, rel=1e-9)
     near = found.approximations
@@ -350,7 +313,6 @@ def test_the_scene_with_the_flywheel_has_the_coefficient(name: str) -> None:
         assert other == pytest.approx(found.inertia_kg_m2, rel=0.2)
     # What the drawn tangents leave out is delta^2 / 4 of the slopes.
     assert near.by_tangents == pytest.approx(found.inertia_kg_m2, rel=1e-4)
-    assert (found.bare is None) == (name == "toggle-press")
 
 
 def test_with_a_motor_the_flywheel_is_that_of_its_own_cycle() -> None:
@@ -365,7 +327,7 @@ def test_with_a_motor_the_flywheel_is_that_of_its_own_cycle() -> None:
 
 
 def test_a_machine_is_let_go_in_its_cycle() -> None:
-    found = evened("compressor")
+    found = evened_compressor()
     scene = cycle_scene(found.cycle, cycles=3.0)
     law, mean = scene.driver.law, found.cycle.mean_rad_s
     assert isinstance(law, Released)
@@ -378,7 +340,7 @@ def test_a_machine_is_let_go_in_its_cycle() -> None:
     assert again.drive_n_m == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("delta", [0.0, -0.1, 1e-300, 9e-7, 2.0, 7.0, math.nan, math.inf])
+@pytest.mark.parametrize("delta", [0.0, -0.1, 9e-7, 2.0, math.nan, math.inf])
 def test_a_coefficient_that_is_none_is_refused(delta: float) -> None:
     with pytest.raises(CrankcheckError, match=rf"^delta {delta:g}: .*(0\.02|0\.2|1e-06 or more)"):
         wanted(shaft(PULL), delta)

@@ -1,21 +1,35 @@
-"""Schemes: mobility by sources and a second method, causes by name, links for higher pairs."""
+"""Schemes: mobility by sources and a second method, causes by name, links for higher pairs; screws,
+and classes of joints from contacts: the problem book's examples, lower pairs, any frame."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from analytic.lectures.schemes.joint_chains import replaced, teeth_centres
+from analytic.lectures.schemes import screws
+from analytic.lectures.schemes.joint_chains import analyse_joint, chain_of, replaced, teeth_centres
 from analytic.lectures.schemes.scheme_loops import IN_PLANE, DrawingFrame, Loops, settled
 from analytic.lectures.schemes.scheme_mobility import SchemeMobility, effect_of, scheme_mobility
-from analytic.lectures.schemes.screws import rank, reciprocal, rotation
+from analytic.lectures.schemes.screws import (
+    axis_in_words,
+    carried,
+    displaced,
+    gap,
+    names_of_freedoms,
+    rank,
+    reciprocal,
+    rotation,
+    translation,
+)
 from models.errors import StructureError
 from models.lectures.scheme import HIGHER, Place, Scheme, SchemeJoint
 from models.lectures.scheme_files import load_scheme, scheme_text, shipped_schemes
+from models.lectures.touching import Contact, Touching, load_touching, shipped_contacts
 from models.scene import GROUND
 
 SCHEMES = shipped_schemes()
@@ -43,12 +57,6 @@ def test_a_scheme_has_the_mobility_of_its_source_and_of_a_matrix_of_all_bodies(n
     assert not mobility.near.others
     assert not mobility.margin_is_small
     assert mobility.near.here == by_bodies(scheme)
-
-
-def test_there_are_twenty_schemes_and_more_of_both_spaces() -> None:
-    spaces = [load_scheme(name).space for name in SCHEMES]
-    assert spaces.count("planar") >= 10
-    assert spaces.count("spatial") >= 10
 
 
 def by_bodies(scheme: Scheme) -> int:
@@ -86,45 +94,9 @@ def test_the_derivative_of_the_closure_is_that_of_differences_and_of_each_joint(
         assert np.allclose(opened, slope[:, loops.columns[joint.name]], atol=1e-9)
 
 
-def moved(scheme: Scheme, seed: int, far: float = 1.0) -> Scheme:
-    """The scheme turned, shifted, and with its links and joints in another order."""
-    draw, flat = np.random.default_rng(seed), scheme.dimension == 3
-    turns = [0.0, 0.0, draw.uniform(0.0, 6.0)] if flat else draw.uniform(-3.0, 3.0, 3)
-    turn = Rotation.from_rotvec(turns).as_matrix()
-    shift = far * np.array([0.4, -0.3, 0.0 if flat else 0.2])
-
-    def place(vector: Place, by: float = 1.0) -> Place:
-        return tuple((turn @ vector + by * shift).tolist())
-
-    axes = [tuple(place(axis, 0.0) for axis in each.axes) for each in scheme.joints]
-    pairs = zip(scheme.joints, axes, strict=True)
-    joints = [replace(each, at=place(each.at), axes=own) for each, own in pairs]
-    order = draw.permutation(len(joints))
-    return replace(scheme, links=scheme.links[::-1], joints=tuple(joints[each] for each in order))
-
-
-MOVED = ["bennett", "cam-roller", "planetary-three-planets", "rssr", "sarrus", "stretched-bars"]
-
-
-@pytest.mark.parametrize("name", MOVED)
-def test_mobility_is_that_of_any_frame_and_order(name: str) -> None:
-    here = known(name)
-    for far in (1.0, 1e4):
-        there = scheme_mobility(moved(load_scheme(name), 6, far))
-        assert (there.real, there.rank, there.idle_count) == (here.real, here.rank, here.idle_count)
-        assert there.near.here == here.near.here
-
-
 def renamed(scheme: Scheme, links: Mapping[str, str]) -> tuple[SchemeJoint, ...]:
     ends = [tuple(links.get(end, end) for end in each.between) for each in scheme.joints]
     return tuple(replace(j, between=own) for j, own in zip(scheme.joints, ends, strict=True))
-
-
-@pytest.mark.parametrize("name", ["bennett", "shaper", "peaucellier", "rscr", "gear-pair"])
-def test_mobility_is_that_of_any_link_as_the_ground(name: str) -> None:
-    scheme = load_scheme(name)
-    joints = renamed(scheme, {scheme.links[0]: GROUND, GROUND: scheme.links[0]})
-    assert scheme_mobility(replace(scheme, joints=joints)).real == scheme.mobility
 
 
 @pytest.mark.parametrize("name", COUNTS)
@@ -179,14 +151,6 @@ def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
     assert (flat.near.is_singular, shaky.near.is_singular) == (True, False)
     assert (flat.near.here, flat.real, flat.yielding) == (2, 1, 0)
     assert (shaky.near.here, shaky.real, shaky.yielding) == (1, 0, 1)
-
-
-def test_a_shaky_part_on_a_crank_is_told_from_the_motion_of_the_crank() -> None:
-    bars = load_scheme("stretched-bars")
-    pivot = SchemeJoint("O", "pin", (GROUND, "crank"), (-0.1, -0.2, 0.0))
-    joints = (pivot, *renamed(bars, {GROUND: "crank"}))
-    mobility = scheme_mobility(replace(bars, links=("crank", *bars.links), joints=joints))
-    assert (mobility.near.here, mobility.real, mobility.yielding) == (2, 1, 1)
 
 
 def test_a_twist_of_the_frame_is_one_about_the_drawings_origin() -> None:
@@ -261,45 +225,17 @@ def test_a_cam_of_circles_moves_its_follower_as_its_links_do(name: str) -> None:
     assert np.allclose(poses[0][1], poses[1][1], atol=1e-5)
 
 
-def test_a_straight_profile_becomes_a_block_and_a_knife_edge_a_pin() -> None:
-    flat = {j.name: j for j in replaced(load_scheme("cam-flat-follower")).joints}
-    assert (flat["B-1"].kind, flat["B-2"].kind) == ("pin", "slider")
-    assert flat["B-1"].at == pytest.approx((0.02, 0.01, 0.0))
-    assert flat["B-2"].between == ("B-link", "follower")
-    knife = {j.name: j for j in replaced(load_scheme("cam-knife-follower")).joints}
-    assert knife["B-2"].at == pytest.approx((0.02, 0.05, 0.0))
-
-
-def gears(one: str, other: str, radii: tuple[float, float], pressure: float) -> SchemeJoint:
-    along = ((1.0, 0.0, 0.0),)
-    return SchemeJoint("T", "gear", (one, other), axes=along, radii=radii, pressure=pressure)
-
-
 @pytest.mark.parametrize(("radii", "distance"), [((0.05, 0.1), 0.15), ((-0.11, 0.03), 0.08)])
 def test_teeth_have_their_centres_on_the_base_circles(
     radii: tuple[float, float], distance: float
 ) -> None:
     pressure = math.radians(20.0)
-    first, second = teeth_centres(gears(GROUND, "wheel", radii, pressure))
+    axes = ((1.0, 0.0, 0.0),)
+    teeth = SchemeJoint("T", "gear", (GROUND, "wheel"), axes=axes, radii=radii, pressure=pressure)
+    first, second = teeth_centres(teeth)
     bases = np.abs(radii) * math.cos(pressure)
     ends = np.hypot(*first[:2]), np.hypot(second[0] - distance, second[1])
     assert ends == pytest.approx(tuple(bases))
-
-
-@pytest.mark.parametrize(
-    ("radii", "ratio"), [((0.05, 0.03), -0.05 / 0.03), ((-0.11, 0.03), 0.11 / 0.03)]
-)
-def test_wheels_on_fixed_centres_turn_by_the_ratio_of_their_radii(
-    radii: tuple[float, float], ratio: float
-) -> None:
-    joints = (
-        SchemeJoint("A", "pin", (GROUND, "one")),
-        SchemeJoint("B", "pin", (GROUND, "two"), (abs(sum(radii)), 0.0, 0.0)),
-        gears("one", "two", radii, 0.3),
-    )
-    loops = Loops.of(Scheme("gears", "planar", "", ("one", "two"), joints))
-    (move,) = loops.moves(np.zeros(loops.freedoms)).T
-    assert move[1] / move[0] == pytest.approx(ratio)
 
 
 def test_a_spatial_scheme_is_refused() -> None:
@@ -312,3 +248,123 @@ def test_the_new_link_has_a_name_of_its_own() -> None:
     joints = renamed(scheme, {"cam": "B-link"})
     taken = replace(scheme, links=("B-link", "follower"), joints=joints)
     assert replaced(taken).links == ("B-link", "follower", "B-link-2")
+
+
+def matrix(twist: np.ndarray) -> np.ndarray:
+    """A twist as the matrix (4, 4) whose exponential is its motion."""
+    whole = np.zeros((4, 4))
+    whole[:3, :3], whole[:3, 3] = screws.cross_matrix(twist[:3]), twist[3:]
+    return whole
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-13, 1e-6, 1e-3, 1.0, 2.5])
+def test_a_finite_motion_is_the_exponential_of_its_twist(size: float) -> None:
+    for twist in np.random.default_rng(1).standard_normal((5, 6)):
+        with mpmath.workdps(40):
+            exact = mpmath.expm(mpmath.matrix((size * matrix(twist)).tolist())).tolist()
+        assert np.allclose(displaced(twist, size), np.array(exact, float), atol=4e-15, rtol=0)
+
+
+def test_a_carried_axis_turns_as_its_body_and_the_gap_of_a_small_motion_is_its_twist() -> None:
+    for twist, way in np.random.default_rng(2).standard_normal((5, 2, 6)):
+        move = displaced(way, 1.0)
+        there = move @ matrix(twist) @ np.linalg.inv(move)
+        assert np.allclose(matrix(carried(move, twist)), there, atol=1e-13)
+        assert np.allclose(gap(displaced(twist, 1e-7)) / 1e-7, twist, atol=1e-6)
+
+
+def test_freedoms_have_names_where_axes_of_the_frame_do_and_places_else() -> None:
+    at = (0.1, 0.0, 0.0)
+    pair = np.array([rotation(at, (0, 0, 1)) + translation((1, 0, 0)), translation((1, 0, 0))]).T
+    assert names_of_freedoms(pair, at) == ["Qz", "Tx"]
+    skew = rotation((0.5, 0.0, 0.0), (0.0, 0.0, 1.0))[:, None]
+    assert names_of_freedoms(skew, at) == ["turn about (0, 0, 1) through (0.5, 0, 0) m"]
+    assert axis_in_words(translation((0.0, 3.0, 4.0))) == "slide along (0, 0.6, 0.8)"
+    thread = rotation((0.0, 0.2, 0.0), (1.0, 0.0, 0.0), 0.006 / (2 * np.pi))
+    words = "screw about (1, 0, 0) through (0, 0.2, 0) m, 0.006 m in a turn"
+    assert axis_in_words(thread) == words
+
+
+def contact(kind: str, at: Place = (0.0, 0.0, 0.0), **given: object) -> Contact:
+    """A contact of a kind, with its directions along the frame's where none are given."""
+    named = {"normal": (0.0, 0.0, 1.0), "along": (1.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)}
+    return Contact(kind, at, **{**named, "lead": 0.0, "both_ways": False, **given})
+
+
+@pytest.mark.parametrize(
+    ("name", "alone", "guided", "freedoms"),
+    [
+        ("point-on-curved-surface", 1, None, ["Qx Qy Qz Tx Ty"]),
+        ("two-curved-surfaces", 1, None, ["Qx Qy Qz Tx Ty"]),
+        ("line-contact", 2, None, ["Qx Qy Tx Tz"]),
+        ("cylinder-in-slot", 2, 4, ["Qx Tz"]),
+        ("crossed-cylinders", 1, 4, ["Qz Tz", "Qz Ty"]),
+        ("spur-gears", 2, 4, ["Qz Tx"]),
+    ],
+)
+def test_the_six_joints_of_exercise_1_1_have_the_classes_of_the_book(
+    name: str, alone: int, guided: int | None, freedoms: list[str]
+) -> None:
+    joint = analyse_joint(load_touching(name))
+    assert not joint.touching.is_lower_pair
+    assert joint.alone.constraints == alone
+    assert {each.constraints for each in joint.guided.values()} == ({guided} if guided else set())
+    assert [" ".join(each.freedoms) for each in joint.guided.values() or [joint.alone]] == freedoms
+
+
+PAIRS = ["revolute", "prismatic", "screw", "cylindrical", "spherical", "planar", "ball-in-tube"]
+
+
+@pytest.mark.parametrize("kind", PAIRS)
+def test_a_pair_leaves_by_its_contacts_what_it_leaves_in_a_scheme(kind: str) -> None:
+    joint = analyse_joint(load_touching(kind))
+    axis = (1.0, 0.0, 0.0) if kind in ("prismatic", "ball-in-tube") else (0.0, 0.0, 1.0)
+    chain = chain_of(SchemeJoint("A", kind, ("ground", "link"), axes=(axis,), lead=0.006))
+    assert joint.alone.constraints == 6 - len(chain)
+    assert joint.touching.is_lower_pair == (kind != "ball-in-tube")
+    assert len(joint.alone.freedoms) == screws.rank(np.array([each.twist for each in chain]))
+
+
+@pytest.mark.parametrize("name", shipped_contacts())
+def test_the_class_is_the_same_in_every_frame(name: str) -> None:
+    touching = load_touching(name)
+    turn = Rotation.random(rng=np.random.default_rng(4)).as_matrix()
+
+    def moved(vector: Place, by: float = 0.0) -> Place:
+        return tuple((turn @ vector + by).tolist())
+
+    def carried_along(one: Contact) -> Contact:
+        ways = {way: moved(getattr(one, way)) for way in ("normal", "along", "axis")}
+        return replace(one, at=moved(one.at, 0.7), **ways)
+
+    contacts, at = tuple(map(carried_along, touching.contacts)), moved(touching.at, 0.7)
+    there = analyse_joint(replace(touching, at=at, contacts=contacts, guides={}))
+    here = analyse_joint(touching)
+    assert there.alone.constraints == here.alone.constraints
+    assert len(there.alone.freedoms) == 6 - there.alone.constraints
+    assert there.kept == here.kept
+
+
+LEGS = tuple(contact("point", (x, y, 0.0)) for x, y in ((1, 0), (0, 1), (-1, -1)))
+
+
+def test_form_keeps_what_no_motion_opens_and_a_force_the_rest() -> None:
+    down = contact("plane", (0.0, 0.0, 0.01))
+    up = contact("plane", (0.0, 0.0, -0.01), normal=(0.0, 0.0, -1.0))
+    either = {
+        "lies on a plane": (down,),
+        "between two planes": (down, up),
+        "kept both ways": (replace(down, both_ways=True),),
+        "in a round tube, on its end": (contact("circle", both_ways=True), down),
+        "on three points": LEGS,
+    }
+    joints = [Touching(name, "", (0.0, 0.0, 0.0), held) for name, held in either.items()]
+    kept = [joint.name for joint in joints if analyse_joint(joint).kept]
+    assert kept == ["between two planes", "kept both ways"]
+
+
+def test_freedoms_have_their_place_where_they_are_not_about_the_joints_point() -> None:
+    thread = contact("thread", (0.5, 0.2, 0.0), lead=0.01)
+    joint = analyse_joint(Touching("", "", (0.0, 0.1, 0.0), (thread,)))
+    screw = "screw about (0, 0, 1) through (0.5, 0.2, 0) m, 0.01 m in a turn"
+    assert joint.alone.freedoms == (screw,)

@@ -11,19 +11,17 @@ import pytest
 
 from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.design import Dot, Segment
-from analytic.lectures.synthesis.examine import Examined, examine, ranked
+from analytic.lectures.synthesis.examine import Examined, examine
 from analytic.lectures.synthesis.function.designs import function_designs, starts_of
 from analytic.lectures.synthesis.function.generator import FunctionProposal, structural_error
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction, MechanismKind
 from models.errors import CrankcheckError, ReachError
-from models.lectures.draft import Draft
 from tests.analytic.lectures.synthesis.test_function_solutions import known
-from tests.worlds.tiers import at_length, slowly
+from tests.worlds.tiers import slowly
 
 POWER = GivenFunction.of_formula("x^1.6")
 OUTPUTS = {"fourbar": math.radians(90.0), "slider-crank": 0.05}
 MET = 1e-10
-MANY = "26 or 48 designs to examine, of a grid of starts"
 OPEN = (None, None)
 KINDS: tuple[MechanismKind, ...] = ("fourbar", "slider-crank")
 
@@ -55,12 +53,7 @@ def is_whole(proposal: FunctionProposal, examined: Examined) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("seed", "trials"),
-    [
-        (4, 6),
-        slowly(5, 300, reason="random mechanisms, some near a limit"),
-        at_length(5, 1000, reason="a minute, of mechanisms nearer to one"),
-    ],
+    ("seed", "trials"), [(4, 12), slowly(5, 300, reason="random mechanisms, some near a limit")]
 )
 def test_designs_of_random_solvable_tasks_meet_their_points(seed: int, trials: int) -> None:
     """And one of them makes the function of the mechanism that was drawn."""
@@ -71,6 +64,7 @@ def test_designs_of_random_solvable_tasks_meet_their_points(seed: int, trials: i
         choices = givens[count]
         case = known(rng, kind, count, choices[number % len(choices)])
         found = [(one, examine(one)) for one in function_designs(case.task)]
+        assert 1 <= len(found) <= count - 2
         for _, examined in found:
             if examined.least_sine > 1e-3:
                 assert max(examined.off) < MET, (number, examined.off, case)
@@ -83,10 +77,8 @@ def test_designs_of_random_solvable_tasks_meet_their_points(seed: int, trials: i
     [
         ("fourbar", 3, 9.6868e-3, 5.5055e-3, OPEN),
         ("fourbar", 4, 2.8329e-4, 1.4714e-4, (math.radians(7.5),) * 2),
-        slowly("fourbar", 4, 2.8329e-4, 1.4714e-4, OPEN, reason=MANY),
         ("slider-crank", 3, 1.66349e-4, 1.15942e-4, OPEN),
         ("slider-crank", 4, 2.6573e-6, 1.5018e-6, (math.radians(142.5), math.radians(135.0))),
-        slowly("slider-crank", 4, 2.6573e-6, 1.5018e-6, OPEN, reason=MANY),
         ("slider-crank", 5, 1.3073e-6, 1.1366e-6, OPEN),
     ],
 )
@@ -105,18 +97,12 @@ def test_a_power_has_these_structural_errors(
     assert 0.0 < plain.rms < plain.largest
 
 
-def test_five_points_of_the_power_have_one_four_bar_with_a_branch_defect() -> None:
-    (proposal,) = function_designs(power_task("fourbar", 5))
-    assert examine(proposal).defects == ["branch defect"]
-
-
 @pytest.mark.parametrize(
     ("kind", "count", "start"),
     [
         *((kind, count, None) for kind in KINDS for count in (3, 5)),
         ("fourbar", 4, math.radians(7.5)),
         ("slider-crank", 4, math.radians(135.0)),
-        *(slowly(kind, 4, None, reason=MANY) for kind in KINDS),
     ],
 )
 def test_equal_ripples_are_equal_and_no_larger_than_before(
@@ -153,15 +139,6 @@ def test_a_function_that_a_mechanism_generates_exactly_has_no_ripples() -> None:
         assert structural_error(proposal, examine(proposal)).largest < 1e-12
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_reference_and_the_closed_form_tell_one_error(kind: MechanismKind) -> None:
-    proposal, _, error = best(power_task(kind, 3))
-    task, own = proposal.task, proposal.generator
-    turns, ways = task.input_turn(error.x), task.output_scales(error.x)
-    wanted = own.error(turns, ways, float(own.signs(turns, ways)[0])) * task.output_scale
-    np.testing.assert_allclose(error.error, wanted, atol=1e-12)
-
-
 def test_the_error_is_nothing_in_the_precision_points_and_has_the_sign_of_the_lecture() -> None:
     proposal, examined, error = best(power_task("fourbar", 3))
     at = np.interp(proposal.x_points, error.x, error.error)
@@ -173,11 +150,6 @@ def test_the_error_is_nothing_in_the_precision_points_and_has_the_sign_of_the_le
     shorter = replace(proposal, task=replace(task, output_range=0.995 * task.output_range))
     less = structural_error(shorter, examined).error - error.error
     np.testing.assert_allclose(less, -0.005 * way, atol=1e-12)
-    # One that is half a percent smaller all over goes as far in the scale of its own.
-    lower = replace(task, function=GivenFunction("lower", lambda x: 0.995 * x**1.6))
-    assert lower.y_ends[0] == pytest.approx(0.995)
-    lowered = replace(proposal, task=lower)
-    np.testing.assert_allclose(structural_error(lowered, examined).error, error.error, atol=1e-12)
 
 
 def test_open_starts_are_tried_on_the_grid_that_is_told() -> None:
@@ -190,13 +162,6 @@ def test_open_starts_are_tried_on_the_grid_that_is_told() -> None:
     assert [s.output for s in starts_of(slide)] == [k / 2 - 3.5 for k in range(13)]
     found = function_designs(opened)
     assert len({proposal.chosen["input start"] for proposal in found}) == 24
-    # The finer of a grid and one given are one mechanism, up to a half turn.
-    own = function_designs(task)[0].generator
-    every = [one.generator for one in found]
-    off = [abs(math.remainder(one.input_start - own.input_start, math.pi)) for one in every]
-    near = every[int(np.argmin(off))]
-    np.testing.assert_allclose(near.lengths, own.lengths, rtol=1e-9)
-    assert not ranked([examine(proposal) for proposal in found])[0].defects
 
 
 def test_a_start_that_came_out_turned_is_told() -> None:
@@ -222,30 +187,14 @@ def test_explicit_points_a_falling_function_and_clockwise_ranges() -> None:
     assert not examined.defects
 
 
-BOTH = slowly(None, reason="156 designs, as both starts are open")
-
-
-@pytest.mark.parametrize("start", [math.radians(30.0), BOTH])
-def test_a_hump_and_a_table_are_generated(start: float | None) -> None:
+def test_a_hump_and_a_table_are_generated() -> None:
     x = np.linspace(0.0, math.pi, 60)
-    table = GivenFunction.of_table(x.tolist(), np.sin(x).tolist(), "a hump")
+    table, start = GivenFunction.of_table(x.tolist(), np.sin(x).tolist(), "a hump"), math.pi / 6
     task = FunctionTask(table, 0.0, math.pi, 2.0, 0.6, "slider-crank", 3, input_start_rad=start)
     assert task.y_ends == pytest.approx((0.0, 1.0), abs=1e-3)
     _, examined, error = best(task)
     assert max(examined.off) < MET
     assert error.largest < 0.05
-
-
-def test_lengths_go_with_the_ground_and_with_the_sliders_range() -> None:
-    larger = {"ground_m": 3.0}, {"output_range": 0.15, "output_start": 0.075}
-    for kind, change in zip(KINDS, larger, strict=True):
-        task = power_task(kind, 3)
-        (one,), (large,) = function_designs(task), function_designs(replace(task, **change))
-        assert lengths(large.draft) == pytest.approx([3.0 * each for each in lengths(one.draft)])
-
-
-def lengths(draft: Draft) -> list[float]:
-    return [float(str(link["length_m"])) for link in draft.links.values()]
 
 
 @pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
@@ -254,7 +203,8 @@ def test_the_steps_draw_the_links_where_the_reference_has_them(kind: MechanismKi
     examined = examine(proposal)
     points, result = proposal.steps
     drawn = [abs(e.end - e.start) for e in result.elements if isinstance(e, Segment)]
-    assert drawn == pytest.approx(lengths(proposal.draft))
+    lengths = [float(str(link["length_m"])) for link in proposal.draft.links.values()]
+    assert drawn == pytest.approx(lengths)
     angles = np.array([position.driver_rad for position in proposal.positions])
     motion = solve_driven(examined.scene, angles, np.ones(1), np.zeros(1), bound=False)
     dots = {e.letter: e.place for e in points.elements if isinstance(e, Dot)}
@@ -282,16 +232,12 @@ def refused(says: str, **changes: object) -> None:
 
 def test_what_is_no_task_is_refused() -> None:
     refused("a precision point at x = 2.6 was asked for, outside", points=(1.1, 1.5, 2.6))
-    refused("a precision point at x = nan", points=(1.1, 1.5, math.nan))
     refused("precision points 2 and 3 coincide", points=(1.1, 1.5, 1.5 + 1e-9))
     refused("2 precision points were asked for", points=2)
-    refused("6 precision points were asked for", points=6)
     refused("is constant from", function=GivenFunction.of_formula("2 + 0*x"))
     refused("not defined at x = -1", function=GivenFunction.of_formula("log(x)"), x_low=-1.0)
     refused("jumps at x = 1.5708", function=GivenFunction.of_formula("tan(x)"))
-    refused("jumps at x = 2", function=GivenFunction("stairs", np.floor))
     refused("give two numbers, the smaller one first", x_low=2.5)
-    refused("give two numbers", x_high=math.inf)
     refused("an input range of 0 deg", input_range_rad=0.0)
     refused("an output range of -400 deg", output_range=math.radians(-400.0))
     refused("a slider's range of 0 m", mechanism="slider-crank", output_range=0.0)

@@ -1,27 +1,27 @@
-"""Freudenstein's equation: all solutions of tasks that have one, against Burmester and a search."""
+"""All solutions: of Freudenstein's equation beside Burmester's points, and of these beside a second
+method and mechanisms that have them."""
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from scipy.optimize import fsolve  # type: ignore[import-untyped]
 
-from analytic.lectures.synthesis.burmester import five_positions
+from analytic.lectures.synthesis.burmester import five_positions, four_positions
 from analytic.lectures.synthesis.function.generator import Generator
 from analytic.lectures.synthesis.function.linkages import (
     FourBarGenerator,
     SliderCrankGenerator,
     fourbars,
-    slider_cranks,
 )
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction, MechanismKind
-from analytic.lectures.synthesis.pose import PlanePose
+from analytic.lectures.synthesis.pose import PlanePose, PoseDyad, pole
 from models.array import Array
 from models.errors import CrankcheckError
-from tests.worlds.tiers import slowly
+from tests.analytic.assur.homotopy import Equation, finite_solutions
+from tests.worlds.tiers import few
 
 CLEAR = 0.15
 """Of the discriminant: how far a made mechanism keeps from its limit positions."""
@@ -93,59 +93,13 @@ def _whole(own: Generator, phi: Array, sign: float) -> Array:
     return np.unwrap(output) if isinstance(own, FourBarGenerator) else output
 
 
-CASES = [
-    (kind, count, given)
-    for kind in ("fourbar", "slider-crank")
-    for count, given in ((3, ("input", "output")), (4, ("input",)), (4, ("output",)), (5, ()))
-]
-MOST = {3: 1, 4: 2, 5: 3}
-
-
-def solved(task: FunctionTask) -> list[Generator]:
-    solve = fourbars if task.mechanism == "fourbar" else slider_cranks
-    start = None if task.output_start is None else task.output_start / task.output_scale
-    x = task.x_points
-    return solve(task.input_turn(x), task.output_scales(x), task.input_start_rad, start)
-
-
-def numbers(one: Generator) -> Array:
-    """What tells mechanisms from each other, angles as directions."""
-    ends = _direction(one.output_start) if isinstance(one, FourBarGenerator) else [one.output_start]
-    return np.array([*one.lengths, *_direction(one.input_start), *ends])
+def numbers(one: FourBarGenerator) -> Array:
+    """What tells four-bars from each other, angles as directions."""
+    return np.array([*one.lengths, *_direction(one.input_start), *_direction(one.output_start)])
 
 
 def _direction(angle: float) -> list[float]:
     return [math.cos(angle), math.sin(angle)]
-
-
-@pytest.mark.parametrize("tasks", [10, slowly(200, reason="random tasks, some near a limit")])
-@pytest.mark.parametrize(("kind", "count", "given"), CASES)
-def test_the_mechanism_that_made_the_points_is_found(
-    kind: MechanismKind, count: int, given: tuple[str, ...], tasks: int
-) -> None:
-    rng = np.random.default_rng(11)
-    for _ in range(tasks):
-        case = known(rng, kind, count, given)
-        task, own = case.task, case.generator
-        found = solved(task)
-        assert 1 <= len(found) <= MOST[count]
-        scale = 1.0 if kind == "fourbar" else abs(task.output_range)
-        # The known one starts where its output is at the start of the range.
-        start = float(own.output(np.array([own.input_start]), case.sign)[0]) / scale
-        ends = _direction(start) if kind == "fourbar" else [start]
-        target = np.array([*np.array(own.lengths) / scale, *_direction(own.input_start), *ends])
-        off = min(float(np.max(np.abs(numbers(one) - target))) for one in found)
-        assert off < 1e-5, (off, own)
-
-
-@pytest.mark.parametrize("count", [4, 5])
-def test_the_number_of_real_solutions_has_the_parity_of_the_form(count: int) -> None:
-    rng, seen = np.random.default_rng(5), set()
-    for _ in range(150):
-        turns, ways = np.sort(rng.uniform(0.0, 1.5, count)), np.sort(rng.uniform(0.0, 1.5, count))
-        found = fourbars(turns, ways, 0.4 if count == 4 else None)
-        seen.add(len(found))
-    assert seen == ({0, 2} if count == 4 else {1, 3})
 
 
 def by_burmester(turns: Array, ways: Array) -> list[Array]:
@@ -182,68 +136,6 @@ def test_five_points_have_the_solutions_that_burmester_has() -> None:
     assert counted[3] > 10
 
 
-@pytest.mark.parametrize("tasks", [1, slowly(4, reason="more tasks, each from as many starts")])
-@pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
-def test_a_search_from_many_starts_finds_no_other_solution(kind: MechanismKind, tasks: int) -> None:
-    rng, hits = np.random.default_rng(21), 0
-    for _ in range(tasks):
-        task = known(rng, kind, 5, ()).task
-        turns, ways = task.input_turn(task.x_points), task.output_scales(task.x_points)
-        found = [numbers(one) for one in solved(task)]
-        for guess in rng.uniform(-1.5, 1.5, (150, 5)):
-            pins = _searched(kind, turns, ways, guess)
-            if pins is not None and max(abs(pins)) < 100.0 and np.hypot(*pins[:2]) > 1e-3:
-                assert min(_pins_off(kind, pins, one) for one in found) < 1e-5, (pins, found)
-                hits += 1
-    assert hits > 10 * tasks
-
-
-def _searched(kind: str, turns: Array, ways: Array, guess: Array) -> Array | None:
-    """Pins A and B (of a slider s0 and e) and the coupler, by the closure of the loop alone."""
-
-    def open_by(p: Array) -> Array:
-        a = complex(p[0], p[1]) * np.exp(1j * turns)
-        if kind == "fourbar":
-            b = 1.0 + complex(p[2], p[3]) * np.exp(1j * ways)
-        else:
-            b = p[2] + ways + 1j * p[3]
-        return np.asarray(np.abs(a - b) ** 2 - p[4])
-
-    pins, _, reached, _ = fsolve(open_by, guess, full_output=True, xtol=1e-14)
-    if reached != 1 or np.max(np.abs(open_by(pins))) > 1e-12:
-        return None
-    if kind == "fourbar" and np.hypot(pins[2], pins[3]) < 1e-3:
-        return None  # the trivial one: both pins on their pivots
-    return np.asarray(pins)
-
-
-def _pins_off(kind: str, pins: Array, one: Array) -> float:
-    if kind == "fourbar":
-        a, b, c, *ends = one
-        own = np.array([a * ends[0], a * ends[1], c * ends[2], c * ends[3], b * b])
-        return float(np.max(np.abs(pins - own) / (1.0 + np.abs(own))))
-    a, b, cosine, sine, s0 = one
-    own = np.array([a * cosine, a * sine, s0, b * b])
-    return float(np.max(np.abs(pins[[0, 1, 2, 4]] - own) / (1.0 + np.abs(own))))
-
-
-def test_a_negative_length_is_told_and_turned() -> None:
-    own = FourBarGenerator((1.0 / 0.4, 1.0 / 0.7, 0.9), 0.3, 1.1)
-    turns = np.array([0.0, 0.4, 0.9])
-    ways = own.output(0.3 + turns, 1.0) - 1.1
-    (plain,) = fourbars(turns, ways, 0.3, 1.1)
-    (turned,) = fourbars(turns, ways, 0.3 + math.pi, 1.1)
-    assert (plain.turned, turned.turned) == ((), ("input",))
-    np.testing.assert_allclose(turned.lengths, plain.lengths, rtol=1e-12)
-    assert math.remainder(turned.input_start - 0.3, math.tau) == pytest.approx(0.0, abs=1e-12)
-
-
-def test_an_output_in_proportion_is_a_family_of_parallelograms() -> None:
-    turns = np.linspace(0.0, 1.0, 5)
-    with pytest.raises(CrankcheckError, match="a whole family"):
-        fourbars(turns, turns)
-
-
 @pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
 def test_polishing_by_a_gradient_takes_away_what_rounding_left(kind: MechanismKind) -> None:
     case, free = known(np.random.default_rng(3), kind, 5, ()), ("input", "output")
@@ -257,3 +149,89 @@ def test_polishing_by_a_gradient_takes_away_what_rounding_left(kind: MechanismKi
     assert np.max(np.abs(rough.error(turns, ways, sign))) > 1e-9
     fine = rough.polished(turns, ways, free)
     assert np.max(np.abs(fine.error(turns, ways, sign))) < 1e-14
+
+
+W, W_BAR, M, M_BAR = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)
+ONE, W_M_BAR, W_BAR_M = (0, 0, 0, 0), (1, 0, 0, 1), (0, 1, 1, 0)
+FINITE = 4
+
+
+def random_poses(number: int, count: int) -> list[PlanePose]:
+    draw = np.random.default_rng([7, number]).uniform(-1.0, 1.0, (count, 3))
+    return [PlanePose(complex(x, y), float(3.0 * turn)) for x, y, turn in draw]
+
+
+def equation(first: PlanePose, pose: PlanePose) -> Equation:
+    """The circle of a displacement in w, w', m and m', about the plane's own origin."""
+    e = cmath.exp(1j * (pose.angle - first.angle))
+    d = pose.point - e * first.point
+    e_bar, d_bar = e.conjugate(), d.conjugate()
+    single = {W: d_bar * e, W_BAR: d * e_bar, M_BAR: -d, M: -d_bar}
+    return {ONE: abs(d) ** 2, W_M_BAR: 1.0 - e, W_BAR_M: 1.0 - e_bar, **single}
+
+
+def by_homotopy(poses: list[PlanePose]) -> list[PoseDyad]:
+    """All real solutions, by following paths to all four."""
+    every = finite_solutions([equation(poses[0], pose) for pose in poses[1:]], FINITE)
+    assert len(every) == FINITE
+    off = np.abs(every[:, 1] - every[:, 0].conj()) + np.abs(every[:, 3] - every[:, 2].conj())
+    own = every[off < 1e-8 * (1.0 + np.abs(every).max(axis=1))]
+    return [PoseDyad(complex(m), poses[0].back(complex(w))) for w, _, m, _ in own]
+
+
+def away(one: PoseDyad, others: Iterable[PoseDyad]) -> float:
+    """How far the nearest of others is from a dyad."""
+    return min(abs(one.fixed - o.fixed) + abs(one.moving - o.moving) for o in others)
+
+
+def spread(poses: list[PlanePose], dyad: PoseDyad) -> float:
+    """How far the moving pivot is from one circle, over the size."""
+    radii = [abs(pose.at(dyad.moving) - dyad.fixed) for pose in poses]
+    return (max(radii) - min(radii)) / (1.0 + max(radii))
+
+
+@pytest.mark.parametrize("part", few(range(40), range(1), "random positions"))
+def test_five_positions_have_all_their_cranks_and_no_others(part: int) -> None:
+    counts = set()
+    for number in range(25 * part, 25 * part + 25):
+        poses = random_poses(number, 5)
+        found, others = five_positions(poses), by_homotopy(poses)
+        assert len(found) == len(others), number
+        for dyad in found:
+            assert spread(poses, dyad) < 1e-13
+            assert away(dyad, others) < 1e-6 * (1.0 + abs(dyad.fixed) + abs(dyad.moving))
+        counts.add(len(found))
+    assert counts <= {0, 2, 4}
+    assert len(counts) > 1
+
+
+def coupler_poses(angles: list[float]) -> tuple[list[PlanePose], list[PoseDyad]]:
+    """A coupler with its two cranks: four-bar 0.4, 1.0, 0.8, 1.1."""
+    a, b, c, d = 0.4, 1.0, 0.8, 1.1
+    poses = []
+    for angle in angles:
+        pin = cmath.rect(a, angle)
+        arm = d - pin
+        turn = math.acos((abs(arm) ** 2 + b**2 - c**2) / (2.0 * abs(arm) * b))
+        poses.append(PlanePose(pin, cmath.phase(arm) + turn))
+    return poses, [PoseDyad(0j, 0j), PoseDyad(d + 0j, b + 0j)]
+
+
+def test_curves_of_four_positions_hold_the_body_and_pass_its_cranks_and_theirs_come_near() -> None:
+    poses, cranks = coupler_poses([0.3, 1.0, 2.2, 3.5])
+    dyads = [dyad for piece in four_positions(poses, 2880) for dyad in piece]
+    assert max(spread(poses, dyad) for dyad in dyads) < 1e-11
+    assert all(away(crank, dyads) < 0.02 for crank in cranks)
+
+
+def test_a_body_that_turns_about_a_pivot_has_too_many_cranks_to_list() -> None:
+    poses = [PlanePose(0j, angle) for angle in (0.0, 0.3, 0.7, 1.0, 1.6)]
+    with pytest.raises(CrankcheckError, match="so special"):
+        five_positions(poses)
+
+
+def test_the_pole_is_one_point_of_the_body_in_both_positions() -> None:
+    first, second = random_poses(5, 2)
+    own = pole(first, second)
+    assert own is not None
+    assert abs(first.back(own) - second.back(own)) < 1e-12

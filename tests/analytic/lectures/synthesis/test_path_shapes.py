@@ -11,30 +11,17 @@ from analytic.lectures.synthesis.path import task as unit
 from analytic.lectures.synthesis.path.atlas import (
     at_shares,
     atlas,
-    closed_starts,
     curves,
     descriptors,
     match,
-    open_starts,
-    pieces,
     shares,
     similar,
     smooth,
-    spread,
 )
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, drafted, in_order
-from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
-from analytic.lectures.synthesis.path.fit import _Problem, placed
-from analytic.lectures.synthesis.path.search import _costs, timed_starts
-from analytic.lectures.synthesis.path.task import (
-    FULL,
-    Complexes,
-    Family,
-    PathTask,
-    UnitPath,
-    lengths,
-)
-from models.array import Array
+from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, cognates
+from analytic.lectures.synthesis.path.fit import _Problem
+from analytic.lectures.synthesis.path.task import FULL, Complexes, Family, PathTask, UnitPath
 from models.errors import CrankcheckError
 
 LEAST_TRANSMISSION = math.radians(15.0)
@@ -78,15 +65,7 @@ def random_path(
     return PathTask(tuple(points.tolist()), crank, closed)
 
 
-FAMILIES: tuple[Family, ...] = (*FULL, "limited")
-
-
-def shapes(family: Family, count: int) -> Array:
-    low, high = np.array(unit.BOUNDS[family]).T
-    return np.asarray(low[:, None] + (high - low)[:, None] * spread(count, 3, seed=1).T)
-
-
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", [*FULL, "limited"])
 @pytest.mark.parametrize("timed", [True, False])
 def test_the_derivatives_are_those_of_the_residuals(family: Family, timed: bool) -> None:
     rng = np.random.default_rng(2)
@@ -104,16 +83,6 @@ def test_the_derivatives_are_those_of_the_residuals(family: Family, timed: bool)
         near = np.abs(exact) < 1e3  # near a limit they are boundless
         assert exact.shape == (len(rows[0]), len(z))
         assert np.array(rows).T[near] == pytest.approx(exact[near], rel=1e-5, abs=2e-5)
-
-
-@pytest.mark.parametrize("family", FULL)
-def test_the_numbers_of_a_shape_keep_a_crank_that_turns_fully(family: Family) -> None:
-    a, b, c = lengths(family, shapes(family, 500))
-    for each in zip(a.tolist(), b.tolist(), c.tolist(), strict=True):
-        assert unit.family_of(*each) == family
-        short, long_ = min(*each, 1.0), max(*each, 1.0)
-        assert short in (each[0], 1.0)
-        assert 2.0 * (short + long_) < sum(each) + 1.0  # Grashof's rule
 
 
 def test_limits_and_transmission_angles_are_those_of_many_looks() -> None:
@@ -134,7 +103,7 @@ def test_limits_and_transmission_angles_are_those_of_many_looks() -> None:
     assert min(seen) > 40
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_coupler_curve_is_that_of_the_reference(seed: int) -> None:
     one = random_curve(np.random.default_rng(seed))
     draft = drafted("curve", "a test", one).driven({"link": "input", "speed_rad_s": 1.0})
@@ -149,7 +118,7 @@ def test_a_coupler_curve_is_that_of_the_reference(seed: int) -> None:
 
 
 def test_cognates_draw_the_same_curve_and_a_point_on_a_pin_has_none() -> None:
-    rng, full = np.random.default_rng(8), 0
+    rng = np.random.default_rng(8)
     for _ in range(20):
         one = random_curve(rng)
         for angle in (0.3, 2.0, 5.1):
@@ -158,26 +127,11 @@ def test_cognates_draw_the_same_curve_and_a_point_on_a_pin_has_none() -> None:
             assert len(found) == 5
             for other, at in found:
                 assert other.at(np.array([at]))[0] == pytest.approx(place, abs=1e-11)
-        starts = cognates(one, 0.3)
-        for k, (other, _) in enumerate(starts):
-            again = cognates(one, 2.0)[k][0]
+        for (other, _), (again, _) in zip(cognates(one, 0.3), cognates(one, 2.0), strict=True):
             assert again.size == pytest.approx(other.size)
             assert again.sign == other.sign or other.family == "limited"
-            full += other.family != "limited"
-    # Of the other two, one has a crank where the given one is a crank-rocker, driven at one pivot;
-    # of a drag link all have, at both.
-    assert full >= 20
     on_a_pin = CouplerCurve(0j, 1.0 + 0j, 0.3, 0.8, 0.9, 0.8 + 0j, 1)
     assert not cognates(on_a_pin, 0.4)
-
-
-def test_assembling_keeps_all_places() -> None:
-    rng = np.random.default_rng(1)
-    for _ in range(20):
-        o2, a, b, o4, p = rng.normal(size=5) + 1j * rng.normal(size=5)
-        one, angle = assembled(o2, a, b, o4, p)
-        assert [pin[0] for pin in one.pins(np.array([angle]))] == pytest.approx([a, b])
-        assert one.at(np.array([angle]))[0] == pytest.approx(p)
 
 
 def test_angles_in_order_are_the_nearest_ones() -> None:
@@ -189,37 +143,6 @@ def test_angles_in_order_are_the_nearest_ones() -> None:
     assert np.all(np.diff(mended) > 0.0)
 
 
-def test_the_look_at_timed_shapes_tells_the_least_sum_of_squares() -> None:
-    task = random_path(3, 11, timed=True, closed=True, noise=0.1)
-    path, x, start = task.unit, shapes("crank-rocker", 40), np.linspace(0.0, 6.0, 40)
-    cost = _costs(path, "crank-rocker", x, start)
-    told = np.flatnonzero(np.isfinite(cost))
-    assert len(told) > 20
-    for k in told:
-        phi = start[k] + path.turned
-        a, b, c = lengths("crank-rocker", x[:, k])
-        origin, ground, arm = placed((a, b, c), phi, path.points)
-        u, _ = unit.direction((a, b, c), phi)
-        off = origin + ground * a * np.exp(1j * phi) + arm * u - path.points
-        assert cost[k] == pytest.approx(float(np.sum(np.abs(off) ** 2)), rel=1e-6)
-
-
-def test_timed_starts_are_the_better_the_earlier_and_apart() -> None:
-    task = random_path(3, 11, timed=True, closed=True)
-    starts = timed_starts(task.unit, 10, 0, limited=False)
-    costs = [start.cost for start in starts]
-    assert costs == sorted(costs)
-    assert {start.family for start in starts} <= set(FULL)
-    assert math.isfinite(costs[-1])
-
-
-def test_numbers_are_spread_evenly() -> None:
-    points = spread(4096, 2, seed=3)
-    counts, _, _ = np.histogram2d(*points.T, bins=8, range=[[0, 1], [0, 1]])
-    assert np.max(np.abs(counts - 64)) < 8  # of random ones it is over 20
-    assert not np.allclose(points, spread(4096, 2, seed=4))
-
-
 def closed_curve(seed: int, count: int = 400, start: float = 0.0) -> Complexes:
     one = random_curve(np.random.default_rng(seed))
     curve = one.at(start + np.linspace(0.0, math.tau, count + 1))
@@ -227,7 +150,7 @@ def closed_curve(seed: int, count: int = 400, start: float = 0.0) -> Complexes:
     return curve
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_place_size_turn_and_start_do_not_change_a_descriptor_s_match(seed: int) -> None:
     curve = closed_curve(seed)
     moved = 7.3 * cmath.exp(1.9j) * closed_curve(seed, start=2.2) + (4.0 - 9.0j)
@@ -239,12 +162,8 @@ def test_place_size_turn_and_start_do_not_change_a_descriptor_s_match(seed: int)
     assert match(one, three[None]).similarity[0] < same.similarity[0] - 2e-4
     # What is lacking are the harmonics that are left out.
     assert 0.999 < match(one, one[None]).similarity[0] < 1.0 + 1e-6
-
-
-def test_a_start_is_found_where_it_is() -> None:
-    curve = closed_curve(3)
     later = np.concatenate([curve[100:], curve[1:101]])
-    found = match(descriptors(later[None])[0], descriptors(curve[None]))
+    found = match(descriptors(later[None])[0], one[None])
     assert found.start[0] == pytest.approx(shares(curve[None])[0, 100], abs=1.0 / 64.0)
 
 
@@ -285,31 +204,6 @@ def test_no_curve_is_similar_to_a_zigzag_and_one_of_three_points_is_refused() ->
     assert similar(star, 1)[0].similarity < 0.95
     with pytest.raises(CrankcheckError, match="path of 3 points"):
         similar([0j, 1 + 0j, 1j])
-
-
-def test_the_atlas_is_built_once_and_the_same() -> None:
-    first = atlas("crank-rocker")
-    assert atlas("crank-rocker") is first
-    assert np.array_equal(atlas.__wrapped__("crank-rocker").descriptors, first.descriptors)
-    assert len(first.arm) > 5000
-
-
-@pytest.mark.parametrize("closed", [True, False])
-def test_starts_lie_near_the_path(closed: bool) -> None:
-    task = random_path(2, 25, timed=False, closed=closed)
-    starts = (closed_starts if closed else open_starts)(task.unit, 6)
-    assert len(starts) == 6
-    for start in starts:
-        steps = np.diff(start.phi)
-        assert np.all(steps > 0.0) or np.all(steps < 0.0)
-        assert abs(start.phi[-1] - start.phi[0]) < math.tau
-
-
-def test_pieces_with_limits_close_all_along() -> None:
-    book = pieces("limited")
-    assert len(book.arm) > 5000
-    assert np.isfinite(book.places).all()
-    assert np.sum(np.abs(book.places) ** 2, axis=1) == pytest.approx(1.0)
 
 
 def test_shares_are_those_of_the_length() -> None:

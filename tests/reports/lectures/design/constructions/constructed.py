@@ -3,24 +3,22 @@ a pole that is far off."""
 
 import cmath
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
 from analytic.lectures.synthesis.burmester import four_positions
+from analytic.lectures.synthesis.coupler import curve_steps, guiding_steps, links
 from analytic.lectures.synthesis.design import (
     AskedAngle,
     CarriedBody,
     Dot,
     DrawingStep,
     DrawnCircle,
-    DrawnCurve,
-    Element,
     PrecisionPosition,
     Proposal,
     Segment,
 )
-from analytic.lectures.synthesis.pose import PlanePose, PoseDyad, bisector, circle_through, pole
+from analytic.lectures.synthesis.pose import PlanePose, about_circumcentre, pole
 from models.lectures.draft import Draft, bar
 
 LECTURE = 'Lecture "Tong hop co cau" (synthesis)'
@@ -29,41 +27,12 @@ C, D = 0.0 + 0.0j, 0.12 + 0.0j
 """Points of the body that is carried [m], in its own frame."""
 
 
-def _centre_step(name: str, pivot: str, places: Sequence[complex]) -> tuple[DrawingStep, complex]:
-    """The centre of the circle through three places of a point, by two bisectors."""
-    centre = circle_through(*places)
-    assert centre is not None
-    lines: list[Element] = []
-    for one, other in ((0, 1), (1, 2)):
-        foot = bisector(places[one], places[other]).middle
-        lines += [Segment(places[one], places[other]), Segment(foot, centre, beyond=0.15)]
-    lines += [
-        DrawnCircle(centre, abs(places[0] - centre)),
-        Dot(centre, pivot, "result", fixed=True),
-    ]
-    words = (
-        f"The bisectors of {name}1 {name}2 and of {name}2 {name}3 cross in {pivot}, the centre of "
-        f"the circle through all places of {name}."
-    )
-    return DrawingStep(words, tuple(lines)), centre
-
-
 @lru_cache
-def three_positions(
-    poses: tuple[PlanePose, ...] = THREE, name: str = "three-positions"
-) -> Proposal:
+def three_positions() -> Proposal:
     """A coupler C D in three positions, by circumcentres (the lecture, example 6)."""
-    cs, ds = ([pose.at(place) for pose in poses] for place in (C, D))
-    given: list[Element] = []
-    for k, (c, d) in enumerate(zip(cs, ds, strict=True), 1):
-        given += [Segment(c, d, "given"), Dot(c, f"C{k}", "given"), Dot(d, f"D{k}", "given")]
-    first, o2 = _centre_step("C", "O2", cs)
-    second, o4 = _centre_step("D", "O4", ds)
-    links = tuple(Segment(a, b, "result") for a, b in ((o2, cs[0]), (cs[0], ds[0]), (o4, ds[0])))
-    begin = DrawingStep("The coupler C D in its three positions.", tuple(given))
-    end = DrawingStep("The links are O2 C1, C1 D1 and O4 D1, the ground is O2 O4.", links)
-    body = CarriedBody(name, LECTURE + ", example 6", tuple(poses), {"C": C, "D": D})
-    return body.four_bar((PoseDyad(o2, C), PoseDyad(o4, D)), steps=(begin, first, second, end))
+    body = CarriedBody("three-positions", LECTURE + ", example 6", THREE, {"C": C, "D": D})
+    pair = about_circumcentre(THREE, C, "C"), about_circumcentre(THREE, D, "D")
+    return body.four_bar(pair, steps=tuple(guiding_steps(body, pair, inverted=False)))
 
 
 @lru_cache
@@ -80,7 +49,7 @@ def rocker_by_angle() -> Proposal:
         Dot(o4, "O4", "given", fixed=True), Dot(b1, "B1", "given"), Dot(b2, "B2", "given"),
         Segment(o4, b1, "given"), Segment(o4, b2, "given"),
     )  # fmt: skip
-    links = (Segment(o2, a1, "result"), Segment(a1, b1, "result"), Segment(o4, b1, "result"))
+    drawn = (Segment(o2, a1, "result"), Segment(a1, b1, "result"), Segment(o4, b1, "result"))
     # drawn with B in B1 where the crank lies over the coupler, away from O4's end
     steps = (
         DrawingStep("The rocker O4 B in its end positions, 70° apart.", ends),
@@ -90,7 +59,7 @@ def rocker_by_angle() -> Proposal:
             "Half of B1 B2 is the radius of a circle about O2, which meets the line in A1 and A2.",
             (DrawnCircle(o2, radius), Dot(a1, "A1"), Dot(a2, "A2")),
         ),
-        DrawingStep("The crank is O2 A1, the coupler A1 B1.", links),
+        DrawingStep("The crank is O2 A1, the coupler A1 B1.", drawn),
     )
     bars = {
         "crank": bar("O2", "A", radius),
@@ -123,32 +92,8 @@ def burmester_curves() -> Proposal:
     near = [d for d in every if abs(d.fixed) < 0.45 and 0.05 < d.radius(FOUR) < 0.4]
     first = near[0]
     second = max(near, key=lambda d: min(abs(d.fixed - first.fixed), abs(d.moving - first.moving)))
-    centres = tuple(tuple(dyad.fixed for dyad in piece) for piece in pieces)
-    circles = tuple(tuple(FOUR[0].at(dyad.moving) for dyad in piece) for piece in pieces)
-    bodies: list[Element] = []
-    for k, pose in enumerate(FOUR, 1):
-        end = pose.at(0.08 + 0j)
-        bodies += [Segment(pose.point, end, "given"), Dot(pose.point, f"P{k}", "given")]
-    links: list[Element] = []
-    for dyad, pivot, pin in ((first, "O2", "A"), (second, "O4", "B")):
-        at = FOUR[0].at(dyad.moving)
-        fixed = Dot(dyad.fixed, pivot, "result", fixed=True)
-        links += [Segment(dyad.fixed, at, "result"), fixed, Dot(at, f"{pin}1", "result")]
-    poles: list[Element] = []
-    for i, j in ((0, 1), (0, 2), (1, 2), (2, 3)):
-        place = pole(FOUR[i], FOUR[j])
-        assert place is not None
-        poles.append(Dot(place, f"P{i + 1}{j + 1}"))
-    steps = (
-        DrawingStep("The body in its four positions.", tuple(bodies)),
-        DrawingStep("The poles of its positions.", tuple(poles)),
-        DrawingStep("The centre-point curve: all places of fixed pivots.", (DrawnCurve(centres),)),
-        DrawingStep(
-            "The circle-point curve: all moving pivots, in position 1.", (DrawnCurve(circles),)
-        ),
-        DrawingStep("Two of their pairs are taken: O2 A1 and O4 B1.", tuple(links)),
-    )
-    body = CarriedBody("burmester", LECTURE, tuple(FOUR), {"P": 0j})
+    body = CarriedBody("burmester", LECTURE, FOUR, {"P": 0j})
+    steps = (*curve_steps(body, pieces), links(body, (first, second)))
     return body.four_bar((first, second), steps=steps)
 
 

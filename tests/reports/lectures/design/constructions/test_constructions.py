@@ -62,15 +62,17 @@ def measured(name: str, paper: Paper = A4) -> dict[str, list[Array]]:
     return drawn_lines(sheet_of(name, paper).saved("svg", "lines"))
 
 
-@pytest.mark.parametrize("name", ["three positions", "rocker by its angle"])
-def test_links_measured_off_the_sheet_are_those_of_the_scene(name: str) -> None:
-    examined = examine(EVERY[name]())
-    sheet = laid_out(examined, A4)
+def test_links_and_a_circle_measured_off_the_sheet_are_those_of_the_scene() -> None:
+    examined = examine(made.rocker_by_angle())
+    sheet, lines = laid_out(examined, A4), measured("rocker by its angle")
     for link in examined.scene.links.values():
-        (line,) = measured(name)[f"scheme-{link.name}"]
+        (line,) = lines[f"scheme-{link.name}"]
         first, last = (link.points[point] for point in link.points)
         length = math.dist(first, last) / sheet.scale
         assert math.dist(line[0], line[1]) == pytest.approx(length, abs=TENTH_MM)
+    (circle,) = lines["step-4.1"]
+    radius = math.dist(*examined.scene.links["crank"].points.values()) / sheet.scale
+    assert np.ptp(circle[:, 0]) / 2 == pytest.approx(radius, abs=TENTH_MM)
 
 
 def test_every_line_of_a_step_stands_where_the_construction_has_it() -> None:
@@ -88,14 +90,6 @@ def test_every_line_of_a_step_stands_where_the_construction_has_it() -> None:
             assert middle == pytest.approx(np.mean(ends, axis=0), abs=TENTH_MM)
             checked += 1
     assert checked == 3 + 4 + 4 + 3
-
-
-def test_the_radius_of_the_drawn_circle_is_the_crank() -> None:
-    sheet = laid_out(made.rocker_by_angle(), A4)
-    (circle,) = measured("rocker by its angle")["step-4.1"]
-    crank = sheet.view.examined.scene.links["crank"].points
-    radius = math.dist(crank["O2"], crank["A"]) / sheet.scale
-    assert np.ptp(circle[:, 0]) / 2 == pytest.approx(radius, abs=TENTH_MM)
 
 
 def test_the_mechanism_stands_in_the_positions_that_are_asked_for() -> None:
@@ -120,8 +114,13 @@ def test_positions_that_the_driver_can_not_lead_to_are_drawn_and_told() -> None:
     assert "circuit defect" in [part.words for group in sheet.words for part in group]
 
 
-def test_there_is_a_layer_for_each_step_and_the_same_sheet_has_the_same_bytes() -> None:
-    svg = sheet_of("rocker by its angle").saved("svg", "layers")
+def test_there_is_a_layer_for_each_step_and_the_words_tell_the_scale_and_the_source() -> None:
+    canvas = sheet_of("rocker by its angle")
+    words = [text.get_text() for text in canvas.named("frame").texts]
+    scale = laid_out(made.rocker_by_angle(), A4).scale
+    assert f"rocker-by-angle: construction, position 1 of 2, K_l = {scale:g} m/mm" in words
+    assert any("example 2" in each and "crankcheck" in each for each in words)
+    svg = canvas.saved("svg", "layers")
     steps = [
         "The-rocker-O4-B-in-its-end-positions--70", "The-line-B1-B2--and-its-extension",
         "O2-is-chosen-on-the-extension", "Half-of-B1-B2-is-the-radius-of-a-circle",
@@ -130,8 +129,6 @@ def test_there_is_a_layer_for_each_step_and_the_same_sheet_has_the_same_bytes() 
     named = [f"step-{number}-{words}" for number, words in enumerate(steps, 1)]
     layers = re.findall(r'inkscape:label="([^"]*)"', svg.decode())
     assert layers == ["frame", "positions", *named, "mechanism", "letters"]
-    assert svg == construction_sheet(made.rocker_by_angle(), A4).saved("svg", "layers")
-    assert sheet_of("rocker by its angle").saved("pdf", "layers").startswith(b"%PDF")
 
 
 @pytest.mark.parametrize("case", few(SHEETS, QUICK, "words that meet on another sheet"), ids=str)
@@ -181,21 +178,10 @@ def test_what_is_far_off_is_told_and_does_not_shrink_the_figure() -> None:
     assert abs(along @ across) < 0.02 * math.hypot(*along) * math.hypot(*across)
 
 
-def test_curves_that_run_to_infinity_do_not_shrink_the_figure_or_jump_across_it() -> None:
+def test_curves_that_run_to_infinity_do_not_shrink_the_figure() -> None:
     proposal = made.burmester_curves()
-    steps = [
-        replace(
-            step, elements=tuple(e for e in step.elements if not isinstance(e, design.DrawnCurve))
-        )
-        for step in proposal.steps
-    ]
-    plain = replace(proposal, steps=tuple(steps))
+    plain = replace(proposal, steps=(proposal.steps[0], proposal.steps[3]))
     assert laid_out(proposal, A4).scale == laid_out(plain, A4).scale
-    lines = measured("Burmester's curves")
-    pieces = [each for number in (3, 4) for each in lines[f"step-{number}.1"]]
-    jumps = np.concatenate([np.hypot(*np.diff(piece, axis=0).T) for piece in pieces])
-    assert len(jumps) > 200
-    assert jumps.max() < 60.0
 
 
 def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
@@ -206,22 +192,12 @@ def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
     assert laid_out(long, Paper.of("A3")).scale > 0.0
 
 
-def test_the_title_tells_the_scale_and_the_note_the_source() -> None:
-    canvas = sheet_of("three positions")
-    words = [text.get_text() for text in canvas.named("frame").texts]
-    scale = laid_out(made.three_positions(), A4).scale
-    assert f"three-positions: construction, position 1 of 3, K_l = {scale:g} m/mm" in words
-    assert any("example 6" in each and "crankcheck" in each for each in words)
-
-
 def embedded(page: str) -> dict[str, Any]:
     match = re.search(r'id="embedded-construction">(.*?)</script>', page)
     return json.loads(match[1])  # type: ignore[no-any-return]  # an object, as it was written
 
 
-@pytest.mark.parametrize(
-    "make", [made.three_positions, made.rocker_by_angle, made.burmester_curves]
-)
+@pytest.mark.parametrize("make", [made.rocker_by_angle, made.burmester_curves])
 def test_the_page_holds_every_step_and_its_words(make: Callable[[], design.Proposal]) -> None:
     proposal = make()
     page = construction_page(proposal)
@@ -266,16 +242,6 @@ def test_a_position_that_the_driver_can_not_lead_to_is_no_stop_and_what_is_chose
     assert chosen in construction_page(made.rocker_by_angle())
 
 
-def test_the_asked_link_stands_in_each_pose() -> None:
-    own = embedded(construction_page(made.three_positions()))
-    view = ConstructionView.of(made.three_positions())
-    for pose, placed in zip(own["poses"], view.placements, strict=True):
-        assert placed is not None
-        assert len(pose["links"]) == 1
-        ends = np.concatenate([placed.points["C"], placed.points["D"]])
-        assert pose["links"][0] == pytest.approx(list(ends), rel=1e-5)
-
-
 def test_hostile_words_are_text() -> None:
     proposal = made.three_positions()
     evil = "</script><script>window.hacked=1</script><img src=x>"
@@ -290,19 +256,13 @@ LOW, HIGH = np.array([-1.0, -0.5]), np.array([2.0, 1.0])
 
 def test_a_line_is_cut_to_as_long_as_it_is_in_the_box() -> None:
     random = np.random.default_rng(3)
-    for start, end in random.uniform(-4.0, 4.0, (200, 2, 2)):
+    for start, end in random.uniform(-4.0, 4.0, (50, 2, 2)):
         along = start + np.linspace(0.0, 1.0, 20001)[:, None] * (end - start)
         inside = np.all((along >= LOW) & (along <= HIGH), axis=1).mean()
         parts = cut_line(np.array([start, end]), LOW, HIGH)
         assert len(parts) <= 1
         kept = sum(math.dist(part[0], part[-1]) for part in parts)
         assert kept / math.dist(start, end) == pytest.approx(inside, abs=2e-4)
-
-
-def test_lines_along_the_axes_and_on_the_edge_are_kept() -> None:
-    for ends in ([[0.0, -3.0], [0.0, 3.0]], [[-9.0, 0.0], [9.0, 0.0]], [[-1.0, 0.0], [-1.0, 0.5]]):
-        assert len(cut_line(np.array(ends), LOW, HIGH)) == 1
-    assert cut_line(np.array([[3.0, -3.0], [3.0, 3.0]]), LOW, HIGH) == []
 
 
 def test_a_line_that_leaves_and_comes_back_has_two_parts_and_one_that_stays_has_one() -> None:
@@ -312,14 +272,13 @@ def test_a_line_that_leaves_and_comes_back_has_two_parts_and_one_that_stays_has_
     assert second == pytest.approx(np.array([[1.0, 1.0], [1.0, 0.0], [1.5, 0.0]]))
     (whole,) = cut_line(out[[0, 3, 4]], LOW, HIGH)
     assert len(whole) == 3
+    far = np.array([[0.0, 0.0], [1.0, 0.5], [40.0, 20.0], [-40.0, -20.0], [-0.5, -0.25]])
+    assert [len(part) for part in cut_line(far, LOW, HIGH)] == [3, 2]
+    assert len(cut_line(np.array([[-1.0, 0.0], [-1.0, 0.5]]), LOW, HIGH)) == 1  # on the edge
+    assert cut_line(np.array([[3.0, -3.0], [3.0, 3.0]]), LOW, HIGH) == []
 
 
-def test_a_curve_that_comes_back_from_infinity_does_not_jump_across() -> None:
-    curve = np.array([[0.0, 0.0], [1.0, 0.5], [40.0, 20.0], [-40.0, -20.0], [-0.5, -0.25]])
-    assert [len(part) for part in cut_line(curve, LOW, HIGH)] == [3, 2]
-
-
-@pytest.mark.parametrize("radius", [5.0, 500.0, 5e5])
+@pytest.mark.parametrize("radius", [5.0, 5e5])
 def test_of_a_large_circle_all_that_is_in_the_box_is_kept(radius: float) -> None:
     middle = np.array([0.3, 0.1]) + radius * np.array([math.cos(1.0), math.sin(1.0)])
     arc = arc_places(middle, radius, *near_angles(middle, radius, LOW, HIGH))

@@ -15,9 +15,9 @@ from analytic.lectures.drawings.graphical import METHODS, Method
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from reports.figures.style import SMALL, styled
+from reports.figures.style import styled
 from reports.lectures.drawing.sheets.graph_drawing import DrawnGraphs, drawn_graphs, graph_log
-from reports.lectures.drawing.sheets.graph_orders import ErrorLine, draw_errors, graph_errors
+from reports.lectures.drawing.sheets.graph_orders import ErrorLine, graph_errors
 from reports.lectures.drawing.sheets.graph_page import caption, draw_graphs, laid_out
 from reports.lectures.drawing.sheets.graph_sheet import POLES_MM, GraphSheet, graph_scales
 from reports.lectures.drawing.sheets.graph_span import Over, over_period
@@ -98,12 +98,7 @@ def test_graphs_of_any_heights_fit_with_one_scale_round(
 
 @pytest.mark.parametrize(
     ("name", "of", "by", "paper"),
-    [
-        ("slider-crank-offset", "C", "chords", "A4"),
-        ("shaper", "E.y", "tangents", "A3"),
-        ("whitworth", "lever", "integration", "A5"),
-        ("fourbar-lecture-1", "crank", "integration", "A4"),
-    ],
+    [("shaper", "E.y", "tangents", "A3"), ("whitworth", "lever", "integration", "A5")],
 )
 def test_graphs_and_table_stay_in_their_boxes(name: str, of: str, by: Method, paper: str) -> None:
     sheet = sheet_of(name, of, by, paper=paper)
@@ -115,13 +110,6 @@ def test_graphs_and_table_stay_in_their_boxes(name: str, of: str, by: Method, pa
     assert sheet.table.left + sheet.table.width <= sheet.paper.width - 8.0
     part = sheet.panels[0].box.width / sheet.drawn.parts
     assert 2.0 * part == pytest.approx(round(2.0 * part))  # half millimetres of a ruler
-
-
-def test_a_caption_that_has_room_is_not_tiny() -> None:
-    sheet = sheet_of("slider-crank-offset", "C", "chords", paper="A3")
-    texts = [text for axes in draw_graphs(sheet, "").figure.axes for text in axes.texts]
-    sizes = {text.get_text(): text.get_fontsize() for text in texts}
-    assert [sizes[caption(sheet, panel)] for panel in sheet.panels] == [SMALL] * len(sheet.panels)
 
 
 def test_the_table_has_division_angle_and_value() -> None:
@@ -213,14 +201,6 @@ def test_an_exact_log_is_drawn_as_the_reference_is(write: Write) -> None:
     ]
 
 
-def test_the_error_of_the_engine_is_told_apart_from_that_of_the_method(write: Write) -> None:
-    theta = ROCKER.exact(0, EVEN) + ripple(EVEN)
-    graphs = drawn(write(time_s=EVEN, rocker_theta_rad=theta), parts=96)
-    # of a ripple so short the chords of 96 parts show nearly all: 7e-3 rad/s of 6.1
-    assert graphs.own_part(1) == pytest.approx(7e-3 / graphs.sizes[1], rel=0.02)
-    assert graphs.off(graphs.reference, 1) == pytest.approx(5e-4, rel=0.05)
-
-
 def test_readings_are_taken_between_rows_and_between_turns(write: Write) -> None:
     t = np.linspace(0.0, 1.1 * PERIOD, 500)
     degrees = np.degrees(ROCKER.exact(0, t))
@@ -229,13 +209,6 @@ def test_readings_are_taken_between_rows_and_between_turns(write: Write) -> None
     assert graphs.own_part(0) < 1e-8
     told = "by cubic splines between its rows, 0.00139 s apart, which add up to"
     assert told in told_log(graphs)[1]
-
-
-def test_a_crank_that_loses_its_turns_goes_on(write: Write) -> None:
-    of = over_period(LECTURE, "crank", "time", None)
-    angle = np.mod(of.exact(0, EVEN), math.tau)
-    log = graph_log(write(time_s=EVEN, crank_theta_rad=angle), None, of)
-    assert drawn_graphs(of, "chords", 12, log).own_part(0) < 1e-12
 
 
 def test_a_log_that_begins_later_is_drawn_from_there_or_its_next_period_on(write: Write) -> None:
@@ -259,29 +232,26 @@ def test_what_is_let_go_is_drawn_from_its_start_on(write: Write) -> None:
         graph_log(late, None, of)
 
 
-def test_own_rates_and_rays_of_the_log_are_layers_of_their_own(write: Write) -> None:
+def test_own_rates_and_rays_of_a_log_are_layers_whose_words_stand_on_no_others(
+    write: Write,
+) -> None:
     theta, omega = ROCKER.exact(0, EVEN), ROCKER.exact(1, EVEN) + ripple(EVEN, 1)
     graphs = drawn(write(time_s=EVEN, rocker_theta_rad=theta, rocker_omega_rad_s=omega))
-    drawing = draw_graphs(laid_out(graphs, Paper.of("A4")), "").saved("svg", "").decode()
+    canvas = draw_graphs(laid_out(graphs, Paper.of("180x120")), "a source")
+    drawing = canvas.saved("svg", "").decode()
     for layer in ("rays-omega-log", "graph-epsilon-log", "own-omega"):
         assert f'id="layer-{layer}"' in drawing
     assert 'id="layer-own-epsilon"' not in drawing  # which it has not
     assert "as logged" in drawing
     assert told_log(graphs)[-1].startswith("as logged, at the divisions: omega off by up to 0.1")
-
-
-def test_no_words_of_a_small_sheet_stand_on_others(write: Write) -> None:
-    theta, omega = (ROCKER.exact(order, EVEN) + ripple(EVEN, order) for order in (0, 1))
-    log = write(time_s=EVEN, rocker_theta_rad=theta, rocker_omega_rad_s=omega)
-    figure = draw_graphs(laid_out(drawn(log), Paper.of("180x120")), "a source").figure
     with styled():
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-    texts = [text for axes in figure.axes for text in axes.texts]
-    boxes = [text.get_window_extent(canvas.get_renderer()).padded(-1.0) for text in texts]
+        agg = FigureCanvasAgg(canvas.figure)
+        agg.draw()
+    texts = [text for axes in canvas.figure.axes for text in axes.texts]
+    boxes = [text.get_window_extent(agg.get_renderer()).padded(-1.0) for text in texts]
     for one, other in itertools.combinations(range(len(texts)), 2):
         assert not boxes[one].overlaps(boxes[other]), (texts[one], texts[other])
-    assert all(box.x0 > 0.0 and box.x1 < figure.bbox.width for box in boxes)
+    assert all(box.x0 > 0.0 and box.x1 < canvas.figure.bbox.width for box in boxes)
 
 
 def test_an_accelerometer_is_integrated_from_the_exact_start(write: Write) -> None:
@@ -291,7 +261,7 @@ def test_an_accelerometer_is_integrated_from_the_exact_start(write: Write) -> No
     assert graphs.own_part(1) == pytest.approx(2 * 7e-3 / graphs.sizes[1], rel=0.02)
 
 
-@pytest.mark.parametrize("by", ["chords", "integration"])
+@pytest.mark.parametrize("by", METHODS)
 def test_errors_of_a_log_fall_by_the_same_order_to_its_own(write: Write, by: Method) -> None:
     fine = np.arange(0, 2881) * PERIOD / 2880
     theta, alpha = (ROCKER.exact(k, fine) + 1e-3 * ripple(fine, k) for k in (0, 2))
@@ -302,33 +272,16 @@ def test_errors_of_a_log_fall_by_the_same_order_to_its_own(write: Write, by: Met
         assert line.order(divisions) == expected
 
 
-@pytest.mark.parametrize(
-    ("errors", "own", "expected"),
-    [
+def test_an_order_is_told_of_what_falls_alone() -> None:
+    for errors, own, expected in (
         ((16.0, 4.0, 1.0), (), 2.0),
         ((16.0, 4.0, 1.1), (0.1, 0.1, 0.1), 1.93),
         ((16.0, 4.5, 1.9), (1.0, 1.0, 1.0), None),  # most of the last is the log's own
         ((16.0, 4.0, 3.9), (), None),  # two slopes, and none of them fitted
         ((16.0, 0.0, 0.0), (), None),
-    ],
-)
-def test_an_order_is_told_of_what_falls_alone(
-    errors: tuple[float, ...], own: tuple[float, ...], expected: float | None
-) -> None:
-    order = ErrorLine("log", "omega", errors, own).order((24, 48, 96))
-    assert order == (expected if expected is None else pytest.approx(expected, abs=0.01))
-
-
-def test_the_slope_of_order_2_is_below_the_first_error_that_there_is(write: Write) -> None:
-    # of a crank the reference's graphs are straight: only those of the log are off
-    of = over_period(LECTURE, "crank", "time", None)
-    angle = of.exact(0, EVEN) + ripple(EVEN)
-    log = graph_log(write(time_s=EVEN, crank_theta_rad=angle), None, of)
-    errors = graph_errors(of, "chords", (24, 48), log)
-    drawn = draw_errors(errors, Paper.of("A4"), "").figure.axes[-1].get_lines()
-    (slope,) = (line.get_ydata() for line in drawn if line.get_label() == "slope of order 2")
-    first = next(line for line in errors.lines if line.of == "log").errors[0]
-    assert np.asarray(slope) == pytest.approx([0.5 * first, 0.125 * first])
+    ):
+        order = ErrorLine("log", "omega", errors, own).order((24, 48, 96))
+        assert order == (expected if expected is None else pytest.approx(expected, abs=0.01))
 
 
 def test_a_log_at_another_speed_is_drawn_with_a_doubt(write: Write) -> None:
