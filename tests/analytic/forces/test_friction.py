@@ -15,10 +15,9 @@ from models.files.reading import load_scene, parse_scene
 from models.scene import Scene
 from models.scene.loads import ConstantFriction, CoulombFriction
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, turn
+from tests.analytic.forces.beside import agreed, at, turn
 from tests.analytic.test_bounds import SIX
-from tests.second_opinions import multipliers, power
-from tests.worlds.loading import loaded, massless, rubbed, rubbed_mechanism
+from tests.worlds.loading import loaded, massless, rubbed
 
 PRESS = """
 name = "press"
@@ -53,28 +52,6 @@ def test_a_slider_rubs_as_the_textbook_has_it(phi_deg: float, mu: float) -> None
     assert found.friction["piston"][0] == pytest.approx(mu * thrust, rel=1e-12)
 
 
-@pytest.mark.parametrize("phi_deg", [20.0, 140.0])
-def test_the_rod_is_pulled_along_the_tangent_of_two_friction_circles(phi_deg: float) -> None:
-    """Both pins of a massless rod rub: its force keeps its line, which leans from that of the pins
-    by asin((c_B +- c_C)/l), c the radii of the friction circles; from the moments about B, of the
-    rod, and about C, in the figure. Here the couples are laid out by hand."""
-    mu, radius = 0.2, 0.02
-    circle = radius * math.sin(math.atan(mu))
-    scene = press(B=CoulombFriction("B", mu, radius), C=CoulombFriction("C", mu, radius))
-    # crank 1 rad/s, rod slower than it: rod turns against the crank, block against the rod
-    motion = at(scene, math.radians(phi_deg))
-    found, turning = kinetostatics.forces(scene, motion), motion.links["rod"].omega[0]
-    force = math.hypot(*found.pins["C"]["rod"][0])
-    at_b, at_c = -math.copysign(circle, turning - 1.0), math.copysign(circle, 0.0 - turning)
-    # Moments on the rod about B: l x S + couple at B + couple at C = 0.
-    span = motion.points["C"].position[0] - motion.points["B"].position[0]
-    held = found.pins["C"]["rod"][0]
-    moment = span[0] * held[1] - span[1] * held[0]
-    assert moment == pytest.approx(-(at_b + at_c) * force, rel=1e-11)
-    assert found.friction["B"][0] == pytest.approx(at_b * force, rel=1e-11)
-    assert found.friction["C"][0] * (0.0 - turning) < 0.0
-
-
 def test_constant_friction_of_the_drive_adds_to_its_torque() -> None:
     scene = press(A=ConstantFriction("A", 2.0))
     for rate in (1.0, -1.0):
@@ -98,32 +75,6 @@ def test_three_computations_agree_with_friction(name: str) -> None:
     for joint, watts in friction_power(scene, solve(scene, some), found.friction).items():
         assert np.all(watts <= 0.0), joint
     assert any(np.any(np.abs(each) > 0.0) for each in found.friction.values())
-
-
-def test_random_mechanisms_agree_with_the_multipliers() -> None:
-    """Where friction has one solution; blocks on moving guides among them, and their pins."""
-    told = 0
-    for number in range(0, 60, 4):
-        scene, _ = rubbed_mechanism(number)
-        time_s = np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s
-        found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
-        some = time_s[found.bound.torque < 1e-6 * np.abs(found.torque).max()]
-        if len(some):
-            agreed(scene, some, number)
-            told += len(some)
-    assert told > 40
-
-
-def test_a_fault_in_friction_makes_them_disagree() -> None:
-    scene = replace(press(piston=CoulombFriction("piston", 0.2)), gravity_m_s2=(0.0, -9.81))
-    time_s = np.linspace(0.2, 2.9, 7)
-    found, _ = agreed(scene, time_s)
-    more = replace(scene, friction={"piston": CoulombFriction("piston", 0.2 + 1e-9)})
-    assert apart(found, multipliers.forces(more, solve(scene, time_s))) > AGREED
-    spoilt = replace(found, friction={"piston": found.friction["piston"] * (1.0 + 1e-9)})
-    assert out_of_balance(scene, time_s, spoilt) > AGREED
-    with pytest.raises(CrankcheckError, match=r"friction.piston is not given"):
-        power.power_balance(scene, solve(scene, time_s), found.torque)
 
 
 def test_a_joint_that_does_not_move_may_rub_either_way() -> None:

@@ -15,11 +15,10 @@ from analytic.kinematics import chunks, reach, solve, solve_driven
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, parse_scene, shipped
 from models.motion import Motion
-from models.scene import GROUND, Driver, Scene
+from models.scene import GROUND, Scene
 from models.scene.characteristics import Constant, Polynomial
 from models.scene.hard import WindowChain
-from models.scene.laws import ConstantSpeed
-from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring
+from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring
 from models.scene.tabulated import Tabulated
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn
@@ -86,12 +85,6 @@ def test_a_hanging_weight_pulls_its_pin_down() -> None:
     np.testing.assert_array_equal(found.pins["A"]["ground"], -found.pins["A"]["crank"])
 
 
-def test_a_scene_without_mass_has_the_forces_of_its_loads() -> None:
-    push = Load("push", "rocker", "C", Constant(1.0))
-    scene = replace(massless(load_scene("fourbar-lecture-1")), loads={"push": push})
-    assert forces(scene, [0.0]).torque[0] != 0.0
-
-
 def test_where_a_stroke_turns_the_bound_holds_the_whole_force() -> None:
     """Rounding may have the speed on either side of 0."""
     cut = Load("cut", "block C", "C", Constant(500.0), "time", "C", "forward")
@@ -100,29 +93,6 @@ def test_where_a_stroke_turns_the_bound_holds_the_whole_force() -> None:
     bound = forces(scene, at(scene, np.pi, 1.0)).bound.pins["C"]["block C"]
     assert bound[0] >= 500.0
     assert bound[1] < 1e-9
-
-
-def test_a_slider_crank_with_springs_by_hand() -> None:
-    """Crank 0.3, rod 0.5 m at 90 deg, 2 rad/s, nothing with mass: x_C = 0.4 m, x_C' = -0.6 m/s.
-    A spring of 100 N/m and 10 N s/m, slack at 0.1 m, pulls the block back with 100 (0.4 - 0.1)
-    - 10 0.6 = 24 N; the power 24 (-0.6) comes of the drive: M 2 = 24 (-0.6), M = -7.2 N m. The rod,
-    (0.4, -0.3) / 0.5, holds the block with +24 N along x: so with -18 N across, and the guide
-    with +18 N. In the pin A a spring of 2 N m/rad, slack at 30 deg: 2 pi/3 N m more."""
-    scene = massless(CENTRAL)
-    links = {
-        "crank": replace(scene.links["crank"], points={"A": (0.0, 0.0), "B": (0.3, 0.0)}),
-        "rod": replace(scene.links["rod"], points={"B": (0.0, 0.0), "C": (0.5, 0.0)}),
-    }
-    driver = Driver("crank", ConstantSpeed(0.5 * math.pi, 2.0))
-    back = SlideSpring("back", 100.0, 10.0, 0.1, "C")
-    scene = replace(scene, links=links, driver=driver, springs={"back": back})
-    found = forces(scene, [0.0])
-    assert found.torque == pytest.approx([-7.2])
-    assert found.pins["C"]["block C"][0] == pytest.approx([24.0, -18.0])
-    assert found.sliders["C"].normal == pytest.approx([18.0])
-    wound = PinSpring("wound", 2.0, 0.0, math.radians(30.0), "A", (GROUND, "crank"))
-    both = replace(scene, springs={"back": back, "wound": wound})
-    assert forces(both, [0.0]).torque == pytest.approx([-7.2 + math.tau / 3.0])
 
 
 def test_a_spring_in_a_pin_is_wound_up_turn_by_turn() -> None:
