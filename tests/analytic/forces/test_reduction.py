@@ -13,11 +13,12 @@ from analytic.forces.late_impulses import LateImpulses, late_impulses
 from analytic.forces.virtual_power import reduced_machine
 from analytic.kinematics import solve
 from models.array import Array
-from models.files.reading import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene
 from models.scene import Driver
 from models.scene.characteristics import Constant
 from models.scene.laws import Accelerating, ConstantSpeed
 from models.scene.loads import Load
+from tests.analytic.test_bounds import SIX
 from tests.second_opinions.reduction import plane_motion, rotation, two_masses
 from tests.worlds.loading import loaded, sprung
 
@@ -67,7 +68,7 @@ def test_two_masses_and_their_couple_have_the_inertia_of_the_link() -> None:
         assert moment == pytest.approx(-inertia * alpha, rel=1e-12, abs=1e-11)
 
 
-@pytest.mark.parametrize(("name", "springs"), [*((n, False) for n in shipped()), ("shaper", True)])
+@pytest.mark.parametrize(("name", "springs"), [*((n, False) for n in SIX), ("shaper", True)])
 def test_the_reduced_machine_takes_the_torque_of_the_drive(name: str, springs: bool) -> None:
     """torque = I alpha + I' omega^2 / 2 - M, under an accelerating driver and any loads."""
     scene = load_scene(name)

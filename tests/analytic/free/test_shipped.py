@@ -3,6 +3,7 @@ costs; periods by quadrature, beside the integrated motion; and the chain of win
 form against 50 digits, its equation against all bodies."""
 
 import math
+from functools import partialmethod
 from unittest.mock import Mock
 
 import mpmath
