@@ -10,7 +10,6 @@ from analytic.kinematics import reach, solve, solve_driven
 from models.errors import ReachError
 from models.files.reading import load_scene, parse_scene
 from models.scene import Scene
-from models.scene.driver import driver_course
 from tests.analytic.four_bars import fourbar
 from tests.analytic.test_bounds import shares
 from tests.worlds.tiers import slowly
@@ -88,13 +87,3 @@ def test_a_piston_stands_between_its_dead_points_alone() -> None:
     assert ahead == pytest.approx((0.2, 0.4), abs=1e-12)
     with pytest.raises(ReachError, match=r"slider C at 0\.41 m: the loop cannot close at B"):
         solve_driven(scene, np.array([0.41]), np.ones(1), np.zeros(1))
-
-
-def test_crank_and_coupler_make_whole_turns_against_each_other() -> None:
-    scene = load_scene("fourbar-by-coupler")
-    assert reach(scene) == [(-math.pi, math.pi)]
-    motion = solve(scene, np.linspace(0.0, scene.driver.law.period_s, 9))
-    turned, _, _ = driver_course(scene, motion)
-    assert math.isclose(turned[-1] - turned[0], -math.tau, abs_tol=1e-12)
-    crank = motion.links["crank"].theta
-    assert math.isclose(crank[-1] - crank[0], math.tau, abs_tol=1e-9)

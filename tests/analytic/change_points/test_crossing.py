@@ -160,21 +160,20 @@ def test_a_parallelogram_stays_one(lengths: tuple[float, float]) -> None:
     assert motion.conditioning["C"].min() < 1e-12
 
 
-KITES = [
-    ((0.125, 0.375, 0.375, 0.125), [0.0]),
-    ((0.375, 0.125, 0.375, 0.125), [0.0, math.pi]),
-    ((0.125, 0.125, 0.375, 0.375), [0.0, math.pi]),
-    ((0.25, 0.5, 1.0, 0.75), [0.0]),
-    ((0.5, 0.625, 1.5, 1.625), [math.pi]),
-]
-
-
 @pytest.mark.parametrize(
-    ("lengths", "angles", "branch"),
-    [*((*kite, 1) for kite in KITES), *((*kite, -1) for kite in KITES[:2])],
+    ("lengths", "branch", "angles"),
+    [
+        ((0.125, 0.375, 0.375, 0.125), 1, [0.0]),
+        ((0.125, 0.375, 0.375, 0.125), -1, [0.0]),
+        ((0.375, 0.125, 0.375, 0.125), 1, [0.0, math.pi]),
+        ((0.375, 0.125, 0.375, 0.125), -1, [0.0, math.pi]),
+        ((0.125, 0.125, 0.375, 0.375), 1, [0.0, math.pi]),
+        ((0.25, 0.5, 1.0, 0.75), 1, [0.0]),
+        ((0.5, 0.625, 1.5, 1.625), 1, [math.pi]),
+    ],
 )
 def test_fourbars_that_fold_flat_follow_the_smooth_branch(
-    lengths: Lengths, angles: list[float], branch: int
+    lengths: Lengths, branch: int, angles: list[float]
 ) -> None:
     follows(lengths, branch, beside([0.0, math.pi], 4)[::2], angles, 1e-6)
 

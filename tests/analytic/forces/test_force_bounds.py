@@ -34,7 +34,6 @@ from tests.worlds.wide_angles import made, times
 
 NOTHING = 1e-38
 """What is left of an error of the oracle itself, over its largest force."""
-COUNT = 10
 LOOSE = 4000.0
 """What the median of bound over error may be: those of accelerations alone are a few hundred."""
 
@@ -103,7 +102,7 @@ def hold(number: int, springs: bool = False) -> list[Held]:
 @pytest.mark.parametrize(
     ("count", "springs"),
     [
-        (COUNT, False),
+        (10, False),
         (8, True),
         slowly(4000, False, reason="one mechanism in a thousand is nearer to a dead point"),
         slowly(100, True, reason="random mechanisms"),

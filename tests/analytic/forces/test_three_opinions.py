@@ -10,9 +10,7 @@ from analytic.forces import kinetostatics
 from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import solve
 from analytic.prepared import prepared
-from models.array import Array
 from models.files.reading import load_scene, parse_scene, shipped
-from models.scene import Scene
 from tests.analytic.assur.triad_scenes import KINDS, triad
 from tests.analytic.forces.beside import (
     AGREED,
@@ -62,24 +60,18 @@ def test_three_computations_agree_over_a_turn(name: str) -> None:
     assert not np.array_equal(found.torque, other.torque), "bit for bit: the same computation?"
 
 
-def _by_power(scene: Scene, time_s: Array) -> tuple[Array, Array]:
-    """Torque and its bound, of a few samples."""
-    ((_, chunk),) = kinetostatics.chunks(scene, time_s, bound=True)
-    unit = kinetostatics.unit_chunk(scene, chunk.theta, bound=True)
-    free = kinetostatics.free_bodies(scene, chunk)
-    kinetostatics.apply_loads(scene, chunk, time_s, free)
-    torque = torque_by_power(free, unit, chunk)
-    return torque.value, torque.error
-
-
 @pytest.mark.parametrize("name", DRIVEN)
 def test_whatever_drives_has_the_forces_of_the_multipliers(name: str) -> None:
     scene = DRIVEN[name]
     time_s = np.linspace(0.0, 0.9 * scene.driver.law.period_s, 7)
     found = kinetostatics.forces(scene, time_s)
     assert apart(found, multipliers.forces(scene, solve(scene, time_s))) <= AGREED
-    torque, off = _by_power(scene, time_s)
-    assert np.all(np.abs(found.torque - torque) <= found.bound.torque + off)
+    ((_, chunk),) = kinetostatics.chunks(scene, time_s, bound=True)
+    free = kinetostatics.free_bodies(scene, chunk)
+    kinetostatics.apply_loads(scene, chunk, time_s, free)
+    unit = kinetostatics.unit_chunk(scene, chunk.theta, bound=True)
+    torque = torque_by_power(free, unit, chunk)
+    assert np.all(np.abs(found.torque - torque.value) <= found.bound.torque + torque.error)
 
 
 QUICK = {("RR", "PR", "RP"), ("PR", "PR", "PP")}

@@ -1,6 +1,5 @@
-"""The shipped scenes of free motion: a second method, the multibody form, energy and what a kink
-costs; periods by quadrature, beside the integrated motion; and the chain of windows: its closed
-form against 50 digits, its equation against all bodies."""
+"""The shipped scenes of free motion: a second method, the multibody form, energy, periods by
+quadrature and what a kink costs; and the chain of windows."""
 
 import math
 from functools import partialmethod
