@@ -126,6 +126,7 @@ ASIDE = with_strut(parallelogram(2), "B0", "B1", "B2", B1=(0.3, 0.001))
 ONLY = "lever fits in place only: A2 and B2 part at"
 
 
+@pytest.mark.parametrize("bound", [True, False])
 @pytest.mark.parametrize(
     ("scene", "degrees", "omega", "said"),
     [
@@ -144,11 +145,11 @@ ONLY = "lever fits in place only: A2 and B2 part at"
          "third pin aside", "third pin of another way"],
 )  # fmt: skip
 def test_a_link_that_does_not_fit_is_refused_with_the_numbers(
-    scene: Scene, degrees: list[float], omega: float, said: str
+    scene: Scene, degrees: list[float], omega: float, said: str, bound: bool
 ) -> None:
     theta = np.radians(degrees)
     with pytest.raises(StructureError, match=said):
-        solve_driven(scene, theta, np.full(1, omega), np.full(1, 3.0))
+        solve_driven(scene, theta, np.full(1, omega), np.full(1, 3.0), bound=bound)
 
 
 @pytest.mark.parametrize("bound", [True, False])
