@@ -1,7 +1,7 @@
 """A whole mechanism in long doubles, at thousands of samples at once.
 
-As `tests.analytic.chain`, and held to it: the same constraints over jets, with a mantissa of 64
-bits, 2048 times as fine as a float's. Directions are made of the angles as they were given, degrees
+As `tests.analytic.chain`: the same constraints over jets, with a mantissa of 64 bits, 2048 times as
+fine as a float's. Directions are made of the angles as they were given, degrees
 of a file or radians, each by itself, so that no sum of large angles is rounded.
 """
 

@@ -4,7 +4,6 @@ import itertools
 import math
 import subprocess
 import sys
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -70,8 +69,8 @@ def _pair(number: complex) -> Point:
 @pytest.mark.parametrize(
     "seeds",
     [
-        range(6),
-        slowly(range(6, 1000), reason="rare rows, with assemblies that lie close together"),
+        range(4),
+        slowly(range(4, 1000), reason="rare rows, with assemblies that lie close together"),
         at_length(range(1000, 10_000), reason="a minute of each kind, of rarer ones"),
     ],
     ids=len,
@@ -84,6 +83,9 @@ def test_a_homotopy_finds_the_same_assemblies(kinds: Kinds, seeds: range) -> Non
         assert len(every) == MOST[kinds], (seed, "all paths that end have been followed")
         assert len(own) == len(real(every)), seed
         assert len(own) >= seed % 2, (seed, "it was drawn in a pose that it has")
+        angles = [one.angle_rad for one in own]
+        assert angles == sorted(angles)
+        assert all(-math.pi < angle <= math.pi for angle in angles)
         for one in own:
             apart = [away(one, *other) for other in real(every)]
             assert sum(each < 1e-6 for each in apart) == 1, (seed, apart)
@@ -116,10 +118,9 @@ SEEDS = {SIX_PINS: 47, ("RR", "RR", "PR"): 31, ("RR", "RR", "RP"): 44, ("RR", "P
 """Of drawn rows with as many assemblies as there can be, where these are rare."""
 
 
-@pytest.mark.parametrize("count", [16, slowly(150, reason="rare rows that may have more")])
 @pytest.mark.parametrize("kinds", MOST, ids="-".join)
-def test_no_kind_has_more_and_each_can_have_as_many_as_said(kinds: Kinds, count: int) -> None:
-    seeds = {*range(count), SEEDS.get(kinds, 0)}
+def test_no_kind_has_more_and_each_can_have_as_many_as_said(kinds: Kinds) -> None:
+    seeds = {*range(16), SEEDS.get(kinds, 0)}
     numbers = {len(assemblies(drawn(kinds, seed))) for seed in seeds}
     assert max(numbers) == MOST[kinds]
     assert all(number % 2 == MOST[kinds] % 2 for number in numbers)
@@ -130,18 +131,6 @@ def test_kinds_with_two_legs_that_hold_the_angle_have_none() -> None:
     for kinds in SINGULAR:
         with pytest.raises(CrankcheckError, match="two legs hold the angle"):
             assemblies(drawn(kinds, 1))
-
-
-def test_they_come_by_increasing_angle_whatever_the_order_of_the_legs() -> None:
-    for kinds in MOST:
-        one, two, three = drawn(kinds, 1)
-        own = np.array([each[:3] for each in counted(one, two, three)])
-        angles = own[:, 0].tolist()
-        assert angles == sorted(angles)
-        assert all(-math.pi < angle <= math.pi for angle in angles)
-        for rows in ((two, three, one), (three, two, one)):
-            again = np.array([each[:3] for each in counted(*rows)])
-            assert again == pytest.approx(own, rel=1e-14, abs=1e-15)
 
 
 def test_a_mechanism_of_class_ii_loads_no_python_flint() -> None:
@@ -205,17 +194,6 @@ def test_two_rows_of_one_line_leave_what_the_third_takes() -> None:
     ]
 
 
-@pytest.mark.parametrize("order", [(0, 1, 2), (1, 2, 0), (2, 0, 1)])
-def test_parallel_guides_hold_the_angle(order: tuple[int, int, int]) -> None:
-    """Two pins of a plate on y = 0 and y = 1, sqrt(2) apart; the third leg decides."""
-    lines = LineRow((0, 0), UP, (0, 0)), LineRow((1, 1), UP, (7, 1))
-    circle, line = CircleRow((0, 0), (0, 3), 5), LineRow((0, 0), ALONG, (2, 0))
-    for last, places in ((circle, (-4.0, 4.0)), (line, (2.0,))):
-        rows = [(*lines, last)[i] for i in order]
-        expected = [(phi, x, 0.0, 1) for phi in (0.0, math.pi / 2) for x in places]
-        assert counted(*rows) == expected
-
-
 def test_a_limit_between_parallel_guides_counts_twice_at_each_place() -> None:
     """The guides are as far apart as the two pins: the link stands across."""
     lines = LineRow((0, 0), UP, (0, 0)), LineRow((1, 0), UP, (0, 1))
@@ -251,11 +229,7 @@ def test_a_parallelogram_moves_and_with_unequal_legs_it_does_not() -> None:
     pins = [(4.0, 0.0), (6.0, 0.0), (5.0, 3.0)]
     with pytest.raises(ContinuumError):
         counted(*circles(points, pins, [2, 2, 2]))
-    rows = circles(points, pins, [2, 2.5, 2.25])
-    own = assemblies(rows)
-    other = real(solutions(rows, 6))
-    assert len(own) == len(other) > 0
-    assert [one.angle_rad for one in own] == pytest.approx(list(other[:, 0]), abs=1e-9)
+    assert len(assemblies(circles(points, pins, [2, 2.5, 2.25]))) == 4
 
 
 def test_one_leg_twice_moves_and_two_lengths_between_the_same_pins_are_none() -> None:
@@ -267,41 +241,32 @@ def test_one_leg_twice_moves_and_two_lengths_between_the_same_pins_are_none() ->
             assert counted(*rows) == []
 
 
-@pytest.mark.parametrize(
-    "seeds", [(1, 3, 5), slowly(range(7, 41, 2), reason="random points")], ids=len
-)
-@pytest.mark.parametrize("shared", ["outer", "inner", "collinear", "both collinear"])
-def test_points_that_coincide_or_lie_on_a_line_are_no_special_case(
-    shared: str, seeds: Sequence[int]
-) -> None:
-    for seed in seeds:
-        rows = drawn(SIX_PINS, seed)
-        a, pins = [complex(*row.a) for row in rows], [complex(*row.pin) for row in rows]
-        at, way = complex(0.5, -0.25), np.exp(0.5j)
-        there = [at + way * one for one in a]
-        if shared == "outer":
-            pins[1] = pins[0]
-        if shared == "inner":
-            a[1], there[1] = a[0], there[0]
-        if "collinear" in shared:
-            a[2] = 0.25 * a[0] + 0.75 * a[1]
-            there[2] = at + way * a[2]
-        if "both" in shared:
-            pins[2] = 0.5 * pins[0] + 0.5 * pins[1]
-        lengths = [float(abs(one - pin)) for one, pin in zip(there, pins, strict=True)]
-        drawn_so = circles([*map(_pair, a)], [*map(_pair, pins)], lengths)
-        own, other = assemblies(drawn_so), real(solutions(drawn_so, 6))
-        assert len(own) == len(other) > 0
-        assert [one.angle_rad for one in own] == pytest.approx(list(other[:, 0]), abs=1e-7)
-        if "both" in shared:  # Gosselin and Merlet, 1993
-            assert len(own) <= 4
+@pytest.mark.parametrize("shared", ["outer", "inner", "collinear"])
+def test_points_that_coincide_or_lie_on_a_line_are_no_special_case(shared: str) -> None:
+    rows = drawn(SIX_PINS, 3)
+    a, pins = [complex(*row.a) for row in rows], [complex(*row.pin) for row in rows]
+    if shared == "outer":
+        pins[1] = pins[0]
+    elif shared == "inner":
+        a[1] = a[0]
+    else:
+        a[2], pins[2] = 0.25 * a[0] + 0.75 * a[1], 0.5 * pins[0] + 0.5 * pins[1]
+    there = [complex(0.5, -0.25) + np.exp(0.5j) * one for one in a]
+    lengths = [float(abs(one - pin)) for one, pin in zip(there, pins, strict=True)]
+    drawn_so = circles([*map(_pair, a)], [*map(_pair, pins)], lengths)
+    own, other = assemblies(drawn_so), real(solutions(drawn_so, 6))
+    assert len(own) == len(other) > 0
+    assert [one.angle_rad for one in own] == pytest.approx(list(other[:, 0]), abs=1e-7)
+    if shared == "collinear":  # Gosselin and Merlet, 1993
+        assert len(own) <= 4
 
 
 @pytest.mark.parametrize("kinds", MOST, ids="-".join)
-def test_size_and_distance_change_nothing(kinds: Kinds) -> None:
+def test_size_distance_and_the_order_of_legs_change_nothing(kinds: Kinds) -> None:
     rows = moved(drawn(kinds, SEEDS.get(kinds, 1)), 1.0, 0.0)
     own = np.array(counted(*rows))
     assert own.size
+    assert np.array(counted(*rows[::-1])) == pytest.approx(own, rel=1e-14, abs=1e-15)
     for size in (2.0**-20, 2.0**20):
         assert np.array_equal(counted(*moved(rows, size, 0.0)), own * [1.0, size, size, 1.0])
     there = np.array(counted(*moved(rows, 1.0, 2.0**20)))

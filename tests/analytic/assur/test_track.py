@@ -22,7 +22,7 @@ from tests.analytic.assur.triad_scenes import KINDS, on_branch, triad
 from tests.analytic.test_bounds import shares
 from tests.worlds.tiers import few, slowly
 
-FEW_KINDS = [("RR", "RR", "RR"), ("RR", "PR", "RP"), ("PR", "RP", "PP"), ("RR", "RP", "RP")]
+FEW_KINDS = [("RR", "RR", "RR"), ("RR", "PR", "RP"), ("PR", "RP", "PP")]
 few_kinds = pytest.mark.parametrize(
     "kinds", few(KINDS, FEW_KINDS, "legs of each kind are among the few"), ids="-".join
 )
@@ -78,9 +78,8 @@ def test_bounds_are_infinite_beside_a_limit_position_and_never_nan() -> None:
     assert platform.omega[2] > 1e3 * platform.omega[1] > 1e3 * platform.omega[0]
 
 
-@pytest.mark.parametrize("kinds", few(KINDS, FEW_KINDS[2:3], "one kind shows it"), ids="-".join)
-def test_error_stays_below_the_bound_a_million_lengths_away(kinds: tuple[str, str, str]) -> None:
-    scene = moved(as_drawn(kinds, 1), (1e6, -7e5))
+def test_error_stays_below_the_bound_a_million_lengths_away() -> None:
+    scene = moved(as_drawn(("PR", "RP", "PP"), 1), (1e6, -7e5))
     assert shares(scene, np.array([0.0, 3e-3])).max() <= 1.0
 
 
@@ -128,25 +127,8 @@ def test_what_is_followed_is_an_assembly_all_along_and_moves_at_its_rate(
         assert (gain <= 0.05 * np.abs(led) + 0.02).all()
 
 
-def test_every_assembly_has_a_track_of_its_own() -> None:
-    """At any angle no two of the six pins' tracks are at the same place."""
-    scene = triad(("RR", "RR", "RR"), 12)[0]
-    count = len(step_of(scene).assemblies(start_of(scene), {}))
-    assert count >= 2
-    steps = [step_of(on_branch(scene, k + 1)) for k in range(count)]
-    ranges = [step.track({}).range for step in steps]
-    low, high = max(r[0] for r in ranges), min(r[1] for r in ranges)
-    theta = np.linspace(low + 1e-3, high - 1e-3, 50)
-    angles = [np.arctan2(b.turn.y, b.turn.x) for b in (followed(s, theta) for s in steps)]
-    for i in range(count):
-        for j in range(i):
-            apart = angles[i] - angles[j]
-            assert (np.abs(apart - math.tau * np.round(apart / math.tau)) > 1e-6).all()
-
-
-@pytest.mark.parametrize("seed", few(range(2), [0], "another random triad"))
-def test_two_assemblies_are_gone_beyond_a_limit_position(seed: int) -> None:
-    step = step_of(triad(("RR", "RR", "RR"), seed, crank_m=0.6)[0])
+def test_two_assemblies_are_gone_beyond_a_limit_position() -> None:
+    step = step_of(triad(("RR", "RR", "RR"), 0, crank_m=0.6)[0])
     ends = step.track({}).ends
     assert all(end is not None and end.kind == "limit position" for end in ends)
     for end, way in zip(ends, (-1.0, 1.0), strict=True):

@@ -7,8 +7,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from analytic import prepared
@@ -26,8 +24,6 @@ from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.test_bounds import errors, over
-from tests.worlds.strategies import examples
-from tests.worlds.tiers import few, slowly
 
 Lengths = tuple[float, float, float, float]
 OFF = 1e-30
@@ -151,7 +147,7 @@ def follows(lengths: Lengths, branch: int, theta: Array, angles: list[float], mo
     assert len(motion.crossings) == len(angles)
 
 
-@pytest.mark.parametrize("lengths", [(0.1, 0.3), (0.3, 0.1), (0.3, 0.3), (1e-4, 3e-4), (1e4, 3e4)])
+@pytest.mark.parametrize("lengths", [(0.1, 0.3), (0.3, 0.1), (1e4, 3e4)])
 def test_a_parallelogram_stays_one(lengths: tuple[float, float]) -> None:
     crank, coupler = lengths
     theta = beside([0.0, math.pi], 10)
@@ -164,35 +160,22 @@ def test_a_parallelogram_stays_one(lengths: tuple[float, float]) -> None:
     assert motion.conditioning["C"].min() < 1e-12
 
 
-KITES = [
-    ((0.125, 0.375, 0.375, 0.125), [0.0]),
-    ((0.375, 0.125, 0.375, 0.125), [0.0, math.pi]),
-    ((0.125, 0.125, 0.375, 0.375), [0.0, math.pi]),
-    ((0.25, 0.5, 1.0, 0.75), [0.0]),
-    ((0.5, 0.625, 1.5, 1.625), [math.pi]),
-]
-MORE = "twice as many distances from the fold"
-
-
 @pytest.mark.parametrize(
-    ("lengths", "angles", "branch", "every"),
+    ("lengths", "branch", "angles"),
     [
-        *((*kite, 1, 2) for kite in KITES),
-        *((*kite, -1, 2) for kite in KITES[:2]),
-        *(slowly(*kite, branch, 1, reason=MORE) for kite in KITES for branch in (1, -1)),
+        ((0.125, 0.375, 0.375, 0.125), 1, [0.0]),
+        ((0.125, 0.375, 0.375, 0.125), -1, [0.0]),
+        ((0.375, 0.125, 0.375, 0.125), 1, [0.0, math.pi]),
+        ((0.375, 0.125, 0.375, 0.125), -1, [0.0, math.pi]),
+        ((0.125, 0.125, 0.375, 0.375), 1, [0.0, math.pi]),
+        ((0.25, 0.5, 1.0, 0.75), 1, [0.0]),
+        ((0.5, 0.625, 1.5, 1.625), 1, [math.pi]),
     ],
 )
 def test_fourbars_that_fold_flat_follow_the_smooth_branch(
-    lengths: Lengths, angles: list[float], branch: int, every: int
+    lengths: Lengths, branch: int, angles: list[float]
 ) -> None:
-    follows(lengths, branch, beside([0.0, math.pi], 4)[::every], angles, 1e-6)
-
-
-def test_the_rocker_of_a_kite_turns_once_in_two_turns_of_the_crank() -> None:
-    scene = fourbar(0.1, 0.3, 0.3, 0.1)
-    rocker = solve(scene, np.linspace(0.0, 4 * scene.driver.law.period_s, 4001)).links["rocker"]
-    assert rocker.theta[-1] - rocker.theta[0] == pytest.approx(2 * math.tau, abs=1e-9)
-    assert rocker.omega.min() > 0.0
+    follows(lengths, branch, beside([0.0, math.pi], 4)[::2], angles, 1e-6)
 
 
 @pytest.mark.parametrize("branch", [1, -1])
@@ -249,8 +232,8 @@ def test_dyads_that_hang_on_each_other_pass_their_change_points_together() -> No
     assert sorted({c.dyad for c in motion.crossings}) == ["C", "F"]
 
 
-LAWS = [FromRest(math.pi - 1.0, 5.0, 2.0), FromRest(0.0, -5.0, 2.0), Oscillating(math.pi, 1.0, 3.0)]
-LAWS += [Oscillating(math.pi - 0.5, 0.5, 3.0, -1.0), Oscillating(0.0, 4.0, 1.0, 0.3)]
+LAWS = [FromRest(0.0, -5.0, 2.0), Oscillating(math.pi - 0.5, 0.5, 3.0, -1.0)]
+LAWS += [Oscillating(0.0, 4.0, 1.0, 0.3)]
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -267,8 +250,7 @@ def test_laws_that_start_stop_and_turn_back_in_a_change_point(law: Law) -> None:
     held(motion, exact, 1e-6)
 
 
-@pytest.mark.parametrize("speed", [10.0, -10.0])
-@pytest.mark.parametrize("rest_s", [0.1, 0.62, 0.63, 0.7, 2.0, 300.0, 1e6])
+@pytest.mark.parametrize(("rest_s", "speed"), [(0.1, 10.0), (0.63, -10.0), (1e6, 10.0)])
 def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to(
     rest_s: float, speed: float
 ) -> None:
@@ -289,20 +271,11 @@ def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
     assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)
     with pytest.raises(CrankcheckError, match=r"B7 is in a change point with no smooth motion"):
         driven(WindowChain(7).scene(), theta)
-
-
-@pytest.mark.parametrize("count", [8, slowly(40, reason="what is refused at the eighth window")])
-def test_longer_chains_of_windows_are_refused_at_any_angle(count: int) -> None:
     with pytest.raises(CrankcheckError, match=r"B8 is singular .*: change a length$"):
-        driven(WindowChain(count).scene(), np.array([1.5]))
+        driven(WindowChain(8).scene(), np.array([1.5]))
 
 
-POWERS = few(range(2, 13), (2, 7, 12), "between these nothing changes")
-few_powers = pytest.mark.parametrize("power", POWERS)
-
-
-@few_powers
-@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("power", "sign"), [(2, 1), (7, 1), (12, 1), (2, -1), (7, -1), (12, -1)])
 def test_near_is_not_in_a_change_point(power: int, sign: int) -> None:
     """The four-bar that all but folds flat keeps its branch; so does one that cannot fold."""
     lengths = (0.1 + sign * 10.0**-power, 0.3, 0.1, 0.3)
@@ -315,7 +288,7 @@ def test_near_is_not_in_a_change_point(power: int, sign: int) -> None:
     follows(lengths, 1, theta, [], math.inf)
 
 
-@few_powers
+@pytest.mark.parametrize("power", [2, 7, 12])
 def test_a_rod_that_is_longer_by_little_keeps_its_side(power: int) -> None:
     rod = 0.1 * (1.0 + 10.0**-power)
     theta = beside([math.pi / 2], 2)
@@ -329,65 +302,6 @@ def test_a_rod_that_is_longer_by_little_keeps_its_side(power: int) -> None:
 
     assert motion.crossings == ()
     held(motion, exact, math.inf)
-
-
-def dyadic(low: int, high: int) -> st.SearchStrategy[float]:
-    """Lengths whose sums are exact."""
-    return st.integers(low, high).map(lambda k: k / 1024)
-
-
-few_lengths = pytest.mark.parametrize("count", [8, slowly(20, reason="random lengths")])
-
-
-@given(dyadic(50, 2000), dyadic(50, 2000), st.sampled_from([1, -1]))
-def parallelogram(crank: float, coupler: float, branch: int) -> None:
-    """+1 at 60 deg is the parallelogram; -1 is the other branch, smooth through both positions."""
-    assume(abs(crank - coupler) > 0.05 * crank)
-    angles = [0.0, math.pi]
-    follows((crank, coupler, crank, coupler), branch, beside(angles, 1)[::2], angles, math.inf)
-
-
-@few_lengths
-def test_random_parallelograms_and_their_contrary_mates(count: int) -> None:
-    examples(count)(parallelogram)()
-
-
-ROLES, SIDES = st.sampled_from(["crank", "ground"]), st.sampled_from([1, -1])
-
-
-@given(dyadic(50, 1000), dyadic(20, 1000), dyadic(20, 1000), ROLES, SIDES)
-def exact_sum(short: float, first: float, second: float, role: str, branch: int) -> None:
-    """s + l = p + q with p = s + first, q = s + second: one change point in a turn of the crank."""
-    assume(abs(first - second) > 0.01)
-    middle, other = short + first, short + second
-    longest = middle + other - short
-    crank, ground = (short, longest) if role == "crank" else (longest, short)
-    theta = beside([0.0, math.pi], 3)[::2]
-    follows((crank, middle, other, ground), branch, theta, [math.pi], math.inf)
-
-
-@few_lengths
-def test_random_fourbars_of_exact_sum(count: int) -> None:
-    examples(count)(exact_sum)()
-
-
-def test_a_hundred_thousand_samples_over_a_thousand_turns() -> None:
-    scene = fourbar(0.1, 0.3, 0.1, 0.3)
-    motion = solve(scene, np.linspace(0.0, 1000 * scene.driver.law.period_s, 100_001))
-    crank, rocker = motion.links["crank"], motion.links["rocker"]
-    limit = motion.bound.links["rocker"]
-    assert (np.abs(rocker.theta - crank.theta) <= limit.theta).all()
-    assert (np.abs(rocker.omega - crank.omega) <= limit.omega).all()
-    assert (np.abs(rocker.alpha) <= limit.alpha).all()
-    assert_below(motion, 1e-6)
-
-
-def test_without_bounds_the_motion_is_the_same() -> None:
-    scene = parse_scene(LOCOMOTIVE, "test")
-    theta, one, zero = beside([0.0, math.pi], 2), np.ones(1), np.zeros(1)
-    plain = solve_driven(scene, theta, one, zero, bound=False)
-    for name, link in solve_driven(scene, theta, one, zero).links.items():
-        assert np.array_equal(link.alpha, plain.links[name].alpha)
 
 
 def test_only_what_is_passed_is_told() -> None:

@@ -1,9 +1,7 @@
 """The angle of a link depends on the driver's angle alone, not on who asks."""
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -67,8 +65,8 @@ def turns_as_step_by_step(scene: Scene, seed: int, count: int, periods: float) -
         assert np.allclose(found[link], wanted[link], rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("apart", [0.1, 0.19, 0.198, 0.19999, 0.2 - 1e-9])
-@pytest.mark.parametrize("steps", [1, 3, 12, 360, 5000])
+@pytest.mark.parametrize("apart", [0.1, 0.198, 0.2 - 1e-9])
+@pytest.mark.parametrize("steps", [1, 3, 5000])
 def test_a_turn_is_counted_however_coarse_the_samples(apart: float, steps: int) -> None:
     scene = whitworth(apart)
     time_s = np.arange(2 * steps + 1) * (PERIOD / steps)
@@ -79,8 +77,8 @@ def test_a_turn_is_counted_however_coarse_the_samples(apart: float, steps: int) 
     assert np.all(np.abs(motion.links["lever"].theta - wanted) <= room)
 
 
-@pytest.mark.parametrize("apart", [0.1, 0.198])
-def test_one_sample_or_many_in_any_order_from_any_time_on(apart: float) -> None:
+def test_one_sample_or_many_in_any_order_from_any_time_on() -> None:
+    apart = 0.198
     scene = whitworth(apart)
     rng = np.random.default_rng(1)
     time_s = rng.uniform(-2.0 * PERIOD, 7.0 * PERIOD, 500)
@@ -103,10 +101,9 @@ LAWS += [SpeedChange(0.5, 5.0, -8.0, 2.0, 0.5)]
 
 
 @pytest.mark.parametrize("law", LAWS, ids=str)
-@pytest.mark.parametrize("name", ["fourbar-double-crank", "whitworth", "shaper"])
-def test_the_count_goes_with_the_driver_whatever_its_law(name: str, law: Law) -> None:
+def test_the_count_goes_with_the_driver_whatever_its_law(law: Law) -> None:
     """Clockwise, forth and back over turns or less, and turning round."""
-    scene = load_scene(name)
+    scene = load_scene("whitworth")
     turns_as_step_by_step(replace(scene, driver=replace(scene.driver, law=law)), 3, 50, 4.0)
 
 
@@ -140,16 +137,6 @@ def test_turns_are_counted_through_change_points_and_past_near_ones(name: str) -
         assert np.array_equal(steps, angles[link].theta)
         near = np.searchsorted(every, at)
         assert np.abs(found[link] - steps[near]).max() < 0.01
-
-
-@pytest.mark.parametrize("count", [10, slowly(1_000, reason="rare mechanisms and swings")])
-def test_random_mechanisms_turn_as_they_do_step_by_step(count: int) -> None:
-    @examples(count)
-    @given(designed=mechanisms())
-    def hold(designed: Designed) -> None:
-        turns_as_step_by_step(designed.scene, 5, 20, 2.0)
-
-    hold()
 
 
 @pytest.mark.parametrize("count", [10, slowly(1_000, reason="rare mechanisms and cells")])
@@ -189,56 +176,32 @@ def test_two_reachable_ranges_are_counted_each_for_itself() -> None:
     assert np.abs(np.diff(whole[:48])).max() < 0.5
 
 
-BLOCK = replace(load_scene("slotted-lever").sliders["B"], name="C", point="C", on="crank")
+@pytest.mark.parametrize(
+    ("ground", "coupler", "rocker"),
+    [(1.001, 0.004, 0.001), (1.007, 0.01, 0.002), (1.0, 2e-5, 1e-5), (1.0 + 2e-5, 1e-5, 1.5e-5)],
+)
+def test_a_reachable_range_may_be_as_narrow_as_it_likes(
+    ground: float, coupler: float, rocker: float
+) -> None:
+    """Of a long crank and short links, by the cosine rule: a cell that is open in its middle may
+    hold all of it."""
+    least = abs(ground - 1.0)
+    apart = np.array([max(abs(coupler - rocker), least), coupler + rocker])
+    low, high = 2.0 * np.arcsin(np.sqrt((apart**2 - least**2) / (4.0 * ground)))
+    theta = low + (high - low) * (0.5 - 0.5 * np.cos(np.linspace(1e-3, math.pi - 1e-3, 2001)))
+    some, start = slice(None, None, -67), math.degrees(0.6 * low + 0.4 * high)
+    for branch in (1, -1):
+        scene = four_bars.fourbar(1.0, coupler, rocker, ground, branch, start_deg=start)
+        links, found = (driven(scene, angles).links for angles in (theta, theta[some]))
+        for link in links:
+            angle = links[link].theta
+            assert np.array_equal(found[link].theta, angle[some])
+            assert np.abs(np.diff(angle)).max() < 1.0
 
 
-def short_rod(rocker: float, ground: float, branch: int, start_deg: float) -> Scene:
-    """A rocker whose end slides along the crank."""
-    scene = four_bars.fourbar(1.0, 1.0, rocker, ground, branch, start_deg=start_deg)
-    links = {name: scene.links[name] for name in ("crank", "rocker")}
-    return replace(scene, links=links, sliders={"C": BLOCK})
-
-
-def narrow_ranges(count: int) -> Iterator[tuple[Callable[..., Scene], float, float]]:
-    """Scenes of a long crank and short links, with their reach beyond 0 by the cosine rule: ranges
-    of 0.1 to 0.3 deg, and random ones of 1e-6 rad and more."""
-    rng = np.random.default_rng(9)
-    found = [(1.001, 0.004, 0.001), (1.007, 0.01, 0.002), (1.0, 0.02, 0.002)]
-    for short in 10.0 ** rng.uniform(-5.0, -1.0, count):
-        other = short * 10.0 ** rng.uniform(-1.0, 1.0)
-        found.append((1.0 + rng.uniform(-0.9, 0.9) * (short + other), short, other))
-    for ground, coupler, rocker in np.array(found).tolist():
-        least = abs(ground - 1.0)
-        apart = np.array([max(abs(coupler - rocker), least), coupler + rocker])
-        ends = 2.0 * np.arcsin(np.sqrt((apart**2 - least**2) / (4.0 * ground)))
-        yield partial(four_bars.fourbar, 1.0, coupler, rocker, ground), *ends.tolist()
-        side = math.asin(rocker / ground)
-        yield partial(short_rod, rocker, ground), -side, side
-
-
-@pytest.mark.parametrize("count", [8, slowly(200, reason="random lengths")])
-def test_a_reachable_range_may_be_as_narrow_as_it_likes(count: int) -> None:
-    """A cell that is open in its middle may hold all of it."""
-    rng = np.random.default_rng(10)
-    along = 0.5 - 0.5 * np.cos(np.linspace(1e-3, math.pi - 1e-3, 2001))
-    some = slice(None, None, -67)
-    for make, low, high in narrow_ranges(count):
-        theta = low + (high - low) * along
-        start = math.degrees(low + (high - low) * rng.uniform(0.1, 0.9))
-        for branch in (1, -1):
-            scene = make(branch=branch, start_deg=start)
-            links = driven(scene, theta).links
-            found = driven(scene, theta[some]).links
-            for link in links:
-                angle = links[link].theta
-                assert np.array_equal(found[link].theta, angle[some])
-                assert np.abs(np.diff(angle)).max() < 1.0
-
-
-@pytest.mark.parametrize("count", [60, slowly(200, reason="starts nearer to half a turn")])
-def test_the_angle_at_time_0_is_the_one_nearest_to_zero(count: int) -> None:
+def test_the_angle_at_time_0_is_the_one_nearest_to_zero() -> None:
     """Also where the link jumps over half a turn within the cell that the driver starts in."""
-    for start in np.linspace(-math.pi, math.pi, count):
+    for start in np.linspace(-math.pi, math.pi, 60):
         scene = replace(whitworth(0.1), driver=Driver("crank", ConstantSpeed(start, 10.0)))
         theta = sampled(scene, np.array([0.0, 0.0, 1e-9, -1e-9, 0.1 * PERIOD]))["lever"]
         assert abs(theta[0]) <= math.pi
@@ -260,20 +223,9 @@ def test_what_the_driver_cannot_come_by_does_not_count() -> None:
     assert np.abs(sampled(scene, time_s)["guide"]).max() < math.pi
 
 
-def test_a_logged_angle_that_jitters_leads_nobody_astray() -> None:
-    """Back and forth over the place where an arctan2 jumps, over whole turns and by a gap."""
-    apart = 0.198
-    jitter = 1e-3 * np.random.default_rng(6).normal(size=4000)
-    theta = np.linspace(0.0, 3.0 * math.tau, 4000) + jitter
-    theta[2000:] += 2.5 * math.tau
-    found = driven(whitworth(apart), theta).links["lever"].theta
-    assert np.allclose(found, lever_at(apart, theta), rtol=0, atol=1e-10)
-
-
-@pytest.mark.parametrize("name", ["fourbar-double-crank", "whitworth", "shaper"])
-def test_the_bound_covers_the_count_after_a_million_turns(name: str) -> None:
+def test_the_bound_covers_the_count_after_a_million_turns() -> None:
     """Against the place within the turn, and whole turns in fifty digits."""
-    scene = load_scene(name)
+    scene = load_scene("whitworth")
     law = scene.driver.law
     time_s = np.random.default_rng(7).uniform(-1e6, 1e6, 40) * law.period_s
     motion = solve(scene, time_s)
@@ -288,18 +240,6 @@ def test_the_bound_covers_the_count_after_a_million_turns(name: str) -> None:
             wanted = mpf(float(theta[i])) + 2 * mp.pi * n * gain
             room = motion.bound.links[link].theta[i] + once.bound.links[link].theta[i]
             assert abs(mpf(float(motion.links[link].theta[i])) - wanted) <= room
-
-
-def test_samples_that_follow_from_one_another_are_not_looked_up(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    scene = load_scene("fourbar-double-crank")
-    time_s = np.linspace(0.0, 2.0 * scene.driver.law.period_s, 2000)
-    quick = sampled(scene, time_s)
-    ready = prepared.prepared(scene)
-    monkeypatch.setitem(vars(ready), "turns", replace(ready.turns, step_rad=0.0))
-    for link, angle in sampled(scene, time_s).items():
-        assert np.array_equal(angle, quick[link])
 
 
 def test_an_angle_that_is_not_sure_leads_nobody_astray(monkeypatch: pytest.MonkeyPatch) -> None:

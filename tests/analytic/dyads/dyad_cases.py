@@ -93,13 +93,10 @@ class Lines:
 
 @dataclass(frozen=True)
 class Draw:
-    """How to draw: ``near`` half of the dyads at toggle; inputs wrong by ``wrong`` (relative)."""
+    """How to draw: half of the dyads at toggle; inputs wrong by ``wrong`` (relative)."""
 
     rng: np.random.Generator
-    near: bool = True
     wrong: tuple[float, float] | None = None
-    far_m: float = 1e6
-    """Places lie up to so many lengths from the origin (a hundred, for those near toggle)."""
 
     def log(self, low: float, high: float, n: int | None = None) -> Array:
         return np.asarray(10.0 ** self.rng.uniform(math.log10(low), math.log10(high), n))
@@ -109,14 +106,15 @@ class Draw:
 
     def clearances(self) -> tuple[Array, NDArray[np.bool_]]:
         """Relative distances from toggle, and which of them are those of dyads near it."""
-        near = np.arange(BUNCH) % 2 == 0 if self.near else np.zeros(BUNCH, dtype=bool)
+        near = np.arange(BUNCH) % 2 == 0
         close = np.where(self.rng.random(BUNCH) < 0.3, 1e-4, 1.0) * self.log(1e-12, 1e-6, BUNCH)
         close[self.rng.random(BUNCH) < EXACTLY] = 0.0
         return np.where(near, close, self.rng.uniform(0.02, 0.98, BUNCH)), near
 
     def origins(self, scale: float, near: NDArray[np.bool_], home: NDArray[np.bool_]) -> Array:
-        """Where the mechanism stands (2, n): anywhere, or at the origin."""
-        far = np.where(near, self.log(0.1, 1e2, BUNCH), self.log(0.1, self.far_m, BUNCH))
+        """Where the mechanism stands (2, n): up to a million lengths away, a hundred near toggle;
+        or at the origin."""
+        far = np.where(near, self.log(0.1, 1e2, BUNCH), self.log(0.1, 1e6, BUNCH))
         return scale * far * ~home * _directed(self.rng.uniform(0.0, math.tau, BUNCH))
 
     def errors(self, scale: float, rate: float) -> Array:
@@ -154,8 +152,6 @@ class Bunch:
     exact: tuple[Any, ...]
     sine: Array
     size: Array
-    scale: float
-    rate: float
 
     def truth(self, i: int, shift: Exact | Moved) -> tuple[Jet, Jet]:
         formula, one, other, *more = self.exact
@@ -189,7 +185,7 @@ def draw_rrr(draw: Draw) -> Bunch:
     dyad = rrr.solve(first.kinematics(), second.kinematics(), l1, l2, branch, certified=True)
     sine = _each(oracle.sine_rrr, first, second, l1, l2)
     exact, size = (oracle.rrr, first, second, l1, l2, branch), np.hypot(*place) + outer
-    return Bunch(dyad, exact, sine, size / min(l1, l2), scale, rate)
+    return Bunch(dyad, exact, sine, size / min(l1, l2))
 
 
 def draw_rrp(draw: Draw) -> Bunch:
@@ -209,7 +205,7 @@ def draw_rrp(draw: Draw) -> Bunch:
     high = _each(oracle.rrp_short, pin, line, length) / length
     sine = np.sqrt(np.maximum(0.0, -high * (2.0 + high)))
     exact, size = (oracle.rrp, pin, line, length, branch), np.hypot(*place) + np.abs(ahead) + length
-    return Bunch(dyad, exact, sine, size / length, scale, rate)
+    return Bunch(dyad, exact, sine, size / length)
 
 
 def draw_rpr(draw: Draw) -> Bunch:
@@ -232,7 +228,7 @@ def draw_rpr(draw: Draw) -> Bunch:
     high = _each(oracle.rpr_short, first, second, offset) / d
     sine = np.sqrt(np.maximum(0.0, -high * (1.0 + abs(offset) / d)))
     exact, size = (oracle.rpr, first, second, offset, branch), np.hypot(*place) + scale + d
-    return Bunch(dyad, exact, sine, size / d, scale, rate)
+    return Bunch(dyad, exact, sine, size / d)
 
 
 def _line_angles(draw: Draw) -> Array:
@@ -254,12 +250,12 @@ def draw_prp(draw: Draw) -> Bunch:
     dyad = prp.solve(line1.kinematics(), line2.kinematics(), certified=True)
     size = (np.hypot(*place) + np.hypot(*away)) / scale
     exact = (oracle.prp, line1, line2)
-    return Bunch(dyad, exact, np.abs(np.sin(between)), size, scale, rate)
+    return Bunch(dyad, exact, np.abs(np.sin(between)), size)
 
 
 def draw_rpp(draw: Draw) -> Bunch:
     scale, rate = float(draw.log(1e-3, 1e3)), float(draw.log(1e-2, 1e2))
-    near = draw.near and bool(draw.rng.random() < 0.5)  # the angle is one for the whole bunch
+    near = bool(draw.rng.random() < 0.5)  # the angle is one for the whole bunch
     angle = float(draw.log(1e-12, 1e-6)) if near else float(draw.rng.uniform(0.02, 3.12))
     inner = (angle if draw.rng.random() < 0.5 else math.pi - angle) * int(draw.sign())
     theta = draw.rng.uniform(-math.pi, math.pi, BUNCH)
@@ -270,7 +266,7 @@ def draw_rpp(draw: Draw) -> Bunch:
     turn = Vec(math.cos(inner), math.sin(inner))
     dyad = rpp.solve(pin.kinematics(), line.kinematics(), turn, certified=True)
     sine, size = np.full(BUNCH, abs(math.sin(inner))), np.hypot(*place) + np.hypot(*away)
-    return Bunch(dyad, (oracle.rpp, pin, line, inner), sine, size / scale, scale, rate)
+    return Bunch(dyad, (oracle.rpp, pin, line, inner), sine, size / scale)
 
 
 DRAWS = (draw_rrr, draw_rrp, draw_rpr, draw_prp, draw_rpp)

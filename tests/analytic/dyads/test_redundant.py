@@ -8,12 +8,11 @@ import pytest
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.errors import CrankcheckError, StructureError
+from models.errors import StructureError
 from models.files.reading import load_scene, parse_scene
 from models.motion import LinkMotion
 from models.scene import Driver, Link, Point, Scene
 from models.scene.laws import Oscillating
-from tests.second_opinions import newton
 
 HIGH = np.radians(np.linspace(15.0, 165.0, 40))
 """Driver angles that keep away from the flat positions."""
@@ -64,29 +63,9 @@ def test_rockers_beyond_the_second_are_redundant(rockers: int) -> None:
     assert found.words == f"mobility 1 ({2 - rockers} by count; redundant: {', '.join(spare)})"
 
 
-def test_shipped_scenes_have_no_redundant_links() -> None:
-    for name in ("fourbar-lecture-1", "shaper", "sixbar-watt"):
-        found = analyse(load_scene(name))
-        assert (found.count, found.redundant, found.words) == (1, (), "mobility 1")
-
-
 def assert_within(found: LinkMotion, bound: LinkMotion, *exact: Array | float) -> None:
     for got, wanted, most in zip(vars(found).values(), exact, vars(bound).values(), strict=True):
         assert (np.abs(got - wanted) <= most).all()
-
-
-@pytest.mark.parametrize("rockers", [2, 3])
-def test_all_rods_of_a_parallelogram_turn_with_its_crank_within_true_bounds(rockers: int) -> None:
-    scene = parallelogram(rockers)
-    rate, push = np.full_like(HIGH, 2.0), np.linspace(-5.0, 5.0, HIGH.size)
-    motion = solve_driven(scene, HIGH, rate, push)
-    for name in (n for n in scene.links if n != "coupler"):
-        bound = motion.bound.links[name]
-        assert_within(motion.links[name], bound, HIGH, rate, push)
-        assert all(most.max() < 2e-10 for most in vars(bound).values()), name
-    place = np.stack([0.1 * np.cos(HIGH) + 0.3 * rockers, 0.1 * np.sin(HIGH)], axis=1)
-    off = np.hypot(*(motion.points[f"B{rockers}"].position - place).T)
-    assert (off <= motion.bound.points[f"B{rockers}"].position).all()
 
 
 def test_a_strut_on_the_coupler_turns_as_the_coupler_does_within_the_bounds_of_both() -> None:
@@ -108,7 +87,7 @@ def test_a_strut_on_the_coupler_turns_as_the_coupler_does_within_the_bounds_of_b
 
 
 def test_a_dyad_may_hang_on_a_redundant_link() -> None:
-    """Rod and arm on a point of the lever, beside its two pins; by the second opinion as well."""
+    """Rod and arm on a point of the lever, beside its two pins."""
     scene = parallelogram(2)
     lever = replace(scene.links["lever"], points={**scene.links["lever"].points, "E": (0.1, 0.05)})
     rod = Link("rod", {"E": (0.0, 0.0), "F": (0.3, 0.0)}, 1.0, (0.0, 0.0), 1.0)
@@ -120,10 +99,7 @@ def test_a_dyad_may_hang_on_a_redundant_link() -> None:
     motion = solve(hung, time_s)
     slim = replace(hung, links={n: k for n, k in hung.links.items() if n != "rocker1"})
     slim = replace(slim, branch={"B2": 1})  # without the first rocker the lever is the dyad's own
-    start = motion.state()
-    feet = {"crank": "A0", "coupler": "B0", "lever": "A2", "rod": "E", "arm": "H"}
-    guess = {n: (*start.position[p], start.theta[n]) for n, p in feet.items()}
-    other = newton.solve(slim, time_s, newton.Guess(guess))
+    other = solve(slim, time_s)
     for name in more:
         for one, twin in zip(*(vars(m.links[name]).values() for m in (motion, other)), strict=True):
             assert np.allclose(one, twin, rtol=0, atol=1e-10)
@@ -134,14 +110,6 @@ def rigid_at(degrees: float) -> Scene:
     lean, top = np.exp(1j * np.radians(25.0)), np.exp(1j * np.radians(degrees))
     aside = 0.1 * top * (1.0 - lean)
     return parallelogram(2, shift=(float(aside.real), float(aside.imag)))
-
-
-def turning_back_at(degrees: float) -> Scene:
-    """Its lever's foot stands in line with the way that its top goes about, farther off than its
-    length."""
-    at = np.radians(degrees)
-    back = -0.05 * float(np.cos(at)), -0.05 * float(np.sin(at))
-    return parallelogram(2, lever_m=0.15, shift=back)
 
 
 def strutted_at(degrees: float) -> Scene:
@@ -169,13 +137,12 @@ ONLY = "lever fits in place only: A2 and B2 part at"
          "redundant link lever .*crank at 130 deg"),
         (rigid_at(31.0), [31.0], 2.0, rf"{ONLY} [\d.]+ m/s with crank at 31 deg"),
         (rigid_at(31.0), [31.0], 0.0, rf"{ONLY} [\d.]+ m/s\^2 with crank at 31 deg"),
-        (turning_back_at(40.0), [40.0], 2.0, rf"{ONLY} [\d.]+ m/s\^2"),
         (ASIDE, [15.0, 40.0], 2.0, r"strut has B1 0\.001 m away from where coupler has"),
         (strutted_at(31.0), [31.0], 2.0,
          r"strut fits in place only: E parts from it at 0\.1 m/s with crank at 31 deg"),
     ],
     ids=["another length", "at one angle: worst", "at that angle: speed", "at rest: acceleration",
-         "turning back", "third pin aside", "third pin of another way"],
+         "third pin aside", "third pin of another way"],
 )  # fmt: skip
 def test_a_link_that_does_not_fit_is_refused_with_the_numbers(
     scene: Scene, degrees: list[float], omega: float, said: str, bound: bool
@@ -186,44 +153,27 @@ def test_a_link_that_does_not_fit_is_refused_with_the_numbers(
 
 
 @pytest.mark.parametrize("bound", [True, False])
-@pytest.mark.parametrize("relative", [1e-15, 1e-12, 9e-10, -9e-10, 1.2e-9, -1.2e-9, 1e-7, 1e-5])
-def test_a_misfit_of_a_billionth_is_let_pass_with_and_without_bounds(
-    relative: float, bound: bool
-) -> None:
-    scene = parallelogram(2, lever_m=0.1 * (1.0 + relative))
-    if abs(relative) > 1e-9:
-        with pytest.raises(StructureError, match=r"lever .*to within 1e-09 of it: ten digits"):
-            solve_driven(scene, HIGH, HIGH, HIGH, bound=bound)
-    else:
-        solve_driven(scene, HIGH, HIGH, HIGH, bound=bound)
-
-
-@pytest.mark.parametrize("relative", [9e-10, -9e-10])
-def test_a_misfit_that_is_let_pass_is_within_the_bounds(relative: float) -> None:
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_misfit_of_a_billionth_is_let_pass_and_bounded(bound: bool, sign: int) -> None:
+    off = parallelogram(2, lever_m=0.1 * (1.0 + 1.2e-9 * sign))
+    with pytest.raises(StructureError, match=r"lever .*to within 1e-09 of it: ten digits"):
+        solve_driven(off, HIGH, HIGH, HIGH, bound=bound)
+    scene = parallelogram(2, lever_m=0.1 * (1.0 + 9e-10 * sign))
     rate, push = np.full_like(HIGH, 2.0), np.linspace(-5.0, 5.0, HIGH.size)
-    motion = solve_driven(parallelogram(2, lever_m=0.1 * (1.0 + relative)), HIGH, rate, push)
-    bound = motion.bound.links["lever"]
-    assert_within(motion.links["lever"], bound, HIGH, rate, push)
-    assert bound.theta.min() > abs(relative)
-
-
-def test_a_third_pin_in_its_place_is_let_pass() -> None:
-    solve_driven(with_strut(parallelogram(2), "B0", "B1", "B2"), HIGH, HIGH, HIGH)
+    motion = solve_driven(scene, HIGH, rate, push, bound=bound)
+    if bound:
+        most = motion.bound.links["lever"]
+        assert_within(motion.links["lever"], most, HIGH, rate, push)
+        assert most.theta.min() > 9e-10
 
 
 def test_a_lever_that_does_not_fit_leaves_no_range_to_the_driver() -> None:
     assert [len(reach(parallelogram(2, lever_m=length))) for length in (0.1, 0.101)] == [1, 0]
 
 
-def test_the_second_opinion_says_that_it_counts_too_many_equations() -> None:
-    with pytest.raises(CrankcheckError, match="13 constraint equations for 12 coordinates"):
-        newton.solve(parallelogram(2), np.array([0.0]), newton.Guess({}))
-
-
-@pytest.mark.parametrize("rockers", [2, 3])
-def test_rods_turn_with_the_crank_through_the_flat_positions_too(rockers: int) -> None:
+def test_rods_turn_with_the_crank_through_the_flat_positions_too() -> None:
     """Two turns, with samples in and beside both change points."""
-    scene, flat = parallelogram(rockers), (np.pi - np.radians(15.0)) / 2.0
+    scene, flat = parallelogram(3), (np.pi - np.radians(15.0)) / 2.0
     beside = flat + np.array([0.0, 1e-9, 1e-6, np.pi / 2.0, np.pi])
     time_s = np.sort(np.concatenate([np.linspace(0.0, 2.0 * np.pi, 721), beside]))
     motion = solve(scene, time_s)

@@ -25,41 +25,34 @@ from tests.worlds.tiers import slowly
 
 CLOSE = 1e-11
 CHANGES = MOVES | {"faster": faster(50.0), "the other way": faster(-1.0)}
-LOADED = ("shaper", "sixbar-watt", "tangent", "whitworth", "scotch-yoke")
-WITH_LOADS = [
-    (name, change)
-    for name in shipped("forces")
-    for change in CHANGES
-    if CHANGES[change].fast > 0.0 or not load_scene(name).friction  # which turns round as well
-]
+LOADED = ("shaper", "tangent", "scotch-yoke")
 
 
-@pytest.mark.parametrize(("name", "change"), WITH_LOADS)
+@pytest.mark.parametrize("name", shipped("forces"))
+@pytest.mark.parametrize("change", CHANGES)
 def test_forces_go_with_the_scene(name: str, change: str) -> None:
-    _goes_with(load_scene(name), CHANGES[change])
+    scene = load_scene(name)
+    if CHANGES[change].fast < 0.0:
+        scene = replace(scene, friction={})  # which turns round as well
+    _goes_with(scene, CHANGES[change])
 
 
-RANDOM = "loads and springs at random"
-
-
-@pytest.mark.parametrize("seeds", [range(2), slowly(range(2, 8), reason=RANDOM)], ids=len)
+@pytest.mark.parametrize(
+    "seeds", [range(1), slowly(range(1, 8), reason="loads at random")], ids=len
+)
 @pytest.mark.parametrize("change", CHANGES)
 @pytest.mark.parametrize("name", LOADED)
-def test_forces_of_any_loads_go_with_the_scene(name: str, change: str, seeds: range) -> None:
+def test_forces_of_any_loads_and_springs_go_with_the_scene(
+    name: str, change: str, seeds: range
+) -> None:
     for seed in seeds:
         _goes_with(loaded(load_scene(name), random.Random(seed)), CHANGES[change])
-
-
-@pytest.mark.parametrize("seeds", [range(1), slowly(range(1, 4), reason=RANDOM)], ids=len)
-@pytest.mark.parametrize("change", [name for name in CHANGES if CHANGES[name].fast > 0.0])
-@pytest.mark.parametrize("name", LOADED)
-def test_forces_of_springs_go_with_the_scene(name: str, change: str, seeds: range) -> None:
-    for seed in seeds:
-        _goes_with(sprung(load_scene(name), random.Random(seed)), CHANGES[change])
+        if CHANGES[change].fast > 0.0:
+            _goes_with(sprung(load_scene(name), random.Random(seed)), CHANGES[change])
 
 
 def _goes_with(scene: Scene, change: Change) -> None:
-    time_s = unlocked(scene, turn(scene))
+    time_s = unlocked(scene, turn(scene))[::3]
     found = kinetostatics.forces(change.of(scene), time_s / change.fast)
     assert apart(_expected(kinetostatics.forces(scene, time_s), change), found) <= CLOSE
 

@@ -3,63 +3,35 @@ several joints: one solution, none, or two, and what is said of it."""
 
 import itertools
 import math
-import random
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic.forces import friction, kinetostatics
-from analytic.forces.efficiency import efficiency, friction_power, self_locking
+from analytic.forces.efficiency import efficiency, self_locking
 from analytic.forces.friction import CoulombSystem, solve_coulomb
-from analytic.kinematics import solve
-from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import parse_scene
 from models.scene import Driver, Scene
 from models.scene.laws import Accelerating, Oscillating
 from models.scene.loads import ConstantFriction, CoulombFriction
-from tests.worlds.loading import rubbed_mechanism
-from tests.worlds.tiers import slowly
 
 STEEP = """
 name = "slider-crank-self-locking"
 source = "a steep rod against a rubbing guide; closed form: rod's angle + friction angle = 90 deg"
-[ground]
-points = { A = [0.0, 0.0] }
+ground = { points = { A = [0.0, 0.0] } }
+sliders = { P = { point = "C", on = "ground", mass_kg = 0.001 } }
+driver = { link = "crank", speed_rad_s = 1.0, start_deg = 10.0 }
+friction = { P = { mu = 0.5 } }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.1 }
 rod = { bar = ["B", "C"], length_m = 0.11, mass_kg = 0.0, inertia_kg_m2 = 0.0 }
-[sliders.piston]
-point = "C"
-on = "ground"
-mass_kg = 0.001
-[driver]
-link = "crank"
-speed_rad_s = 1.0
-start_deg = 10.0
-[friction.piston]
-mu = 0.5
-[loads.out]
-block = "piston"
-direction_deg = 180.0
-force_n = 100.0
-slider = "piston"
-stroke = "forward"
-[loads.back]
-block = "piston"
-direction_deg = 0.0
-force_n = 100.0
-slider = "piston"
-stroke = "backward"
+[loads]
+out = { block = "P", direction_deg = 180.0, force_n = 100.0, slider = "P", stroke = "forward" }
+back = { block = "P", force_n = 100.0, slider = "P", stroke = "backward" }
 """
 """The loads are against the motion on both strokes, and inertia is next to nothing."""
-
-
-HEAVY = STEEP.replace(", mass_kg = 0.0, inertia_kg_m2 = 0.0", "")
-for old, new in (("mass_kg = 0.001", "mass_kg = 0.5"), ("100.0", "500.0"), ("= 1.0", "= 10.0")):
-    HEAVY = HEAVY.replace(old, new)
-"""With masses as engines ask for."""
 
 
 def steep(mu: float = 0.5) -> Scene:
@@ -78,7 +50,7 @@ def limit(mu: float) -> float:
     return math.asin(0.11 / 0.1 * math.sin(math.pi / 2 - math.atan(mu)))
 
 
-@pytest.mark.parametrize("mu", [0.4591, 0.5, 1.0])
+@pytest.mark.parametrize("mu", [0.4591, 1.0])
 def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -> None:
     found, begin = self_locking(steep(mu)), limit(mu)
     told = [end for each in found for end in (each.begin_rad, each.end_rad)]
@@ -89,25 +61,14 @@ def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -
     assert found[0].words == f"locks itself from {ends[0]:.6g} to {ends[1]:.6g} deg"
 
 
-@pytest.mark.parametrize(
-    ("at_b", "at_c", "looks"),
-    [
-        (0.02, 0.01, 72),
-        slowly(0.0, 0.01, 180, reason="one of the two pins, and looks nearer to the limit"),
-        slowly(0.01, 0.0, 180, reason="the other pin, and looks nearer to the limit"),
-        slowly(0.02, 0.01, 180, reason="looks nearer to the limit"),
-    ],
-)
-def test_pins_that_rub_move_the_limit_by_a_tangents_lean(
-    at_b: float, at_c: float, looks: int
-) -> None:
+def test_pins_that_rub_move_the_limit_by_a_tangents_lean() -> None:
     """The rod's force runs along a tangent of both friction circles, which leans from the rod by
     asin((c_B +- c_C)/l), and that counts in place of the rod's angle. Beyond 90 deg the rod turns
     back, and rubs the other way in C."""
-    scene = steep()
-    circles = [radius * math.sin(math.atan(0.3)) for radius in (at_b, at_c)]
-    pins = {n: CoulombFriction(n, 0.3, r) for n, r in zip("BC", (at_b, at_c), strict=True) if r}
-    first = self_locking(replace(scene, friction={**scene.friction, **pins}), looks)[0]
+    scene, radii = steep(), {"B": 0.02, "C": 0.01}
+    circles = [radius * math.sin(math.atan(0.3)) for radius in radii.values()]
+    pins = {joint: CoulombFriction(joint, 0.3, radius) for joint, radius in radii.items()}
+    first = self_locking(replace(scene, friction={**scene.friction, **pins}), 72)[0]
     before, after = (math.asin((circles[0] + sign * circles[1]) / 0.11) for sign in (1, -1))
     steepest = math.pi / 2 - math.atan(0.5)
     wanted = [math.asin(1.1 * math.sin(steepest - lean)) for lean in (before, after)]
@@ -116,32 +77,19 @@ def test_pins_that_rub_move_the_limit_by_a_tangents_lean(
     assert first.end_rad == pytest.approx(math.pi - wanted[1], abs=1e-8)
 
 
-def test_inertia_moves_no_limit() -> None:
-    """Which is the rod's angle as long as the load decides the sign of the normal force."""
-    found = self_locking(parse_scene(HEAVY, "heavy"))
-    assert [each.locks for each in found] == [True, True]
-    assert found[0].begin_rad == pytest.approx(limit(0.5), abs=1e-12)
-    assert found[1].end_rad == pytest.approx(math.tau - limit(0.5), abs=1e-12)
-
-
 def test_with_less_friction_it_never_locks() -> None:
     """psi reaches 65.4 deg, so below mu = tan(24.6 deg) = 0.4583 there is nothing to find."""
     assert self_locking(steep(0.4582)) == ()
     assert self_locking(replace(steep(), friction={})) == ()
-    constant = {"piston": ConstantFriction("piston", 1e6)}
+    constant = {"P": ConstantFriction("P", 1e6)}
     assert self_locking(replace(steep(), friction=constant)) == ()
 
 
-def test_with_a_load_that_helps_it_may_jam() -> None:
-    found = self_locking(helped(steep()))
-    assert [each.locks for each in found] == [False, False]
-    assert found[0].begin_rad == pytest.approx(limit(0.5), abs=1e-13)
-    assert found[0].words.startswith("may jam from 79.69")
-
-
-def test_a_range_goes_on_over_the_start_of_the_cycle() -> None:
+def test_with_a_load_that_helps_it_may_jam_on_over_the_start_of_the_cycle() -> None:
     law = replace(steep().driver.law, start_rad=math.radians(90.0))
-    found = self_locking(replace(steep(), driver=Driver("crank", law)))
+    found = self_locking(replace(helped(steep()), driver=Driver("crank", law)))
+    assert [each.locks for each in found] == [False, False]
+    assert {each.words[:8] for each in found} == {"may jam "}
     ends = sorted((each.begin_rad, each.end_rad) for each in found)
     begin = limit(0.5)
     assert ends[0] == pytest.approx((math.pi + begin, math.tau - begin), abs=1e-13)
@@ -157,13 +105,13 @@ def test_what_locks_everywhere_is_one_range() -> None:
 
 def test_locked_instants_are_refused_by_their_angle_or_left_out() -> None:
     scene = steep()
-    with pytest.raises(CrankcheckError, match=r"crank at 85 deg .* locks itself: friction in pist"):
+    with pytest.raises(CrankcheckError, match=r"crank at 85 deg .* locks itself: friction in P"):
         kinetostatics.forces(scene, [math.radians(75.0)])
     time_s = np.radians([0.0, 75.0])
     found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
     for value, bound in (
         (found.torque, found.bound.torque),
-        (found.friction["piston"], found.bound.friction["piston"]),
+        (found.friction["P"], found.bound.friction["P"]),
     ):
         assert np.isnan(value).tolist() == np.isinf(bound).tolist() == [False, True]
     assert found.friction_solution.solutions.tolist() == [1, 0]
@@ -195,54 +143,32 @@ def test_efficiency_of_a_press_lies_between_0_and_1() -> None:
     assert len(known) > 300
 
 
-def test_without_friction_nothing_is_lost() -> None:
-    found = efficiency(replace(steep(), friction={}))
-    assert found.cycle == pytest.approx(1.0, abs=1e-12)
-    assert found.wasted == 0.0
-    assert np.nanmin(found.instantaneous) == 1.0
-
-
 def test_an_instantaneous_efficiency_is_that_of_the_textbook() -> None:
     """Torque without friction over that with it: 1 - mu tan psi, psi the rod's lean."""
     found = efficiency(steep(0.1), 90)
     wanted = 1.0 - 0.1 * np.abs(np.tan(np.arcsin(np.sin(found.theta) / 1.1)))
     assert found.instantaneous == pytest.approx(wanted, abs=2e-4)
+    lossless = efficiency(replace(steep(), friction={}), 90)
+    assert (lossless.cycle, lossless.wasted) == (pytest.approx(1.0, abs=1e-12), 0.0)
+    assert np.nanmin(lossless.instantaneous) == 1.0
 
 
-def test_where_its_loads_drive_it_a_machine_has_no_efficiency() -> None:
+def test_where_its_loads_drive_it_or_it_locks_a_machine_has_no_efficiency() -> None:
     found = efficiency(helped(steep(0.1)))
     assert math.isnan(found.cycle)
     assert found.useful < 0.0
     assert found.put_in == pytest.approx(found.useful + found.wasted, rel=1e-12)
     assert math.isnan(efficiency(replace(steep(0.1), loads={})).cycle)
-
-
-def test_of_a_machine_that_locks_no_work_is_told() -> None:
-    found = efficiency(steep())
-    assert math.isnan(found.cycle)
-    assert len(found.locked) == 2
-    assert np.isnan(found.power).sum() > 50
+    locked = efficiency(steep())
+    assert math.isnan(locked.cycle)
+    assert len(locked.locked) == 2
+    assert np.isnan(locked.power).sum() > 50
 
 
 def test_a_driver_that_speeds_up_has_no_cycle() -> None:
     scene = replace(steep(), driver=Driver("crank", Accelerating(0.0, 1.0, 0.3)))
     with pytest.raises(CrankcheckError, match="speeds up, so no cycle is like the next"):
         efficiency(scene)
-
-
-@pytest.mark.parametrize("every", [4, slowly(2, reason="random mechanisms")])
-def test_friction_never_puts_power_in(every: int) -> None:
-    told = 0
-    for number in range(0, 40, every):
-        scene, _ = rubbed_mechanism(number)
-        time_s = random.Random(number).uniform(0.0, 1.0) + np.linspace(0.0, 1.0, 9)
-        time_s = time_s * scene.driver.law.period_s
-        found = kinetostatics.forces(scene, time_s, bound=False, skip_dead_points=True)
-        watts = friction_power(scene, solve(scene, time_s, bound=False), found.friction)
-        for joint, each in watts.items():
-            assert not np.any(each > 0.0), (number, joint)
-            told += int(np.sum(each < 0.0))
-    assert told > 100
 
 
 def drawn(count: int, m: int, gain: float, *, pins: bool, seed: int) -> CoulombSystem:
@@ -257,11 +183,8 @@ def drawn(count: int, m: int, gain: float, *, pins: bool, seed: int) -> CoulombS
 @pytest.mark.parametrize(
     ("alone", "influence", "solutions", "g", "rel"),
     [
-        (10.0, 1.0, 1, 10.0, 1e-14),  # 0.5 (10 + g)
-        (-10.0, 1.0, 1, 10.0 / 3.0, 1e-14),  # 0.5 (10 - g)
         (10.0, 4.0, 0, np.nan, 1e-14),  # 0.5 (10 + 4 g) runs ahead of g
         (-10.0, 4.0, 2, 5.0 / 3.0, 1e-14),  # 0.5 (10 - 4 g), or 0.5 (4 g - 10) = 5
-        (10.0, -4.0, 2, 5.0 / 3.0, 1e-14),
         (10.0, 2.0 - 1e-9, 1, 1e10, 1e-6),  # just short of contracting no more
         (np.inf, 1.0, 1, np.nan, 1e-14),  # where reactions are no numbers nothing is said of it
     ],
@@ -289,8 +212,8 @@ def test_a_pin_has_as_many_solutions_as_its_quadratic_equation() -> None:
     assert {0.0, 1.0, 2.0} == set(found.solutions)
 
 
-@pytest.mark.parametrize("m", [2, 3])
-def test_sliders_have_the_solutions_that_trying_all_signs_finds(m: int) -> None:
+def test_sliders_have_the_solutions_that_trying_all_signs_finds() -> None:
+    m = 3
     system = drawn(300, m, 1.3, pins=False, seed=m)
     found = solve_coulomb(system)
     for i in range(300):
@@ -333,9 +256,9 @@ def test_a_singular_system_spoils_no_other() -> None:
     assert np.isnan(x[1]).all()
 
 
-def bounded(gain: float, off: float, error: float) -> tuple[Array, Array]:
-    """What random equations, wrong by ``error`` at most, change the friction by; and its bound."""
-    chance = np.random.default_rng(7)
+@pytest.mark.parametrize("gain", [0.3, 0.8])
+def test_no_bound_is_broken_by_equations_that_are_as_wrong_as_said(gain: float) -> None:
+    chance, error = np.random.default_rng(7), 1e-3
     system = drawn(60, 3, gain, pins=True, seed=5)
     found = solve_coulomb(system)
     errors = friction.CoulombErrors(
@@ -346,29 +269,11 @@ def bounded(gain: float, off: float, error: float) -> tuple[Array, Array]:
     most = np.zeros_like(found.g)
     for _ in range(12):
         angles = chance.uniform(-np.pi, np.pi, (2, 60, 3, 4))
-        push = off * np.stack([np.cos(angles), np.sin(angles)], -1)
+        push = error * np.stack([np.cos(angles), np.sin(angles)], -1)
         alone, influence = system.alone + push[0, :, :, 0], system.influence + push[1, :, :, :3]
         wrong = solve_coulomb(CoulombSystem(alone, influence, system.mu))
         most = np.fmax(most, np.abs(wrong.g - found.g))
-    return most, bound
-
-
-@pytest.mark.parametrize("gain", [0.3, 0.8])
-def test_no_bound_is_broken_by_equations_that_are_as_wrong_as_said(gain: float) -> None:
-    most, bound = bounded(gain, 1e-3, 1e-3)
     assert np.all(most <= bound)
     told = np.isfinite(bound)
     assert told.mean() > 0.3
     assert np.median(bound[told] / most[told]) < 30.0
-
-
-def test_a_bound_for_less_than_that_is_broken() -> None:
-    most, bound = bounded(0.3, 1e-2, 1e-3)
-    assert np.any(most > bound)
-
-
-def test_what_is_searched_leaves_little_open() -> None:
-    found = solve_coulomb(drawn(300, 3, 2.0, pins=True, seed=9))
-    some = found.solutions > 0
-    assert np.nanmax(found.change[some]) <= friction.SOLVED
-    assert np.isnan(found.g[~some]).all()

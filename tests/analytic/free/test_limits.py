@@ -7,17 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.free.coordinate_history import _moved
 from analytic.free.exact_motions import ToggleBarrier
 from analytic.free.limit_position import REACH
 from analytic.free.release import release
 from analytic.free.solved_motion import MachineMotion
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.scene import Scene
 from models.scene.driver import let_go
 from models.scene.hard import fourbar as triple_rocker
-from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
+from tests.analytic.free.mechanisms import fourbar, past_limits, released
 from tests.analytic.multibody.scenes import by_bodies
 from tests.analytic.multibody.scenes import scene as parsed
 from tests.worlds.loading import loaded_mechanism
@@ -41,29 +39,10 @@ def test_past_limits_the_motion_is_that_of_all_bodies(until_s: float) -> None:
     assert np.abs(found - wanted).max() < 1e-10
 
 
-FAST = {"start_deg": 20.0, "speed_rad_s": 15.0}
-SLID = {"start_deg": 20.0, "speed_rad_s": 8.0}
-
-
-@pytest.mark.parametrize(
-    ("scene", "until_s", "samples"),
-    [
-        (past_limits(), 0.9, 601),
-        slowly(past_limits(), 1.0, 1501, reason="smaller steps"),
-        slowly(past_limits(**FAST), 1.0, 1501, reason="smaller ones of a faster one"),
-        slowly(
-            slider_crank(0.3, 0.2, 0.05, **SLID), 1.0, 1501, reason="smaller steps, of a slider"
-        ),
-    ],
-)
-def test_past_limits_all_goes_on_in_the_right_assembly(
-    scene: Scene, until_s: float, samples: int
-) -> None:
-    free = released(scene, until_s)
-    assert len(free.passages) > 1
+def test_past_limits_all_goes_on_in_the_right_assembly() -> None:
+    free = released(past_limits(), 0.9)
     near = [p.time_s + x for p in free.passages for x in (-1e-4, -1e-7, 0.0, 1e-7, 1e-4)]
-    even = np.linspace(0.0, until_s, samples)
-    time_s = np.sort(np.concatenate([even, np.clip(near, 0.0, until_s)]))
+    time_s = np.sort(np.concatenate([np.linspace(0.0, 0.9, 601), near]))
     motion, step = free.at(time_s), np.diff(time_s)
     for link in motion.links.values():
         steady = 0.5 * (link.omega[1:] + link.omega[:-1])
@@ -92,11 +71,10 @@ def test_times_may_come_in_any_order() -> None:
     assert np.array_equal(next(bounds), next(bounds)[::-1])
 
 
-@pytest.mark.parametrize("k", [2, 10])
-def test_a_limit_reaches_as_far_as_it_says_whatever_rounding_does(k: int) -> None:
+def test_a_limit_reaches_as_far_as_it_says_whatever_rounding_does() -> None:
     """With these lengths the square of the root of the reach is larger than the reach. Runs are
     looked for out to there, and had no geometry at all."""
-    scene = fourbar(0.2 + 0.0031 * k, 0.2, 0.25, 0.41 + 0.0017 * k, start_deg=60.0)
+    scene = fourbar(0.2062, 0.2, 0.25, 0.4134, start_deg=60.0)
     motion = release(scene, 0.02)
     assert isinstance(motion, MachineMotion)
     chart = motion.history.windows[0].chart
@@ -104,9 +82,6 @@ def test_a_limit_reaches_as_far_as_it_says_whatever_rounding_does(k: int) -> Non
     u = np.array([np.sqrt(most)])
     assert u[0] * u[0] > most
     chart.unit(u)
-    time_s = np.linspace(0.0, 0.02, 5)
-    found = motion.at(time_s)
-    assert np.allclose(motion.beside(found).links["rocker"].theta, found.links["rocker"].theta)
 
 
 OFFSET_SLOT = """
@@ -131,22 +106,6 @@ def test_a_link_whose_points_are_the_same_in_both_assemblies_tells_them_apart() 
     true = motion.at(np.linspace(0.0, 1.0, 41), bound=False)
     found = motion.beside(true).links["lever"].theta
     np.testing.assert_allclose(found, true.links["lever"].theta, atol=1e-9)
-
-
-def test_a_state_is_the_same_in_the_chart_of_another_limit() -> None:
-    """Its acceleration too, so that no difference of that goes unseen where charts change."""
-    free = released(past_limits(), 0.9)
-    assert isinstance(free, MachineMotion)
-    history = free.history
-    changes = [first for _, first, _ in history.legs()][1:]
-    assert changes
-    for k in changes:
-        before, after = history.windows[k - 1], history.windows[k]
-        share = (before.end_s - before.start_s) / before.long_s
-        left = np.array(history.at(np.array([k - 1]), np.array([share])))
-        entered = np.array(history.at(np.array([k]), np.zeros(1)))
-        moved = _moved(before.chart, after.chart, left, entered[0])
-        assert moved[:, 0] == pytest.approx(entered[:, 0], rel=1e-9)
 
 
 @pytest.fixture(scope="module")
@@ -179,12 +138,8 @@ def test_a_throw_starts_with_free_accelerations(barrier: ToggleBarrier) -> None:
     assert state.theta == pytest.approx(true.theta, rel=1e-12)
     assert state.omega == pytest.approx(true.omega, rel=1e-11)
     assert state.alpha == pytest.approx(true.alpha, rel=1e-9)
-
-
-def test_links_in_line_close_by_the_angle_that_the_start_is_open(barrier: ToggleBarrier) -> None:
-    theta = barrier.start(0.1).theta
     one, other = barrier.links
-    between = theta[other] - theta[one]
+    between = state.theta[other] - state.theta[one]  # its links in line close by what it is open
     assert np.sin(between - barrier.open_rad) == pytest.approx(0.0, abs=1e-4)
 
 

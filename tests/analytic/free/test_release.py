@@ -4,18 +4,14 @@ larger or faster; and of several freedoms, by all bodies."""
 import math
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
 
 from analytic.free.free_motion import FreeMotion
-from analytic.free.kinks import FormulaChange, WindowKinks
 from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.free.solved_motion import BodiesMotion, MachineMotion
-from analytic.free.window import WindowSolution
-from analytic.kinematics import reach
 from analytic.multibody.multibody_motion import Projection
 from models.errors import CrankcheckError, StructureError
 from models.files.reading import load_scene, parse_scene
@@ -29,7 +25,7 @@ from tests.analytic.multibody.scenes import scene as parsed
 from tests.worlds.let_go import EVERYTHING
 from tests.worlds.loading import massless
 from tests.worlds.other_way import MOVES, faster
-from tests.worlds.tiers import few, slow, slowly
+from tests.worlds.tiers import slow, slowly
 
 
 def torque(characteristic: object, over: str = "time") -> dict[str, Load]:
@@ -59,34 +55,30 @@ def test_loads_with_kinks_are_integrated_from_kink_to_kink(name: str) -> None:
         at = np.remainder(free.law.at(np.array(free.edges_s))[0], math.tau)
         places = np.array(TABLE.places)
         assert np.abs(at[:, None] - places).min(axis=1).max() < 1e-12
+    assert_balanced(free)
 
 
-@pytest.mark.parametrize(
-    "scene", [fourbar(), past_limits(), replace(fourbar(), springs=SPRINGS),
-              replace(fourbar(), friction=RUBBING),
-              *(scene for scene, _ in KINKED.values())],
-)  # fmt: skip
-@pytest.mark.parametrize("until_s", [0.4, slowly(0.6, reason="energy that goes by and by")])
-def test_energy_balances(scene: Scene, until_s: float) -> None:
-    energy = released(scene, until_s).energy(np.linspace(0.0, until_s, 301))
+def assert_balanced(free: FreeMotion) -> None:
+    energy = free.energy(np.linspace(0.0, free.until_s, 301))
     off = np.abs(energy.balance - energy.balance[0])
     assert off.max() <= 1e-11 * energy.kinetic.max()
 
 
 @pytest.mark.parametrize(
-    ("damping", "more"),
-    [
-        (0.1, {}),
-        slowly(0.0, {}, reason="as with a damper"),
-        slowly(0.0, {"friction": RUBBING}, reason="the jump is the spring's"),
-    ],
+    "scene",
+    [past_limits(), replace(fourbar(), springs=SPRINGS), replace(fourbar(), friction=RUBBING)],
+    ids=["limits", "springs", "friction"],
 )
-def test_a_spring_whose_ends_meet_turns_over(damping: float, more: dict[str, Any]) -> None:
+def test_energy_balances(scene: Scene) -> None:
+    assert_balanced(released(scene, 0.4))
+
+
+def test_a_spring_whose_ends_meet_turns_over() -> None:
     """The slider comes through the other end of its spring twice a turn; the pull jumps there."""
-    across = LineSpring("across", 40.0, damping, 0.05, ("E", "C"))
+    across = LineSpring("across", 40.0, 0.1, 0.05, ("E", "C"))
     scene = slider_crank(offset=0.0, start_deg=30.0, speed_rad_s=12.0)
     ground = {**scene.ground, "E": (0.3, 0.0)}
-    free = release(replace(scene, ground=ground, springs={"across": across}, **more), 1.0)
+    free = release(replace(scene, ground=ground, springs={"across": across}), 1.0)
     points = free.at(np.array(free.edges_s)).points
     apart = np.abs(points["C"].position - points["E"].position).max(axis=1)
     assert np.count_nonzero(apart < 1e-13) >= 3
@@ -123,7 +115,7 @@ def test_a_kink_may_come_with_the_end() -> None:
     """A rotor comes to a row of a table within rounding of the end of its time."""
     scene = replace(fourbar(start_deg=0.0, speed_rad_s=30.0), loads=torque(TABLE, "angle"))
     edge = release(scene, 0.05).edges_s[0]
-    for end in (edge, math.nextafter(edge, 1.0), edge + 1e-15, edge + 1e-14):
+    for end in (edge, math.nextafter(edge, 1.0), edge + 1e-14):
         assert release(scene, end).until_s == end
 
 
@@ -133,21 +125,6 @@ def test_a_kink_is_foretold_beyond_the_reach_without_harm() -> None:
     scene = past_limits(start_deg=60.0, speed_rad_s=100.0)
     free = release(replace(scene, loads=torque(TABLE, "angle"), springs={"damper": damper}), 1.0)
     assert 0.0 < math.degrees(free.range_rad) < 1.0
-
-
-def test_a_window_that_leads_out_of_reach_is_made_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
-    within = WindowKinks.within
-
-    def near(own: WindowKinks, solved: WindowSolution, *, beyond: bool) -> FormulaChange | None:
-        if solved.long_s > 2e-3:
-            raise CrankcheckError("open")
-        return within(own, solved, beyond=beyond)
-
-    scene = replace(fourbar(speed_rad_s=10.0), loads=torque(TABLE, "angle"))
-    whole, end = release(scene, 0.1), np.array([0.05])
-    monkeypatch.setattr(WindowKinks, "within", near)
-    parts = release(scene, 0.05)
-    assert parts.law.at(end)[0] == pytest.approx(whole.law.at(end)[0], abs=1e-12)
 
 
 def test_friction_holds_a_mechanism_that_has_come_to_rest() -> None:
@@ -188,28 +165,6 @@ def test_what_cannot_be_let_go_is_refused(scene: Scene, said: str) -> None:
         release(scene, 1.0)
 
 
-def test_a_start_that_repeats_what_follows_is_let_go() -> None:
-    at = release(fourbar(), 0.1).at(np.zeros(1))
-    start = Start(angles_rad={"rocker": float(at.links["rocker"].theta[0]) + math.tau})
-    assert release(replace(fourbar(), start=start), 0.1).until_s == 0.1
-
-
-@pytest.mark.parametrize("seed", few(range(4), {1, 2, 3}, "one of 0 starts next to a toggle"))
-def test_random_slider_cranks_and_fourbars_keep_their_energy(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    a, b, c, d = rng.uniform(0.1, 0.5, 4).round(3).tolist()
-    start = {"start_deg": float(rng.uniform(-60.0, 60.0)), "speed_rad_s": 5.0}
-    for scene in (fourbar(a, b, c, d, **start), slider_crank(a, b, 0.01, **start)):
-        theta = math.remainder(math.radians(start["start_deg"]), math.tau)
-        if not any(low <= theta <= high for low, high in reach(scene)):
-            continue
-        free = release(scene, 0.5)
-        energy = free.energy(np.linspace(0.0, 0.5, 101))
-        assert np.ptp(energy.balance) <= 1e-9 * energy.kinetic.max()
-        growth, error = (each(np.array([0.5]))[0] for each in (free.sensitivity, free.error_rad))
-        assert error < 1e-11 * max(1.0, growth / 100.0)
-
-
 ALLOWED = 1e-9
 """Times the sensitivity, of a turn, of the longest link, and of their rates: each scene is
 integrated by itself, with roundings of its own."""
@@ -218,7 +173,6 @@ SCENES = {
     "swing": load_scene("fourbar-swing"),
     "limits": load_scene("fourbar-double-rocker-swing"),
 }
-LONG_S = {"everything that acts": 0.8, "swing": 1.0, "limits": 1.0}
 CHANGES = MOVES | {"faster": faster(5.0)}
 
 
@@ -231,10 +185,10 @@ def unmoved(name: str, until_s: float) -> FreeMotion:
 @pytest.mark.parametrize(
     ("name", "change", "until_s"),
     [
-        *(("everything that acts", change, 0.3) for change in CHANGES),
-        *(("swing", "mirrored", 0.5), ("limits", "mirrored", 0.45)),
+        *(("everything that acts", change, 0.2) for change in CHANGES),
+        ("limits", "mirrored", 0.45),
         *(
-            slowly(name, change, LONG_S[name], reason="roundings that grow with time")
+            slowly(name, change, 0.8, reason="roundings that grow with time")
             for name in SCENES
             for change in CHANGES
         ),
@@ -258,11 +212,6 @@ def test_the_moved_scene_has_the_moved_motion(name: str, change: str, until_s: f
             np.hypot(*(new.points[point].position - wanted).T)
             <= off * (by.grow * scene.longest_m + np.hypot(*by.shift_m))
         )
-    energy, again = own.energy(time_s), other.energy(time_s / by.fast)
-    gain = by.grow**3 * by.fast**2  # masses grow with lengths, and speeds too
-    largest = float(np.max(energy.kinetic))
-    assert np.all(np.abs(again.kinetic / gain - energy.kinetic) <= 10.0 * largest * off)
-    assert np.all(np.abs(again.work / gain - energy.work) <= 10.0 * largest * off)
 
 
 @pytest.fixture(scope="module", params=[0.15, slowly(0.3, reason="errors that grow with time")])
@@ -288,14 +237,9 @@ def test_beside_a_run_both_its_angles_stay_and_its_pins_are_closed(pendulum: Fre
     theta = [run.links[name].theta for name in ("upper", "lower")]
     x = 0.3 * np.cos(theta[0]) + 0.2 * np.cos(theta[1])
     assert np.abs(beside.points["C"].position[:, 0] - x).max() < 1e-14
-
-
-def test_beside_a_run_with_nothing_there_is_nothing(pendulum: FreeMotion) -> None:
-    run = pendulum.at(np.linspace(0.0, pendulum.until_s, 3))
-    run.links["lower"].theta[1] = math.nan
-    found = pendulum.beside(run).points["C"].position
-    assert np.isnan(found[1]).all()
-    assert np.isfinite(found[[0, 2]]).all()
+    run.links["lower"].theta[1] = math.nan  # where there is nothing, there is nothing beside it
+    found = np.isnan(pendulum.beside(run).points["C"].position).any(axis=1)
+    assert found.tolist() == [False, True, *[False] * 5]
 
 
 def test_what_leads_to_their_start_goes_on_through_it(pendulum: FreeMotion) -> None:

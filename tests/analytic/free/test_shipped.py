@@ -1,19 +1,18 @@
-"""The shipped scenes of free motion: a second method, the multibody form, energy and what a kink
-costs; periods by quadrature, beside the integrated motion; and the chain of windows: its closed
-form against 50 digits, its equation against all bodies."""
+"""The shipped scenes of free motion: a second method, the multibody form, energy, periods by
+quadrature and what a kink costs; and the chain of windows."""
 
 import math
-from collections.abc import Iterator
+from functools import partialmethod
+from unittest.mock import Mock
 
 import mpmath
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.integrate import solve_ivp
 
-from analytic.dyads.chunk import Chunk
 from analytic.free.exact_motions import Amplitude, ChainMotion
-from analytic.free.free_motion import FreeMotion
 from analytic.free.integration import Integration
+from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.free.solved_motion import MachineMotion
 from analytic.kinematics import solve_driven
@@ -23,19 +22,14 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene import Scene
-from models.scene.hard import UPRIGHT, WindowChain
+from models.scene.hard import WindowChain
 from models.scene.joints import centre_of, mass_of
 from tests.analytic.free.mechanisms import (
-    driver_by_steps,
-    fourbar,
-    newton_euler,
     released,
-    slider_crank,
 )
 from tests.analytic.multibody.scenes import by_bodies
-from tests.second_opinions.constraints import Constraints
 from tests.second_opinions.period import period
-from tests.worlds.tiers import few, slowly
+from tests.worlds.tiers import slowly
 
 SHORT_S = {"engine-flywheel": 0.004, "squeezer": 0.03, "fourbar-double-rocker-swing": 0.35}
 SHARES = np.array([0.137, 0.359, 0.611, 0.829, 1.0])
@@ -52,13 +46,10 @@ The squeezer's is 1 s: in ten its motor spins it up, which takes minutes to inte
 
 def brief_and_long(*quick: str) -> list[object]:
     """Each scene for a short time, of which some are ``quick``, and for as long as it may last."""
-    often, late = "the others show each kind of force", "errors that grow over many swings"
-    brief = {name: SHORT_S.get(name, 0.12) for name in NAMES}
-    long = {name: sorted({1.0, AT_MOST.get(name, 10.0)}) for name in NAMES}
+    late = "errors that grow over many swings"
     return [
-        *((name, brief[name]) for name in quick),
-        *(slowly(name, brief[name], reason=often) for name in NAMES if name not in quick),
-        *(slowly(name, until_s, reason=late) for name in NAMES for until_s in long[name]),
+        *((name, SHORT_S.get(name, 0.12)) for name in quick),
+        *(slowly(name, AT_MOST.get(name, 10.0), reason=late) for name in NAMES),
     ]
 
 
@@ -72,15 +63,31 @@ def steady(name: str, until_s: float) -> tuple[MachineMotion, Array]:
 
 
 @pytest.mark.parametrize(
-    ("name", "until_s"), brief_and_long("fourbar-swing", "engine-flywheel", "press-motor")
+    ("name", "until_s"),
+    [
+        ("fourbar-swing", 0.12),
+        slowly("fourbar-swing", 10.0, reason="errors that grow over many swings"),
+        slowly("slider-crank-spring", 10.0, reason="errors that grow over many swings"),
+    ],
 )
-def test_two_methods_agree_at_any_time(name: str, until_s: float) -> None:
+def test_a_method_by_steps_of_order_8_agrees(name: str, until_s: float) -> None:
+    """In steps of at most 0.06 rad: left to itself it takes longer ones, and misses its tolerance
+    by a thousand."""
     free, time_s = steady(name, until_s)
-    theta, omega = driver_by_steps(free, time_s)
+    ((chart, _, _),) = free.history.legs()
+    machine, wound = Machine(free.scene, chart), dict(free.history.windows[0].wound)
+
+    def rates(t: float, y: Array) -> tuple[float, float]:
+        return float(y[1]), float(machine.acceleration(np.array([t]), y[:1], y[1:], wound)[0])
+
+    start = [float(row[0]) for row in free.history.state(np.zeros(1))[:2]]
+    most, kept = 0.06 / max(free.peak_speed_rad_s, 1.0), {"rtol": 3e-14, "atol": 1e-15}
+    done = solve_ivp(rates, (0.0, time_s[-1]), start, "DOP853", time_s, max_step=most, **kept)
+    theta, slope, _ = chart.driver(done.y[0])
     allowed = np.where(time_s <= 1.0, 1e-11, 1e-9) * np.maximum(1.0, np.abs(theta))
     found = free.law.at(time_s)
     assert np.all(np.abs(found[0] - theta) <= allowed)
-    assert np.all(np.abs(found[1] - omega) <= allowed * max(1.0, free.peak_speed_rad_s))
+    assert np.all(np.abs(found[1] - slope * done.y[1]) <= allowed * max(1.0, free.peak_speed_rad_s))
     assert np.all(free.error_rad(time_s) <= allowed)
 
 
@@ -106,20 +113,17 @@ def test_energy_balances_at_any_time(name: str, until_s: float) -> None:
     assert off.max() <= 1e-11 * energy.kinetic.max()
 
 
-@pytest.mark.parametrize(
-    "until_s", [0.5, slowly(1.0, reason="the closest limit"), slowly(10.0, reason="many turns")]
-)
+@pytest.mark.parametrize("until_s", [0.5, slowly(10.0, reason="many turns")])
 def test_the_chain_goes_as_its_closed_form_says(until_s: float) -> None:
     free, time_s = released(load_scene("fourbar-chain"), until_s), np.linspace(0.0, until_s, 333)
-    off = np.abs(free.law.at(time_s)[0] - ChainMotion(WindowChain(2)).at(time_s)[0])
+    exact = ChainMotion(WindowChain(2))
+    off, rate, push = np.abs(np.subtract(free.law.at(time_s), exact.at(time_s)))
     assert off.max() <= (1e-11 if until_s <= 1.0 else 1e-9)
     assert np.all(off <= free.error_rad(time_s) + 1e-13)
-
-
-def test_the_period_of_the_chain_is_that_of_its_closed_form() -> None:
-    one = period(load_scene("fourbar-chain"))
+    assert max(rate.max(), push.max()) <= 1e-8
+    one = period(free.scene)
     assert one.swing_rad is None
-    assert one.time_s == pytest.approx(ChainMotion(WindowChain(2)).period_s, abs=1e-12)
+    assert one.time_s == pytest.approx(exact.period_s, abs=1e-12)
 
 
 @pytest.mark.parametrize("until_s", [1.2, slowly(10.0, reason="many swings")])
@@ -135,71 +139,20 @@ def test_the_swing_is_back_at_rest_after_its_periods(until_s: float) -> None:
 
 def test_a_kink_asks_for_the_mechanism_about_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two rounds of Newton's method; where the kinks are is asked of the driver alone."""
-    asked: list[int] = []
-    windows: list[int] = []
-    chunk, run = Prepared.chunk, Integration.run
-
-    def counted(self: Prepared, *given: object) -> Chunk:
-        asked.append(1)
-        return chunk(self, *given)  # type: ignore[arg-type]
+    chunk, run, windows = Prepared.chunk, Integration.run, list[int]()
 
     def followed(self: Integration) -> object:
-        before = len(asked)
-        found = run(self)
+        with monkeypatch.context() as patched:
+            asked = Mock(side_effect=chunk)
+            patched.setattr(Prepared, "chunk", partialmethod(asked))
+            found = run(self)
         windows.append(len(found.windows))
-        assert len(asked) - before < 3 * len(found.windows)
+        assert asked.call_count < 3 * len(found.windows)
         return found
 
-    monkeypatch.setattr(Prepared, "chunk", counted)
     monkeypatch.setattr(Integration, "run", followed)
-    motion = release(load_scene("engine-flywheel"), 0.03001)
+    release(load_scene("engine-flywheel"), 0.03001)
     assert min(windows) > 35
-    assert np.isfinite(motion.at(np.array([0.03])).links["crank"].theta).all()
-
-
-def times_of(free: FreeMotion, level: float, until_s: float) -> list[float]:
-    """When the driver passes an angle upwards."""
-    time_s = np.linspace(0.0, until_s, 4001)
-    off = free.law.at(time_s)[0] - level
-
-    def after(t: float) -> float:
-        return float(free.law.at(np.array([t]))[0][0]) - level
-
-    found = np.flatnonzero((off[:-1] < 0.0) & (off[1:] >= 0.0))
-    return [float(brentq(after, time_s[k], time_s[k + 1], xtol=1e-16)) for k in found]
-
-
-SWINGS = "other swings, and that one takes as long as the last"
-
-
-@pytest.mark.parametrize(
-    ("swung", "until_s"),
-    [
-        (fourbar(), None),
-        (slider_crank(), None),
-        slowly(fourbar(), 4.0, reason=SWINGS),
-        slowly(fourbar(start_deg=-85.0), 4.0, reason=SWINGS),
-        slowly(fourbar(speed_rad_s=5.0), 4.0, reason=SWINGS),
-        slowly(slider_crank(), 4.0, reason=SWINGS),
-    ],
-)
-def test_swings_take_the_period_that_quadrature_has(swung: Scene, until_s: float | None) -> None:
-    one = period(swung)
-    assert one.swing_rad is not None
-    until_s = until_s or 2.2 * one.time_s
-    times = times_of(release(swung, until_s), 0.5 * sum(one.swing_rad), until_s)
-    assert len(times) > 1
-    assert np.abs(np.diff(times) - one.time_s).max() < 1e-12
-
-
-@pytest.mark.parametrize("count", [3, slowly(5, reason="errors that grow with time")])
-def test_turns_take_the_period_that_quadrature_has(count: int) -> None:
-    turning = fourbar(speed_rad_s=40.0)
-    one = period(turning)
-    assert one.swing_rad is None
-    times = one.time_s * np.arange(count)
-    theta = release(turning, times[-1]).law.at(times)[0]
-    assert np.abs(theta - theta[0] - math.tau * np.arange(count)).max() < 1e-11
 
 
 CHAINS = [
@@ -210,7 +163,7 @@ CHAINS = [
 ]
 
 
-@pytest.mark.parametrize("count", [1, 2, 7, 40, 200])
+@pytest.mark.parametrize("count", [1, 2, 40])
 def test_a_chain_has_as_many_rods_and_dyads_as_windows_want(count: int) -> None:
     scene = WindowChain(count).scene()
     assert len(scene.links) == 2 * count + 1
@@ -247,36 +200,6 @@ def test_the_amplitude_is_jacobis_to_rounding(rest: float) -> None:
             assert abs(off) < 4e-15 * (1.0 + abs(u)) / math.sqrt(rest) ** 0.5
 
 
-def taylor(theta: mpmath.mpf, omega: mpmath.mpf, gain: mpmath.mpf) -> Iterator[tuple]:
-    """theta, theta' after each 0.05 s of theta'' = -gain cos(theta), in series of 24 terms."""
-    step = mpmath.mpf("0.05")
-    while True:
-        yield theta, omega
-        a, c, s = [theta, omega], [mpmath.cos(theta)], [mpmath.sin(theta)]
-        for n in range(23):
-            a.append(-gain * c[n] / ((n + 1) * (n + 2)))
-            c.append(-sum((k + 1) * a[k + 1] * s[n - k] for k in range(n + 1)) / (n + 1))
-            s.append(sum((k + 1) * a[k + 1] * c[n - k] for k in range(n + 1)) / (n + 1))
-        theta, omega = mpmath.polyval(a[::-1], step, derivative=True)
-
-
-@pytest.mark.parametrize("chain", few(CHAINS, CHAINS[2:3], "the one in which no number is 1"))
-def test_closed_form_solves_the_reduced_equation_by_series_in_30_digits(chain: WindowChain) -> None:
-    """From the equation and the start alone, over more than a turn."""
-    n, turning = chain.count, ChainMotion(chain)
-    times = 0.05 * np.arange(101)
-    theta, omega, alpha = turning.at(times)
-    assert abs(theta[-1] - theta[0]) > min(math.tau, 5.0 / chain.length_m) - 1e-9
-    with mpmath.workdps(30):
-        g, length = mpmath.mpf(chain.gravity_m_s2), mpmath.mpf(chain.length_m)
-        gain = g / length * (mpmath.mpf(3 * n + 1) / 2) / (mpmath.mpf(4 * n + 1) / 3)
-        path = taylor(mpmath.pi / 2, -mpmath.mpf(chain.speed_m_s) / length, gain)
-        for i, (angle, rate) in zip(range(len(times)), path, strict=False):
-            assert abs(angle - theta[i]) < 4e-14 * (1.0 + abs(theta[i])), times[i]
-            assert abs(rate - omega[i]) < 1e-13 * turning.fastest_rad_s * (1.0 + times[i])
-            assert abs(-gain * mpmath.cos(angle) - alpha[i]) < 1e-12
-
-
 @pytest.mark.parametrize("chain", CHAINS)
 def test_energy_over_all_bodies_is_that_of_the_closed_form_and_constant(chain: WindowChain) -> None:
     turning, times = ChainMotion(chain), np.linspace(0.0, 20.0, 401)
@@ -301,22 +224,6 @@ def summed(scene: Scene, turning: ChainMotion, times: np.ndarray) -> np.ndarray:
     return total
 
 
-@pytest.mark.parametrize("count", [0, 1, 2, 5])
-def test_the_equation_of_motion_follows_from_newton_euler_of_all_bodies(count: int) -> None:
-    scene, turning = WindowChain(count).scene(), ChainMotion(WindowChain(count))
-    system = Constraints(scene)
-    for t in (0.0, 0.3, 0.7):
-        motion = turning.motion(np.array([t]))
-        q, rates = np.zeros((2, system.size))
-        for name, link in scene.links.items():
-            i, first = system.at[name], motion.points[next(iter(link.points))]
-            q[i : i + 3] = *first.position[0], motion.links[name].theta[0]
-            rates[i : i + 3] = *first.velocity[0], motion.links[name].omega[0]
-        found = newton_euler(scene, system, q, rates)
-        for name in scene.links:
-            assert abs(found[system.at[name] + 2] - motion.links[name].alpha[0]) < 1e-11
-
-
 def test_the_motion_of_the_pins_is_that_of_the_closed_form_of_the_linkage() -> None:
     turning, times = ChainMotion(WindowChain(2)), np.linspace(0.0, 0.5, 11)
     found = turning.motion(times)
@@ -328,11 +235,3 @@ def test_the_motion_of_the_pins_is_that_of_the_closed_form_of_the_linkage() -> N
     for name, link in found.links.items():
         assert link.alpha == pytest.approx(other.links[name].alpha, abs=1e-11)
         assert link.omega == pytest.approx(other.links[name].omega, abs=1e-12)
-
-
-def test_a_period_is_a_whole_turn_against_the_sense_of_the_axes() -> None:
-    turning = ChainMotion(WindowChain(40))
-    theta, omega, alpha = turning.at(turning.period_s * np.array([0.0, 0.5, 1.0, 5.0]))
-    assert theta == pytest.approx(UPRIGHT - math.tau * np.array([0.0, 0.5, 1.0, 5.0]), abs=1e-12)
-    assert omega == pytest.approx([-1.0, -turning.fastest_rad_s, -1.0, -1.0], abs=1e-12)
-    assert alpha == pytest.approx(np.zeros(4), abs=1e-11)
