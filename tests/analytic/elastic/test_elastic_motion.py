@@ -2,7 +2,6 @@
 and sizes of any kind, laws of the driver, and the fastest of what they do."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -26,7 +25,7 @@ from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.elastic import Shape
-from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.scene.laws import Oscillating, SpeedChange
 from models.scene.moved import scaled
 from tests.analytic.elastic.driven import (
     SHIPPED,
@@ -41,7 +40,6 @@ from tests.worlds.tiers import few, slow, slowly
 BETWEEN = 2.0
 """By what an estimated error may fall short of the true one."""
 BEST = Polynomials(10, 6)
-SECONDS = "two seconds each: other shapes, whose errors are estimated in the same way"
 
 
 def driven(
@@ -78,11 +76,7 @@ def test_the_reference_is_good_to_1e_8_of_the_deflection(name: str) -> None:
     ("by", "start", "fine"),
     [
         (Elements(1), "periodic", Polynomials(5, 3)),
-        slowly(Elements(1), "periodic", BEST, reason=SECONDS),
-        slowly(Polynomials(3, 1), "periodic", BEST, reason=SECONDS),
-        slowly(Polynomials(4, 2), "quasi-static", BEST, reason=SECONDS),
-        slowly(Modes(3, 2), "periodic", BEST, reason=SECONDS),
-        slowly(Elements(2), "periodic", BEST, reason=SECONDS),
+        slowly(Polynomials(4, 2), "quasi-static", BEST, reason="two seconds: another start"),
     ],
 )
 def test_the_doubt_is_not_under_the_error(
@@ -105,31 +99,21 @@ def test_the_doubt_is_not_under_the_error(
         assert theta.max() * BETWEEN >= largest(error) - 1e-15
 
 
-@pytest.mark.parametrize("count", [4, slowly(6, reason="windows for stiffer segments")])
-def test_of_a_chain_the_windows_alone_are_in_doubt(count: int) -> None:
-    motion = driven(fourbar(), Segments(count), "quasi-static", 0.2)
+def test_of_a_chain_the_windows_alone_are_in_doubt() -> None:
+    motion = driven(fourbar(), Segments(4), "quasi-static", 0.2)
     doubt = motion.doubt(np.linspace(0.0, 0.2, 9))
     assert 0.0 < doubt.middle_m["coupler"].max() < 1e-8
 
 
-@pytest.mark.parametrize(
-    ("bends", "stiffer"),
-    [
-        (True, (5.0, 10.0)),
-        slowly(True, (5.0, 10.0, 20.0), reason="that the ratio stays"),
-        slowly(False, (5.0, 10.0, 20.0), reason="a link that stretches; that the ratio stays"),
-    ],
-)
-def test_a_stiff_link_is_rigid_but_for_one_over_its_modulus(
-    bends: bool, stiffer: tuple[float, ...]
-) -> None:
+@pytest.mark.parametrize("bends", [True, slowly(False, reason="a link that stretches")])
+def test_a_stiff_link_is_rigid_but_for_one_over_its_modulus(bends: bool) -> None:
     """A link that bends turns the others in the second order only, by its shortening."""
     soft = fourbar(axial_n=float("inf") if bends else 6.3e6)
     own, time_s = soft.elastic["coupler"], times(soft)
     flexural = own.flexural_n_m2 if bends else float("inf")
     rigid, rigid_forces = solve(soft, time_s), forces(soft, time_s)
     errors = []
-    for times_as in stiffer:
+    for times_as in (5.0, 10.0):
         axial = times_as * own.axial_n
         scene = with_elastic(soft, flexural_n_m2=times_as * flexural, axial_n=axial)
         motion = driven(scene, Polynomials(4, 2)).at(time_s)
@@ -139,45 +123,17 @@ def test_a_stiff_link_is_rigid_but_for_one_over_its_modulus(
     assert np.divide(errors[:-1], errors[1:]) == pytest.approx(2.0, rel=5e-3)
 
 
-def errors_of(make: Callable[[int], Discretisation], counts: list[int]) -> tuple[Array, float]:
-    """Of the deflection with so many parts, over its largest; and the order of them."""
-    time_s = times(fourbar())
-    true = middle(driven(fourbar()).at(time_s))
-    found = (middle(driven(fourbar(), make(count)).at(time_s)) for count in counts)
-    errors = np.array([largest(each - true) for each in found]) / largest(true)
-    return errors, -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-
-
-@pytest.mark.parametrize(
-    "counts", [[2, 4], slowly([2, 4, 8], reason="a second: the order with more elements")]
-)
-def test_elements_come_to_the_polynomials_with_order_4(counts: list[int]) -> None:
-    assert errors_of(Elements, counts)[1] > 3.7
-
-
-@pytest.mark.parametrize(
-    "counts", [[4, 8], slowly([4, 8, 16], reason="a second: the order with more segments")]
-)
-def test_chains_come_to_the_beam_with_order_2(counts: list[int]) -> None:
-    errors, order = errors_of(Segments, counts)
-    assert order == pytest.approx(2.0, abs=0.1)
-    assert errors[-1] == pytest.approx(0.8 / counts[-1] ** 2, rel=0.05)
-
-
-def deflection(size: float, by: Discretisation) -> float:
+def deflection(size: float) -> float:
     """The largest over that size, of a four-bar of so many times the lengths, whose frequency is
     the same; it bends by so much that a small one is found only where angles count as lengths."""
     flexural = size**4 * fourbar().elastic["coupler"].flexural_n_m2
     scene = with_elastic(scaled(turning(3.5), size), flexural_n_m2=flexural)
     time_s = np.linspace(0.0, scene.driver.law.period_s, 20)
-    return largest(middle(driven(scene, by, until_s=1.0).at(time_s))) / size
+    return largest(middle(driven(scene, Elements(1), until_s=1.0).at(time_s))) / size
 
 
-@pytest.mark.parametrize(
-    "by", few([Elements(1), Elements(2), Segments(4)], {Elements(1)}, "more slopes, and angles")
-)
-def test_similar_mechanisms_of_any_size_bend_alike(by: Discretisation) -> None:
-    assert deflection(1e-4, by) == pytest.approx(deflection(1.0, by), rel=1e-6)
+def test_similar_mechanisms_of_any_size_bend_alike() -> None:
+    assert deflection(1e-4) == pytest.approx(deflection(1.0), rel=1e-6)
 
 
 @pytest.fixture(scope="module")
@@ -220,21 +176,9 @@ def test_damping_of_a_stiff_chain_is_faster_than_its_vibration(damping_s: float)
     assert fastest_rad_s(damped, by) == pytest.approx(fastest, rel=1e-6)
 
 
-NO_KINKS = "half a second each: without kinks in the law"
-
-
-@pytest.mark.parametrize(
-    "law",
-    [
-        SpeedChange(1.5, 3.0, 6.0, 0.1, 0.2),
-        slowly(ConstantSpeed(1.5, -7.37), reason=NO_KINKS),
-        slowly(Oscillating(1.5, 0.5, 9.0), reason=NO_KINKS),
-        slowly(FromRest(1.5, 9.0, 0.2), reason=NO_KINKS),
-        slowly(Accelerating(1.5, 9.0, -40.0), reason=NO_KINKS),
-    ],
-)
-def test_a_smooth_law_is_followed(law: Law) -> None:
-    motion = driven(following(fourbar(), law), Polynomials(4), "quasi-static", 0.4)
+def test_a_smooth_law_is_followed() -> None:
+    scene = following(fourbar(), SpeedChange(1.5, 3.0, 6.0, 0.1, 0.2))
+    motion = driven(scene, Polynomials(4), "quasi-static", 0.4)
     time_s = np.linspace(0.0, 0.4, 21)
     bent_m = largest(middle(motion.at(time_s)))
     assert bent_m > 1e-4

