@@ -17,7 +17,7 @@ from models.scene.laws import ConstantSpeed, Oscillating
 from reports.contract.subject import numbers
 from sim.engine import Engine, Poses, Run
 from sim.engine.drive import pace, period
-from sim.registry import ENGINES, engine
+from sim.registry import ENGINES
 from sim.run import run
 from sim.run.check import refuse_other_model
 from tests.worlds import runs
@@ -44,24 +44,14 @@ def angle_error(chain: WindowChain, dt_s: float, name: str) -> float:
     return max(float(np.abs(rod.theta - exact.links[k].theta).max()) for k, rod in rods)
 
 
-@pytest.fixture(params=[*ENGINES, "fake"])
-def adapter(request: pytest.FixtureRequest, fake_engine: ModuleType) -> Engine:
-    """The engines, and one that follows the chain of two windows by itself."""
-    name = str(request.param)
-    if name in ENGINES:
-        return engine(name)
-    exact = ChainMotion(WindowChain(2))
-    made: Engine = fake_engine.FakeEngine(lambda _, t: exact.motion(t), velocity_shift=0.5)
-    return made
-
-
 def opened(adapter: Engine | str, chain: WindowChain) -> Any:
     given = {"dt_s": DT_S, "drive": "free", "start": start_of(chain)}
     return runs.opened(chain.scene(), adapter, **given)
 
 
-def test_free_sessions_step_as_they_record_and_go_on_where_they_were(adapter: Engine) -> None:
-    stepped, recorded, whole = (opened(adapter, WindowChain(2)) for _ in range(3))
+@pytest.mark.parametrize("name", ENGINES)
+def test_free_sessions_step_as_they_record_and_go_on_where_they_were(name: str) -> None:
+    stepped, recorded, whole = (opened(name, WindowChain(2)) for _ in range(3))
     stepped.step(60)
     first, second = recorded.record(20, 1), recorded.record(40, 1)
     one = numbers(whole.record(60, 1).poses)
@@ -132,21 +122,6 @@ def test_the_pace_of_free_motion_comes_from_the_state_and_from_gravity() -> None
     still = replace(state, omega=dict.fromkeys(state.omega, 0.0))
     weightless = replace(scene, gravity_m_s2=(0.0, 0.0))
     assert (pace(weightless, still, "free"), period(weightless, still, "free")) == (0.0, np.inf)
-
-
-@pytest.mark.parametrize("name", ENGINES)
-def test_what_rests_without_weight_goes_on_resting(name: str) -> None:
-    chain = WindowChain(1, gravity_m_s2=0.0)
-    start = start_of(chain)
-    still = replace(
-        start,
-        omega=dict.fromkeys(start.omega, 0.0),
-        velocity=dict.fromkeys(start.velocity, (0.0, 0.0)),
-        acceleration=dict.fromkeys(start.acceleration, (0.0, 0.0)),
-    )
-    result = run(chain.scene(), still, name, dt_s=DT_S, steps=100, drive="free")
-    assert result.status == "ok"
-    assert np.ptp(result.motion.links["rocker0"].theta) < 1e-12
 
 
 def test_a_free_run_that_spins_away_is_diverged(fake_engine: ModuleType) -> None:

@@ -43,7 +43,6 @@ from models.scene.laws import ConstantSpeed, FromRest
 from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
 from tests.analytic.elastic.driven import FEW, following, form_of, turning, with_elastic
-from tests.worlds.tiers import slow
 
 DRIVEN = [n for n in shipped("elastic") if type(load_scene(n).driver.law) is ConstantSpeed]
 
@@ -172,16 +171,13 @@ def test_the_bounds_of_mathieus_equation() -> None:
         for order, multiplier in ((1, -1.0), (2, 1.0)):
             found = by_collocation(mathieu(bound(order, q), q), math.pi, 24).multipliers
             assert np.abs(found - multiplier).max() < 1e-5  # a double one: the root of rounding
+    constant = stability(mathieu(3.7**2, 0.0), math.pi)
+    assert constant.deviations[0].order == pytest.approx(1.85, abs=1e-9)
     between = 0.5 * (mathieu_a(1, q) + mathieu_b(1, q))
     unstable = stability(mathieu(between, q), math.pi)
     assert not unstable.is_stable
     assert unstable.deviations[0].order == 0.5
     assert stability(mathieu(0.5 * (mathieu_a(1, q) + mathieu_b(2, q)), q), math.pi).is_stable
-
-
-def test_constant_equations_keep_their_order() -> None:
-    found = stability(mathieu(3.7**2, 0.0), math.pi)
-    assert found.deviations[0].order == pytest.approx(1.85, abs=1e-9)
 
 
 def about(form: ReducedForm) -> LinearForm:
@@ -235,14 +231,6 @@ def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
     assert found.deviations[0].order == 3.5  # twice that is 7: it feeds on the turning
     start, end = deviated(form, 1, 1e-6, windows=16)
     assert apart_from(found.monodromy.matrix @ start, end) < 1e-6
-
-
-@slow("800 windows, twice: nothing shorter sees a frequency that is off by 1e-7")
-def test_a_hundred_turns_agree_with_the_multipliers() -> None:
-    form = form_of(turning(3.5), ONE)
-    matrix = stability_of(form, periodic_motion(form)).monodromy.matrix
-    start, end = deviated(form, 100, 1e-4, windows=800)
-    assert apart_from(np.linalg.matrix_power(matrix, 100) @ start, end) < 1e-4
 
 
 BY = Modes(2, 0)

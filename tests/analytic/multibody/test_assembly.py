@@ -65,18 +65,6 @@ def test_derivatives_are_those_of_the_equations(name: str) -> None:
     assert slope(lambda side: side.velocity) == pytest.approx(now.drift, abs=1e-8)
 
 
-def test_samples_at_once_are_those_one_by_one() -> None:
-    mechanism = load_scene("shaper")
-    assembly = Assembly(mechanism)
-    motion = solve(mechanism, np.linspace(0.0, 0.5, 3), bound=False)
-    q = np.array([coordinates(mechanism, motion, i) for i in range(3)])
-    whole = assembly.at_rates(q, np.ones_like(q))
-    for i in range(3):
-        one = assembly.at_rates(q[i : i + 1], np.ones((1, assembly.size)))
-        for rows in (assembly.joints.jacobian, assembly.joints.gamma):
-            assert np.array_equal(rows(whole)[i], rows(one)[0])
-
-
 def test_angles_read_off_a_drawing_lead_to_the_assembly() -> None:
     theta = start_state(scene(THESIS)).theta
     told = [math.degrees(theta[name]) for name in ("coupler", "rocker", "crank")]
@@ -266,7 +254,7 @@ def test_one_that_runs_away_is_told_until_when(let_go: LetGo, load: str) -> None
 
 def test_one_that_turns_ever_faster_is_refused_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a load that grows with the angle its turns never end, in less and less time."""
-    monkeypatch.setattr("analytic.free.integration.MOST_WINDOWS", 500)
+    monkeypatch.setattr("analytic.free.integration.MOST_WINDOWS", 1_000)
     steep = CUBE.replace('"omega"', '"angle"')
     with pytest.raises(CrankcheckError, match=r"loads\.motor over angle drives it"):
         release(scene(SLIDER_CRANK + steep.format("crank", 0.1)), 2.0).at(np.array([2.0]))

@@ -1,6 +1,5 @@
 """The forces that exudyn reports, against the reference; loads and friction that it is given."""
 
-import io
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
@@ -20,12 +19,10 @@ from models.scene.loads import CoulombFriction, Load
 from models.scene.tabulated import Tabulated
 from sim.engine import Settings
 from sim.exudyn.engine import ENGINE
-from sim.registry.offers import force_recipe
-from tests.sim.registry.test_force_recipes import printed
 from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.reported_forces import misses
-from tests.worlds.runs import acted_on, ran, rubbing, start_of, tuned
+from tests.worlds.runs import acted_on, ran, rubbing
 
 FOURBAR = load_scene("fourbar-lecture-1")
 MASSLESS = load_scene("slider-crank-excel-210")
@@ -154,20 +151,3 @@ def test_a_table_that_ends_too_soon_is_told_without_exudyns_words_about_it() -> 
         short = Load("short", "rocker", None, Tabulated((from_s, until_s), (1.0, 2.0)))
         done = ran(acted_on(FOURBAR, short), ENGINE, dt_s=1e-3, steps=100, well=False)
         assert (done.status, done.reason.startswith(said)) == (status, True)
-
-
-@pytest.mark.parametrize("name", ["shaper", "slotted-lever"])
-def test_the_recipe_prints_what_is_reported(name: str) -> None:
-    scene = replace(load_scene(name), gravity_m_s2=(0.5, -9.81))
-    text = force_recipe("exudyn", scene, start_of(scene), tuned("exudyn"), 180)
-    assert "crankcheck" not in text
-    assert max(len(line) for line in text.splitlines() if line.startswith("#")) <= 100
-    log = np.genfromtxt(io.StringIO(printed(text)), delimiter=",", names=True, deletechars="")
-    forces = opened(scene, 180).record_forces(180, 1).forces
-    assert len(log) == 181
-    scale = float(np.abs(forces.torque).max())
-    np.testing.assert_allclose(log["torque_n_m"], forces.torque, atol=1e-6 * scale)
-    for column in log.dtype.names[1:-1]:
-        point, body, axis = column.replace("block_", "block ").rsplit(".", 2)
-        force = forces.pins[point][body][:, int(axis == "y_n")]
-        np.testing.assert_allclose(log[column], force, atol=1e-6 * np.abs(force).max())

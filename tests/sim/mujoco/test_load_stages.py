@@ -9,7 +9,7 @@ import pytest
 from analytic.free.exact_motions import ChainMotion
 from analytic.free.release import release
 from models.array import Array
-from models.files.reading import load_scene, parse_scene
+from models.files.reading import load_scene
 from models.scene.characteristics import Characteristic, Pulse, Sine, Staircase
 from models.scene.hard import WindowChain
 from models.scene.loads import Load
@@ -17,7 +17,9 @@ from models.scene.tabulated import Tabulated
 from sim.mujoco.engine import MujocoSession
 from sim.mujoco.loading import LoadStages, forward_parts
 from sim.run import run
-from tests.worlds.runs import acted_on, opened
+from tests.analytic.multibody.scenes import SLIDER_CRANK
+from tests.analytic.multibody.scenes import scene as scene_of
+from tests.worlds.runs import acted_on, opened, ran
 
 DT_S = 0.01
 INERTIA = 1.0 / 3.0
@@ -94,50 +96,27 @@ def test_other_integrators_are_given_the_load_of_each_step() -> None:
     assert np.abs(omega - omega[0] - speed).max() < 0.03
 
 
-def ends(steps: int) -> Array:
-    """The angles of a four-bar after 0.6 s, with loops whose stiffness is not the step's."""
+def test_stages_keep_the_order_that_a_load_of_a_step_loses() -> None:
+    """With loops whose stiffness is not the step's; with one load a step it would be 2."""
     own = {"free_timeconst_steps": 0, "solref_timeconst_steps": 0, "solref_timeconst_s": 0.005}
     scene = acted_on(FOURBAR, Load("torque", "rocker", None, Sine(0.5, 0.3, 0.7)))
-    dt_s = 0.6 / steps
-    poses = opened(scene, "mujoco", own, dt_s=dt_s, drive="free").record(steps, steps).poses
-    return np.array([poses.bodies[link].theta[-1] for link in scene.links])
+    rough, fine, exact = (
+        ran(scene, "mujoco", dt_s=0.6 / n, steps=n, every=n, settings=own, drive="free")
+        .motion.links["rocker"]
+        .theta[-1]
+        for n in (600, 1200, 4800)
+    )
+    assert np.log2((rough - exact) / (fine - exact)) == pytest.approx(4.0, abs=0.5)
 
 
-def test_stages_keep_the_order_that_a_load_of_a_step_loses() -> None:
-    """With one load a step it would be 2."""
-    exact = ends(4800)
-    rough, fine = (np.abs(ends(n) - exact).max() for n in (600, 1200))
-    assert np.log2(rough / fine) == pytest.approx(4.0, abs=0.5)
-
-
-TURNING = """
-name = "turning"
-source = "a test"
-[ground]
-points = { A = [0.0, 0.0] }
-[links]
-crank = { bar = ["A", "B"], length_m = 0.1 }
-rod = { bar = ["B", "C"], length_m = 0.3 }
-[sliders]
-C = { on = "ground", mass_kg = 1.0 }
-[driver]
-link = "crank"
-law = "free"
-start_deg = -90.0
-speed_rad_s = 2.0
-duration_s = 0.8
-[springs.back]
-slider = "C"
-rate_n_m = 200.0
-free_m = 0.28
-[loads.cut]
-block = "C"
-direction_deg = 180.0
-stroke = "forward"
-slider = "C"
-force_n = 1.0
-"""
-LONG_S = 0.8
+TURNING = scene_of(
+    SLIDER_CRANK.replace("mass_kg = 0.5", "mass_kg = 1.0")
+    + "start_deg = -90.0\nspeed_rad_s = 2.0\n"
+    '[springs.back]\nslider = "C"\nrate_n_m = 200.0\nfree_m = 0.28\n'
+    '[loads.cut]\nblock = "C"\nslider = "C"\nstroke = "forward"\n'
+    "direction_deg = 180.0\nforce_n = 1.0\n",
+    0.0,
+)
 
 
 @pytest.mark.parametrize("speed", [2.0, -2.0])
@@ -163,13 +142,12 @@ def test_a_step_that_does_not_turn_back_is_whole(speed: float, change: float, wh
 def test_steps_keep_their_order_where_a_slider_turns_back() -> None:
     """Three times in 0.8 s; with stages that looked at their own speed the error was 2e-4 rad at
     1e-3 s, and of first order."""
-    scene = parse_scene(TURNING, "turning")
-    motion = release(scene, LONG_S)
+    motion = release(TURNING, 0.8)
     start = motion.at(np.zeros(1)).state()
     off = []
     for dt_s in (2e-3, 5e-4):
-        steps = round(LONG_S / dt_s)
-        done = run(scene, start, "mujoco", dt_s=dt_s, steps=steps, drive="free")
+        steps = round(0.8 / dt_s)
+        done = run(TURNING, start, "mujoco", dt_s=dt_s, steps=steps, drive="free")
         true = motion.at(done.motion.time_s, bound=False).links["crank"].theta
         off.append(float(np.abs(done.motion.links["crank"].theta - true).max()))
     # Where in its step each turn comes is chance, so that the order shows in the bounds alone.

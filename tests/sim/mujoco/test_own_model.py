@@ -97,7 +97,6 @@ CRANKS = {
         "crank": '<geom size="0.02"/>', "beside": CUT, "weld": '<weld body1="half" body2="crank"/>',
         "crank_end": "half"},
     "no mean inertia": {"crank": DISC, "more": '<statistic meaninertia="1e-30"/>'},
-    "much mean inertia": {"crank": DISC, "more": '<statistic meaninertia="1e30"/>'},
 }  # fmt: skip
 BARE = {"beside": "", "weld": "", "more": "", "crank_end": "crank"}
 

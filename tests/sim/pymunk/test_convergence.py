@@ -1,5 +1,5 @@
-"""How many iterations the joints of pymunk ask for, as Chipmunk's own iterations tell; and springs
-in the pins of a chain, all at once.
+"""The pymunk space: what the scene needs alone, assembled; how many iterations its joints need, as
+Chipmunk's own iterations tell; and springs in the pins of a chain, all at once.
 """
 
 import math
@@ -11,7 +11,7 @@ import pytest
 
 from analytic.elastic.engine_start import segment_start
 from models.errors import EngineError
-from models.files.reading import load_scene
+from models.files.reading import load_scene, shipped
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene.cut_scenes import SegmentedScene
@@ -20,11 +20,56 @@ from sim.engine import Run
 from sim.pymunk import acting, convergence
 from sim.pymunk.bodies import chain_springs
 from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
-from sim.pymunk.engine import ENGINE
 from sim.pymunk.space import SpaceModel, build
 from sim.registry.offers import remedies
 from sim.run import run
-from tests.worlds.runs import opened, ran, start_of
+from tests.worlds.runs import ran, start_of
+
+
+def kinds(space: pymunk.Space) -> list[str]:
+    return sorted(type(constraint).__name__ for constraint in space.constraints)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_a_space_holds_the_bodies_alone_which_stand_and_move_as_in_the_state(name: str) -> None:
+    scene = load_scene(name)
+    state = start_of(scene, 0.1)
+    model = build(scene, state)
+    assert not model.space.shapes
+    blocks = [s for s in scene.sliders.values() if s.mass_kg > 0.0]
+    assert len(model.bodies) == len(scene.links) + len(blocks)
+    assert not any(constraint.collide_bodies for constraint in model.space.constraints)
+    for link in scene.links.values():
+        body, centre = model.bodies[link.name], model.centre[link.name]
+        for point, (x, y) in link.points.items():
+            local = (x - centre[0], y - centre[1])
+            place, speed = body.local_to_world(local), body.velocity_at_local_point(local)
+            np.testing.assert_allclose(place, state.position[point], atol=1e-13)
+            np.testing.assert_allclose(speed, state.velocity[point], atol=1e-11)
+
+
+def test_the_crank_is_kinematic_or_under_a_servo_dynamic_with_a_motor() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    model = build(scene, start_of(scene))
+    assert model.crank.body_type == pymunk.Body.KINEMATIC
+    assert kinds(model.space) == ["PivotJoint"] * 3
+    servo = build(scene, start_of(scene), drive="servo")
+    assert servo.crank.body_type == pymunk.Body.DYNAMIC
+    assert servo.motor is not None
+    assert kinds(servo.space) == ["PivotJoint"] * 4 + ["SimpleMotor"]
+
+
+def test_joints_follow_from_what_slides_on_what() -> None:
+    def made(name: str, **given: bool) -> list[str]:
+        scene = load_scene(name)
+        return kinds(build(scene, start_of(scene), **given).space)
+
+    assert made("slider-crank-excel-350", exact_lines=False) == ["GrooveJoint", "PivotJoint"]
+    assert made("slider-crank-excel-350") == ["PinJoint", "PivotJoint"]
+    assert made("slider-crank-offset") == ["GrooveJoint", "PivotJoint", "PivotJoint"]
+    assert made("slotted-lever") == ["GrooveJoint", "PivotJoint"]
+    assert made("scotch-yoke") == ["GearJoint", "GrooveJoint", "GrooveJoint", "PivotJoint"]
+
 
 SEGMENTS = 6
 NO_BIAS = 1.0
@@ -140,17 +185,6 @@ def test_a_chain_has_no_remedy_that_can_not_be_run(
 ) -> None:
     monkeypatch.setattr(convergence, "MOST", 500)
     assert offered(asked) == found
-
-
-@pytest.mark.parametrize("name", ["shaper", "fourbar-elastic"])
-@pytest.mark.parametrize("found", [3, 160])
-def test_a_space_tells_the_iterations_that_it_has(name: str, found: int) -> None:
-    scene, start = placed(name)
-    session = opened(scene, ENGINE, start=start)
-    session._space.iterations = found
-    told = session.facts().settings
-    assert told["iterations"] == found
-    assert "iterations_of_segments" not in told
 
 
 PULL = LineSpring("pull", 3.0, 0.1, 0.5, ("A", "C"))

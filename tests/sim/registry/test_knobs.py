@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from benchmarks.step_cost import exudyn, mujoco, points, pymunk, start
+from benchmarks.step_cost import start
 from models.files.reading import load_scene
 from models.scene import Scene
 from sim.exudyn import knobs as exudyn_knobs
@@ -14,7 +14,7 @@ from sim.mujoco import knobs as mujoco_knobs
 from sim.mujoco.knobs import EVALUATIONS
 from sim.mujoco.settings import INTEGRATORS
 from sim.pymunk import knobs as pymunk_knobs
-from sim.pymunk.knobs import PASS_US, RAIL_US
+from sim.pymunk.knobs import RAIL_US
 from sim.registry import offering
 from sim.registry.offers import Knob, Work, rungs, search_space
 from tests.worlds.runs import ran, tuned
@@ -107,25 +107,3 @@ def test_the_unknowns_are_those_of_the_engine(name: str) -> None:
     session = ExudynSession(scene, start(scene), EXUDYN, 1e-3, "prescribed")
     held = session._system.systemData
     assert exudyn_knobs.unknowns(scene) == held.ODE2Size() + held.AEsize()
-
-
-def test_calibration_finds_what_a_machine_of_known_costs_takes() -> None:
-    names = ("fourbar-lecture-1", "sixbar-watt", "shaper", "slider-crank-excel-210")
-    what = [p for p in points() if p[0].name in names]
-    works = {
-        "mujoco": lambda scene, settings: mujoco_work(scene)({**MUJOCO, **settings}),
-        "pymunk": lambda scene, settings: pymunk_work(scene)({**PYMUNK, **settings}),
-        "exudyn": lambda scene, settings: exudyn_knobs.work(scene, start(scene))(
-            {**EXUDYN, **settings}
-        ),
-    }
-    taken = [works[engine](scene, settings) for scene, engine, settings in what]
-    lines = [*mujoco(what, taken), *pymunk(what, taken), *exudyn(what, taken)]
-    us = (mujoco_knobs.STEP_US, mujoco_knobs.BODY_US, mujoco_knobs.LOOP_US)
-    assert f"EVALUATIONS = {EVALUATIONS}" in lines
-    assert "STEP_US, BODY_US, LOOP_US = {:.3f}, {:.3f}, {:.3f}".format(*us) in lines
-    us = (pymunk_knobs.STEP_US, pymunk_knobs.BODY_US, RAIL_US)
-    assert "STEP_US, BODY_US, RAIL_US = {:.3f}, {:.3f}, {:.3f}".format(*us) in lines
-    assert f"PASS_US = {PASS_US}" in lines
-    us = (exudyn_knobs.STEP_US, exudyn_knobs.ITERATION_US, exudyn_knobs.MATRIX_US)
-    assert "STEP_US, ITERATION_US, MATRIX_US = {:.3f}, {:.3f}, {:.4f}".format(*us) in lines

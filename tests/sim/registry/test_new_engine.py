@@ -1,8 +1,5 @@
-"""A new engine is a folder and a line: a copy of the house, with the fake engine in it."""
+"""What an engine has and lacks, and engines that are not installed or whose files have faults."""
 
-import json
-import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -15,82 +12,7 @@ from sim import registry
 from sim.registry import engine
 from sim.registry.offers import search_space, snippet, viewer
 from sim.run.spoil import spoiler
-from tests.test_architecture import ARROWS, ROOT
-from tests.worlds.tiers import slow
-
-LINE = '    "fake": ".fake",\n'
-SCENE = "fourbar-lecture-1"
-FAKE = (SCENE, "--engine", "fake")
-COMMANDS = {
-    "engines": ["engines", "--settings"],
-    "verify": ["verify", *FAKE],
-    "all": ["verify", SCENE, "--profile", "tuned"],
-    "sweep": ["sweep", "-o", "store", "--study", "study.toml", "--jobs", "1"],
-    "page": ["report", "store", "-o", "page.html"],
-    "tune": ["tune", *FAKE, "--target", "1e-6"],
-    "advise": ["advise", *FAKE, "--dt", "0.02", "--speed", "10", "--target", "1e-3", "--jobs", "1"],
-    "inside": ["selftest", "--engine", "fake", "--fault", "joint-dropped"],
-    "misspelt": ["verify", SCENE, "--engine", "fak"],
-}
-STUDY = f"""
-scenes = ["{SCENE}"]
-steps_per_turn = [90, 180, 360]
-
-[[variants]]
-engine = "fake"
-profile = "tuned"
-
-[[variants]]
-engine = "mujoco"
-profile = "tuned"
-"""
-SCRIPT = """
-import json, sys
-from typer.testing import CliRunner
-from reports.cli import app
-from tests.worlds.in_process import in_this_process
-
-with in_this_process():
-    for name, arguments in json.loads(sys.argv[1]).items():
-        ended = CliRunner().invoke(app, arguments, catch_exceptions=False)
-        print(json.dumps([name, ended.exit_code, ended.output]), flush=True)
-"""
-SAID: dict[str, tuple[int, tuple[str, ...]]] = {
-    "engines": (0, ("fake  1.0", "knob = 1: there has to be one")),
-    "verify": (0, ("fake",)),
-    "all": (0, (*registry.usual(), "fake")),
-    "sweep": (0, ()),
-    "page": (0, ()),
-    "tune": (2, ("crankcheck: engine fake: it has no knobs; use mujoco or pymunk or exudyn\n",)),
-    "advise": (0, ("1 step a frame (20 ms): within 0.001",)),
-    "inside": (2, ("it can be planted in mujoco and pymunk only; found --engine fake",)),
-    "misspelt": (2, ("crankcheck: engine 'fak': unknown; did you mean fake?\n",)),
-}
-"""The exit code of each command, and parts of its output."""
-
-
-@slow("a copy of all packages and a process with every command, for one line more")
-def test_it_is_known_to_every_command_without_anything_to_copy(tmp_path: Path) -> None:
-    """All packages, a folder more and a line more."""
-    for package in ARROWS:
-        shutil.copytree(ROOT / package, tmp_path / package)  # with what is compiled
-    shutil.copytree(ROOT / "tests" / "worlds" / "fake", tmp_path / "sim" / "fake")
-    engines = tmp_path / "sim" / "registry.py"
-    first, brace, rest = engines.read_text().partition("}\n")
-    engines.write_text(first + LINE + brace + rest)
-    (tmp_path / "study.toml").write_text(STUDY)
-    command = [sys.executable, "-c", SCRIPT, json.dumps(COMMANDS)]
-    env = os.environ | {"PYTHONPATH": f"{tmp_path}:{ROOT}", "COLUMNS": "200"}
-    printed = subprocess.check_output(command, cwd=tmp_path, env=env, text=True)
-    told = {name: end for name, *end in map(json.loads, printed.splitlines())}
-    assert told.keys() == SAID.keys()
-    for name, (code, output) in told.items():
-        assert code == SAID[name][0], output
-        assert all(part in output for part in SAID[name][1]), (name, output)
-    for name in ("tune", "misspelt"):
-        assert told[name][1] == SAID[name][1][0]  # that alone
-    assert "knob" not in told["advise"][1]
-    assert "fake 1.0" in (tmp_path / "page.html").read_text()
+from tests.test_architecture import ROOT
 
 
 @pytest.mark.parametrize(("ask", "lacks"), [
