@@ -38,7 +38,7 @@ speed_rad_s = 10.0
 """
 TELESCOPE = """
 name = "telescope"
-source = "for this test: a link that slides in a link that turns, from an angle of whole turns"
+source = "for this test: a link that slides in a link that turns"
 [ground]
 points = { A = [0.0, 0.0], C = [0.4, 0.0] }
 [links]
@@ -50,7 +50,7 @@ link = "rod"
 on = "barrel"
 through_m = [0.0, 0.02]
 direction_deg = 5.0
-angle_deg = 380.0
+angle_deg = 20.0
 [driver]
 link = "crank"
 speed_rad_s = 10.0

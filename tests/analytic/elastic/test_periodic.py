@@ -186,15 +186,6 @@ def about(form: ReducedForm) -> LinearForm:
     return linearise(form, found.time_s, 1e-2 * np.abs(found.z).max(), found.at(found.time_s))
 
 
-def test_undamped_multipliers_lie_on_the_circle_in_pairs() -> None:
-    form = form_of(turning(3.5))
-    found = by_collocation(about(form), form.period_s, 128)
-    assert np.abs(np.abs(found.multipliers) - 1.0).max() < 1e-9
-    assert np.linalg.det(found.matrix) == pytest.approx(1.0, abs=1e-9)
-    inverse = np.sort_complex(1.0 / found.multipliers)
-    assert np.abs(inverse - np.sort_complex(found.multipliers)).max() < 1e-6
-
-
 def test_damping_takes_what_liouville_says() -> None:
     form = form_of(turning(3.5, damping_s=1e-3), ONE)
     linear = about(form)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from analytic.elastic.control import ControlledForces, control_elastic, released_under_control
-from analytic.elastic.discretisation import Elements, Modes, Segments
+from analytic.elastic.discretisation import Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion, fastest_rad_s
 from analytic.elastic.released import assembled, release_elastic
 from analytic.forces.kinetostatics import forces
@@ -30,7 +30,7 @@ from sim.registry import ENGINES, engine
 from sim.run.check import refuse_unknown_forces
 from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic
 from tests.analytic.multibody.scenes import FIVE_BAR, PARALLELOGRAM, SLIDER_CRANK, scene
-from tests.worlds.tiers import slow, slowly
+from tests.worlds.tiers import slowly
 
 PULSE = load_scene("fourbar-elastic-pulse")
 AXIAL_N = 200e9 * 0.01 * 0.0012
@@ -75,16 +75,6 @@ def test_what_damping_takes_is_missing() -> None:
         energy = release_by(DAMPED, 0.05, Modes(1)).energy(np.linspace(0.0, 0.05, 31))
         assert np.ptp(energy.balance) < 1e-9 * energy.kinetic.max()
         assert energy.work[-1] < -1e-6 * energy.kinetic.max()
-
-
-@slow("a second and a half: shapes beside others, which driven links show in less")
-def test_modes_and_elements_agree_to_what_they_are_in_doubt_of() -> None:
-    time_s = np.linspace(0.0, 0.1, 6)
-    both = [release_elastic(PULSE, 0.1, by) for by in (Modes(2), Elements(2))]
-    modes, elements = (each.at(time_s).elastic["coupler"].middle for each in both)
-    allowed = 2.0 * sum(each.doubt(time_s).middle_m["coupler"] for each in both) + 1e-12
-    assert (np.abs(modes - elements) <= allowed).all()
-    assert allowed.max() < 0.05 * largest(modes)
 
 
 def test_a_stiff_link_moves_as_a_rigid_one() -> None:
@@ -213,15 +203,6 @@ def test_the_torque_is_that_of_the_controller_and_all_work_there_is() -> None:
     np.testing.assert_allclose(own.forces.torque, wanted, atol=1e-12)
     assert np.ptp(energy.balance) < 1e-9 * energy.kinetic.max()
     assert np.ptp(energy.work) > 1e-3 * energy.kinetic.max()
-
-
-def test_under_control_a_crank_with_a_stiff_link_keeps_to_its_law() -> None:
-    """From the quasi-static shape, as a rigid mechanism that starts on its way does."""
-    stiff = with_elastic(SCENE, flexural_n_m2=4.725e6)
-    stiff = replace(stiff, start=replace(SCENE.start, shape="quasi-static"))
-    time_s = np.linspace(0.0, 0.1 * TURN_S, 6)
-    crank = control_elastic(stiff, 0.1 * TURN_S, Modes(1)).at(time_s).links["crank"]
-    assert largest(crank.theta - LAW.at(time_s)[0]) < 1e-8
 
 
 def test_a_file_names_a_controller_and_reads_back() -> None:

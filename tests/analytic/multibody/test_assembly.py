@@ -121,7 +121,6 @@ REFUSED = {
         "contradict each other.* is 1, and 0.8",
     ),
     "pendulum": (DOUBLE_PENDULUM.split("rates")[0], "1 of its freedoms have no speed"),
-    "five-bar": (FIVE_BAR.split("rates")[0], "1 of its freedoms have no speed"),
     "slid too far": (
         SLIDER_CRANK + "start_deg = 30.0\n[start]\ndisplacements_m = { C = 0.5 }\n",
         r"start\.displacements_m\.C is 0\.5 m, and the joints are open there by 0\.118 m",

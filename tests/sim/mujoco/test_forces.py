@@ -1,10 +1,11 @@
 """The forces that MuJoCo reports, each body in equilibrium, against the reference: with loads of
-every kind at the right instant, and with constant friction in its joints.
+every kind at the right instant, with constant friction in its joints; and what the viewer plays.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -18,8 +19,9 @@ from models.mjcf.document import build
 from models.scene import Scene
 from models.scene.characteristics import Constant, Sine
 from models.scene.hard import WindowChain
-from models.scene.loads import CoulombFriction, Load
+from models.scene.loads import ConstantFriction, CoulombFriction, Load
 from models.scene.tabulated import Tabulated
+from sim.mujoco import viewer as mujoco_viewer
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism
@@ -98,17 +100,6 @@ def test_a_load_along_a_guide_that_moves_asks_for_a_mass() -> None:
     load = Load("along", "block B", "B", Constant(5.0), frame="body")
     with pytest.raises(EngineError, match=r"loads.along: .* give sliders.B a mass_kg above 0"):
         opened(acted_on(load_scene("slotted-lever"), load))
-
-
-def test_a_load_of_the_crank_angle_is_one_whether_it_is_known_ahead_or_read() -> None:
-    """Prescribed, the law says how large it is; under a servo the engine's own crank does."""
-    places = tuple(np.linspace(0.0, 2.0 * np.pi, 13)[:-1])
-    course = Tabulated(places, tuple(np.sin(places)), "pchip", 2.0 * np.pi)
-    scene = acted_on(FOURBAR, Load("cam", "rocker", None, course, "angle"))
-    found = [opened(scene, drive=d).record_forces(200, 1).forces for d in ("prescribed", "servo")]
-    told, read = (forces.pins["D"]["rocker"][100:] for forces in found)
-    assert np.abs(told - read).max() < 0.01 * np.abs(told).max()
-    assert mujoco.get_mjcb_control() is None
 
 
 def test_a_slider_past_the_end_of_a_table_feels_its_last_row_and_leaves_no_callback() -> None:
@@ -225,3 +216,27 @@ def test_friction_of_the_driven_joint_is_not_taken_for_the_drive(
     found = ran(scene, "mujoco", steps=120, with_forces=True).motion.forces
     drive = kinetostatics.forces(scene, found.time_s[20:], skip_dead_points=True).torque
     assert np.nanmax(np.abs(found.torque[20:] - drive)) < 0.02 * size
+
+
+def test_it_stays_together_keeps_to_its_law_and_has_its_loads_and_friction(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A load over the angle keeps its size up to date; the motor of the crank is another."""
+    cam = Load("cam", "rocker", None, Sine(2.0, 2.0 * np.pi), "angle")
+    scene = acted_on(load_scene("fourbar-double-rocker"), cam, ConstantFriction("C", 0.01))
+    law, seen = scene.driver.law, []
+
+    def play(model: Any, data: Any) -> None:
+        mujoco.mj_step(model, data, round(0.9 * law.period_s / model.opt.timestep))
+        mujoco.mj_forward(model, data)
+        seen.extend([model, data])
+
+    monkeypatch.setattr(mujoco.viewer, "launch", play)
+    mujoco_viewer.show(scene, start_of(scene))
+    model, data = seen
+    gap = data.site_xpos[model.eq_obj1id[0]] - data.site_xpos[model.eq_obj2id[0]]
+    assert np.linalg.norm(gap) < 1e-5 * scene.longest_m
+    assert data.qpos[0] == pytest.approx(law.at(np.array([0.9 * law.period_s]))[0][0], abs=1e-3)
+    assert data.ctrl[1] == pytest.approx(2.0 * np.sin(data.qpos[0]))
+    assert abs(data.ctrl[1]) > 0.1
+    assert mujoco.get_mjcb_control() is None

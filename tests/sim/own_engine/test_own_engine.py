@@ -17,6 +17,7 @@ from sim.own_engine.watched import BrokenContractError
 from sim.registry import brought, capability, declaration, engine
 from sim.run import run, time_run
 from tests.worlds.own_engines import CODE, fresh, installed, with_faults
+from tests.worlds.runs import opened
 
 FOURBAR = load_scene("fourbar-lecture-1")
 START = solve(FOURBAR, np.zeros(1)).state()
@@ -230,10 +231,4 @@ def test_stepping_is_not_watched(folder: Path) -> None:
     """Times are the engine's own."""
     timing = time_run(FOURBAR, START, "penalty_engine:ENGINE", dt_s=1e-3, steps=20, repeats=1)
     assert timing.best.us_per_step > 0.0
-    session = engine("penalty").open(FOURBAR, START, dict(_tuned()), 1e-3, "prescribed")
-    assert session.step.__qualname__ == "PenaltySession.step"
-
-
-def _tuned() -> list[tuple[str, object]]:
-    profile = engine("penalty").profiles["tuned"]
-    return [(name, setting.value) for name, setting in profile.settings.items()]
+    assert opened(FOURBAR, "penalty").step.__qualname__ == "PenaltySession.step"
