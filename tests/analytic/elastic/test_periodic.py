@@ -11,7 +11,7 @@ import pytest
 from scipy.special import mathieu_a, mathieu_b  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.elastic import periodic
-from analytic.elastic.discretisation import Elements, Modes
+from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.natural import lowest_rad_s, natural_modes
 from analytic.elastic.periodic import (
@@ -32,7 +32,6 @@ from analytic.lectures.vibration.steady_vibration import (
     at_speed,
     spectrum,
     steady_vibration,
-    swings,
 )
 from models.array import Array
 from models.errors import CrankcheckError
@@ -142,16 +141,6 @@ def test_what_kinks_leave_out_is_in_the_doubt(monkeypatch: pytest.MonkeyPatch) -
     other = replace(motion, halved=1).history.at(time_s)[0]
     assert np.abs(motion.history.at(time_s)[0] - other).max() > 0.5 * true
     assert true > 1e-8 * np.abs(closely.z).max()
-
-
-def test_links_swing_alike_by_coefficients_of_any_kind() -> None:
-    scene = turning(10.5)
-    known, other = (
-        swings(form, periodic_motion(form).z)["coupler"]
-        for form in (form_of(scene, Modes(3)), form_of(scene, Elements(3)))
-    )
-    assert other.largest_m == pytest.approx(known.largest_m, rel=3e-2)
-    assert other.amplitudes[1] == pytest.approx(known.amplitudes[1], rel=3e-2)
 
 
 ONE = Modes(1, 0)

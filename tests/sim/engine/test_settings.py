@@ -124,7 +124,6 @@ def test_a_value_that_an_engine_does_not_take_is_refused(name: str) -> None:
             opened(name, "tuned", {setting: value})
 
 
-PER_TURN = 120
 IN_SECONDS = {
     "mujoco": {"solref_timeconst_s": 0.03, "solref_timeconst_steps": 0.0},
     "pymunk": {"error_bias": 0.3, "damping": 0.5},
@@ -132,10 +131,10 @@ IN_SECONDS = {
 """By engine, values that are times, or losses in a second, of their own."""
 
 
-def angles_at(name: str, engine_name: str, settings: Settings, speed: float) -> np.ndarray:
+def angles_at(name: str, settings: Settings, speed: float) -> np.ndarray:
     """The angles of all links over a turn at a speed of the driver."""
-    law = replace(load_scene(name).driver.law, speed_rad_s=speed)
-    done = ran(driven_by(law, name), engine_name, per_turn=PER_TURN, settings=settings, well=False)
+    law = replace(SCENE.driver.law, speed_rad_s=speed)
+    done = ran(driven_by(law), name, per_turn=120, settings=settings, well=False)
     return np.stack([link.theta for link in done.motion.links.values()])
 
 
@@ -154,7 +153,7 @@ def test_each_that_is_named_does(name: str, setting: str) -> None:
         settings |= {"iterations": 3}  # joints that are held take no notice of a damping
         named = (setting,)
     assert engine(name).in_seconds(settings) == named
-    slow, fast = (angles_at("fourbar-lecture-1", name, settings, speed) for speed in (1.0, 10.0))
+    slow, fast = (angles_at(name, settings, speed) for speed in (1.0, 10.0))
     assert np.abs(slow - fast).max() > 1e-7
 
 
