@@ -41,21 +41,19 @@ from tests.analytic.multibody.scenes import (
 from tests.second_opinions.baumgarte_table import STABLE, baumgarte_table
 from tests.worlds.loading import loaded_mechanism, massless
 
-STEP = 1e-6
-
 
 @pytest.mark.parametrize("name", [*shipped(), *shipped("forces")])
 def test_derivatives_are_those_of_the_equations(name: str) -> None:
     mechanism = load_scene(name)
-    assembly = Assembly(mechanism)
+    assembly, step = Assembly(mechanism), 1e-6
     at = 0.3 * mechanism.driver.law.period_s
     q = np.array(coordinates(mechanism, solve(mechanism, np.array([at]), bound=False), 0))
     rates = np.cos(np.arange(len(q)))  # no rates that joints allow: what they are open counts too
-    sides = [assembly.at_rates((q + e * rates)[None], rates[None]) for e in (STEP, -STEP)]
+    sides = [assembly.at_rates((q + e * rates)[None], rates[None]) for e in (step, -step)]
     now, joints = assembly.at_rates(q[None], rates[None]), assembly.joints
 
     def slope(of: Callable[[Configuration], Array]) -> Array:
-        return np.subtract(*map(of, sides)) / (2 * STEP)
+        return np.subtract(*map(of, sides)) / (2 * step)
 
     assert np.abs(joints.gaps(now)).max() < 1e-13
     assert slope(joints.gaps)[0] == pytest.approx(joints.jacobian(now)[0] @ rates, abs=1e-8)
