@@ -27,7 +27,6 @@ from models.scene.tabulated import Tabulated
 from tests.analytic.chain import coordinates
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,
-    FIVE_BAR,
     PARALLELOGRAM,
     ROTOR,
     ROTOR_J,
@@ -79,12 +78,6 @@ def test_one_named_angle_is_enough_where_it_leads_to_the_others() -> None:
     near = solve(bare, np.zeros(1), bound=False).state()
     assert start_state(scene(slid)).theta == pytest.approx(near.theta, abs=1e-12)
     assert start_state(bare, near).displacement["C"] == pytest.approx(near.displacement["C"])
-
-
-def test_a_start_of_two_freedoms_has_both_speeds() -> None:
-    start = start_state(scene(FIVE_BAR))
-    assert (start.omega["left"], start.omega["right"]) == pytest.approx((0.5, -0.5), abs=1e-13)
-    assert start.position["C"][0] == pytest.approx(0.15, abs=1e-12)  # left and right are alike
 
 
 def test_beside_a_limit_a_slow_driver_moves_the_others_fast() -> None:

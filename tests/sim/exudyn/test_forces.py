@@ -183,16 +183,6 @@ def test_reactions_and_torque_are_those_of_the_reference(name: str) -> None:
         assert np.nanmax(wrong[SETTLED:]) < limit
 
 
-@pytest.mark.parametrize(("name", "settings"), [("shaper", {}), ("fourbar-lecture-1", TRAPEZOIDAL)])
-def test_errors_shrink_as_the_step_squared(name: str, settings: Settings) -> None:
-    scene = load_scene(name)
-    coarse, fine = (
-        off(scene, opened(scene, n, settings).record_forces(n, 1).forces) for n in (360, 1440)
-    )
-    for one, other in zip(coarse, fine, strict=True):
-        assert 12.0 < np.nanmax(one[SETTLED:]) / np.nanmax(other[SETTLED:]) < 20.0
-
-
 @pytest.mark.parametrize("settings", [{}, {"adaptive_step": "disable"}])
 def test_forces_of_two_stretches_are_those_of_one(settings: Settings) -> None:
     scene = load_scene("fourbar-double-rocker")
