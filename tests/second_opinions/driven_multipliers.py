@@ -12,8 +12,6 @@ back onto the constraints. No coordinate is eliminated. Source: Thesis on vibrat
 mechanisms with elastic links (2018), chapter 2.
 """
 
-import itertools
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -24,10 +22,9 @@ from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
 from analytic.multibody.dynamics import Saddle, joint_forces
-from analytic.multibody.generalised_forces import GeneralisedForces, edges
+from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.multibody_motion import TOLERANCE
 from models.array import Array, samples
-from models.errors import CrankcheckError
 from models.motion import Motion
 
 MOST_PROJECTIONS = 10
@@ -101,24 +98,17 @@ class DrivenMultipliers:
 
     @cached_property
     def _history(self) -> OdeSolution:
-        """The state over time."""
+        """The state over time, of a law and loads without kinks."""
         state = np.concatenate(self.start)
         times, within = [0.0], []
-        for begin, end in itertools.pairwise(edges(self.assembly.scene, self.until_s)):
-            last = math.nextafter(end, begin)
-            solver = DOP853(
-                lambda t, state, last=last: self._slope(min(t, last), state), begin, state, end,
-                rtol=TOLERANCE, atol=TOLERANCE * np.tile(self.assembly.units, 2),
-            )  # fmt: skip
-            while solver.status == "running":
-                trouble = solver.step()
-                if solver.status == "failed":
-                    name = self.assembly.scene.name
-                    raise CrankcheckError(f"{name}: it fails at {solver.t:g} s: {trouble}")
-                times.append(float(solver.t))
-                within.append(solver.dense_output())
-                solver.y = self._closed(float(solver.t), solver.y)
-            state = solver.y
+        absolute = TOLERANCE * np.tile(self.assembly.units, 2)
+        solver = DOP853(self._slope, 0.0, state, self.until_s, rtol=TOLERANCE, atol=absolute)
+        while solver.status == "running":
+            trouble = solver.step()
+            assert solver.status != "failed", trouble
+            times.append(float(solver.t))
+            within.append(solver.dense_output())
+            solver.y = self._closed(float(solver.t), solver.y)
         return OdeSolution(times, within)
 
     def at(self, time_s: Array) -> Motion:

@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 
 from analytic.kinematics import solve
-from models.array import Array
 from models.files.reading import load_scene
 from models.motion import State
 from models.scene import Scene
 from models.scene.laws import Law
 from models.scene.loads import ConstantFriction, Friction, Load, Spring
-from sim.engine import Engine, Poses, Run, Settings
+from sim.engine import Engine, Run, Settings
 from sim.engine.settings import resolved
 from sim.registry import engine
 from sim.run import run
@@ -48,11 +47,6 @@ def driven_by(law: Law, scene: str = "fourbar-lecture-1") -> Scene:
 
 def tuned(name: str, settings: Settings | None = None) -> Settings:
     return resolved(engine(name).profiles["tuned"], settings)
-
-
-def all_series(poses: Poses) -> Array:
-    """All that is logged of all bodies, accelerations too; a row per sample."""
-    return np.column_stack([each for body in poses.bodies.values() for each in vars(body).values()])
 
 
 def opened(

@@ -21,7 +21,6 @@ from models.scene import Scene
 from models.scene.laws import ConstantSpeed, Law
 
 FEW = Modes(2, 1)
-SHIPPED = ("fourbar-elastic", "slider-crank-elastic", "sixbar-elastic")
 
 
 def with_elastic(scene: Scene, **changes: float) -> Scene:

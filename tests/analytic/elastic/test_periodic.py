@@ -11,7 +11,7 @@ import pytest
 from scipy.special import mathieu_a, mathieu_b  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.elastic import periodic
-from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
+from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.natural import lowest_rad_s, natural_modes
 from analytic.elastic.periodic import (
@@ -32,7 +32,6 @@ from analytic.lectures.vibration.steady_vibration import (
     at_speed,
     spectrum,
     steady_vibration,
-    swings,
 )
 from models.array import Array
 from models.errors import CrankcheckError
@@ -43,9 +42,7 @@ from models.scene.laws import ConstantSpeed, FromRest
 from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
 from tests.analytic.elastic.driven import FEW, following, form_of, turning, with_elastic
-from tests.worlds.tiers import few, slow, slowly
 
-SLOPES = "more slopes, and angles"
 DRIVEN = [n for n in shipped("elastic") if type(load_scene(n).driver.law) is ConstantSpeed]
 
 
@@ -62,9 +59,8 @@ def test_two_methods_start_the_linear_motion_alike(name: str) -> None:
     assert np.abs(rates - rate).max() <= 3e-8 * fastest
 
 
-@pytest.mark.parametrize("damping_s", [0.0, 1e-3])
-def test_time_integration_comes_back_after_a_turn(damping_s: float) -> None:
-    form = form_of(turning(3.5, damping_s=damping_s))
+def test_time_integration_comes_back_after_a_turn() -> None:
+    form = form_of(turning(3.5, damping_s=1e-3))
     found = periodic_motion(form)
     z, rates, _ = (own[0] for own in found.at(np.zeros(1)))
     after = vibrate(form, z, rates, form.period_s, 20).at(np.array([form.period_s]))
@@ -84,36 +80,25 @@ def test_small_deflections_are_those_of_the_linear_theory() -> None:
     assert np.log(off[1] / off[0]) / np.log(20.5 / 10.5) == pytest.approx(4.0, abs=0.3)
 
 
-@pytest.mark.parametrize("ratio", [7.0, 5.0, 4.0, 3.0, 2.0])
-def test_a_whole_frequency_ratio_is_refused(ratio: float) -> None:
+def test_a_whole_frequency_ratio_is_refused_if_not_damped() -> None:
     with pytest.raises(CrankcheckError) as refused:
-        periodic_motion(form_of(turning(ratio)))
+        periodic_motion(form_of(turning(5.0)))
     text = str(refused.value)
-    assert f"elastic.coupler vibrates at order {ratio:g} of the driver" in text
-    assert f"mode 1 across has 77.3704 rad/s, {ratio:g} times that" in text
-    assert f"take another speed ({77.3704 / (ratio + 0.5):.4g} rad/s" in text
+    assert "elastic.coupler vibrates at order 5 of the driver" in text
+    assert "mode 1 across has 77.3704 rad/s, 5 times that" in text
+    assert "take another speed (14.07 rad/s" in text
     assert "or give elastic links damping_s" in text
-
-
-def test_next_to_a_resonance_the_deflection_is_sensitive_if_not_damped() -> None:
-    """Between them it goes with the compliance."""
-    far, near, damped = (
-        periodic_motion(form_of(scene)).sensitivity
-        for scene in (turning(20.5), turning(5.05), turning(5.0, damping_s=1e-3))
-    )
-    assert far.size == pytest.approx(1.0, abs=0.01)
-    assert near.size > 1.5
-    assert near.order == 5
-    assert damped.size < 5.0
+    assert periodic_motion(form_of(turning(5.0, damping_s=1e-3))).sensitivity.size < 5.0
 
 
 def test_sensitivity_is_the_change_with_the_stiffness() -> None:
-    scene, share = turning(5.1), 1e-5
+    scene, share = turning(5.05), 1e-5
     flexural = (1.0 + share) * scene.elastic["coupler"].flexural_n_m2
     found = periodic_motion(form_of(scene))
     changed = periodic_motion(form_of(with_elastic(scene, flexural_n_m2=flexural)))
     change = np.abs(changed.z - found.z).max() / np.abs(found.z).max() / share
     assert found.sensitivity.size == pytest.approx(change, rel=1e-2)
+    assert found.sensitivity.order == 5
 
 
 @pytest.mark.parametrize(
@@ -141,35 +126,21 @@ def test_a_load_over_time_has_to_repeat(orders: float, repeats: bool) -> None:
         assert periodic_motion(form).decay < 1e-12
 
 
-@pytest.mark.parametrize("most", [65, slowly(129, reason="a longer series leaves out less")])
-def test_what_kinks_leave_out_is_in_the_doubt(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_kinks_leave_out_is_in_the_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     """A load with kinks has a series without end: two motions that stop at as many of its terms
     leave the same out."""
     hat = Tabulated((0.0, 0.5 * math.pi, math.pi), (0.0, 0.5, 0.0), "linear", math.tau)
     scene = turning(10.5, damping_s=1e-3)
     scene = replace(scene, loads={"push": Load("push", "rocker", None, hat, "angle")})
     motion = DrivenElasticMotion(scene, 1.0, Modes(1), "periodic", stiffened=True)
-    closely = periodic_motion(motion.form, 4 * most - 3)
-    monkeypatch.setattr(periodic, "MOST", most)
+    closely = periodic_motion(motion.form, 257)
+    monkeypatch.setattr(periodic, "MOST", 65)
     assert isinstance(motion.history, PeriodicMotion)
     time_s = instants(40, motion.form.period_s)
     true = np.abs(motion.history.at(time_s)[0] - closely.at(time_s)[0]).max()
     other = replace(motion, halved=1).history.at(time_s)[0]
     assert np.abs(motion.history.at(time_s)[0] - other).max() > 0.5 * true
     assert true > 1e-8 * np.abs(closely.z).max()
-
-
-@pytest.mark.parametrize(
-    "by", few([Elements(3), Elements(4), Segments(8, corrected=True)], {Elements(3)}, SLOPES)
-)
-def test_links_swing_alike_by_coefficients_of_any_kind(by: Discretisation) -> None:
-    scene = turning(10.5)
-    known, other = (
-        swings(form, periodic_motion(form).z)["coupler"]
-        for form in (form_of(scene, Modes(3)), form_of(scene, by))
-    )
-    assert other.largest_m == pytest.approx(known.largest_m, rel=3e-2)
-    assert other.amplitudes[1] == pytest.approx(known.amplitudes[1], rel=3e-2)
 
 
 ONE = Modes(1, 0)
@@ -183,12 +154,14 @@ def mathieu(a: float, q: float) -> LinearForm:
     return LinearForm(time_s, one, zero, stiffness, zero[:, 0])
 
 
-@pytest.mark.parametrize("q", [0.5, 2.0])
-def test_the_bounds_of_mathieus_equation(q: float) -> None:
+def test_the_bounds_of_mathieus_equation() -> None:
+    q = 2.0
     for bound in (mathieu_a, mathieu_b):
         for order, multiplier in ((1, -1.0), (2, 1.0)):
             found = by_collocation(mathieu(bound(order, q), q), math.pi, 24).multipliers
             assert np.abs(found - multiplier).max() < 1e-5  # a double one: the root of rounding
+    constant = stability(mathieu(3.7**2, 0.0), math.pi)
+    assert constant.deviations[0].order == pytest.approx(1.85, abs=1e-9)
     between = 0.5 * (mathieu_a(1, q) + mathieu_b(1, q))
     unstable = stability(mathieu(between, q), math.pi)
     assert not unstable.is_stable
@@ -196,25 +169,10 @@ def test_the_bounds_of_mathieus_equation(q: float) -> None:
     assert stability(mathieu(0.5 * (mathieu_a(1, q) + mathieu_b(2, q)), q), math.pi).is_stable
 
 
-def test_constant_equations_keep_their_order() -> None:
-    found = stability(mathieu(3.7**2, 0.0), math.pi)
-    assert found.deviations[0].order == pytest.approx(1.85, abs=1e-9)
-
-
 def about(form: ReducedForm) -> LinearForm:
     """The equations next to the periodic motion."""
     found = periodic_motion(form)
     return linearise(form, found.time_s, 1e-2 * np.abs(found.z).max(), found.at(found.time_s))
-
-
-@pytest.mark.parametrize("ratio", [10.5, 3.5])
-def test_undamped_multipliers_lie_on_the_circle_in_pairs(ratio: float) -> None:
-    form = form_of(turning(ratio))
-    found = by_collocation(about(form), form.period_s, 128)
-    assert np.abs(np.abs(found.multipliers) - 1.0).max() < 1e-9
-    assert np.linalg.det(found.matrix) == pytest.approx(1.0, abs=1e-9)
-    inverse = np.sort_complex(1.0 / found.multipliers)
-    assert np.abs(inverse - np.sort_complex(found.multipliers)).max() < 1e-6
 
 
 def test_damping_takes_what_liouville_says() -> None:
@@ -245,24 +203,14 @@ def apart_from(expected: Array, end: Array) -> float:
     return float(np.abs((end - expected) / scale).max() / np.abs(expected / scale).max())
 
 
-@pytest.mark.parametrize("turns", [1, slowly(2, reason="what has grown grows on")])
-def test_an_unstable_motion_grows_as_its_multiplier_says(turns: int) -> None:
+def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
     form = form_of(turning(4.15, rocker=30.0), ONE)
     found = stability_of(form, periodic_motion(form))
     assert found.largest == pytest.approx(2.58, abs=0.01)
     assert not found.is_stable
     assert found.deviations[0].order == 3.5  # twice that is 7: it feeds on the turning
-    start, end = deviated(form, turns, 1e-6, windows=16 * turns)
-    expected = np.linalg.matrix_power(found.monodromy.matrix, turns) @ start
-    assert apart_from(expected, end) < 1e-6
-
-
-@slow("800 windows, twice: nothing shorter sees a frequency that is off by 1e-7")
-def test_a_hundred_turns_agree_with_the_multipliers() -> None:
-    form = form_of(turning(3.5), ONE)
-    matrix = stability_of(form, periodic_motion(form)).monodromy.matrix
-    start, end = deviated(form, 100, 1e-4, windows=800)
-    assert apart_from(np.linalg.matrix_power(matrix, 100) @ start, end) < 1e-4
+    start, end = deviated(form, 1, 1e-6, windows=16)
+    assert apart_from(found.monodromy.matrix @ start, end) < 1e-6
 
 
 BY = Modes(2, 0)
@@ -299,9 +247,9 @@ def test_held_still_it_vibrates_as_its_coupler_alone() -> None:
     assert modes.frequency_rad_s[:, :2] == pytest.approx(wanted, rel=1e-6)
 
 
-@pytest.fixture(scope="module", params=[9, slowly(27, reason="speeds nearer to critical ones")])
-def over(request: pytest.FixtureRequest) -> OverSpeeds:
-    return over_speeds(turning(), FEW, np.linspace(11.0, 24.0, request.param))
+@pytest.fixture(scope="module")
+def over() -> OverSpeeds:
+    return over_speeds(turning(), FEW, np.linspace(11.0, 24.0, 9))
 
 
 def test_critical_speeds_are_those_next_to_whole_ratios(over: OverSpeeds) -> None:

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 from analytic.elastic.control import ControlledForces, control_elastic, released_under_control
-from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
+from analytic.elastic.discretisation import Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion, fastest_rad_s
 from analytic.elastic.released import assembled, release_elastic
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve
 from analytic.multibody.release_multibody import release_multibody
-from models.array import Array
 from models.errors import CrankcheckError, SceneError
 from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene, parse_scene
@@ -25,66 +24,45 @@ from models.mjcf.document import build
 from models.scene import Scene
 from models.scene.characteristics import FourierSum, Pulse
 from models.scene.driver import Controlled
-from models.scene.elastic import Shape
 from models.scene.laws import ConstantSpeed
 from models.scene.loads import Load
 from sim.registry import ENGINES, engine
 from sim.run.check import refuse_unknown_forces
 from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic
 from tests.analytic.multibody.scenes import FIVE_BAR, PARALLELOGRAM, SLIDER_CRANK, scene
-from tests.worlds.tiers import slow, slowly
+from tests.worlds.tiers import slowly
 
 PULSE = load_scene("fourbar-elastic-pulse")
 AXIAL_N = 200e9 * 0.01 * 0.0012
 STRIP = "[elastic.rod]\nflexural_n_m2 = 0.3\ndamping_s = 1e-4\n"
 AXIAL = with_elastic(PULSE, flexural_n_m2=math.inf, axial_n=AXIAL_N)
-BOTH = with_elastic(PULSE, axial_n=AXIAL_N)
 DAMPED = scene(SLIDER_CRANK + "start_deg = 30.0\nspeed_rad_s = 12.0\n" + STRIP)
 FIVE = scene(FIVE_BAR + "[elastic.first]\nflexural_n_m2 = 2.0\n")
-METHODS = "half a second and more: other mechanisms and shapes in the same equations"
 
 
 @pytest.mark.parametrize(
-    ("mechanism", "by", "until_s"),
-    [
-        slowly(PULSE, Modes(1), 0.25, reason=METHODS),
-        slowly(PULSE, Elements(1), 0.1, reason=METHODS),
-        slowly(FIVE, Modes(1), 0.1, reason=METHODS),
-        (DAMPED, Modes(1), 0.05),
-        slowly(DAMPED, Modes(1), 0.1, reason="errors that grow with time"),
-    ],
+    "mechanism", [DAMPED, slowly(FIVE, reason="half a second and more: two freedoms")]
 )
-def test_both_methods_agree(mechanism: Scene, by: Discretisation, until_s: float) -> None:
+def test_both_methods_agree(mechanism: Scene) -> None:
     """Collocation without multipliers, an explicit method with them."""
-    time_s = np.linspace(0.0, until_s, 41)
+    time_s = np.linspace(0.0, 0.05, 41)
     (link,) = mechanism.elastic
-    multibody, free = (f(mechanism, until_s, by) for f in (by_multipliers, release_elastic))
+    multibody, free = (f(mechanism, 0.05, Modes(1)) for f in (by_multipliers, release_elastic))
     assert apart(free.at(time_s), multibody.at(time_s), link) < 1e-8
 
 
-@pytest.mark.parametrize(
-    ("mechanism", "by", "until_s"),
-    [
-        (AXIAL, Modes(0, 1), 0.003),
-        slowly(AXIAL, Modes(0, 1), 0.01, reason="errors of more rings"),
-        slowly(BOTH, Modes(1, 1), 0.01, reason="it bends as well: two seconds"),
-    ],
-)
-def test_what_rings_along_itself_is_followed_if_asked(
-    mechanism: Scene, by: Discretisation, until_s: float
-) -> None:
+def test_what_rings_along_itself_is_followed_if_asked() -> None:
     """At 1e4 rad/s, by a hundredth of a micrometre; else it is left to a method that is stable."""
-    time_s = np.linspace(0.0, until_s, 21)
-    true = by_multipliers(mechanism, until_s, by).at(time_s).elastic["coupler"].extension
+    by, until_s, time_s = Modes(0, 1), 0.0015, np.linspace(0.0, 0.0015, 21)
+    true = by_multipliers(AXIAL, until_s, by).at(time_s).elastic["coupler"].extension
     for tolerance, most in ((None, 1e-9), (1e-15, 1e-4 * largest(true))):
-        found = release_elastic(mechanism, until_s, by, tolerance=tolerance).at(time_s)
+        found = release_elastic(AXIAL, until_s, by, tolerance=tolerance).at(time_s)
         assert largest(found.elastic["coupler"].extension - true) < most
 
 
-@pytest.mark.parametrize("until_s", [1.1, slowly(1.3, reason="energy that goes by and by")])
-def test_energy_stays_after_the_pulse_and_is_its_work_before(until_s: float) -> None:
-    time_s = np.linspace(0.0, until_s, 66)
-    energy = release_elastic(PULSE, until_s, Modes(1)).energy(time_s)
+def test_energy_stays_after_the_pulse_and_is_its_work_before() -> None:
+    time_s = np.linspace(0.0, 1.1, 66)
+    energy = release_elastic(PULSE, 1.1, Modes(1)).energy(time_s)
     scale = float(energy.kinetic.max())
     after = (energy.kinetic + energy.potential)[time_s > 1.01]
     assert np.ptp(after) < 1e-9 * scale
@@ -92,35 +70,22 @@ def test_energy_stays_after_the_pulse_and_is_its_work_before(until_s: float) -> 
     assert energy.work[-1] > 0.1 * scale
 
 
-@pytest.mark.parametrize("until_s", [0.05, slowly(0.3, reason="energy that goes by and by")])
-def test_what_damping_takes_is_missing(until_s: float) -> None:
-    one = Modes(1)
-    for free in (release_elastic(DAMPED, until_s, one), by_multipliers(DAMPED, until_s, one)):
-        energy = free.energy(np.linspace(0.0, until_s, 31))
+def test_what_damping_takes_is_missing() -> None:
+    for release_by in (release_elastic, by_multipliers):
+        energy = release_by(DAMPED, 0.05, Modes(1)).energy(np.linspace(0.0, 0.05, 31))
         assert np.ptp(energy.balance) < 1e-9 * energy.kinetic.max()
         assert energy.work[-1] < -1e-6 * energy.kinetic.max()
 
 
-@slow("a second and a half: shapes beside others, which driven links show in less")
-def test_modes_and_elements_agree_to_what_they_are_in_doubt_of() -> None:
-    time_s = np.linspace(0.0, 0.1, 6)
-    both = [release_elastic(PULSE, 0.1, by) for by in (Modes(2), Elements(2))]
-    modes, elements = (each.at(time_s).elastic["coupler"].middle for each in both)
-    allowed = 2.0 * sum(each.doubt(time_s).middle_m["coupler"] for each in both) + 1e-12
-    assert (np.abs(modes - elements) <= allowed).all()
-    assert allowed.max() < 0.05 * largest(modes)
-
-
-@pytest.mark.parametrize("until_s", [0.08, slowly(0.15, reason="errors that grow with time")])
-def test_a_stiff_link_moves_as_a_rigid_one(until_s: float) -> None:
+def test_a_stiff_link_moves_as_a_rigid_one() -> None:
     """With an error of the first order in 1/E."""
-    time_s = np.linspace(0.0, until_s, 6)
-    rigid = release(replace(PULSE, elastic={}, start=replace(PULSE.start, shape=None)), until_s)
+    time_s = np.linspace(0.0, 0.08, 6)
+    rigid = release(replace(PULSE, elastic={}, start=replace(PULSE.start, shape=None)), 0.08)
     true = rigid.at(time_s, bound=False).links["crank"].theta
     off, flexural = [], PULSE.elastic["coupler"].flexural_n_m2
     for times in (1e2, 1e4):
         stiff = with_elastic(PULSE, flexural_n_m2=times * flexural)
-        motion = release_elastic(stiff, until_s, Modes(1)).at(time_s)
+        motion = release_elastic(stiff, 0.08, Modes(1)).at(time_s)
         off.append(largest(motion.links["crank"].theta - true))
     assert off[1] < 0.02 * off[0] < 1e-4
 
@@ -144,10 +109,8 @@ def test_a_quasi_static_start_does_not_ring() -> None:
 def test_a_driven_mechanism_goes_on_with_its_speed() -> None:
     driven = load_scene("fourbar-elastic")
     driven = replace(driven, start=replace(driven.start, shape="straight"))
-    ways, ends = (release_elastic, by_multipliers), np.array([0.0, 0.05])
-    motion, true = (way(driven, 0.05, Modes(1)).at(ends) for way in ways)
+    motion = release_elastic(driven, 0.01, Modes(1)).at(np.zeros(1))
     assert motion.links["crank"].omega[0] == pytest.approx(7.3686, rel=1e-12)
-    assert apart(motion, true, "coupler") < 1e-8
 
 
 KINKED = scene(
@@ -174,10 +137,6 @@ KINKED = scene(
 def test_what_can_not_be_let_go_says_why(let_go: Callable[[], object], words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         let_go()
-
-
-def test_loads_with_kinks_over_the_state_are_for_the_other_form() -> None:
-    assert by_multipliers(KINKED, 0.01, Modes(1)).at(np.array([0.01]))
 
 
 def test_no_file_is_let_go_in_its_periodic_shape() -> None:
@@ -225,27 +184,8 @@ def with_gains(scene: Scene, kp: float, kd: float) -> Scene:
     return following(scene, Controlled(LAW.start_rad, LAW.speed_rad_s, kp, kd))
 
 
-@pytest.mark.parametrize(
-    ("begin", "end"), [(0.65, 0.8), slowly(1.0, 1.3, reason="a second: that it stays so")]
-)
-def test_control_quells_what_rings_under_a_constant_speed(begin: float, end: float) -> None:
-    """Both start straight; the periodic motion is what is left when nothing rings."""
-    driven = following(SCENE, ConstantSpeed(LAW.start_rad, LAW.speed_rad_s))
-    time_s, until_s = TURN_S * np.linspace(begin, end, 31), end * TURN_S
-
-    def bent(start: Shape) -> Array:
-        by = DrivenElasticMotion(driven, until_s, Modes(1), start, stiffened=True)
-        return by.at(time_s).elastic["coupler"].middle
-
-    periodic = bent("periodic")
-    controlled = control_elastic(SCENE, until_s, Modes(1)).at(time_s)
-    assert largest(bent("straight") - periodic) > 0.5 * largest(periodic)
-    assert largest(controlled.elastic["coupler"].middle - periodic) < 0.01 * largest(periodic)
-
-
-@pytest.mark.parametrize("turns", [0.05, slowly(0.1, reason="errors that grow with time")])
-def test_under_control_multipliers_give_the_same_motion(turns: float) -> None:
-    until_s = turns * TURN_S
+def test_under_control_multipliers_give_the_same_motion() -> None:
+    until_s = 0.05 * TURN_S
     time_s = np.linspace(0.0, until_s, 11)
     motion = control_elastic(SCENE, until_s, Modes(1)).at(time_s)
     other = by_multipliers(SCENE, until_s, Modes(1), acting=ControlledForces).at(time_s)
@@ -263,21 +203,6 @@ def test_the_torque_is_that_of_the_controller_and_all_work_there_is() -> None:
     np.testing.assert_allclose(own.forces.torque, wanted, atol=1e-12)
     assert np.ptp(energy.balance) < 1e-9 * energy.kinetic.max()
     assert np.ptp(energy.work) > 1e-3 * energy.kinetic.max()
-
-
-def test_under_control_a_crank_with_a_stiff_link_keeps_to_its_law() -> None:
-    """From the quasi-static shape, as a rigid mechanism that starts on its way does."""
-    stiff = with_elastic(SCENE, flexural_n_m2=4.725e6)
-    stiff = replace(stiff, start=replace(SCENE.start, shape="quasi-static"))
-    time_s = np.linspace(0.0, 0.1 * TURN_S, 6)
-    crank = control_elastic(stiff, 0.1 * TURN_S, Modes(1)).at(time_s).links["crank"]
-    assert largest(crank.theta - LAW.at(time_s)[0]) < 1e-8
-
-
-def test_without_gains_the_torque_that_it_needs_is_not_enough() -> None:
-    alone = control_elastic(with_gains(SCENE, 0.0, 0.0), 0.35 * TURN_S, Modes(1))
-    end = np.array([0.35 * TURN_S])
-    assert largest(alone.at(end).links["crank"].theta - LAW.at(end)[0]) > 1e-3
 
 
 def test_a_file_names_a_controller_and_reads_back() -> None:
@@ -312,17 +237,9 @@ def test_let_go_a_crank_has_no_controller() -> None:
     assert largest(free.forces.torque) == 0.0
 
 
-@pytest.mark.parametrize(
-    ("kp", "kd", "until_s"),
-    [
-        (10.0, 0.1, 0.05),
-        slowly(10.0, 0.1, 0.1, reason="errors that grow with time"),
-        slowly(10.0, 0.0, 0.1, reason="one gain alone, and errors that grow with time"),
-        slowly(0.0, 0.1, 0.1, reason="one gain alone, and errors that grow with time"),
-    ],
-)
-def test_a_controllers_torque_as_loads_does_the_same(kp: float, kd: float, until_s: float) -> None:
-    scene = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, kd)
+@pytest.mark.parametrize("kp", [10.0, slowly(0.0, reason="one gain alone")])
+def test_a_controllers_torque_as_loads_does_the_same(kp: float) -> None:
+    scene, until_s = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, 0.1), 0.05
     times = np.linspace(0.0, until_s, 50)
     loose = released_under_control(scene)
     assert loose.is_free

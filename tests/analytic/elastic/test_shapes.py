@@ -108,18 +108,6 @@ def test_polynomials_come_to_them_within_a_millionth() -> None:
     assert along_rad_s(own)[:2] == pytest.approx(AXIAL[:2], rel=1e-6)
 
 
-def test_elements_come_to_them_with_order_4_across_and_2_along() -> None:
-    counts, errors = np.array([4, 8, 16]), []
-    for count in counts.tolist():
-        own = beam(HermiteElements(LENGTH_M, count, bends=True, stretches=True))
-        errors.append((across_rad_s(own)[1] / BENDING[1], along_rad_s(own)[0] / AXIAL[0]))
-    off = np.array(errors) - 1.0
-    assert off[:, 0].min() > 0.0  # Ritz: from above
-    orders = -np.polyfit(np.log(counts), np.log(off), 1)[0]
-    assert orders == pytest.approx([4.0, 2.0], abs=0.1)
-    assert off[-1, 0] < 2e-5
-
-
 def test_a_chain_comes_to_the_beam_as_one_over_the_square_of_its_segments() -> None:
     counts = np.array([8, 16, 32])
     plain, corrected = (
@@ -137,8 +125,6 @@ def test_a_chain_comes_to_the_beam_as_one_over_the_square_of_its_segments() -> N
         (beam(LegendrePolynomials(LENGTH_M, 4), 3.0), 0.0, 1e-12),
         # Modes miss the series of those that are left out.
         (beam(SineModes(LENGTH_M, 1), 3.0), 3.86e-3, 0.02 * 3.86e-3),
-        (beam(SineModes(LENGTH_M, 3), 3.0), -2.7e-4, 0.02 * 2.7e-4),
-        (beam(SineModes(LENGTH_M, 5), 3.0), 4.71e-5, 0.02 * 4.71e-5),
         (beam(SineModes(LENGTH_M, 15), 3.0), 0.0, 1e-6),
         *((chain(n, 3.0), 0.80 / n**2, 0.03 / n**2) for n in (8, 16)),
         *((chain(n, 3.0, corrected=True), 0.0, 0.03 / n**2) for n in (8, 16)),

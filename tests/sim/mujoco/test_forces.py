@@ -1,5 +1,5 @@
 """The forces that MuJoCo reports, each body in equilibrium, against the reference: with loads of
-every kind at the right instant, and with constant friction in its joints.
+every kind at the right instant, with constant friction in its joints; and what the viewer plays.
 """
 
 from collections.abc import Mapping
@@ -14,28 +14,24 @@ import pytest
 from analytic.forces import kinetostatics
 from analytic.free.exact_motions import ChainMotion
 from models.errors import EngineError
-from models.files.reading import load_scene, shipped
-from models.mjcf import forces, tree
+from models.files.reading import load_scene
 from models.mjcf.document import build
 from models.scene import Scene
 from models.scene.characteristics import Constant, Sine
 from models.scene.hard import WindowChain
-from models.scene.joints import block_name
-from models.scene.loads import CoulombFriction, Load
+from models.scene.loads import ConstantFriction, CoulombFriction, Load
 from models.scene.tabulated import Tabulated
-from sim.mujoco import engine
+from sim.mujoco import viewer as mujoco_viewer
 from sim.run import run
 from tests.worlds import runs
-from tests.worlds.loading import loaded_mechanism
 from tests.worlds.reported_forces import left_over, worst_of
 from tests.worlds.runs import acted_on, massless, ran, rubbing, start_of
-from tests.worlds.tiers import few
 
 STEPS = 720
 WITHIN: Mapping[str, float] = {
-    "scotch-yoke": 4e-4, "shaper": 8e-4, "fourbar-double-crank": 3e-4,
-    "slider-crank-offset": 1.2e-4, "slider-crank-central": 1.2e-4, "tangent": 1.15e-4,
-}  # fmt: skip
+    "scotch-yoke": 4e-4,
+    "shaper": 8e-4,
+}
 """Of the largest reaction, and torque of the largest torque, where it is not 1e-4."""
 
 KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slotted-lever")
@@ -44,7 +40,7 @@ KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slot
 opened = partial(runs.opened, own="mujoco", steps=STEPS)
 
 
-@pytest.mark.parametrize("name", few(sorted(shipped()), KINDS, "shapes of the same kinds"))
+@pytest.mark.parametrize("name", KINDS)
 def test_forces_are_those_of_the_reference_and_of_each_bodys_equilibrium(name: str) -> None:
     scene = load_scene(name)
     log = opened(scene).record_forces(STEPS, 1)
@@ -55,7 +51,7 @@ def test_forces_are_those_of_the_reference_and_of_each_bodys_equilibrium(name: s
     assert worst_of(scene, log.forces) < WITHIN.get(name, 1e-4)
 
 
-@pytest.mark.parametrize("close", ["B", "C", "D"])
+@pytest.mark.parametrize("close", ["B", "D"])
 def test_forces_do_not_depend_on_where_the_loop_is_closed(close: str) -> None:
     scene = FOURBAR
     log = opened(scene, settings={"close": close}).record_forces(STEPS, 4)
@@ -75,51 +71,23 @@ def off(scene: Scene, *, steps: int = 2000) -> float:
     return worst_of(scene, log.forces, SETTLED)
 
 
-@pytest.mark.parametrize("number", [2, 6, 8, 10, 20, 26, 38, 68, 82, 126])
-def test_random_mechanisms_under_random_loads_have_the_reactions_of_the_reference(
-    number: int,
-) -> None:
-    scene, _ = loaded_mechanism(number)
-    try:
-        assert off(scene) < 1e-3
-    except EngineError as error:
-        assert "massless block cannot be held here" in str(error)  # noqa: PT017  # or it is right
-
-
 @pytest.mark.parametrize("load", [
-    Load("push", block_name(load_scene("slider-crank-excel-210").sliders["C"]), "C", Constant(30)),
     Load("tilt", "block C", "C", Constant(20.0), direction_rad=1.0, frame="body"),
     Load("twist", "block C", None, Constant(0.7)),
-    Load("pulse", "block C", "C", Sine(20.0, 0.3, 0.4), direction_rad=2.0),
     Load("gas", "block C", "C", Sine(20.0, 0.1, 0.4), "displacement", "C", "forward"),
+    Load("push", "block B", "B", Constant(5.0), direction_rad=1.0),
+    Load("turn", "block B", None, Constant(0.7)),
 ], ids=lambda load: load.name)  # fmt: skip
 def test_loads_on_a_block_without_mass_go_where_they_belong(load: Load) -> None:
-    assert off(acted_on(massless(load_scene("slider-crank-excel-210")), load)) < 2e-4
+    """On a guide that is the ground, and on one that moves."""
+    name = "slider-crank-excel-210" if load.body == "block C" else "slotted-lever"
+    assert off(acted_on(massless(load_scene(name)), load)) < 2e-4
 
 
-@pytest.mark.parametrize(("load", "works"), [
-    (Load("push", "block B", "B", Constant(5.0), direction_rad=1.0), True),
-    (Load("twist", "block B", None, Constant(0.7)), True),
-    (Load("along", "block B", "B", Constant(5.0), frame="body"), False),
-], ids=lambda given: getattr(given, "name", None))  # fmt: skip
-def test_loads_on_a_block_without_mass_on_a_guide_that_moves(load: Load, works: bool) -> None:
-    scene = acted_on(load_scene("slotted-lever"), load)
-    if works:
-        assert off(scene) < 2e-4
-        return
+def test_a_load_along_a_guide_that_moves_asks_for_a_mass() -> None:
+    load = Load("along", "block B", "B", Constant(5.0), frame="body")
     with pytest.raises(EngineError, match=r"loads.along: .* give sliders.B a mass_kg above 0"):
-        opened(scene)
-
-
-def test_a_load_of_the_crank_angle_is_one_whether_it_is_known_ahead_or_read() -> None:
-    """Prescribed, the law says how large it is; under a servo the engine's own crank does."""
-    places = tuple(np.linspace(0.0, 2.0 * np.pi, 13)[:-1])
-    course = Tabulated(places, tuple(np.sin(places)), "pchip", 2.0 * np.pi)
-    scene = acted_on(FOURBAR, Load("cam", "rocker", None, course, "angle"))
-    found = [opened(scene, drive=d).record_forces(200, 1).forces for d in ("prescribed", "servo")]
-    told, read = (forces.pins["D"]["rocker"][100:] for forces in found)
-    assert np.abs(told - read).max() < 0.01 * np.abs(told).max()
-    assert mujoco.get_mjcb_control() is None
+        opened(acted_on(load_scene("slotted-lever"), load))
 
 
 def test_a_slider_past_the_end_of_a_table_feels_its_last_row_and_leaves_no_callback() -> None:
@@ -148,8 +116,6 @@ def test_loads_add_lines_to_the_text_and_change_none() -> None:
     rest = iter(text.splitlines())
     assert all(line in rest for line in bare.splitlines() if line != key)
     assert "pulse: its course over the time is not in this" in text
-    assert "pull: its course" not in text
-    assert "load it, as without it all controls are 0" in text
     model = mujoco.MjModel.from_xml_string(text)
     assert not mujoco.MjData(model).ctrl.any()
     data = mujoco.MjData(model)
@@ -163,11 +129,9 @@ def test_loads_add_lines_to_the_text_and_change_none() -> None:
 
 @pytest.mark.parametrize(("name", "sizes"), [
     ("fourbar-lecture-1", {"A": 0.05}),
-    ("fourbar-lecture-1", {"D": 0.05}),
     ("fourbar-lecture-1", {"C": 0.05, "B": 0.03}),
     ("slider-crank-offset", {"C": 10.0}),
     ("slotted-lever", {"B": 1.0}),
-    ("whitworth", {"B": 1.0}),
 ])  # fmt: skip
 def test_friction_costs_the_torque_of_the_reference(name: str, sizes: dict[str, float]) -> None:
     """At 720 steps a turn, but for the samples about a turning point: there friction goes from one
@@ -242,14 +206,25 @@ def test_friction_of_the_driven_joint_is_not_taken_for_the_drive(
     assert np.nanmax(np.abs(found.torque[20:] - drive)) < 0.02 * size
 
 
-def test_the_tree_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    plans: list[object] = []
+def test_it_stays_together_keeps_to_its_law_and_has_its_loads_and_friction(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A load over the angle keeps its size up to date; the motor of the crank is another."""
+    cam = Load("cam", "rocker", None, Sine(2.0, 2.0 * np.pi), "angle")
+    scene = acted_on(load_scene("fourbar-double-rocker"), cam, ConstantFriction("C", 0.01))
+    law, seen = scene.driver.law, []
 
-    def counted(*args: Any, **options: Any) -> tree.Tree:
-        plans.append(args)
-        return tree.plan(*args, **options)
+    def play(model: Any, data: Any) -> None:
+        mujoco.mj_step(model, data, round(0.9 * law.period_s / model.opt.timestep))
+        mujoco.mj_forward(model, data)
+        seen.extend([model, data])
 
-    for module in (forces, engine):
-        monkeypatch.setattr(module, "plan", counted)
-    opened(FOURBAR, settings={"close": "B"})
-    assert len(plans) == 1
+    monkeypatch.setattr(mujoco.viewer, "launch", play)
+    mujoco_viewer.show(scene, start_of(scene))
+    model, data = seen
+    gap = data.site_xpos[model.eq_obj1id[0]] - data.site_xpos[model.eq_obj2id[0]]
+    assert np.linalg.norm(gap) < 1e-5 * scene.longest_m
+    assert data.qpos[0] == pytest.approx(law.at(np.array([0.9 * law.period_s]))[0][0], abs=1e-3)
+    assert data.ctrl[1] == pytest.approx(2.0 * np.sin(data.qpos[0]))
+    assert abs(data.ctrl[1]) > 0.1
+    assert mujoco.get_mjcb_control() is None

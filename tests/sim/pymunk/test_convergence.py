@@ -1,8 +1,5 @@
-"""How many iterations the joints of pymunk ask for, as Chipmunk's own iterations tell; and springs
-in the pins of a chain, all at once.
-"""
+"""The joints of the pymunk space, how many iterations they need, and the springs of a chain."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -19,18 +16,49 @@ from models.scene.loads import LineSpring, PinSpring, Spring
 from sim.engine import Run
 from sim.pymunk import acting, convergence
 from sim.pymunk.bodies import chain_springs
-from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
-from sim.pymunk.engine import ENGINE
-from sim.pymunk.space import SpaceModel, build
+from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations
+from sim.pymunk.space import build
 from sim.registry.offers import remedies
 from sim.run import run
-from tests.worlds.runs import opened, ran, start_of
-
-SEGMENTS = 6
-NO_BIAS = 1.0
+from tests.worlds.runs import ran, start_of
 
 
-def chain_of(name: str, count: int = SEGMENTS) -> tuple[Scene, State]:
+def test_joints_follow_from_what_slides_on_what() -> None:
+    def made(name: str, **given: bool) -> list[str]:
+        scene = load_scene(name)
+        constraints = build(scene, start_of(scene), **given).space.constraints
+        return sorted(type(constraint).__name__ for constraint in constraints)
+
+    assert made("slider-crank-excel-350", exact_lines=False) == ["GrooveJoint", "PivotJoint"]
+    assert made("slider-crank-excel-350") == ["PinJoint", "PivotJoint"]
+    assert made("slider-crank-offset") == ["GrooveJoint", "PivotJoint", "PivotJoint"]
+    assert made("slotted-lever") == ["GrooveJoint", "PivotJoint"]
+    assert made("scotch-yoke") == ["GearJoint", "GrooveJoint", "GrooveJoint", "PivotJoint"]
+
+
+DIE = """
+name = "die"
+source = "test"
+ground = { points = { A = [0.0, 0.0], C = [0.0, -0.3] } }
+sliders = { B = { on = "lever", link = "die", direction_deg = 20.0, angle_deg = 320.0 } }
+driver = { link = "crank", speed_rad_s = 10.0 }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+lever = { bar = ["C", "E"], length_m = 0.5 }
+die = { bar = ["B", "F"], length_m = 0.05 }
+"""
+
+
+def test_a_gear_holds_a_sliding_link_where_it_starts_whole_turns_or_not() -> None:
+    """The angles of links, and of a line and a link on it, are counted each for itself."""
+    scene = parse_scene(DIE, "test")
+    for time_s in np.linspace(0.0, scene.driver.law.period_s, 7):
+        model = build(scene, start_of(scene, float(time_s)))
+        (gear,) = (c for c in model.space.constraints if isinstance(c, pymunk.GearJoint))
+        assert gear.b.angle - gear.a.angle - gear.phase == pytest.approx(0.0, abs=1e-12)
+
+
+def chain_of(name: str, count: int = 6) -> tuple[Scene, State]:
     own = SegmentedScene(load_scene(name), count)
     return own.rigid, segment_start(own, "straight")
 
@@ -38,90 +66,6 @@ def chain_of(name: str, count: int = SEGMENTS) -> tuple[Scene, State]:
 def placed(name: str) -> tuple[Scene, State]:
     scene = load_scene(name)
     return chain_of(name) if scene.elastic else (scene, start_of(scene))
-
-
-def speeds(model: SpaceModel) -> float:
-    """The largest speed at which a pin comes apart."""
-    pins = [joint for joint in model.hinges.values() if isinstance(joint, pymunk.PivotJoint)]
-    return max(
-        abs(
-            joint.a.velocity_at_local_point(joint.anchor_a)
-            - joint.b.velocity_at_local_point(joint.anchor_b)
-        )
-        for joint in pins
-    )
-
-
-def left_after(iterations: int, scene: Scene, state: State) -> float:
-    """Of bodies that are pushed, in one step without a bias."""
-    model = build(scene, state)
-    model.space.iterations, model.space.gravity = iterations, (0.0, 0.0)
-    for joint in model.space.constraints:
-        joint.error_bias = NO_BIAS
-    for k, body in enumerate(model.bodies.values()):
-        if body.body_type == pymunk.Body.DYNAMIC:
-            body.velocity += (math.sin(k), math.cos(3.0 * k))
-    model.space.step(1e-9)
-    return speeds(model)
-
-
-@pytest.mark.parametrize(
-    "name", ["fourbar-elastic", "slider-crank-elastic", "sixbar-elastic", "shaper", "toggle-press"]
-)
-def test_chipmunk_s_iterations_leave_the_share_that_is_told(name: str) -> None:
-    scene, state = placed(name)
-    told = left_over(build(scene, state))
-    count = round(-4.0 / math.log(told))  # others have died off
-    measured = (left_after(2 * count, scene, state) / left_after(count, scene, state)) ** (
-        1.0 / count
-    )
-    assert math.log(measured) == pytest.approx(math.log(told), rel=0.02)
-
-
-SLEEVES = """
-name = "two-sleeves"
-source = "Two sleeves on a slotted lever; the data are ours"
-
-[ground]
-points = { A = [0.0, 0.3], C = [0.0, 0.0] }
-
-[links]
-crank = { bar = ["A", "B"], length_m = 0.1 }
-lever = { bar = ["C", "E"], length_m = 0.6 }
-
-[sliders]
-B = { on = "lever", mass_kg = 1.0, inertia_kg_m2 = 0.01 }
-sleeve = { point = "P", on = "lever", mass_kg = 1.0, inertia_kg_m2 = 0.001 }
-P = { on = "ground", through_m = [0.0, 0.5], mass_kg = 0.5 }
-
-[driver]
-link = "crank"
-speed_rad_s = 10.0
-start_deg = 0.0
-
-[branch]
-B = 1
-"""
-
-
-def test_the_share_is_that_of_the_joints_in_the_order_of_the_space() -> None:
-    """The line and the gear of each slider by turns: all lines first would leave 0.3 % more."""
-    scene = parse_scene(SLEEVES, "here")
-    state = start_of(scene)
-    told, count = left_over(build(scene, state)), 100
-    measured = left_after(2 * count, scene, state) / left_after(count, scene, state)
-    assert math.log(measured) / count == pytest.approx(math.log(told), rel=1e-4)
-
-
-@pytest.mark.parametrize(("halvings", "holds"), [(0.85, False), (1.15, True)])
-def test_a_chain_holds_from_one_halving_on(
-    halvings: float, holds: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The position of the start is the worst of the turn here, but for 7 %."""
-    monkeypatch.setattr(convergence, "HALVINGS", halvings)
-    done = ended("fourbar-elastic", 1)
-    opened = max(float(gap.max()) for gap in done.gaps.values())
-    assert (done.status == "ok" and opened < 1e-5) == holds
 
 
 def ended(name: str, iterations: int, *, error_bias: float = 0.0, steps: int = 720) -> Run:
@@ -174,52 +118,30 @@ def offered(asked: int, error_bias: float = 0.0) -> list[object]:
     return [remedy["iterations"] for remedy in remedies("pymunk", scene, state, settings)]
 
 
-def test_the_remedies_of_a_chain_are_more_than_it_has_anyway() -> None:
+def test_the_remedies_of_a_chain_are_more_than_it_has_and_can_be_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     scene, state = chain_of("slider-crank-elastic", 16)
     held = iterations({"iterations": 150, "error_bias": 0.0}, build(scene, state))
     assert held > 1000
     assert offered(150) == [2 * held, 5 * held]
     assert offered(10, 0.0018) == [300, 700, 2000]  # as with any scene, where there is a bias
-
-
-@pytest.mark.parametrize(("asked", "found"), [(150, []), (300_000, [600_000])])
-def test_a_chain_has_no_remedy_that_can_not_be_run(
-    asked: int, found: list[int], monkeypatch: pytest.MonkeyPatch
-) -> None:
     monkeypatch.setattr(convergence, "MOST", 500)
-    assert offered(asked) == found
+    assert offered(150) == []
+    assert offered(300_000) == [600_000]
 
 
-@pytest.mark.parametrize("name", ["shaper", "fourbar-elastic"])
-@pytest.mark.parametrize("found", [3, 160])
-def test_a_space_tells_the_iterations_that_it_has(name: str, found: int) -> None:
-    scene, start = placed(name)
-    session = opened(scene, ENGINE, start=start)
-    session._space.iterations = found
-    told = session.facts().settings
-    assert told["iterations"] == found
-    assert "iterations_of_segments" not in told
-
-
-PULL = LineSpring("pull", 3.0, 0.1, 0.5, ("A", "C"))
-
-
-def chain(*, damping_s: float = 0.0, beside: bool = False) -> tuple[Scene, State]:
-    """Four segments for the coupler of a four-bar; another spring ``beside`` them."""
+def chain() -> tuple[Scene, State]:
+    """Four damped segments for the coupler of a four-bar, and another spring beside them."""
     scene = load_scene("fourbar-elastic")
-    damped = replace(scene.elastic["coupler"], damping_s=damping_s)
+    damped = replace(scene.elastic["coupler"], damping_s=1e-3)
     own = SegmentedScene(replace(scene, elastic={"coupler": damped}), 4)
-    start = segment_start(own, "straight")
-    springs = own.rigid.springs | ({"pull": PULL} if beside else {})
-    return replace(own.rigid, springs=springs), start
+    springs = own.rigid.springs | {"pull": LineSpring("pull", 3.0, 0.1, 0.5, ("A", "C"))}
+    return replace(own.rigid, springs=springs), segment_start(own, "straight")
 
 
-@pytest.mark.parametrize("beside", [False, True])
-@pytest.mark.parametrize("damping_s", [0.0, 1e-3])
-def test_they_move_a_chain_as_springs_one_by_one(
-    damping_s: float, beside: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scene, start = chain(damping_s=damping_s, beside=beside)
+def test_they_move_a_chain_as_springs_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, start = chain()
     own = ran(scene, "pymunk", start=start, steps=200)
     monkeypatch.setattr(acting, "chain_springs", lambda scene: ())
     other = ran(scene, "pymunk", start=start, steps=200)
@@ -234,22 +156,6 @@ def in_pins(**bodies: tuple[str, str]) -> dict[str, Spring]:
     return {pin: PinSpring(pin, 1.0, 0.01, 0.3, pin, pair) for pin, pair in bodies.items()}
 
 
-@pytest.mark.parametrize("springs", [
-    in_pins(A=(GROUND, "crank"), D=(GROUND, "rocker")),
-    in_pins(B=("crank", "coupler"), C=("coupler", "rocker")),
-], ids=["in the ground", "of a link"])  # fmt: skip
-def test_two_springs_in_pins_of_rigid_links_are_no_chain(springs: dict[str, Spring]) -> None:
-    """With a light coupler and a heavy rocker, for which a chain would be given 343 iterations."""
-    scene = load_scene("fourbar-lecture-1")
-    links = {name: replace(link, mass_kg=0.005) for name, link in scene.links.items()}
-    links["rocker"] = replace(links["rocker"], mass_kg=3.0)
-    scene = replace(scene, links=links, springs=springs)
-    done = ran(scene, "pymunk", steps=200)
-    assert done.settings["iterations"] == 150
-    assert "iterations_of_segments" not in done.settings
-    assert chain_springs(scene) == ()
-
-
 def test_a_spring_in_a_ground_pin_acts_beside_a_chain() -> None:
     scene = load_scene("fourbar-elastic")
     own = SegmentedScene(replace(scene, springs=in_pins(D=(GROUND, "rocker"))), 4)
@@ -259,6 +165,7 @@ def test_a_spring_in_a_ground_pin_acts_beside_a_chain() -> None:
 
 
 def test_springs_alone_make_no_chain() -> None:
-    assert len(chain_springs(chain(beside=True)[0])) == 3
+    assert len(chain_springs(chain()[0])) == 3
     assert chain_springs(load_scene("slider-crank-spring")) == ()
-    assert chain_springs(load_scene("squeezer")) == ()
+    of_links = in_pins(B=("crank", "coupler"), C=("coupler", "rocker"))
+    assert chain_springs(replace(load_scene("fourbar-lecture-1"), springs=of_links)) == ()
