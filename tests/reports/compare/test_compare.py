@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -153,9 +152,9 @@ def test_a_trembling_position_shows_in_differenced_rates(fourbar: Scene, errors_
 
 
 @pytest.mark.parametrize(
-    ("part", "quantity"), [("theta", "angle"), ("omega", "velocity"), ("alpha", "acceleration")]
+    ("part", "quantity", "at"),
+    [("theta", "angle", -1), ("omega", "velocity", SETTLING // 2), ("alpha", "acceleration", -1)],
 )
-@pytest.mark.parametrize("at", [SETTLING // 2, -1])
 def test_a_number_that_is_missing_is_a_failure_wherever_it_stands(
     fourbar: Scene, healthy: Run, part: str, quantity: str, at: int
 ) -> None:
@@ -194,9 +193,7 @@ def test_accelerations_not_reported_are_named_and_no_failure(fourbar: Scene, hea
         assert math.isnan(pure(errors, "acceleration"))
 
 
-@pytest.mark.parametrize(
-    ("kind", "name"), [("links", "rocker"), ("links", "crank"), ("points", "C")]
-)
+@pytest.mark.parametrize(("kind", "name"), [("links", "crank"), ("points", "C")])
 def test_what_is_left_out_is_missed(fourbar: Scene, healthy: Run, kind: str, name: str) -> None:
     kept = {n: part for n, part in vars(healthy.motion)[kind].items() if n != name}
     errors = compared(fourbar, with_motion(healthy, **{kind: kept}))
@@ -204,9 +201,8 @@ def test_what_is_left_out_is_missed(fourbar: Scene, healthy: Run, kind: str, nam
     assert any(row.body == name and not row.finite for row in errors.rows)
 
 
-@pytest.mark.parametrize("name", ["slider-crank-offset", "shaper"])
-def test_every_pin_and_slider_needs_its_gap(name: str, disturbed: Callable[..., Run]) -> None:
-    scene = load_scene(name)
+def test_every_pin_and_slider_needs_its_gap(disturbed: Callable[..., Run]) -> None:
+    scene = load_scene("shaper")
     run = disturbed(scene)
     whole, silent = compared(scene, run), compared(scene, replace(run, gaps={}))
     assert whole.missing == ()
@@ -216,9 +212,7 @@ def test_every_pin_and_slider_needs_its_gap(name: str, disturbed: Callable[..., 
     assert math.isnan(pure(silent, "gap"))
 
 
-@pytest.mark.parametrize(
-    "keep", [slice(50), slice(1), slice(720), slice(1, None), slice(0, None, 2)]
-)
+@pytest.mark.parametrize("keep", [slice(1), slice(720), slice(1, None), slice(0, None, 2)])
 def test_a_log_that_lacks_samples_is_incomplete(fourbar: Scene, healthy: Run, keep: slice) -> None:
     motion = healthy.motion.each_series(lambda series: series[keep])
     cut = replace(
@@ -240,7 +234,7 @@ def test_time_stamps_off_the_commanded_grid_are_found(fourbar: Scene, healthy: R
     assert "714 of 721" in errors.incomplete
 
 
-@pytest.mark.parametrize(("steps", "every"), [(720, 1), (720, 7), (9000, 4)])
+@pytest.mark.parametrize(("steps", "every"), [(720, 7), (9000, 4)])
 def test_a_whole_log_is_complete_however_thin_it_is(fourbar: Scene, steps: int, every: int) -> None:
     state = solve(fourbar, np.array([0.3])).state()
     engine = FakeEngine(exact=solve)
@@ -256,52 +250,25 @@ def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(disturbed: Callable[
     assert pure(errors, "drive") == pytest.approx(2.0)
 
 
-def test_pure_numbers_do_not_depend_on_the_size_of_the_scene(
-    fourbar: Scene, errors_of: Find
-) -> None:
-    bump = turned_link("coupler", lambda t: 1e-4 * np.sin(7.0 * t))
-    small, large = (errors_of(scene, bump) for scene in (fourbar, scaled(fourbar, 10.0)))
-    for name in ("angle", "position", "gap", "velocity"):
-        assert pure(large, name) == pytest.approx(pure(small, name), rel=1e-6, abs=1e-12)
-
-
 CHANGES: dict[str, Callable[[Scene], Scene]] = {
-    "none": lambda scene: scene,
-    "rotated by 0.7 rad": lambda scene: rotated(scene, 0.7),
-    "moved by (3, -2) m": lambda scene: moved(scene, (3.0, -2.0)),
+    "elsewhere": lambda scene: moved(rotated(scene, 0.7), (3.0, -2.0)),
     "mirrored": lambda scene: mirrored(scene, sides_of(scene)),
     "10 times as large": lambda scene: scaled(scene, 10.0),
-    "a tenth as large": lambda scene: scaled(scene, 0.1),
-    "turning the other way": lambda scene: sped_up(scene, -1.0),
-    "at 500 rad/s": lambda scene: sped_up(scene, 50.0),
+    "50 times as fast, the other way": lambda scene: sped_up(scene, -50.0),
 }
-QUANTITIES = ("drive", "angle", "displacement", "position", "gap", "velocity", "acceleration")
-
-
-@cache
-def of_turn(scene: str, engine: str, change: str = "none") -> Errors:
-    return check(of_turns(CHANGES[change](load_scene(scene)), engine, 720)).errors
 
 
 @pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
-@pytest.mark.parametrize(
-    ("scene", "change"),
-    [
-        *(("fourbar-lecture-1", change) for change in CHANGES if change != "none"),
-        ("shaper", "rotated by 0.7 rad"),
-    ],
-)
+@pytest.mark.parametrize("change", CHANGES)
 def test_the_same_mechanism_elsewhere_has_the_same_pure_errors_within_a_factor_of_two(
-    scene: str, change: str, engine: str
+    change: str, engine: str, fourbar: Scene
 ) -> None:
-    before, after = of_turn(scene, engine), of_turn(scene, engine, change)
-    compared = 0
-    for quantity in QUANTITIES:
+    before, after = (
+        check(of_turns(scene, engine, 720)).errors for scene in (fourbar, CHANGES[change](fourbar))
+    )
+    for quantity in ("drive", "angle", "position", "gap", "velocity", "acceleration"):
+        if engine == "pymunk" and quantity == "acceleration":
+            continue  # it reports none
         old, new = before.worst(quantity), after.worst(quantity)
-        if old is None or new is None:
-            assert old is new
-            continue
         assert new.pure <= max(2.0 * old.pure, 1e-10), quantity
         assert old.pure <= max(2.0 * new.pure, 1e-10), quantity
-        compared += 1
-    assert compared >= 5

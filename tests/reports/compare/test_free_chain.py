@@ -52,23 +52,20 @@ def test_velocities_half_a_step_late_are_no_drift_of_energy() -> None:
     assert unsaid.energy_drift > 1e-3
 
 
-@pytest.mark.parametrize("name", ["rocker0", "rocker2", "coupler1"])
-def test_a_rod_that_leaves_the_others_is_seen_where_it_began(name: str) -> None:
-    apart = held(turned_link(name, lambda t: np.clip(t - 1.0, 0.0, 0.6)))
+def test_a_rod_that_leaves_the_others_is_seen_where_it_began() -> None:
+    apart = held(turned_link("rocker2", lambda t: np.clip(t - 1.0, 0.0, 0.6)))
     assert apart.gap_m.max() == pytest.approx(2.0 * np.sin(0.3), abs=1e-3)
     assert apart.left is None  # its pins are open: it has not left its branch, but come apart
     shut = {pin: 0.0 * gap for pin, gap in apart.run.gaps.items()}
     left = compared(CHAIN, replace(apart.run, gaps=shut)).left
-    assert left.link == name
+    assert left.link == "rocker2"
     assert left.time_s == pytest.approx(1.02, abs=0.006)
     truth = ChainMotion(CHAIN).at(np.array([left.time_s]))[0]
     assert left.driver_rad == pytest.approx(truth[0], abs=0.03)
-
-
-def test_a_rod_that_gives_way_a_little_has_not_left() -> None:
-    found = held(turned_link("coupler0", lambda t: 0.1 * np.sin(9.0 * t)))
-    assert found.left is None
-    assert found.lean_rad.max() == pytest.approx(0.1, abs=1e-3)
+    # One that gives way a little has not left.
+    little = held(turned_link("coupler0", lambda t: 0.1 * np.sin(9.0 * t)))
+    assert little.left is None
+    assert little.lean_rad.max() == pytest.approx(0.1, abs=1e-3)
 
 
 def test_energy_that_is_lost_is_measured_over_what_a_turn_exchanges() -> None:
@@ -111,17 +108,3 @@ def test_mujoco_tuned_falls_through_both_flat_positions_with_the_rods_parallel()
     assert found.place_until(2.0) < 1e-4
     assert found.energy_drift < 1e-5
     assert found.gap_m.max() < 1e-6
-
-
-def test_pymunk_as_shipped_loses_energy_in_them_but_keeps_the_rods_parallel() -> None:
-    found = hold(CHAIN, "pymunk", "as-shipped", dt_s=1e-3, duration_s=2.0, every=10)
-    assert found.left is None
-    assert found.energy_j[-1] < -1e-3
-    assert 1e-4 < found.energy_drift < 0.1
-
-
-def test_a_rod_alone_and_a_chain_without_weight_are_measured_too() -> None:
-    assert hold(WindowChain(0), "pymunk", dt_s=1e-3, duration_s=0.5).energy_drift < 1e-3
-    weightless = hold(WindowChain(1, gravity_m_s2=0.0), "mujoco", dt_s=1e-3, duration_s=0.5)
-    assert weightless.energy_drift < 1e-6
-    assert weightless.place_until(0.5) < 1e-6

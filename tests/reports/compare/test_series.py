@@ -12,7 +12,7 @@ from models.array import Array
 from models.scene import Scene
 from reports.compare.compare import Beside, Truth, compare
 from reports.compare.last_turn import trace
-from reports.compare.tracks import angle_error, length, rate, second_rate, size, tracks
+from reports.compare.tracks import angle_error, length, size, tracks
 from sim.engine import Run
 from tests.worlds.fake.engine import turned_link
 
@@ -40,9 +40,8 @@ def test_whole_turns_are_errors_but_at_starts(angle: Array, reference: Array, er
     assert size(angle_error(angle, reference)).maximum == pytest.approx(error)
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-@pytest.mark.parametrize("at", [0, 7, 19])
-def test_one_sample_that_is_no_number_is_never_skipped(bad: float, at: int) -> None:
+@pytest.mark.parametrize(("at", "bad"), [(0, math.nan), (7, -math.inf), (19, math.inf)])
+def test_one_sample_that_is_no_number_is_never_skipped(at: int, bad: float) -> None:
     measured = size(with_one(at, bad))
     assert math.isnan(measured.maximum)
     assert math.isnan(measured.rms)
@@ -55,13 +54,6 @@ def test_size_of_known_series() -> None:
     assert measured.rms == pytest.approx(math.sqrt(26 / 4))
     assert size(np.array([1e200, 1e200])).rms == pytest.approx(1e200)  # does not overflow
     assert length(np.array([[3.0, 4.0], [0.0, -2.0]])).tolist() == [5.0, 2.0]
-
-
-def test_differences_are_exact_for_a_parabola_and_drop_both_ends() -> None:
-    time_s = 0.1 * np.arange(11)
-    series = 2.0 + 3.0 * time_s + 4.0 * time_s**2
-    assert rate(series, 0.1) == pytest.approx(3.0 + 8.0 * time_s[1:-1])
-    assert second_rate(series, 0.1) == pytest.approx(np.full(9, 8.0))
 
 
 def test_what_a_run_lacks_is_one_nan_for_all_samples(fourbar: Scene, disturbed: Disturbed) -> None:
@@ -82,13 +74,12 @@ def traced(run: Run, scene: Scene) -> dict[str, Array]:
     return trace(Truth(scene, bound=False), run)
 
 
-@pytest.mark.parametrize("steps", [720, 1440])
-def test_the_last_turn_is_at_equal_parts(fourbar: Scene, disturbed: Disturbed, steps: int) -> None:
-    found = traced(disturbed(fourbar, steps=steps), fourbar)
+def test_the_last_turn_is_at_equal_parts(fourbar: Scene, disturbed: Disturbed) -> None:
+    found = traced(disturbed(fourbar, steps=1440), fourbar)
     assert found["time_s"].size == 91
     turns = np.diff(found["driver_rad"]) * 90 / math.tau
     np.testing.assert_allclose(turns, 1.0, rtol=1e-12)
-    assert found["time_s"][-1] == pytest.approx(steps / 720 * fourbar.driver.law.period_s)
+    assert found["time_s"][-1] == pytest.approx(2.0 * fourbar.driver.law.period_s)
 
 
 def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_run(

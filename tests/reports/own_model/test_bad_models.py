@@ -21,7 +21,7 @@ from reports.own_model.judged import run_lines
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted, rocker, tied
 from tests.worlds.own_models import line, read_text
-from tests.worlds.tiers import few, slowly
+from tests.worlds.tiers import few
 
 PLATES = """<mujoco>
   <option gravity="0 0 0"/>
@@ -84,7 +84,6 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
         planted("<worldbody>", MESH), "MuJoCo refuses the model: Error: Error opening file 'no.stl'"
     ),
     "nan": (planted('pos="0 0 0.1"', 'pos="0 0 nan"'), "body_pos of coupler is not finite"),
-    "infinite": (planted(*rocker('stiffness="inf"')), "jnt_stiffness of D"),
     "nan in an anchor": (
         planted('or="0.23373437', 'or="nan'), "<connect> C: its anchor or pose is not finite"
     ),
@@ -178,7 +177,6 @@ ASKED = {
     ),
     "no such choice": ({"branch": {"X": 1}}, "--branch X: it chooses between no two assemblies"),
     "far round": ({"start_deg": 36001.0}, "--start 36001: that is more than 100 turns"),
-    "far round, at once": ({"start_deg": -1e12}, "--start -1e+12: that is more than 100 turns"),
     "too coarse": ({"dt_s": 0.5}, "a turn needs at least 8"),
     "too short": ({"turns": 0.1}, "take 0.127 turns or more"),
 }
@@ -192,7 +190,6 @@ def test_what_is_asked_for_is_checked(case: str, tmp_path: Path) -> None:
 
 
 NAMES = {
-    "markup": ('name="B"', 'name="[red]B[/]"'),
     "none": (' name="B"', "", ' name="D"', "", ' name="C"', ""),
     "of other things": ('name="B"', 'name="crank"', 'name="D"', 'name="ground"'),
     "alike": ('name="B"', 'name="p 1"', 'name="D"', 'name="p_1"', 'name="C"', 'name="p-1"'),
@@ -208,9 +205,8 @@ def test_any_names_make_a_scene(case: str, tmp_path: Path) -> None:
     assert all(len(name) <= 40 and name.isascii() for name in scene.pins)
 
 
-@pytest.mark.parametrize(("more", "ties"), [("", ""), (THIRD.format(off=0), TIED)], ids=["", "+1"])
-def test_a_parallelogram_passes_its_change_points(more: str, ties: str, tmp_path: Path) -> None:
-    text = PLATES.replace("<!-- more -->", more).replace("<!-- ties -->", ties)
+def test_a_parallelogram_passes_its_change_points(tmp_path: Path) -> None:
+    text = PLATES.replace("<!-- more -->", THIRD.format(off=0)).replace("<!-- ties -->", TIED)
     account = read_text(tmp_path, text, converge=False)
     assert "continued smoothly through the change points of C" in account.notes[-1]
     assert line(account, "recommended").verdict == "within"
@@ -232,11 +228,10 @@ def driving(rockers: int) -> str:
 """
 
 
-@pytest.mark.parametrize("most", [3, slowly(8, reason="256 assemblies of a real model")])
 def test_more_choices_than_are_tried_are_asked_for(
-    most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert assembly.MOST_CHOICES == 8
+    most = 3
     monkeypatch.setattr(assembly, "MOST_CHOICES", most)
     many = driving(most + 1)
     told = rf"{most + 1} choices .* choose 1 or more .*, of C0, C1, "
@@ -247,13 +242,9 @@ def test_more_choices_than_are_tried_are_asked_for(
     assert len(found) == most + 1
 
 
-KEYS = '</equality><keyframe><key name="home"/><key name="turned" qpos="6.5 0 6.3"/></keyframe>'
+KEYS = '</equality><keyframe><key name="turned" qpos="6.5 0 6.3"/></keyframe>'
 STARTS: list[tuple[str, dict[str, object]]] = [
-    ("recommended", {"start_deg": 36000.0, "turns": 0.3}),
     ("recommended", {"start_deg": -36000.0, "turns": 0.3}),
-    ("as-written", {"key": "home"}),
-    ("as-written", {"key": "home", "speed_rad_s": -10.0}),
-    ("as-written", {"key": "turned"}),
     ("as-written", {"key": "turned", "speed_rad_s": -10.0}),
 ]
 
@@ -292,10 +283,6 @@ def test_a_run_to_a_singular_position_is_refused_with_what_sets_the_range(tmp_pa
         read_text(tmp_path, build(scene, state), joint="lever.A")
 
 
-ELSEWHERE = slowly(-20.0, reason="a triad that is led elsewhere first")
-
-
-@pytest.mark.parametrize("start", [None, ELSEWHERE])
-def test_a_model_with_a_triad_has_a_reference(tmp_path: Path, start: float | None) -> None:
-    account = read_text(tmp_path, TRIAD, turns=0.05, dt_s=2e-4, start_deg=start)
+def test_a_model_with_a_triad_has_a_reference(tmp_path: Path) -> None:
+    account = read_text(tmp_path, TRIAD, turns=0.05, dt_s=2e-4)
     assert [triad.central for triad in analyse(account.scene).triads] == ["plate"]

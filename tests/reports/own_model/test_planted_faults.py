@@ -26,7 +26,6 @@ BELT = '<tendon><fixed name="belt" armature="1"><joint joint="D" coef="1"/></fix
 LIFTED = ('<body name="rocker"', '<body name="rocker" gravcomp="-5"')
 NAMED = {
     "anchor 1 mm off": ((OFF, 'anchor="0.23473437'), "loop C: its pin is 0.001 m off"),
-    "hinge 1 mm off": (rocker('pos="0 0 0.001"'), "joint D: its pin is 0.001 m off an end of geom"),
     "a contact that rubs": (
         ('contype="0" conaffinity="0"', ""), "coupler-bar touches rocker-bar in 100% of the poses"
     ),
@@ -56,10 +55,6 @@ NAMED = {
     ),
     "a limit that is hit": (
         rocker('limited="true" range="-0.2 0.2"'), "joint D is led past its limit by 32.8 deg"
-    ),
-    "a limit of the driven joint": (
-        ('<joint name="A"/>', '<joint name="A" limited="true" range="-3.1416 3.1416"/>'),
-        "joint A is led past its limit by 18",
     ),
     "gravity across the plane": (
         ('gravity="0 0 0"', 'gravity="0 -9.81 0"'), "gravity of 9.81 m/s^2 across the plane"
@@ -93,23 +88,13 @@ def test_it_is_named_with_its_joint(fault: str, tmp_path: Path) -> None:
         ('<body name="rocker"', '<body name="rocker" gravcomp="1"'),
         # MuJoCo replaces what is half of each kind, and says so of its own accord.
         (SOLREF, 'solref="0.05 -1"'),
-        (SOLREF, 'solref="-2500 -100"'),
     ],
-    ids=["plain", "no gravity to lift", "neither kind of solref", "its own, written directly"],
+    ids=["plain", "no gravity to lift", "neither kind of solref"],
 )
 def test_what_disturbs_nothing_is_not_named(edits: tuple[str, ...], tmp_path: Path) -> None:
     account = read(tmp_path, *edits)
     assert not account.disturbances
     assert account.profiles == ["as-written", "contacts-off", "recommended"]
-
-
-@pytest.mark.parametrize(
-    ("axis", "off"), [("0 -0.99985 0.01745", "1"), ("0 -1 3.5e-4", r"0\.02\d*")]
-)
-def test_an_axis_that_is_off_is_refused_with_its_joint(axis: str, off: str, tmp_path: Path) -> None:
-    told = f"joint D of body rocker: its axis is {off} deg off that of the driven hinge"
-    with pytest.raises(CrankcheckError, match=told):
-        read(tmp_path, *rocker(f'axis="{axis}"'))
 
 
 def test_sites_that_do_not_meet_are_told_by_the_pose(tmp_path: Path) -> None:
@@ -123,7 +108,6 @@ def test_sites_that_do_not_meet_are_told_by_the_pose(tmp_path: Path) -> None:
     [
         (rocker('damping="0.5"'), "damping-off"),
         (rocker('limited="true" range="-0.2 0.2"'), "limits-off"),
-        (rocker('stiffness="200"'), "springs-off"),
     ],
 )
 def test_the_verdict_shows_it_and_the_line_without_it_does_not(
@@ -135,9 +119,14 @@ def test_the_verdict_shows_it_and_the_line_without_it_does_not(
     assert line(account, off).verdict == "within"
 
 
-def test_a_healthy_model_is_within_and_so_is_one_whose_axis_is_rounded(tmp_path: Path) -> None:
-    for edits in ((), rocker('axis="0 -1 8.7e-5"')):  # 0.005 deg
-        assert line(read(tmp_path, *edits), "as-written").verdict == "within"
+def test_a_model_whose_axis_is_rounded_is_within_and_one_whose_axis_is_off_is_refused(
+    tmp_path: Path,
+) -> None:
+    rounded = read(tmp_path, *rocker('axis="0 -1 8.7e-5"'))  # 0.005 deg
+    assert line(rounded, "as-written").verdict == "within"
+    told = r"joint D of body rocker: its axis is 0\.02\d* deg off that of the driven hinge"
+    with pytest.raises(CrankcheckError, match=told):
+        read(tmp_path, *rocker('axis="0 -1 3.5e-4"'))
 
 
 STIFF = 'solref="0.005 0.6" solimp="0.9999 0.9999 0.001 0.5 2"/>'
@@ -194,9 +183,9 @@ def test_where_nothing_helps_nothing_is_recommended() -> None:
     assert "With them the model" not in page
 
 
-@pytest.mark.parametrize("solver", ['solver="CG" iterations="1"', 'solver="PGS" iterations="2"'])
-def test_the_solver_is_newton_with_iterations_enough(solver: str) -> None:
+def test_the_solver_is_newton_with_iterations_enough() -> None:
     again = CLOSED.replace('name="C"', 'name="again"')
-    one = of(' gravity="0 0 0"/>', f' gravity="0 0 0" {solver}/>', CLOSED, CLOSED + again)
+    solver = ' gravity="0 0 0" solver="CG" iterations="1"/>'
+    one = of(' gravity="0 0 0"/>', solver, CLOSED, CLOSED + again)
     assert one.lines[-1].verdict == "within"
     assert 'solver="Newton" iterations="100"' in one.patch

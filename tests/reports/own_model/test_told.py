@@ -45,7 +45,7 @@ def with_own(one: JudgedModel, status: str) -> JudgedModel:
     return judged_model(one.account, [lost, *one.lines[1:]])
 
 
-@pytest.mark.parametrize("width", [40, 60, 80, 100, 140])
+@pytest.mark.parametrize("width", [40, 60, 140])
 def test_lines_and_their_gains_are_whole_at_every_width(rubbing: JudgedModel, width: int) -> None:
     lines = printed(rubbing, width)
     start, end = place(lines, "Recommended"), place(lines, "OUT OF TOLERANCE")
@@ -94,16 +94,12 @@ def test_what_disturbs_is_told_by_kind_and_short(crowded: JudgedModel) -> None:
     assert "joint knee is led past its limit by" in text
     assert " limits-off " in text  # it says something
     assert " actuators-off " not in text
-
-
-def test_how_open_the_pose_is_and_which_joint_is_worst_are_told(crowded: JudgedModel) -> None:
+    # And how open the pose is, and which joint is worst.
     worst = crowded.joints()[0]
-    assert worst.name == "toe"
+    assert (worst.name, f"{worst.open_m:.1e}") == ("toe", "1.0e-03")
     assert worst.share > 1.0
-    assert f"{worst.open_m:.1e}" == "1.0e-03"
     assert "open at toe by 1.00e-3 m" in table.reading(crowded.account)["pose"]
-    assert {joint.name for joint in crowded.joints()} == set(crowded.account.open_m)
-    assert "joints: the widest as written is toe, " in "\n".join(printed(crowded))
+    assert "joints: the widest as written is toe, " in text
 
 
 def test_the_cure_of_a_model_names_its_own_settings(rubbing: JudgedModel) -> None:
@@ -116,21 +112,15 @@ def test_the_cure_of_a_model_names_its_own_settings(rubbing: JudgedModel) -> Non
     assert told <= cures
 
 
-@pytest.mark.parametrize("status", ["crashed", "timeout", "unsupported"])
+@pytest.mark.parametrize("status", ["timeout", "unsupported"])
 def test_a_line_that_did_not_end_has_its_reason(rubbing: JudgedModel, status: str) -> None:
     one = with_own(rubbing, status)
-    for width in (60, 100):
-        text = " ".join(" ".join(printed(one, width)).split())
-        assert "it [red]fell[/] apart" in text
-        assert "nan" not in text
+    text = " ".join(" ".join(printed(one)).split())
+    assert "it [red]fell[/] apart" in text
+    assert "nan" not in text
     assert one.verdict == ("unsupported" if status == "unsupported" else "out")
     assert all(math.isnan(gain) for gain in one.gains(one.lines[-1]))
     assert one.joints()
-
-
-def test_a_line_that_ends_where_the_model_does_not_says_so(rubbing: JudgedModel) -> None:
-    one = with_own(rubbing, "timeout")
-    assert one.others == list(one.lines[2:-1])
     assert {group.effect for group in table.groups(one)} == {"without: it runs to its end"}
 
 
@@ -144,28 +134,15 @@ def test_settings_that_are_there_already_and_those_in_words_are_told(rubbing: Ju
         assert not patch or patch in lines
 
 
-def test_without_finer_steps_there_is_one_column_of_errors(rubbing: JudgedModel) -> None:
-    request = replace(rubbing.account.request, converge=False)
-    lines = [replace(one, convergence=None) for one in rubbing.lines]
-    one = JudgedModel(account=replace(rubbing.account, request=request), lines=lines)
-    text = "\n".join(printed(one))
-    assert "dt/2" not in text
-    assert "half" not in text
-    assert math.isnan(one.gains(one.lines[-1])[1])
-
-
 @pytest.mark.parametrize(
     ("told", "words"),
     [
         (table.factor_words(1.0), "the same error"),
-        (table.factor_words(27.3), "27 x less error"),
         (table.factor_words(1.2e5), "1.2e5 x less error"),
         (table.factor_words(0.25), "4 x more error"),
         (table.factor_words(math.inf), "no error at all"),
-        (table.factor_words(0.0), "all of the error"),
         (table.factor_words(math.nan), "not to be told"),
         (table.share_text(0.0), "below 0.1% of its limit"),
-        (table.share_text(0.123), "12.3% of its limit"),
         (table.share_text(137.2), "137 times its limit"),
     ],
 )

@@ -53,17 +53,11 @@ SAME: dict[str, tuple[str, ...]] = {
         '<joint name="B"/><frame euler="0 0.4 0"><frame euler="0 -0.4 0">',
         TIP, f"{TIP}</frame></frame>",
     ),
-    "a base that does not move": (
-        BASE, f'<body name="base">{BALL}{BASE}', "</worldbody>", "</body></worldbody>",
-    ),
     "degrees, and readings that are not 0": (
         'angle="radian"', 'angle="degree"', ROCKER_JOINT, '<joint name="D" ref="30"/>',
     ),
     "bodies that move beside it, one of them welded to the world": (
         "</worldbody>", f"{LOOSE}{HELD}</worldbody>", *tied('<weld body1="held"/>'),
-    ),
-    "a closure that is off": tied(
-        '<connect active="false" body1="crank" body2="rocker" anchor="0 0 0"/>'
     ),
     "the same pin said twice": tied(CLOSED.replace('name="C"', 'name="C2"')),
     "a pin of the rocker's own hinge, for which there is no row": tied(
@@ -90,12 +84,10 @@ def test_a_mocap_body_is_where_a_key_has_it(place: str, pivot_m: float, tmp_path
     found = read_text(tmp_path, text, key="moved", turns=0.2, converge=False)
     assert math.dist(*found.scene.ground.values()) == pytest.approx(pivot_m)
     assert line(found, "recommended").verdict == "within"
-
-
-def test_a_keyframe_that_puts_a_mocap_body_nowhere_is_refused(tmp_path: Path) -> None:
-    key = '<keyframe><key name="off" qpos="0 0 0" mpos="nan 0 0"/></keyframe>'
-    with pytest.raises(CrankcheckError, match="keyframe off: its mpos is not finite"):
-        read_text(tmp_path, planted(BASE, STAND, "</mujoco>", f"{key}</mujoco>"), key="off")
+    if place:
+        nowhere = text.replace(place, 'mpos="nan 0 0"')
+        with pytest.raises(CrankcheckError, match="keyframe moved: its mpos is not finite"):
+            read_text(tmp_path, nowhere, key="moved")
 
 
 def test_masses_and_inertias_come_from_geoms_and_what_is_fixed_to_a_body(tmp_path: Path) -> None:
@@ -184,14 +176,11 @@ def error_of(account: ModelAccount, profile: str) -> float:
 
 
 QUARTER: Mapping[str, object] = {"start_deg": -90.0, "turns": 0.26}
-LESS: Mapping[str, object] = {"start_deg": -70.0, "turns": 0.19, "dt_s": 1e-3}
 RUNS: Mapping[str, tuple[str, Mapping[str, object], tuple[float, float, float]]] = {
     # As written, with contacts off, recommended.
     "rhombus": ("drive", {}, (1.7, 2.2e-2, 8.8e-5)),
-    "slider-crank": ("shaft", {}, (6.4e-3, 1.4e-3, 8.7e-7)),
     "open-four-bar": ("j0", {"branch": {"coupler-tip": 1}}, (4.3e-3, 4.3e-3, 3.6e-5)),
     "chebyshev": ("left-pivot", QUARTER, (1.2e-1, 3.0e-2, 9.2e-5)),
-    "watt": ("left-pivot", LESS, (9.3e-2, 2.5e-2, 8.7e-6)),
 }
 
 
@@ -235,19 +224,9 @@ REFUSED: list[tuple[str, str, Mapping[str, object], str]] = [
     ("jansen-global", "top", {}, "global coordinates no longer supported"),
     ("rhombus", "corner", {}, "turns against body lower.*drivable: drive"),
     ("rhombus", "driver", {}, "did you mean drive or corner[?]"),
-    (
-        "chebyshev", LEFT, {},
-        f"{TURNS} 0 to 360 deg, and reaches -95.66 to 5.663 deg.*--turns 0.015 at most",
-    ),
-    (
-        "chebyshev", LEFT, {"start_deg": 280.0},
-        f"{TURNS} 280 to 640 deg, and reaches 264.3 to 365.7 deg",
-    ),
-    (
-        "chebyshev", LEFT, {"speed_rad_s": -10.0},
-        f"{TURNS} 0 to -360 deg, and reaches -95.66 to 5.663 deg, where the loops close; "
-        "take less of a turn, --turns 0.265 at most",
-    ),
+    ("chebyshev", LEFT, {}, f"{TURNS} 0 to 360 deg, .* -95.66 to 5.663 deg.*--turns 0.015 at"),
+    ("chebyshev", LEFT, {"start_deg": 280.0}, "280 to 640 deg, and reaches 264.3 to 365.7 deg"),
+    ("chebyshev", LEFT, {"speed_rad_s": -10.0}, "0 to -360 deg, and .*--turns 0.265 at most"),
     (
         "chebyshev", LEFT, {"start_deg": 50.0},
         "start in between with --start, and take less of a turn with --turns",
@@ -280,8 +259,6 @@ def test_the_open_four_bar_may_start_from_a_keyframe_or_a_branch() -> None:
     assert "keyframe first-only: loop coupler-tip: follower-tip is open" in "\n".join(texts(other))
 
 
-@pytest.mark.parametrize("speed", [10.0, -10.0])
-def test_a_part_of_a_turn_runs_both_ways(speed: float) -> None:
-    start = -90.0 if speed > 0.0 else 2.0
-    account = read("chebyshev", "left-pivot", start_deg=start, turns=0.256, speed_rad_s=speed)
+def test_a_part_of_a_turn_runs_backwards_too() -> None:
+    account = read("chebyshev", LEFT, start_deg=2.0, turns=0.256, speed_rad_s=-10.0)
     assert line(account, "recommended").verdict == "within"

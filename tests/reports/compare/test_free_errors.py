@@ -3,7 +3,6 @@ that ends, another assembly; drifts; and loads over time that end with the run."
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,15 +14,13 @@ from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
-from reports.compare.compare import compare, places
+from reports.compare.compare import compare
 from reports.compare.errors import Errors
 from reports.compare.free_facts import drift, kept_about, momentum, window_means, window_s
 from reports.compare.free_truth import FreeTruth, free_truth, kept_motion
 from reports.drawing.shape import true_motion
-from reports.store.reader import read_store
 from sim.engine import Run
 from sim.run import run
-from tests.worlds.free_store import LASTS_S
 from tests.worlds.tiers import slowly
 
 DT_S, STEPS = 1e-3, 160
@@ -126,22 +123,6 @@ def test_an_assembly_that_the_truth_is_not_in_is_a_departure(truth: FreeTruth, d
     assert errors.departure.time_s == pytest.approx(0.079)
 
 
-def test_velocities_from_before_the_start_have_a_truth(truth: FreeTruth) -> None:
-    motion = truth.at(DT_S * np.array([-0.5, 0.0, 0.5]))
-    crank = motion.links["crank"]
-    # From rest the motion is the same to both sides.
-    assert crank.omega[0] == pytest.approx(-crank.omega[2], rel=2e-5)
-    assert crank.theta[0] == pytest.approx(crank.theta[2], abs=1e-9)
-    assert np.all(np.isfinite(motion.points["C"].velocity))
-
-
-def test_places_alone_have_the_rows_of_the_whole_comparison(truth: FreeTruth, done: Run) -> None:
-    whole = found(truth, done).rows
-    alone = places(truth.beside(done))
-    assert alone
-    assert all(row in whole for row in alone)
-
-
 def test_a_loss_that_goes_on_is_the_drift_and_an_offset_that_swings_is_none() -> None:
     time_s = np.linspace(0.0, 10.0, 10_001)
     swinging = 1e-3 * np.sin(2.0 * np.pi * time_s) ** 2
@@ -191,17 +172,6 @@ def test_a_rod_has_the_momentum_of_its_inertia_about_its_pin_and_keeps_it() -> N
     four = load_scene("fourbar-lecture-1")
     assert kept_about(four) is None
     assert not any(four.gravity_m_s2)
-
-
-def test_a_free_run_is_kept_from_its_start_to_its_end(free_store: Path) -> None:
-    stored = read_store(free_store)
-    for row in stored.cells.itertuples():
-        trace = stored.trace(str(row.key))
-        assert (trace["time_s"][0], trace["time_s"][-1]) == (0.0, pytest.approx(LASTS_S))
-        assert {len(each) for each in trace.values()} == {len(trace["time_s"])}
-        judged = np.max(np.abs(trace["phase"] / trace["growth"]))
-        assert judged == pytest.approx(row.phase_pure, rel=0.05)
-        assert trace["energy"][0] == 0.0
 
 
 END_S = DT_S * STEPS
