@@ -21,7 +21,7 @@ from tests.reports.causes.infected_sheets import CLEAR, FAULTS, SCENES, diagnose
 from tests.worlds import other_kinds
 from tests.worlds.other_kinds import KINDS, PARTS, SAMPLING, scene_of
 from tests.worlds.plantings import PLANTINGS
-from tests.worlds.sheets import Sheet, sheet
+from tests.worlds.sheets import Sheet
 from tests.worlds.tiers import few, slow, slowly
 
 NONE = [name for name, each in PLANTINGS.items() if not each.names]
@@ -48,15 +48,6 @@ def test_a_fault_is_named_with_its_channels(fault: str) -> None:
 def test_nothing_is_made_up(fault: str, scene: str) -> None:
     planted, _ = infected(fault, scene, rows=300)
     assert not causes(planted.case)
-
-
-@pytest.mark.parametrize("scene", ["shaper", "tangent"])
-def test_healthy_logs_of_other_mechanisms_have_no_cause(scene: str) -> None:
-    rng = np.random.default_rng(3)
-    for even in (True, False):
-        planted = sheet(load_scene(scene), rng, rows=300, even=even, noise=0.5)
-        assert not planted.case.out
-        assert not causes(planted.case)
 
 
 @slow("only here are sizes of faults, lengths of logs, limits and noise at random")
@@ -111,7 +102,7 @@ def false(planted: Sheet, fault: str) -> list[str]:
     return [each.text for each in found if each.name not in names and not as_good(each)]
 
 
-@pytest.mark.parametrize("at", few(TURN_ABOUT, TURN_ABOUT[1::7], "the same fault in other kinds"))
+@pytest.mark.parametrize("at", few(TURN_ABOUT, TURN_ABOUT[::7], "the same fault in other kinds"))
 def test_nothing_false_is_told(at: tuple[tuple[str, str], str]) -> None:
     (kind, fault), part = at
     planted = other_kinds.infected(kind, fault, part, "plain", LIMIT)

@@ -1,6 +1,5 @@
 """A cell from run to verdict, alone and in a pool; its rows in frames; how often it solves."""
 
-import math
 import os
 from collections import Counter
 from collections.abc import Callable
@@ -12,18 +11,15 @@ import pytest
 
 from analytic import prepared
 from analytic.kinematics import solve
-from benchmarks.verify_overhead import LINKS, chain
 from models.array import Array
 from models.errors import EngineError, ReachError
-from models.files.reading import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.motion import Motion
 from models.scene import Scene
-from models.scene.laws import Accelerating
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
-from reports.judge.rows import ERROR_COLUMNS, cell_frame, error_frame
+from reports.judge.rows import ERROR_COLUMNS, cell_frame
 from reports.judge.tolerance import FORCES
-from reports.plan.singular import refuse_singular
 from reports.quantities import named
 from reports.quantities.limits import DEFAULTS
 from reports.verify.advised import check_all
@@ -41,19 +37,6 @@ def test_a_tuned_fourbar_shrinks_with_second_order(fourbar: Scene, engine: str) 
     seen = check(of_turns(fourbar, engine, converge=True)).convergence
     assert (seen.trend, seen.unit, len(seen.error)) == ("shrinks", "rad", 3)
     assert seen.order == pytest.approx(2.0, abs=0.3)
-
-
-@BOTH
-@pytest.mark.parametrize(("speed", "acceleration"), [(0.0, -20.0), (10.0, -20.0)])
-def test_a_crank_of_steady_acceleration_is_within_tolerance(
-    fourbar: Scene, engine: str, speed: float, acceleration: float
-) -> None:
-    """From rest, and where it turns round on its way, too."""
-    law = Accelerating(math.pi / 2, speed, acceleration)
-    scene = replace(fourbar, driver=replace(fourbar.driver, law=law))
-    found = check(of_turns(scene, engine, converge=True))
-    assert found.verdict == "within", found.failures
-    assert found.convergence.trend == "shrinks"
 
 
 @pytest.mark.parametrize(("off_s", "trend"), [(2e-11, "at rounding"), (3e-10, "does not shrink")])
@@ -159,29 +142,6 @@ def test_a_cell_that_kills_its_process_costs_only_itself(monkeypatch: pytest.Mon
     assert found.reason == "the engine ended its process (exit code 1)"
 
 
-LIMITED = {"CC102", "CC103", "CC104", "CC105", "CC106", "CC107", "CC108", "CC113", "CC114"}
-
-
-@BOTH
-@pytest.mark.parametrize("name", ["fourbar-lecture-1", "whitworth"])
-def test_an_error_takes_the_same_share_of_its_limit_at_every_step(name: str, engine: str) -> None:
-    shares = []
-    for steps in (180, 1440):
-        found = {f.rule: f for f in check(of_turns(name, engine, steps)).findings}
-        assert all(found[rule].level == "pass" for rule in found.keys() & LIMITED), found
-        shares.append(
-            {
-                n: f.number / f.limit
-                for n, f in found.items()
-                if n in LIMITED and f.number and f.limit
-            }
-        )
-        assert max(shares[-1].values()) < 0.6
-    if engine == "pymunk":  # second order throughout, so the share shows that the budget is too
-        for rule in ("CC103", "CC105", "CC113"):
-            assert shares[1][rule] == pytest.approx(shares[0][rule], rel=0.4)
-
-
 UNLIKE = (
     "fourbar-double-rocker",
     "scotch-yoke",
@@ -218,15 +178,6 @@ def test_a_failure_is_a_row_with_its_reason_and_the_same_columns(slider_crank: S
     assert pd.isna(frame["angular_acceleration_error_rad_s2"][0])
     for name in ("displacement_error_m", "slider_speed_error_m_s", "pin_gap_m", "drive_error_rad"):
         assert frame[name][0] >= 0.0
-
-
-def test_the_long_frame_has_one_row_per_quantity_body_source_and_kind(slider_crank: Scene) -> None:
-    long = error_frame([check(of_turns(slider_crank, converge=True))])
-    key = ["scene", "engine", "profile", "dt_s", "quantity", "body_kind", "body", "source", "kind"]
-    assert not long.duplicated(key).any()
-    gated = long[long["kind"] == "total"]
-    assert (gated["maximum_pure"] <= gated["limit_pure"]).all()
-    assert long.loc[long["kind"] != "total", "limit_pure"].isna().all()
 
 
 FULL = 721
@@ -271,12 +222,3 @@ def test_a_scene_is_prepared_once_and_solved_once_for_each_set_of_instants(
             done = check(of_turns(scene, engine, FULL - 1, converge=True))
             assert not done.convergence.faults
     assert worked == {"prepared": prepared, 1: prepared, FULL: solved}
-
-
-def test_a_long_chain_is_looked_over_in_one_preparation(worked: Counter[object]) -> None:
-    """Its singular positions are looked for in all dyads at once: a look and five zooms."""
-    scene = parse_scene(chain(), "chain")
-    assert len(scene.links) == LINKS - 1
-    refuse_singular(scene, scene.driver.law.period_s)
-    assert worked.pop("prepared") == 1
-    assert worked.total() == 6

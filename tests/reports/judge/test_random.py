@@ -31,7 +31,7 @@ from tests.worlds.turns import of_turns
 
 SEED = 20_261_121
 PARTS, EACH = 20, 50
-HARD_SEED, HARD_PARTS, MOST_OUT = SEED + 1000, 10, 4
+HARD_PARTS, MOST_OUT = 10, 4
 ENGINES = ("mujoco", "pymunk")
 
 
@@ -138,19 +138,9 @@ def shares(seen: Checked) -> dict[str, float]:
 
 @pytest.mark.parametrize("part", in_parts(HARD_PARTS, 2))
 def test_what_five_hundred_heavy_mechanisms_are_told_was_tried(part: int) -> None:
-    texts, count = unfounded(drawn(HARD_SEED + part, EACH, HARD))
+    texts, count = unfounded(drawn(SEED + 1000 + part, EACH, HARD))
     assert not texts, "\n\n".join(texts)
     assert count <= MOST_OUT
-
-
-def test_no_limit_depends_on_the_masses() -> None:
-    (one,) = drawn(HARD_SEED, 1, HARD)
-    links = {
-        n: replace(link, mass_kg=1e3**k * link.mass_kg)
-        for k, (n, link) in enumerate(one.scene.links.items())
-    }
-    heavy = replace(one, scene=replace(one.scene, links=links))
-    assert checked(heavy, "mujoco").limits == checked(one, "mujoco").limits
 
 
 def test_a_slider_may_travel_further_than_all_links_together_are_long() -> None:

@@ -70,16 +70,12 @@ def test_failures_come_first_and_the_verdict_last(rubbing: JudgedModel) -> None:
     places = [*(place(lines, word) for word in order), verdict]
     assert places == sorted(places)
     assert "crankcheck 0.0.0" in "\n".join(lines[verdict:])
-
-
-def test_gains_are_the_error_as_written_over_that_of_a_line(rubbing: JudgedModel) -> None:
+    assert "recommended: within, " in lines[verdict]
+    # Gains are the error as written over that of a line.
     last = rubbing.lines[-1]
     errors = zip(errors_of(rubbing.own), errors_of(last), strict=True)
     assert list(rubbing.gains(last)) == [own / other for own, other in errors]
     assert min(rubbing.gains(last)) > 100
-    assert rubbing.gains(rubbing.own) == (1.0, 1.0, 1.0)
-    assert rubbing.verdict == "out"
-    assert "recommended: within, " in table.verdict_text(rubbing)
 
 
 def test_what_disturbs_is_told_by_kind_and_short(crowded: JudgedModel) -> None:
