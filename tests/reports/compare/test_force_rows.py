@@ -55,15 +55,6 @@ def _with(done: Run, change: Callable[[Forces], Forces]) -> Run:
     return replace(done, motion=replace(done.motion, forces=change(done.motion.forces)))
 
 
-def test_a_number_that_is_missing_later_is_an_error() -> None:
-    def broken(own: Forces) -> Forces:
-        torque = own.torque.copy()
-        torque[200] = np.nan
-        return replace(own, torque=torque)
-
-    assert not _errors(_with(_run("pymunk"), broken)).worst("torque").finite
-
-
 def _late(done: Run, steps: float) -> Errors:
     """With stamps of forces that are so many steps off."""
     by_s = steps * done.dt_s

@@ -238,14 +238,6 @@ def test_a_run_that_did_not_end_well_fails_with_its_reason_and_is_told_one_cure(
     assert (found["CC103"].level, found["CC103"].cure) == ("fail", "")
 
 
-@pytest.mark.parametrize("order", [1.5, 4.0])
-def test_an_error_that_falls_with_a_power_of_dt_shrinks_with_that_order(order: float) -> None:
-    found = halved(*(1e-3 / 2 ** (order * k) for k in range(3)))
-    assert (found.trend, found.words) == ("shrinks", f"order {order:.1f}")
-    assert found.order == pytest.approx(order)
-    assert math.isnan(found.floor)
-
-
 def over(floor: float, error: float) -> list[float]:
     """Errors of second order over a floor."""
     return [floor + error / 4**k for k in range(3)]
@@ -290,7 +282,9 @@ def test_three_errors_have_a_trend_and_a_floor(
         assert halved(*errors).trend in ("levels off", "shrinks", "does not shrink")
 
 
-def test_words_tell_a_floor_and_growth_and_two_steps_are_too_few_for_them() -> None:
+def test_words_tell_an_order_a_floor_and_growth_and_two_steps_are_too_few_for_them() -> None:
+    found = halved(*(1e-3 / 2 ** (1.5 * k) for k in range(3)))
+    assert (found.words, found.order) == ("order 1.5", pytest.approx(1.5))
     assert halved(*over(7.5e-4, 1e-4)).words == "does not shrink: floor 7.5e-04"
     assert halved(1e-6, 2e-6, 4e-6).words == "does not shrink: it grows"
     with pytest.raises(ValueError, match="a floor needs three"):

@@ -152,13 +152,11 @@ SLIDER_CRANK = SceneNames(load_scene("slider-crank-central"))
 
 SAID: dict[tuple[str, str, str], list[str]] = {
     ("rocker", "angle", "rad"): [
-        "rocker.theta_rad", "rocker_theta_rad", "theta_rocker", "rocker", ".MODEL_1.rocker.ANGLE",
-        "rocker.rotation.z", "/model/rocker.theta",
+        "rocker_theta_rad", "theta_rocker", "rocker", ".MODEL_1.rocker.ANGLE", "rocker.rotation.z",
     ],
     ("rocker", "angle", "deg"): [
-        "rocker_deg", "rocker angle [deg]", "Rocker (°)", "rockerAngle_deg", "RockerAngle(deg)",
-        "rocker angle in degrees", "rocker/deg", "rocker angular displacement [deg]",
-        "rocker angle/deg",
+        "rocker_deg", "Rocker (°)", "RockerAngle(deg)", "rocker angle in degrees", "rocker/deg",
+        "rocker angular displacement [deg]",
     ],
     ("rocker", "angular velocity", "rad/s"): [
         "rocker.omega_rad_s", "omega(rocker)", "rocker_rad_s", "rocker.angular_velocity.z",
