@@ -15,11 +15,9 @@ from analytic.kinematics import solve, solve_driven
 from models.files.reading import load_scene
 from reports.causes.cause import Cause
 from reports.causes.find import causes
-from reports.logs.channel import Channel
-from reports.logs.kinds import KINDS as KINDS_OF
 from tests.reports.causes.infected_sheets import CLEAR, FAULTS, SCENES, diagnosed, infected
 from tests.worlds import other_kinds
-from tests.worlds.other_kinds import KINDS, PARTS, SAMPLING, scene_of
+from tests.worlds.other_kinds import KINDS, PARTS, SAMPLING
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import Sheet
 from tests.worlds.tiers import few, slow, slowly
@@ -110,17 +108,6 @@ def test_nothing_false_is_told(at: tuple[tuple[str, str], str]) -> None:
         return  # no turn to be lost in a log of lengths, say
     assert not false(planted, fault)
     assert fault != "healthy" or not planted.case.out
-
-
-def test_a_delay_is_found_though_a_nudge_of_it_takes_the_last_sample_out_of_the_log() -> None:
-    scene = scene_of("parallel links")
-    time_s = np.arange(161) * scene.driver.law.period_s / 400.0
-    channels = {axis: Channel(axis, KINDS_OF["point", axis], "F", "m") for axis in ("x", "y")}
-    whole = Sheet(scene, time_s, channels, {}, dict.fromkeys(channels, 3e-4))
-    plain, delay_s = whole.of(solve(scene, time_s, bound=False)), -2.5 * whole.step_s
-    (cause,) = causes(plain.of(solve(scene, time_s + delay_s, bound=False), ["x"]).case)
-    assert cause.name == "delay"
-    assert cause.correction["delay_s"] == pytest.approx(delay_s, rel=1e-6)
 
 
 @slow("only here is each fault planted at coarse and at few samples")

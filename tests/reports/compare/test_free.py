@@ -66,22 +66,19 @@ def test_a_phase_that_lags_is_told_from_a_linkage_that_is_open(truth: FreeTruth,
     assert raw.maximum / errors.of_motion.sensitivity <= phase.maximum <= raw.maximum
     assert errors.worst("geometry").maximum < 1e-12
     assert errors.departure is None
+    motion = late(truth, 0.0)
+    rocker = motion.links["rocker"]
+    bent = replace(rocker, theta=rocker.theta + 1e-5)
+    opened = found(truth, moved(done, replace(motion, links={**motion.links, "rocker": bent})))
+    geometry = opened.worst("geometry")
+    assert (geometry.body, geometry.maximum) == ("rocker", pytest.approx(1e-5, rel=1e-6))
+    assert opened.worst("phase", kind="raw").maximum < 1e-14
     # Horizons are the times to which a class holds.
     facts = errors.of_motion
     assert (facts.horizon_s(1.0), facts.horizon_s(0.0)) == (DT_S * STEPS, 0.0)
     held = facts.horizon_s(1e-4)
     assert 0.0 < held < DT_S * STEPS
     assert held < facts.horizon_s(2e-4) <= facts.judged_horizon_s(2e-4)
-
-
-def test_a_linkage_that_is_open_is_told_from_a_phase_that_lags(truth: FreeTruth, done: Run) -> None:
-    motion = late(truth, 0.0)
-    rocker = motion.links["rocker"]
-    bent = replace(rocker, theta=rocker.theta + 1e-5)
-    errors = found(truth, moved(done, replace(motion, links={**motion.links, "rocker": bent})))
-    geometry = errors.worst("geometry")
-    assert (geometry.body, geometry.maximum) == ("rocker", pytest.approx(1e-5, rel=1e-6))
-    assert errors.worst("phase", kind="raw").maximum < 1e-14
 
 
 class _Changed:

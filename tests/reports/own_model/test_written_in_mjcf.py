@@ -168,17 +168,6 @@ def test_lines_of_a_public_model_are_as_measured(name: str) -> None:
     assert error_of(account, "recommended") < 2.0 * recommended
 
 
-def test_the_rhombus_touches_the_floor_and_itself_and_passes_change_points() -> None:
-    account = read("rhombus", "drive")
-    told = "\n".join(texts(account))
-    for words in ("floor", "a geom of upper"):
-        assert f"a geom of lower touches {words}" in told
-    for name in ("motor", "position-servo", "velocity-servo"):
-        assert f"actuator {name} acts on joint drive" in told
-    assert "change points of far-corner at driver 90, 270 deg" in account.notes[-1]
-    assert '<flag contact="disable"/>' in account.recommended.patch
-
-
 LEFT, TURNS = "left-pivot", "joint left-pivot would turn from"
 REFUSED: list[tuple[str, str, Mapping[str, object], str]] = [
     ("watt", LEFT, {}, "reaches -76.81 to 3.066 deg"),
