@@ -65,22 +65,6 @@ def test_so_are_those_of_forces_of_steps_and_of_joints_that_are_solved_for() -> 
     assert rules(_judged(log)) == {"CC116"}
 
 
-@pytest.mark.parametrize(
-    ("columns", "factor", "rule"),
-    [
-        (("B_rod_fx_n", "B_rod_fy_n"), -1.0, "CC120"),
-        (("C_slider_normal_n",), -1.0, "CC121"),
-        (("torque_n_m",), 1e3, "CC123"),
-    ],
-)
-def test_a_wrong_sign_or_unit_is_named_by_the_rule_of_its_quantity(
-    frame: pd.DataFrame, columns: tuple[str, ...], factor: float, rule: str
-) -> None:
-    wrong = frame.copy()
-    wrong[list(columns)] *= factor
-    assert rules(_judged(wrong)) - {"CC116"} == {rule}
-
-
 OTHERWISE = {
     "torque_n_m": ("crank torque [N mm]", 1e3),
     "C_slider_normal_n": ("C.normal (kN)", 1e-3),
@@ -98,8 +82,9 @@ def test_other_names_and_units_mean_the_same(frame: pd.DataFrame) -> None:
     found = _judged(other)
     assert found.verdict == "within"
     assert len(found.errors.rows) == len(_judged(frame).errors.rows)
-    other["C.normal (kN)"] *= 1.1
-    assert rules(_judged(other)) == {"CC121", "CC116"}
+    for column, rule in (("C.normal (kN)", "CC121"), ("crank torque [N mm]", "CC123")):
+        wrong = other.assign(**{column: -other[column]})
+        assert rules(_judged(wrong)) - {"CC116"} == {rule}
 
 
 def test_what_is_not_in_the_log_is_not_judged_and_can_be_required(frame: pd.DataFrame) -> None:
