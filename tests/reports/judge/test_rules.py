@@ -284,7 +284,8 @@ def test_three_errors_have_a_trend_and_a_floor(
 
 def test_words_tell_an_order_a_floor_and_growth_and_two_steps_are_too_few_for_them() -> None:
     found = halved(*(1e-3 / 2 ** (1.5 * k) for k in range(3)))
-    assert (found.words, found.order) == ("order 1.5", pytest.approx(1.5))
+    assert found.words == "order 1.5"
+    assert found.order == pytest.approx(1.5)
     assert halved(*over(7.5e-4, 1e-4)).words == "does not shrink: floor 7.5e-04"
     assert halved(1e-6, 2e-6, 4e-6).words == "does not shrink: it grows"
     with pytest.raises(ValueError, match="a floor needs three"):

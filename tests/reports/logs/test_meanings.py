@@ -63,7 +63,9 @@ def test_a_lost_turn_is_an_error_and_no_wrapping_though_the_rest_is_within_one_t
 
 
 ANGLE = {"of": "rocker", "kind": "angle"}
-LATE = {"time_s": TIME_S, "rocker_rad_s": solve(SCENE, TIME_S + 0.002).links["rocker"].omega}
+LATE: dict[str, object] = {
+    "time_s": TIME_S, "rocker_rad_s": solve(SCENE, TIME_S + 0.002).links["rocker"].omega,
+}  # fmt: skip
 READ: dict[str, tuple[dict[str, object], dict[str, object]]] = {
     "wrapped from -180": ({"t": TIME_S, "crank_deg": (CRANK_DEG + 180) % 360 - 180}, {}),
     "wrapped from 0": ({"t": TIME_S, "crank_deg": CRANK_DEG % 360}, {}),
