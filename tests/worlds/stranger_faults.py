@@ -13,7 +13,6 @@ from tests.worlds.stranger import FOURBAR, LINKAGES, Array, Linkage
 from tests.worlds.stranger_log import (
     DEG,
     MM,
-    RPM,
     Column,
     Dress,
     Log,
@@ -122,13 +121,6 @@ def smoothed(log: Log, column: str) -> Log:
     return {**log, column: series}
 
 
-def averaged(log: Log, column: str, rows: int) -> Log:
-    """The mean of so many rows about each; where they are not all there, those that are."""
-    ones = np.ones(rows)
-    number = np.convolve(np.ones(log[column].size), ones, "same")
-    return {**log, column: np.convolve(log[column], ones, "same") / number}
-
-
 def planted(
     scene: str, time_s: Array, columns: Sequence[Column] | None = None
 ) -> dict[str, Callable[[], Planted]]:
@@ -208,22 +200,6 @@ OUR_OWN = named(
     ("rocker_theta_rad", "rocker", "angle", 1.0), ("rocker_omega_rad_s", "rocker", "omega", 1.0),
     ("rocker_alpha_rad_s2", "rocker", "alpha", 1.0), ("C_x_m", "C", "x", 1.0),
     ("C_vx_m_s", "C", "vx", 1.0), ("C_ay_m_s2", "C", "ay", 1.0))  # fmt: skip
-DOTTED = named(
-    ("crank.theta_rad", "crank", "angle", 1.0),
-    ("rocker.theta_rad", "rocker", "angle", 1.0),
-    ("rocker.omega_rad_s", "rocker", "omega", 1.0),
-    ("C.x_mm", "C", "x", MM),
-    ("C.vx_m_s", "C", "vx", 1.0),
-)
-BRACKETS = named(
-    ("crank angle [deg]", "crank", "angle", DEG),
-    ("rocker angle [deg]", "rocker", "angle", DEG),
-    ("Rocker angular velocity [deg/s]", "rocker", "omega", DEG),
-    ("rocker angular acceleration [rad/s^2]", "rocker", "alpha", 1.0),
-    ("C x [mm]", "C", "x", MM),
-    ("C y [mm]", "C", "y", MM),
-    ("crank speed (rpm)", "crank", "omega", RPM),
-)
 SHORT = named(
     ("crank_deg", "crank", "angle", DEG),
     ("rocker_deg", "rocker", "angle", DEG),
@@ -263,18 +239,13 @@ RELATIVE = [
 GERMAN = Dress(separator=";", point=",", newline="\r\n", mark=True, quoted=True)
 GUISES = {
     "our own names": Guise(OUR_OWN),
-    "dots": Guise(DOTTED, ("time_ms", "ms")),
-    "units in brackets": Guise(BRACKETS, ("t [s]", "s"), uneven),
-    "tabs and remarks": Guise(
+    "tabs and remarks in a .txt": Guise(
         SHORT, dress=Dress(separator="\t", comments=("# rig 3", "# 1,2;3", "#"), newline="\r\n"),
-        name="log.tsv"),
-    "tabs in a .txt": Guise(SHORT, dress=Dress(separator="\t"), name="log.txt"),
+        name="log.txt"),
     "a row of units": Guise(
         UNITLESS, ("time", "ms"),
         dress=Dress(separator=";", units=("ms", "deg", "deg", "mm", "m/s"))),
     "decimal commas": Guise(SHORT, dress=GERMAN, file='decimal = ","'),
-    "decimal commas between tabs": Guise(
-        SHORT, dress=Dress(separator="\t", point=","), file='decimal = ","'),
     "names that say nothing": Guise(
         SENSORS, ("Zeit", "us"), uneven, Dress(quoted=True), mapped=True),
     "wrapped": Guise(WRAPPED, times=uneven),
@@ -284,21 +255,3 @@ GUISES = {
     "few digits": Guise(SHORT, ("time_ms", "ms"), dress=Dress(digits=6)),
 }  # fmt: skip
 """Of the four-bar."""
-
-
-def disguised(scene: str) -> Guise:
-    """Degrees and mm, wrapped, at uneven times, angles of joints, rates half a sample late."""
-    linkage = LINKAGES[scene]
-    delay_s = -linkage.period_s / PER_TURN / 2.0
-    bars = list(linkage.bars)
-    columns = []
-    for number, old in enumerate(COLUMNS[scene]):
-        new = replace(old, header=f"signal {number}")
-        if old.what == "angle":
-            turn_from = -180.0 if number % 4 else 0.0
-            parent = bars[bars.index(old.of) - 1] if old.of != linkage.crank else ""
-            new = replace(new, turn_from=turn_from, parent=parent)
-        elif old.what == "omega":
-            new = replace(new, per=DEG if number % 4 == 1 else -RPM, later_s=delay_s)
-        columns.append(new)
-    return Guise(columns, ("clock", "ms"), uneven, mapped=True)

@@ -18,12 +18,10 @@ from models.scene import Scene
 from models.scene.hard import fourbar, slider_crank, slotted_lever
 from reports.compare.branch import departure
 from reports.compare.compare import Beside, Truth
-from reports.compare.errors import Errors, SceneFacts
 from reports.compare.hardness import WINDOW_RAD, conditioning, near
 from reports.judge.cell import Checked, check
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding
-from reports.judge.tolerance import Limit, in_passage, limits
 from sim.run import run
 from tests.worlds.tiers import few, slowly
 from tests.worlds.turns import of_turns
@@ -40,12 +38,11 @@ def edited(name: str, *changes: tuple[str, str]) -> Scene:
 NEARLY_FLAT = ("fourbar-lecture-1", "length_m = 0.1 ", "length_m = 0.1499999999 ")
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
 @pytest.mark.parametrize(
-    ("name", "old", "new", "link", "left_deg"),
+    ("name", "old", "new", "link", "left_deg", "engine"),
     [
-        (*NEARLY_FLAT, "coupler", 181),
-        ("slider-crank-excel-210", "length_m = 2.1", "length_m = 2.0000001", "rod", 90),
+        (*NEARLY_FLAT, "coupler", 181, "pymunk"),
+        ("slider-crank-excel-210", "length_m = 2.1", "length_m = 2.0000001", "rod", 90, "mujoco"),
     ],
 )
 def test_a_run_on_the_other_branch_is_out_and_says_where_it_left(
@@ -62,21 +59,10 @@ def test_a_run_on_the_other_branch_is_out_and_says_where_it_left(
         assert "acceleration of rocker" in finding.text  # pymunk reports none, and is judged by it
 
 
-def yoke_and_rocker() -> Scene:
-    """A Scotch yoke, which has one assembly alone, with a coupler and a rocker on its crank."""
-    more = """
-[links]
-coupler = { bar = ["B", "C"], length_m = 0.25 }
-rocker = { bar = ["D", "C"], length_m = 0.3 }"""
-    ground = ("A = [0.0, 0.0]", "A = [0.0, 0.0], D = [0.2, 0.0]")
-    return edited("scotch-yoke", ground, ("\n[links]", more))
-
-
-@pytest.mark.parametrize("name", ["sixbar-watt", "sixbar-stephenson", "yoke and rocker"])
-def test_a_run_is_found_in_each_of_the_other_assemblies(name: str) -> None:
+def test_a_run_is_found_in_each_of_the_other_assemblies() -> None:
     """Not all of them are looked at: what their first dyads rule out is left out. What is logged of
     the crank does not matter, but that it does not stand elsewhere."""
-    scene = load_scene(name) if name in shipped() else yoke_and_rocker()
+    scene = load_scene("sixbar-watt")
     truth = Truth(scene)
     time_s = np.linspace(0.0, scene.driver.law.period_s, 90)
     shipped_run = run(scene, truth.start, "mujoco", dt_s=float(time_s[1]), steps=89)
@@ -122,12 +108,13 @@ def ran(scene: Scene, engine: str, steps: int, turns: int = 1, **settings: int) 
 WAYS = list(product(SCENES, ["mujoco", "pymunk"]))
 LONG = ("through-pivot", "pymunk")
 """Its 4000 iterations take a second."""
+QUICK = [WAYS[2], WAYS[3], WAYS[5], WAYS[6]]
 
 
 @pytest.mark.parametrize(
     "steps", [360, slowly(720, reason="a finer step, at which some ring more")]
 )
-@pytest.mark.parametrize("way", few(WAYS, [way for way in WAYS if way != LONG], "4000 iterations"))
+@pytest.mark.parametrize("way", few(WAYS, QUICK, "others of both kinds"))
 def test_engines_go_through_change_points_within_limits(way: tuple[str, str], steps: int) -> None:
     name, engine = way
     assert solve(SCENES[name], np.linspace(0.0, 0.7, 50)).crossings
@@ -138,14 +125,8 @@ def test_engines_go_through_change_points_within_limits(way: tuple[str, str], st
     assert found.verdict == "within", found.failures
 
 
-def test_too_few_iterations_do_not_get_through_the_pivot_of_a_lever() -> None:
-    found = ran(SCENES["through-pivot"], "pymunk", 360)
-    assert {"CC110", "CC114"} <= {failure.rule for failure in found.failures}
-
-
-@pytest.mark.parametrize("name", ["parallelogram", "kite"])
-def test_limits_are_those_of_the_motion_away_from_the_change_points(name: str) -> None:
-    found = ran(SCENES[name], "pymunk", 360)
+def test_limits_are_those_of_the_motion_away_from_the_change_points() -> None:
+    found = ran(SCENES["kite"], "pymunk", 360)
     # The sine of both is about that of the angle from the change point, on the worse side.
     assert (
         0.9 * math.sin(WINDOW_RAD) < found.errors.of_scene.conditioning < 1.2 * math.sin(WINDOW_RAD)
@@ -190,35 +171,11 @@ def test_rates_at_change_points_are_rows_of_their_own() -> None:
     assert min(degrees, 180.0 - degrees) < 3.0
 
 
-def test_a_scene_without_change_points_has_no_such_rows_and_the_smallest_sine() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    errors = ran(scene, "pymunk", 360).errors
-    assert {row.kind for row in errors.rows} == {"total", "geometric", "start"}
-    assert not errors.of_scene.starts_in_passage
-    motion = solve(scene, np.linspace(0.0, scene.driver.law.period_s, 361))
-    assert errors.of_scene.conditioning == min(
-        float(np.min(s)) for s in motion.conditioning.values()
-    )
-
-
-@pytest.mark.parametrize("start_deg", [3.0, 170.1])
-@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+@pytest.mark.parametrize(("engine", "start_deg"), [("mujoco", 170.1), ("pymunk", 3.0)])
 def test_a_run_may_start_beside_a_change_point(engine: str, start_deg: float) -> None:
     found = ran(grashof("kite", *KITE, start_deg=start_deg), engine, 720)
     assert found.errors.of_scene.starts_in_passage
     assert found.verdict == "within", found.failures
-
-
-def test_rates_at_change_points_make_good_an_error_of_place_in_one_step() -> None:
-    for step in (0.01, 0.005):
-        errors = Errors((), (), (), SceneFacts(curvature=1.0, conditioning=0.5, step_rad=step))
-        found = limits(SCENES["kite"], errors, {})
-        for name, order in (("velocity", 1), ("acceleration", 2)):
-            wide = in_passage(name, found[name], errors)
-            assert wide.number == pytest.approx(found["angle"].number / step**order)
-            assert "change point" in wide.origin
-        given = Limit(1e-3, "--tol")
-        assert in_passage("velocity", given, errors) is given
 
 
 @pytest.mark.parametrize(("part", "factor"), [("total", 1e4), ("passage", 50.0), ("total", np.nan)])

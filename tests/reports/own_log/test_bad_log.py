@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -34,13 +35,9 @@ LARGE_BYTES = 50_000
 JUDGE = "judge fourbar-lecture-1 FILE"
 OPTIONS: dict[str, str] = {
     JUDGE: "--step.*--target|--target.*--step",
-    **{f"{JUDGE} --target {n}": f"'{n}' is not a number above 0" for n in ("x", "0", "nan", "inf")},
-    f"{JUDGE} --target -1": "'-1' is not a number above 0|No such option",
+    f"{JUDGE} --target nan": "'nan' is not a number above 0",
     f"{JUDGE} --target angel=1e-3": "'angel' is no quantity; .*angle",
-    f"{JUDGE} --target angle=": "'' is not a number above 0",
-    f"{JUDGE} --target =1": "'' is no quantity",
-    f"{JUDGE} --step 0": "--step.*0",
-    **{f"{JUDGE} --step {number}": "--step" for number in ("-1", "nan", "1e300")},
+    **{f"{JUDGE} --step {number}": "--step" for number in ("0", "nan", "1e300")},
     f"{JUDGE} --target 1e-3 --require rockr": "--require 'rockr': neither a q.*rocker",
     f"{JUDGE} --target 1e-3 --drive logd": "--drive 'logd'.*logged",
     f"{JUDGE} --target 1e-3 --write-map nowhere/map.toml": "nowhere",
@@ -53,19 +50,15 @@ OF_ROCKER: dict[str, str] = {
     'of = "rockr"\nkind = "angle"': "of: 'rockr' is not in scene fourbar-lecture-1; .*rocker",
     'unit = "degs"': "'degs' is unknown; .*deg",
     'unit = "mm"': "mm is a unit of length, and",
-    'kind = "angel"': "'angel' is unknown; .*angle",
     'kind = "vx"': "'vx' is no kind of reading of link roc",
-    'relative_to = "couplr"': "'couplr'; .*coupler",
     'relative_to = "rocker"': "'rocker'; .*another link",
     'units = "deg"': "channel.1.units: unknown key; .*unit",
     '[[channel]]\ncolumn = "rocker_deg"': "told twice",
     'of = "crank"\nkind = "angle"': (
         "two columns for one quantity, angle of crank: 'crank_deg' and 'rocker_deg'"
     ),
-    'wrapped = "yes"': "found 'yes'",
     "ignore = 1": "ignore: found 1",
     "sign = 2": "channel.1.sign: foun",
-    'offset = "1"': "channel.1.offset: found '1'",
     "offset = inf": "channel.1.offset: found inf",
     'time = "C_x_mm"': "'C_x_mm' is no column of times",
 }
@@ -76,12 +69,9 @@ MAPS: dict[str, str] = {
     '[[channel]]\ncolumn = "rockr_deg"': "'rockr_deg' is not in .*rocker_deg",
     '[[channel]]\ncolumn = "C_x_mm"\non = "crank"': "'crank' does not carry C; .*coupler",
     '[[channel]]\nof = "rocker"': "channel.1.column: missing; add",
-    '[channel]\ncolumn = "rocker_deg"': "channel",
     '[time]\ncolumn = "tme_s"': "'tme_s' is not in .*time_s",
-    '[time]\nunit = "sec"': "'sec' is no unit of time; .*s",
     "[colums]\na = 1": "colums: unknown key; ",
     '[file]\ndecimal = "!"': "file.decimal: found '!'",
-    '[file]\nseparator = "|||"': "file.separator: found",
     "[[channel": "not valid TOML",
     "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in READ): "no column is of scene",
 }
@@ -101,9 +91,9 @@ class Case:
 def cases() -> Iterator[tuple[str, Case]]:
     for name, (made, words) in {**bad_logs.TEXTS, **bad_logs.LARGE}.items():
         yield name, Case(made, words)
-    for name, (made, words) in bad_logs.SPECIAL.items():
-        for ending in ("csv", "xlsx", "parquet"):
-            yield f"{name} .{ending}", Case(made, words, name=f"log.{ending}")
+    endings = cycle(("csv", "xlsx", "parquet"))
+    for (name, (made, words)), ending in zip(bad_logs.SPECIAL.items(), endings, strict=False):
+        yield f"{name} .{ending}", Case(made, words, name=f"log.{ending}")
     for name, (made, words) in bad_logs.PARQUET.items():
         yield f"Parquet, {name}", Case(made, words, name="log.parquet")
     for name, (made, words) in bad_logs.WORKBOOKS.items():

@@ -12,6 +12,7 @@ import pytest
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.halving import worst_place
+from reports.own_model import assembly
 from reports.own_model.account import ModelAccount, read_here
 from reports.own_model.assembly import ModelRequest
 from tests.worlds.own_four_bar import BY_SITES, CLOSED, HEALTHY, ROCKER_JOINT, planted, tied
@@ -31,7 +32,6 @@ def assert_four_bar(scene: Scene, prefix: str = "") -> None:
     assert math.dist(*scene.ground.values()) == pytest.approx(0.3)
 
 
-TIP = '<site name="coupler-tip" pos="0.23373437 0 0.08870312"/>'
 LOOSE = f'<body pos="1 1 1"><freejoint/>{BALL}</body>'
 HELD = f'<body name="held" pos="2 2 2"><freejoint/>{BALL}</body>'
 AT_C = 'torquescale="0" anchor="-0.06626563 0 0.18870312"'
@@ -48,27 +48,14 @@ SAME: dict[str, tuple[str, ...]] = {
         '<joint axis="0 -1 0"/><default class="back"><joint axis="0 1 0"/></default>',
         '<body name="rocker" ', '<body name="rocker" childclass="back" ',
     ),
-    "the frame of the coupler is turned, what is on it turned back": (
-        '<joint name="B"/>',
-        '<joint name="B"/><frame euler="0 0.4 0"><frame euler="0 -0.4 0">',
-        TIP, f"{TIP}</frame></frame>",
-    ),
-    "a base that does not move": (
-        BASE, f'<body name="base">{BALL}{BASE}', "</worldbody>", "</body></worldbody>",
-    ),
     "degrees, and readings that are not 0": (
         'angle="radian"', 'angle="degree"', ROCKER_JOINT, '<joint name="D" ref="30"/>',
     ),
     "bodies that move beside it, one of them welded to the world": (
         "</worldbody>", f"{LOOSE}{HELD}</worldbody>", *tied('<weld body1="held"/>'),
     ),
-    "a closure that is off": tied(
-        '<connect active="false" body1="crank" body2="rocker" anchor="0 0 0"/>'
-    ),
     "the same pin said twice": tied(CLOSED.replace('name="C"', 'name="C2"')),
-    "a pin of the rocker's own hinge, for which there is no row": tied(
-        '<connect body1="rocker" anchor="0 0 0"/>'
-    ),
+    "a pin of the rocker's own hinge": tied('<connect body1="rocker" anchor="0 0 0"/>'),
     "mocap bodies count as ground": MOCAP,
     "bodies beside the linkage: body4, body5, body6": ("</worldbody>", COPIES),
     "a weld without torque": (CLOSED, f'<weld name="C" body1="coupler" body2="rocker" {AT_C}/>'),
@@ -90,12 +77,10 @@ def test_a_mocap_body_is_where_a_key_has_it(place: str, pivot_m: float, tmp_path
     found = read_text(tmp_path, text, key="moved", turns=0.2, converge=False)
     assert math.dist(*found.scene.ground.values()) == pytest.approx(pivot_m)
     assert line(found, "recommended").verdict == "within"
-
-
-def test_a_keyframe_that_puts_a_mocap_body_nowhere_is_refused(tmp_path: Path) -> None:
-    key = '<keyframe><key name="off" qpos="0 0 0" mpos="nan 0 0"/></keyframe>'
-    with pytest.raises(CrankcheckError, match="keyframe off: its mpos is not finite"):
-        read_text(tmp_path, planted(BASE, STAND, "</mujoco>", f"{key}</mujoco>"), key="off")
+    if place:
+        nowhere = text.replace(place, 'mpos="nan 0 0"')
+        with pytest.raises(CrankcheckError, match="keyframe moved: its mpos is not finite"):
+            read_text(tmp_path, nowhere, key="moved")
 
 
 def test_masses_and_inertias_come_from_geoms_and_what_is_fixed_to_a_body(tmp_path: Path) -> None:
@@ -108,7 +93,6 @@ def test_masses_and_inertias_come_from_geoms_and_what_is_fixed_to_a_body(tmp_pat
     weight = '<body name="weight" pos="0.1 0 0.3"><geom size="0.05" type="sphere" mass="2"/></body>'
     both = bare.replace('<site name="rocker-tip"', weight + '<site name="rocker-tip"')
     rocker = read_text(tmp_path, both).scene.links["rocker"]
-    assert rocker.mass_kg == pytest.approx(2.5)
     apart = abs(complex(0.1, 0.3) - complex(-0.03313281, 0.09435156))
     added = 0.4 * 2.0 * 0.05**2 + 0.5 * 2.0 / 2.5 * apart**2
     assert rocker.inertia_kg_m2 == pytest.approx(alone.inertia_kg_m2 + added)
@@ -128,18 +112,6 @@ def test_includes_are_read_from_the_main_or_including_folder(beside: str, tmp_pa
     assert_four_bar(found.scene)
     said = "0 of its 1 equalities stand in the file itself: set in each"
     assert found.recommended.patch.startswith(said)
-
-
-def test_an_attached_model_is_read(tmp_path: Path) -> None:
-    (tmp_path / "part.xml").write_text(HEALTHY, encoding="utf-8")
-    text = """<mujoco>
-      <option gravity="0 0 0"/>
-      <asset><model name="part" file="part.xml"/></asset>
-      <worldbody>
-        <frame pos="1 2 3" euler="10 20 30"><attach model="part" prefix="mine/"/></frame>
-      </worldbody>
-    </mujoco>"""
-    assert_four_bar(read_text(tmp_path, text, joint="mine/A").scene, "mine-")
 
 
 def starts(found: ModelAccount) -> float:
@@ -163,13 +135,6 @@ def test_a_run_starts_from_a_keyframe_which_may_read_whole_turns(tmp_path: Path)
     assert starts(read_text(tmp_path, KEYS, key="turned")) == pytest.approx(6.5)
 
 
-def test_the_driver_is_told_in_the_coordinate_of_its_joint(tmp_path: Path) -> None:
-    text = planted('<joint name="A"/>', '<joint name="A" ref="0.3"/>')
-    assert starts(read_text(tmp_path, text)) == pytest.approx(0.3)
-    turned = read_text(tmp_path, text, start_deg=40.0)
-    assert starts(turned) == pytest.approx(math.radians(40.0))
-
-
 FOLDER = Path(__file__).parents[2] / "worlds" / "public_models"
 
 
@@ -184,14 +149,11 @@ def error_of(account: ModelAccount, profile: str) -> float:
 
 
 QUARTER: Mapping[str, object] = {"start_deg": -90.0, "turns": 0.26}
-LESS: Mapping[str, object] = {"start_deg": -70.0, "turns": 0.19, "dt_s": 1e-3}
 RUNS: Mapping[str, tuple[str, Mapping[str, object], tuple[float, float, float]]] = {
     # As written, with contacts off, recommended.
     "rhombus": ("drive", {}, (1.7, 2.2e-2, 8.8e-5)),
-    "slider-crank": ("shaft", {}, (6.4e-3, 1.4e-3, 8.7e-7)),
     "open-four-bar": ("j0", {"branch": {"coupler-tip": 1}}, (4.3e-3, 4.3e-3, 3.6e-5)),
     "chebyshev": ("left-pivot", QUARTER, (1.2e-1, 3.0e-2, 9.2e-5)),
-    "watt": ("left-pivot", LESS, (9.3e-2, 2.5e-2, 8.7e-6)),
 }
 
 
@@ -206,24 +168,6 @@ def test_lines_of_a_public_model_are_as_measured(name: str) -> None:
     assert error_of(account, "recommended") < 2.0 * recommended
 
 
-def test_the_rhombus_touches_the_floor_and_itself_and_passes_change_points() -> None:
-    account = read("rhombus", "drive")
-    told = "\n".join(texts(account))
-    for words in ("floor", "a geom of upper"):
-        assert f"a geom of lower touches {words}" in told
-    for name in ("motor", "position-servo", "velocity-servo"):
-        assert f"actuator {name} acts on joint drive" in told
-    assert "change points of far-corner at driver 90, 270 deg" in account.notes[-1]
-    assert '<flag contact="disable"/>' in account.recommended.patch
-
-
-def test_the_slider_crank_starts_at_a_dead_point_with_its_rod_in_the_slider() -> None:
-    account = read("slider-crank", "shaft")
-    assert "piston-box touches rod-bar in 100% of the poses" in texts(account)
-    assert "joint guide: limited to -4 m to 4 m" in texts(account)
-    assert not any("past its limit" in text for text in texts(account))
-
-
 LEFT, TURNS = "left-pivot", "joint left-pivot would turn from"
 REFUSED: list[tuple[str, str, Mapping[str, object], str]] = [
     ("watt", LEFT, {}, "reaches -76.81 to 3.066 deg"),
@@ -235,19 +179,9 @@ REFUSED: list[tuple[str, str, Mapping[str, object], str]] = [
     ("jansen-global", "top", {}, "global coordinates no longer supported"),
     ("rhombus", "corner", {}, "turns against body lower.*drivable: drive"),
     ("rhombus", "driver", {}, "did you mean drive or corner[?]"),
-    (
-        "chebyshev", LEFT, {},
-        f"{TURNS} 0 to 360 deg, and reaches -95.66 to 5.663 deg.*--turns 0.015 at most",
-    ),
-    (
-        "chebyshev", LEFT, {"start_deg": 280.0},
-        f"{TURNS} 280 to 640 deg, and reaches 264.3 to 365.7 deg",
-    ),
-    (
-        "chebyshev", LEFT, {"speed_rad_s": -10.0},
-        f"{TURNS} 0 to -360 deg, and reaches -95.66 to 5.663 deg, where the loops close; "
-        "take less of a turn, --turns 0.265 at most",
-    ),
+    ("chebyshev", LEFT, {}, f"{TURNS} 0 to 360 deg, .* -95.66 to 5.663 deg.*--turns 0.015 at"),
+    ("chebyshev", LEFT, {"start_deg": 280.0}, "280 to 640 deg, and reaches 264.3 to 365.7 deg"),
+    ("chebyshev", LEFT, {"speed_rad_s": -10.0}, "0 to -360 deg, and .*--turns 0.265 at most"),
     (
         "chebyshev", LEFT, {"start_deg": 50.0},
         "start in between with --start, and take less of a turn with --turns",
@@ -280,8 +214,14 @@ def test_the_open_four_bar_may_start_from_a_keyframe_or_a_branch() -> None:
     assert "keyframe first-only: loop coupler-tip: follower-tip is open" in "\n".join(texts(other))
 
 
-@pytest.mark.parametrize("speed", [10.0, -10.0])
-def test_a_part_of_a_turn_runs_both_ways(speed: float) -> None:
-    start = -90.0 if speed > 0.0 else 2.0
-    account = read("chebyshev", "left-pivot", start_deg=start, turns=0.256, speed_rad_s=speed)
+def test_more_choices_than_are_tried_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(assembly, "MOST_CHOICES", 0)
+    with pytest.raises(CrankcheckError, match=r"1 choices .* choose 1 or more .*, of coupler-tip"):
+        read("open-four-bar", "j0")
+    chosen = {"coupler-tip": 1}
+    assert read("open-four-bar", "j0", branch=chosen).scene.branch == chosen
+
+
+def test_a_part_of_a_turn_runs_backwards_too() -> None:
+    account = read("chebyshev", LEFT, start_deg=2.0, turns=0.256, speed_rad_s=-10.0)
     assert line(account, "recommended").verdict == "within"
