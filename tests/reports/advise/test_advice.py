@@ -100,13 +100,13 @@ def test_so_is_one_that_a_study_has_over_the_target_at_finer_steps() -> None:
     assert "Caution: holds with 4 sub-steps" in flat(only.snippet(only.best[0]))
 
 
-@pytest.mark.parametrize("width", [60, 72, 80, 100, 120])
+@pytest.mark.parametrize("width", [60, 76, 100])
 def test_it_fits_the_terminal_whole(width: int) -> None:
     text = printed(advice(), width)
     table = text[: text.index("within 0.001,")]
     assert max(len(line.rstrip()) for line in table.splitlines()) <= width
     assert "\u2026" not in text
-    for part in ("comes", "apart", "none", "over", "1.8e-3", "7.0e-5", "2.0e-2"):
+    for part in ("comes", "apart", "none", "over", "1.8e-3", "7.0e-5", "2.0e-2", " 1.7 "):
         assert part in table
     assert ("of real" in table) is (width >= 76)
 
@@ -130,13 +130,6 @@ def test_the_best_of_each_engine_is_told_with_its_price_and_its_snippet() -> Non
         assert words in flat(text.replace("#", " "))
     assert "takes your own" not in text
     assert "takes your own" in printed(replace(advice(), named=False))  # no scene
-
-
-def test_times_are_told_over_the_cheapest() -> None:
-    lines = printed(advice(noise=0.05)).splitlines()
-    ratio = {n: line.split()[-1] for line in lines for n in EVERY if line.startswith(f"{n}  ")}
-    assert ratio["pymunk no bias"] == ratio["pymunk no bias, 50 iterations"] == "1"
-    assert (ratio["mujoco tuned"], ratio["mujoco RK4"]) == ("1.7", "-")
 
 
 def test_where_nothing_reaches_the_nearest_is_told_and_what_was_luck() -> None:

@@ -72,7 +72,7 @@ def second_order(exact: float) -> Callable[[str, float], float]:
     return lambda name, n: (1.0 if name == SECOND else 0.2) * 1e-3 * (exact / n) ** 2
 
 
-@pytest.mark.parametrize("exact", [0.5, 1.0, 3.0, 4.5, 7.0, 60.0])
+@pytest.mark.parametrize("exact", [0.5, 1.0, 4.5, 60.0])
 def test_finds_the_fewest_sub_steps_of_the_worst_scene(exact: float) -> None:
     found, child = searched(second_order(exact))
     assert found.promise.substeps == max(1, math.ceil(exact))
@@ -83,19 +83,15 @@ def test_finds_the_fewest_sub_steps_of_the_worst_scene(exact: float) -> None:
     assert len(child.asked) == found.runs < 30
 
 
-def test_all_scenes_are_run_for_a_promise_and_at_larger_numbers_too() -> None:
+def test_all_scenes_are_run_for_a_promise_and_else_the_worst_alone() -> None:
     found, child = searched(second_order(4.0))
     assert found.promise is not None
     ran = {(name, n) for name, n, _ in child.asked}
     for n in (1, 4, *found.held_at):
         assert {(FIRST, n), (SECOND, n)} <= ran
     assert {6, 8} <= set(found.held_at)
-
-
-def test_a_scene_that_is_over_the_target_spares_the_runs_of_the_others() -> None:
     _, child = searched(second_order(30.0))
-    over = [n for name, n, _ in child.asked if name == FIRST and 1 < n < 30]
-    assert over == []
+    assert not [n for name, n, _ in child.asked if name == FIRST and 1 < n < 30]
 
 
 def test_luck_is_no_promise_and_settings_that_break_with_more_sub_steps_have_none() -> None:
@@ -146,16 +142,15 @@ def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
         (TriedRun(math.inf, "unsupported", "no such pin"), "unsupported"),
     ],
 )
-def test_a_run_that_no_step_mends_is_the_last(end: TriedRun | Lost, status: str) -> None:
+def test_a_run_that_no_step_mends_is_the_last_and_one_that_comes_apart_is_not(
+    end: TriedRun | Lost, status: str
+) -> None:
     found, child = searched(lambda _, n: end)
     assert len(child.asked) == 1
     assert found.ended.status == status
     assert found.ended.reason
     assert (found.promise, found.nearest, found.held_at) == (None, None, ())
     assert found.at_frame is not None
-
-
-def test_a_run_that_comes_apart_at_the_frame_is_not() -> None:
     apart = TriedRun(math.inf, "diverged", "came apart")
     found, _ = searched(lambda _, n: apart if n < 5 else 1e-3 * (6.0 / n) ** 2)
     assert found.at_frame.seen.status == "diverged"

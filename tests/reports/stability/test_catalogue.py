@@ -18,7 +18,7 @@ from models.scene.laws import Oscillating
 from reports.stability.case import Trial
 from reports.stability.catalogue.change_points import TRIAD_CRANK_M
 from reports.stability.error_series import nearest
-from reports.stability.grading import CATALOGUE, GROUPS, graded
+from reports.stability.grading import CATALOGUE, graded
 from reports.stability.matrix import Graded
 from tests.worlds.command_line import crank_alone, flat
 from tests.worlds.tiers import few, slow
@@ -31,11 +31,6 @@ DRIVEN = [
 ]
 HARDEST = {(name, CATALOGUE[name].values[-1]) for name, _ in DRIVEN}
 MOST_SAMPLES = 20_000
-
-
-def test_every_group_of_the_catalogue_has_cases_of_its_own() -> None:
-    assert len(GROUPS) == 15
-    assert sum(len(cases) for cases in GROUPS.values()) == len(CATALOGUE)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -106,10 +101,6 @@ def test_a_longer_crank_than_the_longest_that_turns_does_not_turn() -> None:
     solve(triad_platform("turns", TRIAD_CRANK_M - 1e-6, source="x"), time_s, bound=False)
     with pytest.raises(ReachError, match="limit position"):
         solve(triad_platform("turns-not", TRIAD_CRANK_M + 1e-6, source="x"), time_s, bound=False)
-
-
-def test_a_triad_that_goes_over_to_another_assembly_is_named() -> None:
-    assert run_of("triad-near-limit", 0.01, profile="as-shipped").outcome == "branch-changed"
 
 
 def test_a_lost_run_of_a_driven_slider_is_told_in_metres_and_drawn() -> None:

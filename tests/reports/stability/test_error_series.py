@@ -1,7 +1,6 @@
 """What of the errors of a run counts, and in which way: of logs that look well at their end and are
 not, of a machine that is let go, and of throws at a toggle."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from benchmarks.toggle import LINES, RandomThrow, Thrown, right_from, threw, throws, told
+from benchmarks.toggle import LINES
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
@@ -230,28 +229,3 @@ def test_a_run_that_ends_too_soon_is_undecided_and_an_open_one_broken(runs: dict
 def test_every_engine_holds_a_margin_of_a_tenth(name: str) -> None:
     for engine, profile in LINES:
         assert graded(CATALOGUE[name], engine, profile, 0.1, draw=False)[0].outcome == "ok"
-
-
-def test_throws_of_the_benchmark_are_told_from_their_truth() -> None:
-    """A small version of `benchmarks/toggle.py`: a throw of which both truths agree."""
-    few = list(throws(1))
-    assert few == list(throws(2))[:1]
-    for throw in few:
-        result = threw(throw)
-        assert result.gets_over == (result.truth == "over")
-        tuned = [result.outcomes[k] for k, (_, profile) in enumerate(LINES) if profile == "tuned"]
-        assert tuned[0] == result.truth
-        assert set(result.outcomes) <= {"over", "back"}
-
-
-def test_the_margin_from_which_all_are_right_ends_at_the_largest_that_is_not() -> None:
-    lengths = (0.2, 0.25, 0.3, 0.5)
-    results = [
-        Thrown(RandomThrow(lengths, margin), margin > 0.0, (came,))
-        for margin, came in ((0.05, "over"), (-2e-3, "back"), (1e-3, "back"), (1e-5, "over"))
-    ]
-    assert right_from(results, 0) == 2e-3
-    assert right_from(results[2:], 0) == math.inf
-    assert told(results, 0).split()[:6] == ["0/0", "1/1", "0/0", "1/2", "1/1", "3"]
-    assert told(results, 0).endswith("over -> back: 1")
-    assert np.isfinite(right_from(results[3:], 0))

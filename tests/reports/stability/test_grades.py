@@ -178,13 +178,6 @@ def test_only_the_values_before_the_first_failure_count_as_held() -> None:
     assert found.holds > found.fails >= 4.0
 
 
-def test_a_line_that_holds_tells_its_worst_error_wherever_it_is() -> None:
-    given = case(1.0, 0.1, 0.01)
-    _, runs = held(given, lambda _: True)
-    uneven = [replace(run, error=e) for run, e in zip(runs, (1e-4, 7e-3, 1e-5), strict=True)]
-    assert "error up to 7e-03" in critical(given, uneven).words
-
-
 def test_a_value_of_0_ends_the_search_where_the_grid_does() -> None:
     found, runs = held(case(1.0, 1e-3, 0.0), lambda v: v > 0.0)
     assert len(runs) == 3

@@ -181,14 +181,3 @@ def test_a_cluster_gives_the_very_same_rows(programs: Start, address: str, tmp_p
     assert ({*here.run_on}, {*there.run_on}) == ({"local"}, {"cluster"})
     names = [name for name in here.columns if name not in BY_CHANCE]
     pd.testing.assert_frame_equal(here[names], there[names], check_exact=True)
-
-
-@slow("Dask takes seconds to import; what it says of itself is to stay unsaid")
-def test_dask_says_nothing_beside_our_line(
-    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(clusters, "ANSWER_S", 0.3)
-    with pytest.raises(CrankcheckError, match="no scheduler answers there") as caught:
-        clusters.connected(nowhere())
-    assert "\n" not in str(caught.value)
-    assert capfd.readouterr() == ("", "")

@@ -12,7 +12,6 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.plan.steps import MOST_SEARCHED
 from reports.sweep.measured import Repeats, measured
 from reports.tune.attempt import (
     DEARER,
@@ -31,7 +30,6 @@ from sim.engine import Settings, SettingValue
 from sim.mujoco.knobs import work
 from sim.mujoco.settings import TUNED
 from tests.reports.tune.conftest import timed
-from tests.worlds.tiers import slowly
 
 SETTINGS: dict[str, SettingValue] = {name: s.value for name, s in TUNED.settings.items()}
 SCENES = ("fourbar-lecture-1", "slider-crank-excel-210")
@@ -69,13 +67,10 @@ def test_the_error_is_the_worst_of_the_scenes_and_the_cost_their_sum(two: Bench)
     assert max(errors(two, math.floor(found.steps_per_turn / 1.03))) > 1e-4, "at a coarser step"
 
 
-@pytest.mark.parametrize(
-    "most", [8000, slowly(MOST_SEARCHED, reason="the floor itself, at steps as fine as users have")]
-)
 def test_settings_with_a_floor_reach_nothing_and_say_how_far_they_are(
-    most: int, two: Bench, monkeypatch: pytest.MonkeyPatch
+    two: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", most)
+    monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 8000)
     soft = {**SETTINGS, "solref_timeconst_steps": 0.0, "solimp_dmin": 0.9, "solimp_dmax": 0.9}
     found = two.attempt(soft, None)
     assert (found.reached, found.error > 1e-4) == (False, True)

@@ -48,11 +48,8 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_one_seed_gives_the_same_in_two_halves(path: Path, whole: tuple[int, str]) -> None:
-    assert told(SMALL) == whole
-    assert told(replace(SMALL, seed=4)) != whole
     told(replace(SMALL, budget=4, output=path))
-    for _ in range(2):
-        assert told(replace(SMALL, output=path)) == whole
+    assert told(replace(SMALL, output=path)) == whole
 
 
 def test_what_is_found_reaches_the_target_no_dearer_than_tuned(whole: tuple[int, str]) -> None:
@@ -127,17 +124,12 @@ def test_nothing_that_reaches_is_told_with_what_is_nearest(monkeypatch: pytest.M
     assert "space.iterations" not in text
 
 
-def test_several_scenes_are_tuned_together() -> None:
+def test_several_scenes_are_tuned_together_and_measured_cost_is_told() -> None:
     scenes = ("fourbar-lecture-1", "slider-crank-excel-210")
-    code, text = told(replace(SMALL, scenes=scenes, target=1e-4, budget=2))
+    code, text = told(replace(SMALL, scenes=scenes, target=1e-4, budget=2, timing=True))
     assert code == 0
     assert text.startswith("fourbar-lecture-1, slider-crank-excel-210, mujoco: error of place")
     assert line(text, "worst in")[0] == "slider-crank-excel-210"
-
-
-def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
-    code, text = told(replace(SMALL, timing=True, budget=1))
-    assert code == 0
     assert line(text, "us per step") == ["1.00", "2.00"]
     assert len(line(text, "ms per turn")) == 2
     assert "cost of a turn, found over profile tuned: " in text
@@ -148,16 +140,11 @@ def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
     ("change", "words"),
     [
         ({"target": 0.0}, "--target 0: give an error of place from 1e-11"),
-        ({"target": float("nan")}, "--target nan"),
-        ({"target": 1.0}, "--target 1"),
         ({"budget": 0}, "--budget 0: give a number of trials"),
         ({"seed": -1}, "--seed -1: give a whole number"),
-        ({"seed": 2**32}, "--seed 4294967296"),
-        ({"turns": 0.0}, "--turns 0: give a number above 0"),
         ({"turns": 1e9}, r"--turns 1e\+09: .* take 12500 turns or less"),
         ({"limit_s": 0.0}, "--limit-s 0"),
         ({"scenes": ()}, "name a scene"),
-        ({"scenes": ("fourbar-lecture-11",)}, "neither a shipped scene nor a file"),
         ({"engine": "mujocko"}, "engine 'mujocko': unknown; did you mean mujoco"),
         ({"output": Path("nowhere/kept.db")}, "there is no folder"),
         ({"target": 1e-4}, "holds a search with target 1e-05; asked was target 0.0001"),
