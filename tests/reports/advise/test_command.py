@@ -67,7 +67,7 @@ def best(content: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return [one for one in content["settings"] if f"{one['engine']} {one['name']}" in names]
 
 
-def test_its_promises_are_held_by_runs_of_both_engines(told: Told) -> None:
+def test_its_promises_are_printed_and_held_by_runs_of_both_engines(told: Told) -> None:
     result, content = told
     assert result.exit_code == 0, result.output
     scenes = [at_speed(load_scene(name), SPEED) for name in content["asked"]["scenes"]]
@@ -87,6 +87,15 @@ def test_its_promises_are_held_by_runs_of_both_engines(told: Told) -> None:
             assert place_error(scene, one, DT_S / n, 5 * TURNS) <= TARGET
             for finer in (n + 1, 2 * n):
                 assert place_error(scene, one, DT_S / finer) <= TARGET
+    text = flat(result.stdout)
+    assert max(len(line.rstrip()) for line in result.stdout.splitlines()) <= 100
+    for one in content["settings"]:
+        assert f"{one['engine']} {one['name']}" in text
+    for one in best(content):
+        assert one["snippet"] in result.stdout
+    assert "37.7 in a turn; error of place up to 0.001 over 3 turns" in text
+    assert "takes your own" in text
+    assert f"mujoco {content['provenance']['mujoco']}" in text
 
 
 def test_a_pasted_snippet_keeps_the_promise(told: Told) -> None:
@@ -100,19 +109,6 @@ def test_a_pasted_snippet_keeps_the_promise(told: Told) -> None:
         assert repr(DT_S / n) in one["snippet"]
         found = BARE[one["engine"]](one["snippet"], round(runs), SPEED)
         assert found <= TARGET, one["snippet"]
-
-
-def test_it_is_printed_for_a_person(told: Told) -> None:
-    result, content = told
-    text = flat(result.stdout)
-    assert max(len(line.rstrip()) for line in result.stdout.splitlines()) <= 100
-    for one in content["settings"]:
-        assert f"{one['engine']} {one['name']}" in text
-    for one in best(content):
-        assert one["snippet"] in result.stdout
-    assert "37.7 in a turn; error of place up to 0.001 over 3 turns" in text
-    assert "takes your own" in text
-    assert f"mujoco {content['provenance']['mujoco']}" in text
 
 
 def test_where_nothing_reaches_the_exit_code_is_1(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,13 +2,13 @@
 
 import os
 import re
-import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
+from filelock import FileLock
 from packaging.version import Version
 
 from models.errors import CrankcheckError
@@ -27,7 +27,6 @@ from reports.history.environments import (
 )
 from reports.history.verification import alone, user_cache
 from reports.workers.signals import Ended, run_child
-from tests.worlds.programs import ROOT
 
 ONE = EngineVersion("mujoco", Version("3.6.0"))
 
@@ -65,7 +64,9 @@ def test_versions_are_taken_once_and_the_oldest_first_and_no_other_text() -> Non
             wanted("mujoco", ["3.6.0", text])
 
 
-def test_uv_makes_the_environment_where_there_is_one_and_pip_elsewhere(tmp_path: Path) -> None:
+def test_uv_makes_the_environment_or_else_pip_and_what_is_not_there_is_an_end(
+    tmp_path: Path,
+) -> None:
     env, python = str(tmp_path / "env"), str(python_of(tmp_path / "env"))
     make, install = commands("/bin/uv", tmp_path / "env", ONE, tmp_path / "held.txt")
     assert (make[:2], make[-1]) == (["/bin/uv", "venv"], env)
@@ -75,9 +76,12 @@ def test_uv_makes_the_environment_where_there_is_one_and_pip_elsewhere(tmp_path:
     make, install = commands(None, tmp_path / "env", ONE, tmp_path / "held.txt")
     assert make == [sys.executable, "-m", "venv", env]
     assert (install[:4], install[-1]) == ([python, "-m", "pip", "install"], "mujoco==3.6.0")
+    ended = run_child([str(tmp_path / "none")], os.environ)
+    assert ended.code
+    assert "none: No such file" in ended.complaint
 
 
-def test_a_complete_environment_is_not_made_again_and_a_killed_install_is(tmp_path: Path) -> None:
+def test_only_a_complete_environment_of_the_version_is_kept(tmp_path: Path) -> None:
     installer = FakeInstaller()
     first = ready(tmp_path, ONE, None, installer)
     assert ready(tmp_path, ONE, None, installer) == first
@@ -87,17 +91,13 @@ def test_a_complete_environment_is_not_made_again_and_a_killed_install_is(tmp_pa
     ready(tmp_path, ONE, None, installer)
     assert installer.installs == 2
     assert not (place(tmp_path, ONE) / "half").exists()
-
-
-def test_a_failed_install_leaves_nothing_and_one_that_finds_another_version_is_refused(
-    tmp_path: Path,
-) -> None:
+    other = tmp_path / "other"
     with pytest.raises(NotMeasuredError, match="not installed: no space left"):
-        ready(tmp_path, ONE, None, FakeInstaller(fails="ERROR: no space left"))
-    assert not place(tmp_path, ONE).exists()
+        ready(other, ONE, None, FakeInstaller(fails="ERROR: no space left"))
+    assert not place(other, ONE).exists()
     with pytest.raises(NotMeasuredError, match=r"finds 4\.0\.0 in place of 3\.6\.0"):
-        ready(tmp_path, ONE, None, FakeInstaller(finds="4.0.0"))
-    assert not (place(tmp_path, ONE) / COMPLETE).exists()
+        ready(other, ONE, None, FakeInstaller(finds="4.0.0"))
+    assert not (place(other, ONE) / COMPLETE).exists()
 
 
 def test_another_version_numpy_or_python_has_another_environment(
@@ -194,12 +194,6 @@ def test_the_reason_is_one_line_that_names_no_host(output: str, parts: list[str]
     assert not re.search("example|secret|https?:|/simple|file:", told)
 
 
-def test_a_program_that_is_not_there_is_an_end_with_a_reason(tmp_path: Path) -> None:
-    ended = run_child([str(tmp_path / "none")], os.environ)
-    assert ended.code
-    assert "none: No such file" in ended.complaint
-
-
 @pytest.mark.parametrize(
     ("platform", "env", "ending"),
     [
@@ -215,29 +209,14 @@ def test_the_cache_is_where_caches_are(platform: str, env: dict[str, str], endin
     assert str(user_cache(platform, env)).endswith(ending)
 
 
-HOLDER = """
-import sys, time
-from pathlib import Path
-from reports.history.verification import alone
-with alone(Path(sys.argv[1]), lambda: None):
-    print("in", flush=True)
-    sys.stdin.read()
-    time.sleep(0.2)  # who does not wait is in before
-    Path(sys.argv[2]).touch()
-"""
+def test_who_comes_second_waits_and_says_so(tmp_path: Path) -> None:
+    (tmp_path / "locks").mkdir()
+    first, told = FileLock(tmp_path / "locks" / "one.lock"), []
 
+    def told_to_wait() -> None:
+        told.append("waiting")
+        first.release()
 
-def test_a_second_process_waits_and_says_so(tmp_path: Path) -> None:
-    lock, leaving, told = tmp_path / "locks" / "one.lock", tmp_path / "leaving", []
-    command = [sys.executable, "-c", HOLDER, str(lock), str(leaving)]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    with subprocess.Popen(command, env=os.environ | {"PYTHONPATH": str(ROOT)}, **pipes) as holder:
-        assert holder.stdout.readline().strip() == b"in"
-
-        def told_to_wait() -> None:
-            told.append("waiting")
-            holder.stdin.close()
-
-        with alone(lock, told_to_wait):
-            assert leaving.exists()
+    with first, alone(tmp_path / "locks" / "one.lock", told_to_wait):
+        assert not first.is_locked
     assert told == ["waiting"]

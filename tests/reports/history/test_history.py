@@ -21,7 +21,6 @@ from reports.workers.signals import Ended
 from tests.worlds.command import shadows
 from tests.worlds.command_line import flat
 from tests.worlds.fake_installer import fake_installer
-from tests.worlds.tiers import slow
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="the installer is a POSIX script")
 
@@ -30,7 +29,6 @@ SCENE = "fourbar-lecture-1"
 
 @pytest.fixture(scope="module")
 def installer(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a command `uv` that needs no network, and the log of its calls."""
     return fake_installer(tmp_path_factory.mktemp("installer"))
 
 
@@ -61,9 +59,8 @@ def history(installer: Path, monkeypatch: pytest.MonkeyPatch) -> History:
 def test_versions_are_installed_run_and_kept(
     history: History, installer: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In a folder whose packages have our names, which change nothing."""
     cache, log = installer / "cache", installer / "log"
-    monkeypatch.chdir(shadows(tmp_path / "mine"))
+    monkeypatch.chdir(shadows(tmp_path / "mine"))  # packages of our names, which change nothing
     shutil.rmtree(cache / "history", ignore_errors=True)
     log.unlink(missing_ok=True)
     code, output, complaint = history("3.7.0", "9.9.9", folder=tmp_path / "out")
@@ -140,36 +137,24 @@ def test_two_versions_are_compared(history: History, measured: list[Path], tmp_p
     assert "## 3.7.0 against 3.6.0" in (tmp_path / "out" / "history.md").read_text()
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        {"turns": 2.0},
-        {"profiles": ["tuned"]},
-        {"scenes": ["shaper"]},
-        {"dt_s": 2e-3, "steps_per_turn": None},
-    ],
-)
-def test_another_request_is_not_answered_from_the_cache(
-    history: History, measured: list[Path], tmp_path: Path, other: dict[str, object]
+def test_another_request_or_text_of_a_scene_is_not_answered_from_the_cache(
+    history: History, measured: list[Path], tmp_path: Path
 ) -> None:
     for _ in range(2):
         assert history("3.7.0", cache=tmp_path)[0] == 0
     assert len(measured) == 1
-    assert "kept from before" not in history("3.7.0", cache=tmp_path, **other)[1]
-    assert len(measured) == 2
-
-
-def test_another_text_of_a_scene_is_not_answered_from_the_cache(
-    history: History, measured: list[Path], tmp_path: Path
-) -> None:
+    by_time = {"dt_s": 2e-3, "steps_per_turn": None}
+    for other in ({"turns": 2.0}, {"profiles": ["tuned"]}, {"scenes": ["shaper"]}, by_time):
+        assert "kept from before" not in history("3.7.0", cache=tmp_path, **other)[1]
+    assert len(measured) == 5
     path, text = tmp_path / "mine.toml", shipped()[SCENE].read_text(encoding="utf-8")
     bar = 'bar = ["B", "C"], length_m = 0.25'
     longer = text.replace("length_m = 0.25", "length_m = 0.26")
     said_otherwise = text.replace(bar, "points = { B = [0.0, 0.0], C = [0.25, 0.0] }")
     for content, count in ((text, 1), (f"{text}# a word", 1), (longer, 2), (said_otherwise, 3)):
         path.write_text(content, encoding="utf-8")
-        history("3.7.0", scenes=[str(path)], cache=tmp_path)
-        assert len(measured) == count
+        history("3.7.0", scenes=[str(path)], cache=tmp_path / "texts")
+        assert len(measured) == 5 + count
 
 
 def test_another_code_has_another_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -213,25 +198,3 @@ def test_a_mistake_is_told_before_anything_is_installed(
             history(*versions.split(), **options)
     with pytest.raises(CrankcheckError, match="did you mean mujoco"):
         HistoryRequest("mujocco", ["3.6.0"]).run(Console(), Console())
-
-
-@slow("real versions, which are fetched and installed")
-def test_mujoco_3_7_closes_moving_loops_better_than_3_6(tmp_path: Path) -> None:
-    """The velocity term of moving loop constraints that 3.7.0 added; needs the network."""
-    output, complaint = io.StringIO(), io.StringIO()
-    folders = {"cache": tmp_path / "cache", "folder": tmp_path}
-    request = HistoryRequest("mujoco", ["3.6.0", "3.7.0"], **folders)
-    code = request.run(Console(file=output, width=100), Console(file=complaint))
-    assert (code, complaint.getvalue()) == (0, "")
-    with (tmp_path / "history.csv").open(encoding="utf-8") as lines:
-        better = {
-            row["scene"]: float(row["times_better"])
-            for row in csv.DictReader(lines)
-            if (row["version"], row["profile"]) == ("3.7.0", "as-shipped")
-            if row["quantity"] == "pin gap"
-        }
-    assert better[SCENE] > 5.0
-    text = flat(output.getvalue())
-    assert "3.7.0 is better than 3.6.0 by" in text
-    assert "on the pin gap of" in text
-    assert "3.7.0 is within tolerance where 3.6.0 was out of it" in text

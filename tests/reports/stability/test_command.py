@@ -34,7 +34,9 @@ def stored(folder: Path) -> Result:
     return crank_alone(*args, "-o", folder, "--jobs", 1)
 
 
-def test_the_matrix_is_printed_with_critical_values(stored: Result, folder: Path) -> None:
+def test_the_matrix_is_printed_and_each_run_stored_with_its_command_and_failures_with_pictures(
+    stored: Result, folder: Path
+) -> None:
     assert stored.exit_code == 0, stored.output
     told = flat(stored.stdout)
     assert told.endswith(f"{folder}: stability.json, stability.csv, stability.html")
@@ -43,11 +45,6 @@ def test_the_matrix_is_printed_with_critical_values(stored: Result, folder: Path
     assert "crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE" in told
     assert "mujoco 4" in told
     assert max(map(len, stored.stdout.splitlines())) <= 100
-
-
-def test_every_run_is_stored_with_the_command_that_repeats_it_and_failures_with_pictures(
-    stored: Result, folder: Path
-) -> None:
     rows = pd.read_csv(folder / "stability.csv")
     assert len(rows) == len(read_matrix(folder).runs) > 10
     lost = rows[(rows["case"] == "grashof-excess") & (rows["outcome"] != "ok")].iloc[-1]
@@ -69,13 +66,12 @@ def test_every_run_is_stored_with_the_command_that_repeats_it_and_failures_with_
     assert json.loads((folder / "stability.json").read_text(encoding="utf-8"))["format"] == 1
 
 
-def test_a_second_run_takes_the_place_of_the_first(tmp_path: Path) -> None:
+def test_a_second_run_takes_the_place_of_the_first_but_never_of_more_cases(
+    tmp_path: Path, stored: Result, folder: Path
+) -> None:
     for _ in range(2):
         assert crank_alone(*PYMUNK, "-o", tmp_path, "--jobs", 1).exit_code == 0
     assert {run.engine for run in read_matrix(tmp_path).runs} == {"pymunk"}
-
-
-def test_a_few_cases_never_take_the_place_of_a_matrix_of_more(stored: Result, folder: Path) -> None:
     before = (folder / "stability.json").read_bytes()
     refused(crank(*PYMUNK, "-o", folder), "holds a matrix with 1 case not run now")
     assert (folder / "stability.json").read_bytes() == before
@@ -107,40 +103,27 @@ def test_a_mistake_ends_with_2_and_says_what_would_work(args: list[str], parts: 
     refused(crank_alone(*args), *parts)
 
 
-LONG = ("stability", "long-fourbar", "--engine", "pymunk", "--at", "1e4", "--profile")
+def test_what_comes_of_a_lost_run() -> None:
+    line = "stability long-fourbar --engine pymunk --at 1e4 --profile as-shipped --limit-s 0.05"
+
+    def late(child: Here[object], *_: object) -> Lost:
+        return Lost("timeout", f"no end within {child.limits.time_s:g} s")
+
+    def at_fault(*_: object) -> Lost:
+        return Lost("crashed", "", CrankcheckError("no"))
+
+    for call, code, words in (
+        (late, 1, "crashed no end within 0.05 s"),
+        (at_fault, 2, "case long-fourbar at 10000: no"),
+    ):
+        with in_this_process() as patch:
+            patch.setattr(Here, "call", call)
+            result = crank(*line.split())
+        assert result.exit_code == code, result.output
+        assert words in flat(result.output)
 
 
-@pytest.mark.parametrize(
-    ("call", "code", "words"),
-    [
-        (
-            lambda child, *_: Lost("timeout", f"no end within {child.limits.time_s:g} s"),
-            *(1, "crashed no end within 0.05 s"),
-        ),
-        (
-            lambda *_: Lost("crashed", "", CrankcheckError("no such step")),
-            *(2, "case long-fourbar at 10000: no such step"),
-        ),
-    ],
-)
-def test_what_comes_of_a_lost_run(call: Callable[..., Lost], code: int, words: str) -> None:
-    with in_this_process() as patch:
-        patch.setattr(Here, "call", call)
-        result = crank(*LONG, "as-shipped", "--limit-s", 0.05)
-    assert result.exit_code == code, result.output
-    assert words in flat(result.output)
-
-
-def test_the_report_of_a_folder_is_its_page(stored: Result, folder: Path, tmp_path: Path) -> None:
-    made = crank("report", folder, "-o", tmp_path / "page.html")
-    assert made.exit_code == 0, made.output
-    assert "runs of hard cases" in flat(made.stdout)
-    page = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert page == (folder / "stability.html").read_text(encoding="utf-8")
-    assert crank("report", folder, "--format", "md").exit_code == 2
-
-
-def test_the_report_of_a_sweep_has_the_hard_cases_beside_it_or_says_that_they_are_damaged(
+def test_a_report_is_of_the_folder_or_of_a_sweep_with_the_hard_cases_beside_it_or_damaged(
     stored: Result, folder: Path, tmp_path: Path
 ) -> None:
     store, page = tmp_path / "store", tmp_path / "page.html"
@@ -157,6 +140,11 @@ def test_the_report_of_a_sweep_has_the_hard_cases_beside_it_or_says_that_they_ar
     assert told.exit_code == 0
     assert "stability.json: can not be read" in flat(told.stderr)
     assert "Nearly a parallelogram" not in page.read_text(encoding="utf-8")
+    made = crank("report", folder, "-o", page)
+    assert made.exit_code == 0, made.output
+    assert "runs of hard cases" in flat(made.stdout)
+    assert page.read_bytes() == (folder / "stability.html").read_bytes()
+    assert crank("report", folder, "--format", "md").exit_code == 2
 
 
 @pytest.fixture(scope="module")
@@ -204,7 +192,6 @@ def other(text: str, **changed: object) -> str:
         lambda text: text.replace('"branch-changed"', '"gone"'),
         lambda text: edited(text, "runs", error="abc"),
         lambda text: edited(text, "cases", labels=["0.01"]),
-        lambda text: edited(text, "pictures", drawing=3),
         lambda text: other(text, runs=5),
         lambda text: other(text, runs=["a"]),
     ],

@@ -48,7 +48,6 @@ def _at(folder: Path, relative: str) -> Path:
 
 
 def spoiled(relative: str, change: Callable[[bytes], bytes]) -> Change:
-    """Change the bytes of a file."""
     return lambda f: _at(f, relative).write_bytes(change(_at(f, relative).read_bytes()))
 
 
@@ -77,7 +76,6 @@ def renamed(said: dict[str, Any]) -> None:
 
 
 def gone(*tables: str) -> Change:
-    """Remove the first part from some tables."""
     return lambda folder: [first(folder, table).unlink() for table in tables]
 
 
@@ -105,7 +103,6 @@ def of_another_store(folder: Path) -> None:
 
 
 def in_place(relative: str, make: Change) -> Change:
-    """Put something else where a file or folder is."""
 
     def change(folder: Path) -> None:
         path = _at(folder, relative)
@@ -153,12 +150,10 @@ CASES = {
     "no manifest": Case(lambda f: (f / MANIFEST).unlink(), "json: not there", 0),
     "other manifest": Case(manifest(renamed), "manifest.json: not as it was written", 0),
     "plain manifest": Case(manifest(lambda said: said.pop("seal")), "checksum differs", 0),
-    "listed": Case(spoiled(MANIFEST, lambda _: b"[]"), "a list", 0),
     "newer": Case(
         manifest(lambda said: said.update(format=9)), "format 9, written by crankcheck", 0, "anew"
     ),
     "notes": Case(lambda f: text(f / "notes.txt"), "notes.txt: not of", cure="nothing"),
-    "folder": Case(in_place(PART, Path.mkdir), "parquet: a folder; 2 cells", 2),
     "pipe": Case(in_place(PART, os.mkfifo), "a pipe, no plain file; 2 cells", 2),
     "manifest too large": Case(
         in_place(MANIFEST, huge), f"{MOST_BYTES + 1} bytes; at most {MOST_BYTES} are", 0

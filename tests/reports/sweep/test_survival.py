@@ -7,17 +7,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import psutil
 import pytest
 from filelock import FileLock
 
-from reports.store.reader import Stored, read_store, stored_keys
+from reports.store.reader import read_store, stored_keys
 from reports.sweep import measured as measuring
 from reports.sweep.measured import MeasuredCell
 from reports.workers.signals import Stopped
 from tests.reports.store.test_damage import same
 from tests.worlds.command import PYTHON, script
-from tests.worlds.command_line import crank, crank_alone, refused
+from tests.worlds.command_line import crank, refused
 from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start, until
 
@@ -67,19 +68,10 @@ def counted(folder: Path, *options: str) -> tuple[int, ...]:
 
 
 def times(_: object, cells: Sequence[object], *__: object) -> list[object]:
-    """In place of a clock."""
     return [((3.0, 2.0), (2.5, 2.25))] * len(cells)
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Stored:
-    """The same sweep, never disturbed."""
-    folder = tmp_path_factory.mktemp("whole") / "store"
-    assert counted(folder, "--no-timing") == (NUMBER, NUMBER, 0, 0)
-    return read_store(folder)
-
-
-def test_a_killed_sweep_goes_on(programs: Start, whole: Stored, tmp_path: Path) -> None:
+def test_a_killed_sweep_goes_on(programs: Start, tmp_path: Path) -> None:
     folder, there = tmp_path / "store", 2
     (tmp_path / "run.py").write_text(PROGRAM)
     options = (*GRID, *STEPS, "--no-timing", "-o", "store")
@@ -89,7 +81,8 @@ def test_a_killed_sweep_goes_on(programs: Start, whole: Stored, tmp_path: Path) 
     assert len(stored_keys(folder, "cells")) == there
     assert list(folder.glob("cells/.*.tmp"))
     assert counted(folder, "--no-timing") == (NUMBER, NUMBER - there, there, 0)
-    same(read_store(folder), whole, "run_on")
+    assert counted(tmp_path / "whole", "--no-timing") == (NUMBER, NUMBER, 0, 0)
+    same(read_store(folder), read_store(tmp_path / "whole"), "run_on")
     assert not list(folder.glob("cells/.*.tmp"))
     pids = [int(pid) for pid in (tmp_path / "children").read_text().split()]
     assert pids
@@ -99,44 +92,41 @@ def test_a_killed_sweep_goes_on(programs: Start, whole: Stored, tmp_path: Path) 
     assert {path: path.stat().st_mtime_ns for path in folder.glob("*/*.parquet")} == parts
 
 
-def test_ctrl_c_keeps_the_timings_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    blocks: list[int] = []
+def test_ctrl_c_keeps_the_cells_and_the_timings_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real, cells, blocks = measuring.measured, [], []
+    monkeypatch.setattr("reports.sweep.running.BLOCK", 3)
 
-    def second_stops(isolated: object, cells: Sequence[object], rounds: int, _: object) -> object:
+    def third_stops(*arguments: Any) -> MeasuredCell:
+        cells.append(arguments)
+        if len(cells) == 3:
+            raise Stopped(signal.SIGINT)
+        return real(*arguments)
+
+    def second_stops(isolated: object, block: Sequence[object], rounds: int, _: object) -> object:
         assert rounds == 6
-        blocks.append(len(cells))
+        blocks.append(len(block))
         if len(blocks) == 2:
             raise Stopped(signal.SIGINT)
-        return times(isolated, cells)
+        return times(isolated, block)
 
-    monkeypatch.setattr("reports.sweep.running.BLOCK", 3)
-    with in_this_process() as patch:
-        patch.setattr("reports.sweep.measured.timed_in_turns", second_stops)
-        done = crank("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
-    assert (done.exit_code, done.stderr.splitlines()[-2:]) == (130, KEPT)
-    assert blocks == [3, 3]
-    timed = read_store(tmp_path / "store").cells.dropna(subset="us_per_step")
+    def stopped() -> pd.DataFrame:
+        with in_this_process() as patch:
+            patch.setattr("reports.sweep.measured.measured", third_stops)
+            patch.setattr("reports.sweep.measured.timed_in_turns", second_stops)
+            done = crank("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
+        assert (done.exit_code, done.stderr.splitlines()[-2:]) == (130, KEPT)
+        return read_store(tmp_path / "store").cells
+
+    assert (len(stopped()), blocks) == (2, [])
+    count = len(cells)
+    timed = stopped().dropna(subset="us_per_step")
+    assert (len(cells) - count, blocks) == (NUMBER - 2, [3, 3])
     us = timed[["us_per_step", "us_per_step_a", "us_per_step_b", "us_per_step_median"]]
     assert us.to_numpy().tolist() == [[2.0, 2.0, 2.25, 2.375]] * 3
     assert list(timed.s_per_turn) == pytest.approx(list(2e-6 * timed.steps_per_turn))
     assert counted(tmp_path / "store") == (NUMBER, 0, NUMBER, NUMBER - 3)
-
-
-def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real, calls = measuring.measured, []
-
-    def third_stops(*arguments: Any) -> MeasuredCell:
-        calls.append(arguments)
-        if len(calls) == 3:
-            raise Stopped(signal.SIGINT)
-        return real(*arguments)
-
-    monkeypatch.setattr(measuring, "measured", third_stops)
-    done = crank_alone("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
-    assert (done.exit_code, done.stderr.splitlines()[-2:]) == (130, KEPT)
-    assert len(read_store(tmp_path / "store").cells) == 2
-    monkeypatch.setattr(measuring, "measured", real)
-    assert counted(tmp_path / "store") == (NUMBER, NUMBER - 2, 2, NUMBER)
     assert not read_store(tmp_path / "store").cells.key.duplicated().any()
 
 

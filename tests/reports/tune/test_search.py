@@ -104,13 +104,20 @@ def test_the_search_beats_as_many_guesses_and_leaves_what_is_cheap_and_misses() 
     assert kinds.count("fast") > 2 * kinds.count("wrong")
 
 
-def test_every_attempt_is_told_the_best_so_far() -> None:
+def test_every_attempt_is_told_the_best_so_far_which_is_none_where_nothing_reaches() -> None:
     done(attempt=(called := Called()))
     first, *later = called.bests
     assert first is None
     told = [best.cost_us for best in later]
     assert told == sorted(told, reverse=True)
     assert told[-1] < told[0]
+
+    def never(settings: Settings, best: Attempt | None) -> Attempt:
+        assert best is None
+        far = 2.0 + float(settings["stiffness"])
+        return replace(known(settings, best), steps_per_turn=None, error=far)
+
+    assert best_of(done(attempt=never)) is None
 
 
 def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(path: Path) -> None:
@@ -120,41 +127,19 @@ def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(path: Pat
         states = [trial.state for trial in study.trials]
         assert states == [TrialState.COMPLETE] * 7 + [TrialState.FAIL]
         found = search(study, plan(), called := Called())
+        assert search(study, plan(4), Called(stop=0)) == found  # a smaller budget runs nothing
+    own = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
+    assert own.best_value == best_of(found).cost_us
     whole = done()
     assert found == whole
     assert len(called.settings) == sum(a.runs > 0 for a in whole) - 7
 
 
-def test_a_larger_budget_begins_with_trials_of_a_smaller_one_which_optuna_reads(path: Path) -> None:
-    for budget in (2, 6):
-        with study_in(path, {}) as study:
-            found = search(study, plan(budget), known)
-            assert len(found) == budget
-    assert found == done(6)
-    with study_in(path, {}) as study:
-        assert search(study, plan(2), Called(stop=0)) == found
-    own = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
-    assert own.best_value == best_of(found).cost_us
-    assert {t.state for t in own.trials} == {TrialState.COMPLETE}
-
-
-def test_nothing_is_the_best_where_nothing_reaches() -> None:
-    def never(settings: Settings, best: Attempt | None) -> Attempt:
-        assert best is None
-        far = 2.0 + float(settings["stiffness"])
-        return replace(known(settings, best), steps_per_turn=None, error=far)
-
-    assert best_of(done(attempt=never)) is None
-
-
-def test_what_gains_nothing_is_set_back_to_the_profile() -> None:
+def test_what_gains_nothing_is_set_back_and_many_small_losses_do_not_add_up() -> None:
     best = known({**PROFILE, "kind": "fast", "idle": 5, "stiffness": 23.0}, None)
     found, tried = plainer(SPACE, known(PROFILE, None), best, known)
     assert found.settings == {**PROFILE, "kind": "fast", "stiffness": 23.0}
     assert len(tried) == 3
-
-
-def test_many_small_losses_do_not_add_up_when_set_back() -> None:
     knobs = tuple(Knob(f"k{i}", (0, 1)) for i in range(4))
     profile = dict.fromkeys((k.name for k in knobs), 0)
 
@@ -210,7 +195,7 @@ def test_settings_are_not_tried_twice_in_a_search_and_progress_is_told_of_each_t
 ASKED = {"engine": "mujoco", "target": 1e-6, "profile": {"iterations": 2}}
 
 
-def test_a_study_is_gone_on_with_where_all_is_as_before(path: Path) -> None:
+def test_a_study_is_gone_on_with_where_all_is_as_before_and_else_refused(path: Path) -> None:
     path.touch()  # an empty file is taken, and one of another ending is not
     with pytest.raises(CrankcheckError, match=r"found '\.txt'; use \.db"):
         check_storage(path.with_suffix(".txt"))
@@ -221,11 +206,6 @@ def test_a_study_is_gone_on_with_where_all_is_as_before(path: Path) -> None:
     with study_in(path, ASKED) as study:
         assert len(study.trials) == 1
     assert sorted(each.name for each in path.parent.iterdir()) == [".kept.db.lock", "kept.db"]
-
-
-def test_another_search_is_refused_and_what_differs_is_named(path: Path) -> None:
-    with study_in(path, ASKED):
-        pass
     for name, value, words in (
         ("target", 1e-4, "holds a search with target 1e-06; asked was target 0.0001"),
         ("profile", {"iterations": 3}, 'with profile {"iterations": 2}; asked was profile {"it'),
