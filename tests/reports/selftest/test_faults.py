@@ -169,9 +169,10 @@ THERE = [
 
 
 @pytest.mark.parametrize(
-    ("name", "engine"), few(THERE, THERE[::4], "the same rule, of another fault or engine")
+    "case", few(THERE, THERE[::4], "the same rule, of another fault or engine")
 )
-def test_a_fault_in_a_run_through_change_points_fails_its_rule(name: str, engine: str) -> None:
+def test_a_fault_in_a_run_through_change_points_fails_its_rule(case: tuple[str, str]) -> None:
+    name, engine = case
     place = trial._place(FAULTS[name], PARALLELOGRAM, engine, trial.STEPS, search=False)
     assert place.finding is not None, place.failed
     assert not place.false

@@ -110,13 +110,16 @@ def test_no_cluster_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None
         clusters.connected("tcp://there:1")
 
 
+MISSING = {"version": None, "status": "unsupported", "reason": "engine pymunk: not installed"}
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         ({}, ""),
         ({"version": "0.1"}, "a worker has pymunk 0.1, here it is "),
         ({"crankcheck": "0.1"}, "a worker has crankcheck 0.1, here it is "),
-        ({"version": None, "status": "unsupported"}, r"a worker has no pymunk; install pymunk==\d"),
+        (MISSING, r"a worker has no pymunk; install pymunk==\d"),
     ],
 )
 def test_workers_with_other_packages_are_refused(
