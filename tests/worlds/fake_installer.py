@@ -6,8 +6,8 @@ from pathlib import Path
 INSTALLER = """\
 #!{python}
 # Stands in for uv: an environment with a package `mujoco`, which is the one that runs here under
-# another version; what is older than 3.7.0 has softer loops.
-import os, subprocess, sys, time
+# another version.
+import subprocess, sys
 from pathlib import Path
 
 arguments = sys.argv[1:]
@@ -21,9 +21,6 @@ if version == "9.9.9":
     print("  cause: Because there is no version of mujoco==9.9.9 and you", file=sys.stderr)
     print("         require mujoco==9.9.9, we can conclude that it is so.", file=sys.stderr)
     sys.exit(1)
-if version == "1.0":
-    Path({sign!r}).write_text(str(os.getpid()))
-    time.sleep(600.0)
 environment = Path(arguments[arguments.index("--python") + 1]).parents[1]
 (site,) = environment.glob("lib/python*/site-packages")
 (site / "mujoco").mkdir()
@@ -35,9 +32,6 @@ code = Path({stub!r}).read_text().replace("VERSION", version)
 )
 """
 STUB = """\
-import os
-import shutil
-import subprocess
 import sys
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
@@ -48,23 +42,14 @@ found = PathFinder.find_spec("mujoco", [path for path in sys.path if path != her
 module = sys.modules["mujoco"] = module_from_spec(found)
 found.loader.exec_module(module)
 module.mj_versionString = lambda: "VERSION"
-load = module.MjModel.from_xml_string
-
-def from_xml_string(text):
-    Path("SIGN").write_text(str(os.getpid()))  # tells that a scene is about to be run
-    soft = "VERSION" == "3.6.0"
-    return load(text.replace('solref="0.02', 'solref="0.1') if soft else text)
-
-module.MjModel.from_xml_string = staticmethod(from_xml_string)
 """
 
 
 def fake_installer(folder: Path) -> Path:
-    """The folder, with a command `uv` in it, the `log` of its calls, and a sign that its work, or
-    the run of a scene, has begun (`running`)."""
-    sign, stub, program = folder / "running", folder / "stub.py", folder / "uv"
-    stub.write_text(STUB.replace("SIGN", str(sign)), encoding="utf-8")
-    paths = {"log": str(folder / "log"), "stub": str(stub), "sign": str(sign)}
+    """The folder, with a command `uv` in it, and the `log` of its calls."""
+    stub, program = folder / "stub.py", folder / "uv"
+    stub.write_text(STUB, encoding="utf-8")
+    paths = {"log": str(folder / "log"), "stub": str(stub)}
     program.write_text(INSTALLER.format(python=sys.executable, **paths), encoding="utf-8")
     program.chmod(0o755)
     return folder

@@ -67,29 +67,23 @@ def printed(every: Advice, width: int = 100) -> str:
     return stream.getvalue()
 
 
-def test_promises_come_first_from_cheap_to_dear_then_the_nearest() -> None:
+def test_promises_come_first_from_cheap_to_dear_and_of_equal_ones_the_least_error() -> None:
     assert labels(advice().offers) == (
         "pymunk no bias; pymunk no bias, 50 iterations; mujoco tuned; mujoco stiff; pymunk tuned; "
         "mujoco RK4; mujoco as-shipped; pymunk as-shipped"
     )
-
-
-def test_of_what_costs_the_same_within_the_noise_the_least_error_is_best() -> None:
     assert labels(advice(noise=0.05).best) == "pymunk no bias, 50 iterations; mujoco tuned"
     assert labels(advice(noise=0.001).best) == "pymunk no bias; mujoco tuned"
     assert advice(noise=math.nan).best
 
 
-def test_a_promise_whose_error_grows_is_best_only_where_no_other_is() -> None:
+def test_what_grows_or_is_over_at_finer_steps_in_a_study_is_best_only_where_no_other_is() -> None:
     grows = reached("pymunk no bias", 4, 7e-4, growth=1.4)
     assert labels(advice((grows, 1e-4), FOUND[0]).best) == "pymunk tuned"
     (only,) = advice((grows, 1e-4)).best
     assert only.reached is grows
     text = flat(printed(advice((grows, 1e-4))))
     assert "the error grows: with 4 a frame it is 1.4 times" in text
-
-
-def test_so_is_one_that_a_study_has_over_the_target_at_finer_steps() -> None:
     one = reached("pymunk no bias, 50 iterations", 4, 7e-4)
     steps = MeasuredSteps(((90.0, 1e-2), (360.0, 1e-4), (5760.0, math.inf)))
     known = MeasuredStudy(measured={(NAME, one.choice.key): steps})
@@ -100,19 +94,20 @@ def test_so_is_one_that_a_study_has_over_the_target_at_finer_steps() -> None:
     assert "Caution: holds with 4 sub-steps" in flat(only.snippet(only.best[0]))
 
 
-@pytest.mark.parametrize("width", [60, 72, 80, 100, 120])
+@pytest.mark.parametrize("width", [60, 76, 100])
 def test_it_fits_the_terminal_whole(width: int) -> None:
     text = printed(advice(), width)
     table = text[: text.index("within 0.001,")]
     assert max(len(line.rstrip()) for line in table.splitlines()) <= width
     assert "\u2026" not in text
-    for part in ("comes", "apart", "none", "over", "1.8e-3", "7.0e-5", "2.0e-2"):
+    for part in ("comes", "apart", "none", "over", "1.8e-3", "7.0e-5", "2.0e-2", " 1.7 "):
         assert part in table
     assert ("of real" in table) is (width >= 76)
 
 
-def test_the_best_of_each_engine_is_told_with_its_price_and_its_snippet() -> None:
-    text = printed(advice(noise=0.001))
+def test_the_best_of_each_engine_is_told_and_written_with_its_price_and_its_snippet() -> None:
+    every = advice(noise=0.001)
+    text = printed(every)
     for line in (
         "dt = 0.004166666666666667  # a frame of 0.0166667 s / 4",
         "for _ in range(4):",
@@ -130,48 +125,6 @@ def test_the_best_of_each_engine_is_told_with_its_price_and_its_snippet() -> Non
         assert words in flat(text.replace("#", " "))
     assert "takes your own" not in text
     assert "takes your own" in printed(replace(advice(), named=False))  # no scene
-
-
-def test_times_are_told_over_the_cheapest() -> None:
-    lines = printed(advice(noise=0.05)).splitlines()
-    ratio = {n: line.split()[-1] for line in lines for n in EVERY if line.startswith(f"{n}  ")}
-    assert ratio["pymunk no bias"] == ratio["pymunk no bias, 50 iterations"] == "1"
-    assert (ratio["mujoco tuned"], ratio["mujoco RK4"]) == ("1.7", "-")
-
-
-def test_where_nothing_reaches_the_nearest_is_told_and_what_was_luck() -> None:
-    every = advice(*FOUND[-3:])
-    assert every.best == ()
-    text = flat(printed(every))
-    assert f"NOTHING REACHES 0.001 with up to {DEMAND.most} sub-steps a frame: nearest is" in text
-    assert f"mujoco RK4 with 8, 1.8e-3 on {NAME}" in text
-    assert "no run came to its end" in flat(printed(advice(FOUND[-1])))
-    lucky = flat(printed(advice((replace(FOUND[-3][0], unsteady=(3, 4)), None))))
-    assert "mujoco RK4: within with 3, 4 sub-steps, and not with more" in lucky
-
-
-def test_a_process_lost_while_it_was_timed_costs_the_price_alone() -> None:
-    every = advice(FOUND[1], (FOUND[2][0], None))
-    assert labels(every.offers) == labels(every.best) == "mujoco tuned; pymunk no bias"
-    assert "within 0.001, 7.9e-4 at worst\n" in printed(every)
-
-
-@pytest.mark.parametrize(
-    ("seen", "words"),
-    [
-        (None, "too coarse"),
-        (worst(1, 9e-4), "within"),
-        (worst(1, 2e-3), "over"),
-        (worst(1, 2e-3, growth=1.2), "over, grows"),
-        (worst(1, math.inf, status="branch-changed"), "other branch"),
-    ],
-)
-def test_the_frame_itself_gets_a_word(seen: Worst | None, words: str) -> None:
-    assert word(seen, DEMAND.target) == words
-
-
-def test_the_file_has_the_same_facts_and_all_settings() -> None:
-    every = advice(noise=0.001)
     content = json.loads(document(every))
     assert content["asked"]["frames_per_turn"] == pytest.approx(37.699, rel=1e-4)
     assert content["best"] == ["pymunk no bias", "mujoco tuned"]
@@ -187,3 +140,28 @@ def test_the_file_has_the_same_facts_and_all_settings() -> None:
     assert last["promise"] is None
     assert last["ended"]["status"] == "timeout"
     assert before["at_frame"]["place_error"] is None
+
+
+def test_the_nearest_is_told_where_nothing_reaches_what_was_luck_and_what_has_no_price() -> None:
+    every = advice(*FOUND[-3:])
+    assert every.best == ()
+    text = flat(printed(every))
+    assert f"NOTHING REACHES 0.001 with up to {DEMAND.most} sub-steps a frame: nearest is" in text
+    assert f"mujoco RK4 with 8, 1.8e-3 on {NAME}" in text
+    assert "no run came to its end" in flat(printed(advice(FOUND[-1])))
+    lucky = flat(printed(advice((replace(FOUND[-3][0], unsteady=(3, 4)), None))))
+    assert "mujoco RK4: within with 3, 4 sub-steps, and not with more" in lucky
+    every = advice(FOUND[1], (FOUND[2][0], None))  # a process lost while it was timed
+    assert labels(every.offers) == labels(every.best) == "mujoco tuned; pymunk no bias"
+    assert "within 0.001, 7.9e-4 at worst\n" in printed(every)
+
+
+def test_the_frame_itself_gets_a_word() -> None:
+    for seen, words in (
+        (None, "too coarse"),
+        (worst(1, 9e-4), "within"),
+        (worst(1, 2e-3), "over"),
+        (worst(1, 2e-3, growth=1.2), "over, grows"),
+        (worst(1, math.inf, status="branch-changed"), "other branch"),
+    ):
+        assert word(seen, DEMAND.target) == words

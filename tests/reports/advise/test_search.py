@@ -57,9 +57,9 @@ def searched(
     return _reached(demand, known, isolated, CHOICE), child
 
 
-def studied(law: Callable[[str, float], float], low: float) -> MeasuredStudy:
-    """A study of both scenes, from so many steps in a frame to 400."""
-    steps = [FRAMES * low * (400 / low) ** (k / 8) for k in range(9)]
+def studied(law: Callable[[str, float], float]) -> MeasuredStudy:
+    """A study of both scenes, from one step in a frame to 400."""
+    steps = [FRAMES * 400 ** (k / 8) for k in range(9)]
     measured = {
         (name, CHOICE.key): MeasuredSteps(tuple((n, law(name, n)) for n in steps))
         for name in (FIRST, SECOND)
@@ -72,7 +72,7 @@ def second_order(exact: float) -> Callable[[str, float], float]:
     return lambda name, n: (1.0 if name == SECOND else 0.2) * 1e-3 * (exact / n) ** 2
 
 
-@pytest.mark.parametrize("exact", [0.5, 1.0, 3.0, 4.5, 7.0, 60.0])
+@pytest.mark.parametrize("exact", [0.5, 1.0, 4.5, 60.0])
 def test_finds_the_fewest_sub_steps_of_the_worst_scene(exact: float) -> None:
     found, child = searched(second_order(exact))
     assert found.promise.substeps == max(1, math.ceil(exact))
@@ -83,22 +83,18 @@ def test_finds_the_fewest_sub_steps_of_the_worst_scene(exact: float) -> None:
     assert len(child.asked) == found.runs < 30
 
 
-def test_all_scenes_are_run_for_a_promise_and_at_larger_numbers_too() -> None:
+def test_all_scenes_are_run_for_a_promise_and_else_the_worst_alone() -> None:
     found, child = searched(second_order(4.0))
     assert found.promise is not None
     ran = {(name, n) for name, n, _ in child.asked}
     for n in (1, 4, *found.held_at):
         assert {(FIRST, n), (SECOND, n)} <= ran
     assert {6, 8} <= set(found.held_at)
-
-
-def test_a_scene_that_is_over_the_target_spares_the_runs_of_the_others() -> None:
     _, child = searched(second_order(30.0))
-    over = [n for name, n, _ in child.asked if name == FIRST and 1 < n < 30]
-    assert over == []
+    assert not [n for name, n, _ in child.asked if name == FIRST and 1 < n < 30]
 
 
-def test_luck_is_no_promise_and_settings_that_break_with_more_sub_steps_have_none() -> None:
+def test_luck_is_no_promise_nor_what_breaks_later_and_else_the_nearest_is_told() -> None:
     """Two errors cancel with 3 sub-steps."""
     found, _ = searched(lambda _, n: 1e-5 if n == 3 else 1e-3 * (8.0 / n) ** 2)
     assert found.promise.substeps == 8
@@ -107,9 +103,6 @@ def test_luck_is_no_promise_and_settings_that_break_with_more_sub_steps_have_non
     assert found.promise is None
     assert found.unsteady
     assert max(found.unsteady) <= 9
-
-
-def test_where_nothing_reaches_the_nearest_is_told_for_all_scenes() -> None:
     found, child = searched(lambda name, n: 2e-3 + 1e-2 / n**2 + (name == FIRST) * 1e-4)
     assert found.promise is None
     assert found.nearest.error == pytest.approx(2.1e-3, rel=0.1)
@@ -138,55 +131,34 @@ def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
     assert any(turns == pytest.approx(80.0, rel=0.01) for _, _, turns in child.asked)
 
 
-@pytest.mark.parametrize(
-    ("end", "status"),
-    [
+def test_a_run_that_no_step_mends_is_the_last_and_one_that_comes_apart_is_not() -> None:
+    for end, status in (
         (Lost("timeout", "no end within 30 s"), "timeout"),
-        (Lost("crashed", "the engine ended its process"), "crashed"),
         (TriedRun(math.inf, "unsupported", "no such pin"), "unsupported"),
-    ],
-)
-def test_a_run_that_no_step_mends_is_the_last(end: TriedRun | Lost, status: str) -> None:
-    found, child = searched(lambda _, n: end)
-    assert len(child.asked) == 1
-    assert found.ended.status == status
-    assert found.ended.reason
-    assert (found.promise, found.nearest, found.held_at) == (None, None, ())
-    assert found.at_frame is not None
-
-
-def test_a_run_that_comes_apart_at_the_frame_is_not() -> None:
+    ):
+        found, child = searched(lambda _, n, end=end: end)
+        assert len(child.asked) == 1
+        assert (found.ended.status, found.ended.reason) == (status, end.reason)
+        assert found.at_frame is not None
+        assert (found.promise, found.nearest, found.held_at) == (None, None, ())
     apart = TriedRun(math.inf, "diverged", "came apart")
     found, _ = searched(lambda _, n: apart if n < 5 else 1e-3 * (6.0 / n) ** 2)
     assert found.at_frame.seen.status == "diverged"
     assert found.promise.substeps == 6
 
 
-def test_what_a_study_covers_is_not_run_but_its_promise_is() -> None:
+def test_what_a_study_covers_is_not_run_but_its_promise_is_and_else_it_is_left() -> None:
     law = second_order(4.9)
-    found, child = searched(law, studied(lambda name, n: law(name, n / FRAMES), 1))
+    found, child = searched(law, studied(lambda name, n: law(name, n / FRAMES)))
     assert found.promise.substeps == 5
     assert not found.promise.seen.studied
     assert {(name, n) for name, n, _ in child.asked} == {(FIRST, 5), (SECOND, 5)}
     assert found.runs == 2
     assert found.at_frame.seen.studied
-
-
-def test_a_study_that_says_otherwise_than_a_run_is_left() -> None:
-    found, child = searched(second_order(5.0), studied(lambda name, n: 1e-4, 1))
+    found, child = searched(second_order(5.0), studied(lambda name, n: 1e-4))
     assert found.promise.substeps == 5
     assert not found.at_frame.seen.studied
     assert {n >= 6 for _, n, _ in child.asked} == {True, False}
-
-
-def test_what_a_study_lacks_is_run() -> None:
-    """Of one scene it has nothing, and of the other nothing at the frame itself."""
-    law = second_order(4.9)
-    whole = studied(lambda name, n: law(name, n / FRAMES), 2).measured
-    known = MeasuredStudy(measured={key: whole[key] for key in whole if key[0] == SECOND})
-    found, child = searched(law, known)
-    assert found.promise.substeps == 5
-    assert {n for name, n, _ in child.asked if name == SECOND} == {1, 5}
 
 
 FAST = demanded([load_scene("slider-crank-central")], 50.0, 0.002, 1e-3, 4.0)
@@ -208,7 +180,7 @@ def test_the_error_of_a_run_is_that_of_a_comparison(choice: Choice) -> None:
     assert look(cell).error == pytest.approx(max(places), rel=1e-9)
 
 
-def test_an_error_that_grows_is_seen_and_one_that_comes_back_every_turn_is_not() -> None:
+def test_an_error_that_grows_is_seen_and_what_did_not_end_well_has_none() -> None:
     turn = np.linspace(0.0, 4.0, 401)
     steady = _seen(series(1e-3 * np.abs(np.sin(math.tau * turn))))
     assert (steady.error, steady.grows) == (pytest.approx(1e-3), False)
@@ -218,29 +190,19 @@ def test_an_error_that_grows_is_seen_and_one_that_comes_back_every_turn_is_not()
     only = _seen(series(np.linspace(0.0, 1.0, 50), turns=1.0))  # a single turn tells none
     assert math.isnan(only.growth)
     assert not only.grows
-
-
-@pytest.mark.parametrize(
-    ("change", "status"),
-    [
+    for change, status in (
         ({"status": "diverged", "reason": "came apart"}, "diverged"),
         ({"departure": Departure("rod", 0.1, 0.2)}, "branch-changed"),
         ({"incomplete": "3 samples, not the 4"}, "crashed"),
-    ],
-)
-def test_what_did_not_end_well_has_no_error(change: dict[str, object], status: str) -> None:
-    found = _seen(replace(series(np.zeros(9)), **change))  # type: ignore[arg-type]
-    assert (found.error, found.status) == (math.inf, status)
-    assert found.reason
-
-
-def test_what_an_engine_can_not_hold_is_told_and_not_raised() -> None:
+    ):
+        found = _seen(replace(series(np.zeros(9)), **change))  # type: ignore[arg-type]
+        assert (found.error, found.status) == (math.inf, status)
+        assert found.reason
     wrong = Choice("mujoco", "tuned", "tuned", {"close": "nowhere"})
     found = look(FAST.cell(FAST.scenes[0], wrong, 1))
     assert (found.error, found.status) == (math.inf, "unsupported")
     assert "nowhere" in found.reason
     assert {*WORDS, "ok"} == {*get_args(Status)}
-    assert TriedRun(1.0).status == "ok"
 
 
 def promised(name: str, substeps: int | None) -> SearchResult:
@@ -264,7 +226,7 @@ def priced(
         return prices(DEMAND, found), asked
 
 
-def test_the_dearest_scene_counts_at_the_step_of_the_promise() -> None:
+def test_the_dearest_scene_counts_and_the_noise_is_how_far_two_halves_lie_apart() -> None:
     every = [promised("a", 4), promised("none", None), promised("b", 1)]
     taken = [((3.0, 9.0), (2.0, 8.0)), ((5.0,), (4.0,)), ((1.0,), (1.0,)), ((1.5,), (1.5,))]
     found, asked = priced(taken, *every)
@@ -277,9 +239,6 @@ def test_the_dearest_scene_counts_at_the_step_of_the_promise() -> None:
         (name, DEMAND.frame_s / n, "tuned") for n in (4, 1) for name in (FIRST, SECOND)
     ]
     assert timings(DEMAND, every) == ROUNDS * 4
-
-
-def test_the_noise_is_how_far_two_halves_lie_apart_and_a_lost_scene_leaves_no_price() -> None:
     half = ((2.0,), (2.2,))
     assert priced([half, half], promised("a", 1))[0].noise == pytest.approx(0.1)
     assert priced([half, None], promised("a", 1))[0].each == (None,)

@@ -14,7 +14,6 @@ from reports.history.environments import EngineVersion
 from reports.history.table import page, ranking, show, table_text
 from reports.history.verification import VersionResult, errors_of, read_version
 from reports.history.version_changes import FollowedChange, headlines, steps
-from reports.results.changes import compare
 from reports.results.runs import CellName, StoredCell, StoredRun
 
 
@@ -58,24 +57,10 @@ def test_a_smaller_error_is_better_by_its_ratio_and_no_number_infinitely_worse()
         found = change(old, new)
         assert found.word() == word
         assert (found.factor, found.times_better) == pytest.approx((factor, times), 1e-6, 0.0)
-
-
-@pytest.mark.parametrize(
-    ("was", "now"),
-    [(0.0, 0.0), (4e-16, 1e-17), (0.0, 9e-12), (math.inf, math.inf), (1e-3, 1.09e-3)],
-)
-def test_what_rounding_explains_or_a_tenth_is_no_change(was: float, now: float) -> None:
-    for each in (change(was, now), change(now, was)):
-        assert not each.changed
-        assert not each.stands_out
-
-
-@pytest.mark.parametrize("growth", [0.3, 0.85, 0.93, 1.0, 1.07, 1.15, 4.0])
-def test_history_and_diff_agree_on_what_changed(growth: float) -> None:
-    before, after = result("1", cell(angle=1e-3)), result("2", cell(angle=1e-3 * growth))
-    (step,) = steps([before, after])
-    (pair,) = compare(before.run, after.run).pairs
-    assert [followed.word() for followed in step.changes] == [pair.word]
+    for was, now in ((0.0, 9e-12), (math.inf, math.inf), (1e-3, 1.09e-3)):  # rounding, or a tenth
+        for each in (change(was, now), change(now, was)):
+            assert not each.changed
+            assert not each.stands_out
 
 
 def test_the_largest_change_of_a_quantity_is_told_with_its_scene_and_its_numbers() -> None:
@@ -89,7 +74,7 @@ def test_the_largest_change_of_a_quantity_is_told_with_its_scene_and_its_numbers
     assert "scenes" not in told([cell(pin_gap=2e-2), *rigid], [cell(pin_gap=1e-3), *rigid])[0]
 
 
-def test_what_became_worse_is_told_before_what_became_better_and_as_shipped_before_tuned() -> None:
+def test_worse_is_told_before_better_as_shipped_before_tuned_and_places_for_rates() -> None:
     before = [cell(angle=1.0, pin_gap=1e-3), cell("shaper", pin_gap=1e-3)]
     lines = told(before, [cell(angle=1e-6, pin_gap=3e-3), cell("shaper", pin_gap=1e-8)])
     assert [line.split()[2] for line in lines] == ["worse", "better", "better"]
@@ -97,22 +82,23 @@ def test_what_became_worse_is_told_before_what_became_better_and_as_shipped_befo
     first, second = told(before, [cell(profile="tuned", angle=1e-9), cell(angle=1e-2)])
     assert "as shipped" in first
     assert "with profile tuned" in second
-
-
-def test_rates_are_told_only_where_no_place_tells_it() -> None:
-    before = [cell(angle=1e-2, velocity=1.0)]
+    before = [cell(angle=1e-2, velocity=1.0)]  # and rates only where no place tells it
     (both,) = told(before, [cell(angle=1e-3, velocity=1e-3)])
     assert "on the angle of" in both
     assert "on the velocity of" in told(before, [cell(angle=1e-2, velocity=1e-3)])[0]
 
 
-def test_versions_that_agree_are_said_to() -> None:
+def test_versions_that_agree_are_said_to_and_cells_that_come_within_tolerance_counted() -> None:
     for gap, words in (
-        (1e-3, "2 differs from 1 in no error by more than a tenth"),
         (1.08e-3, "2 differs from 1 in no error by more than a tenth"),
         (1.5e-3, "2 differs from 1 by 1.5 times at most in any error"),
     ):
         assert told([cell(pin_gap=1e-3)], [cell(pin_gap=gap)]) == [words]
+    out = [cell(angle=1.0), cell("shaper", angle=1.0)]
+    within = [cell(name, verdict="within", angle=0.9) for name in ("fourbar", "shaper")]
+    better, worse = told(out, within), told(within, out)
+    assert better == ["2 is within tolerance where 1 was out of it: 2 scenes as shipped"]
+    assert worse == ["2 is out of tolerance where 1 was within it: 2 scenes as shipped"]
 
 
 def test_a_run_that_ends_otherwise_stands_out_and_its_errors_are_not_compared() -> None:
@@ -126,22 +112,11 @@ def test_a_run_that_ends_otherwise_stands_out_and_its_errors_are_not_compared() 
         assert lost == ["2 and 1 have no error in common to compare"]
 
 
-def test_cells_that_come_within_tolerance_are_counted() -> None:
-    out = [cell(angle=1.0), cell("shaper", angle=1.0)]
-    within = [cell(name, verdict="within", angle=0.9) for name in ("fourbar", "shaper")]
-    better, worse = told(out, within), told(within, out)
-    assert better == ["2 is within tolerance where 1 was out of it: 2 scenes as shipped"]
-    assert worse == ["2 is out of tolerance where 1 was within it: 2 scenes as shipped"]
-
-
-def test_settings_that_an_engine_holds_otherwise_are_named() -> None:
+def test_other_settings_are_named_and_a_version_without_a_result_passed_over() -> None:
     cells = [[cell(angle=1.0, settings={"iterations": n, "close": "C"})] for n in (100, 50)]
     assert "2 holds other settings than 1: iterations" in told(*cells)
     never = [[cell(status="unsupported", settings={"a": n})] for n in "12"]
     assert not [text for text in told(*never) if "settings" in text], "it holds what it was given"
-
-
-def test_a_version_without_a_result_is_passed_over() -> None:
     one, two, three = result("1", cell(angle=1.0)), result("2", reason="no"), result("3", cell())
     assert [(step.before, step.after) for step in steps([one, two, three])] == [(one, three)]
 
@@ -163,35 +138,26 @@ COLUMNS = (
 )
 
 
-def written(folder: Path, *lines: tuple[str, str]) -> Path:
-    """A verification of these scenes, and what follows the turns in each line."""
-    rows = [f"{scene},mujoco,1,tuned,prescribed,720,2,{rest}" for scene, rest in lines]
-    (folder / "verify.csv").write_text(COLUMNS + "\n".join(rows) + "\n", encoding="utf-8")
-    return folder
-
-
-def test_cells_are_read_from_the_folder_of_a_verification(tmp_path: Path) -> None:
-    folder = written(
-        tmp_path,
-        ("one", 'within,ok,,"{""dt"": 1.0}",1e-3,2e-3,1e-3,2e-2,1e-3,4e-3,1e-2,'),
-        ("two", "unsupported,unsupported,no such thing,,,,,,,,,"),
-        ("three", "out,diverged,,,nan,,inf,,,,,"),  # errors that are no numbers
-    )
-    first, second, third = read_version(folder).cells.values()
+def test_cells_are_read_from_the_folder_of_a_verification_or_what_has_no_result_refused(
+    tmp_path: Path,
+) -> None:
+    rows = (
+        'one,{},within,ok,,"{""dt"": 1.0}",1e-3,2e-3,1e-3,2e-2,1e-3,4e-3,1e-2,\n'
+        "two,{},unsupported,unsupported,no such thing,,,,,,,,,\n"
+        "three,{},out,diverged,,,nan,,inf,,,,,\n"  # errors that are no numbers
+    ).replace("{}", "mujoco,1,tuned,prescribed,720,2")
+    (tmp_path / "verify.csv").write_text(COLUMNS + rows, encoding="utf-8")
+    first, second, third = read_version(tmp_path).cells.values()
     assert errors_of(first) == pytest.approx(
         {"angle": 1e-3, "place": 2e-3, "pin gap": 5e-3, "slider gap": 2e-2, "velocity": 1e-2}
     )
     assert (first.settings, first.verdict) == ({"dt": 1.0}, "within")
     assert (second.status, second.reason) == ("unsupported", "no such thing")
     assert errors_of(second) == errors_of(third) == {}
-
-
-@pytest.mark.parametrize("text", [None, "scene\nfourbar\n"])
-def test_a_folder_without_a_result_is_refused(text: str | None, tmp_path: Path) -> None:
-    if text is not None:
-        (tmp_path / "verify.csv").write_text(text, encoding="utf-8")
-    with pytest.raises(CrankcheckError, match=r"not the result of a verification.*--again"):
-        read_version(tmp_path)
+    (tmp_path / "verify.csv").write_text("scene\nfourbar\n", encoding="utf-8")
+    for lacking in (tmp_path, tmp_path / "nowhere"):
+        with pytest.raises(CrankcheckError, match=r"not the result of a verification.*--again"):
+            read_version(lacking)
 
 
 def test_an_engine_that_calls_itself_otherwise_is_told_of() -> None:
@@ -219,7 +185,7 @@ def history() -> list[VersionResult]:
     ]
 
 
-@pytest.mark.parametrize("width", [60, 80, 99, 100, 140])
+@pytest.mark.parametrize("width", [60, 100])
 def test_the_history_fits_the_terminal_unclipped(history: list[VersionResult], width: int) -> None:
     stream = io.StringIO()
     show(Console(file=stream, width=width), history, "made by hand")
@@ -233,7 +199,9 @@ def test_the_history_fits_the_terminal_unclipped(history: list[VersionResult], w
     assert "not installed: no" in text
 
 
-def test_the_file_holds_every_number_or_the_reason_for_none(history: list[VersionResult]) -> None:
+def test_the_file_and_the_page_hold_every_number_or_the_reason_for_none(
+    history: list[VersionResult],
+) -> None:
     lines = list(csv.DictReader(io.StringIO(table_text(history))))
     assert len(lines) == 2 * 18 * 2 * 5 + 1
     gaps = [x for x in lines if x["quantity"] == "pin gap" and x["version"] == "3.7.0"]
@@ -243,9 +211,6 @@ def test_the_file_holds_every_number_or_the_reason_for_none(history: list[Versio
         assert float(line["times_better"]) == pytest.approx(20.0)
     assert (lines[-1]["version"], lines[-1]["status"]) == ("4.0.0", "not measured")
     assert lines[-1]["reason"].startswith("not installed: no network")
-
-
-def test_the_page_shows_every_scene_and_what_stands_out(history: list[VersionResult]) -> None:
     text = page(history, "crankcheck 1")
     assert text.startswith("# mujoco 3.6.0, 3.7.0, 4.0.0\n")
     assert "- 3.7.0 is better than 3.6.0 by 20 times on the pin gap of" in text

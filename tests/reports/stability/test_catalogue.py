@@ -5,23 +5,20 @@ import math
 import re
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import reach, solve
-from models.errors import ReachError
 from models.scene import Driver, Scene
-from models.scene.hard import slider_crank_by_piston, slotted_lever, triad_platform
+from models.scene.hard import slider_crank_by_piston, slotted_lever
 from models.scene.laws import Oscillating
 from reports.stability.case import Trial
-from reports.stability.catalogue.change_points import TRIAD_CRANK_M
 from reports.stability.error_series import nearest
-from reports.stability.grading import CATALOGUE, GROUPS, graded
+from reports.stability.grading import CATALOGUE, graded
 from reports.stability.matrix import Graded
 from tests.worlds.command_line import crank_alone, flat
-from tests.worlds.tiers import few, slow
+from tests.worlds.tiers import few
 
 DRIVEN = [
     (name, value)
@@ -31,11 +28,6 @@ DRIVEN = [
 ]
 HARDEST = {(name, CATALOGUE[name].values[-1]) for name, _ in DRIVEN}
 MOST_SAMPLES = 20_000
-
-
-def test_every_group_of_the_catalogue_has_cases_of_its_own() -> None:
-    assert len(GROUPS) == 15
-    assert sum(len(cases) for cases in GROUPS.values()) == len(CATALOGUE)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -75,16 +67,6 @@ NEAR = ("triad-near-limit", "piston-near-limit", "coupler-near-limit")
 
 
 @pytest.mark.parametrize(
-    "name", few(NEAR, {"piston-near-limit"}, "ranges of a coupler and a triad take longer")
-)
-def test_the_driver_comes_as_near_to_the_end_of_its_range_as_the_case_says(name: str) -> None:
-    trial = CATALOGUE[name].trial(1.0)
-    driven = trial.scene.driver.law.at(trial.dt_s * np.arange(trial.steps + 1))[0].max()
-    limit = float(driven) + {"piston-near-limit": 1e-3}.get(name, math.radians(1.0))
-    assert min(abs(end - limit) for span in reach(trial.scene) for end in span) < 1e-9
-
-
-@pytest.mark.parametrize(
     "name",
     few([*NEAR, "triad-excess"], {"piston-near-limit"}, "the same law; a triad takes a second"),
 )
@@ -98,18 +80,11 @@ def test_what_is_harder_is_nearer_to_a_singular_position(name: str) -> None:
     # As the root of what is left, for a limit is a fold.
     powers = np.diff(np.log(sines)) / np.diff(np.log(case.values))
     assert powers[-1] == pytest.approx(0.5, abs=0.06)
-
-
-@slow("a second: the hardest value of triad-excess would not turn with a shorter limit either")
-def test_a_longer_crank_than_the_longest_that_turns_does_not_turn() -> None:
-    time_s = np.linspace(0.0, 0.7, 2000)
-    solve(triad_platform("turns", TRIAD_CRANK_M - 1e-6, source="x"), time_s, bound=False)
-    with pytest.raises(ReachError, match="limit position"):
-        solve(triad_platform("turns-not", TRIAD_CRANK_M + 1e-6, source="x"), time_s, bound=False)
-
-
-def test_a_triad_that_goes_over_to_another_assembly_is_named() -> None:
-    assert run_of("triad-near-limit", 0.01, profile="as-shipped").outcome == "branch-changed"
+    if name in NEAR:  # the end of its range, as near as the case says
+        trial = CATALOGUE[name].trial(1.0)
+        driven = trial.scene.driver.law.at(trial.dt_s * np.arange(trial.steps + 1))[0].max()
+        limit = float(driven) + {"piston-near-limit": 1e-3}.get(name, math.radians(1.0))
+        assert min(abs(end - limit) for span in reach(trial.scene) for end in span) < 1e-9
 
 
 def test_a_lost_run_of_a_driven_slider_is_told_in_metres_and_drawn() -> None:
@@ -153,11 +128,9 @@ def test_an_engine_that_has_no_such_drive_is_a_row_with_a_reason(engine: str, sc
 @pytest.mark.parametrize(
     ("case", "value", "sine"),
     [
-        ("lever-through-pivot", 360.0, pytest.approx(0.005, abs=0.005)),
         ("swinging-lever", 1e-6, pytest.approx(0.005, abs=0.005)),
         ("swinging-lever", 1.0, pytest.approx(1.0 / 3.0, abs=1e-4)),
     ],
-    ids=["through its pivot", "to its pivot", "far from it"],
 )
 def test_how_near_a_block_is_to_its_pivot_is_said(case: str, value: float, sine: object) -> None:
     trial = CATALOGUE[case].trial(value)
@@ -165,24 +138,12 @@ def test_how_near_a_block_is_to_its_pivot_is_said(case: str, value: float, sine:
     assert nearest(trial.scene, motion) == sine
 
 
-def test_every_elastic_case_gives_segments_and_few_samples() -> None:
-    for case in CATALOGUE.values():
-        for trial in map(case.trial, case.values if case.way == "elastic" else ()):
-            segments = len(trial.scene.links) + trial.segments - 1
-            assert len(trial.given.links) == segments, case.name
-            assert trial.steps / trial.every <= 4000, case.name
-
-
-def test_an_error_falls_with_the_step_squared() -> None:
+def test_an_error_falls_with_the_step_squared_and_what_diverges_says_which_would_do() -> None:
     coarse, fine = (run_of("elastic-step", steps, "pymunk").error for steps in (720.0, 1440.0))
     assert coarse / fine == pytest.approx(4.0, rel=0.2)
-
-
-def test_a_stiffness_that_the_step_does_not_hold_says_which_would() -> None:
     run = run_of("elastic-stiff", 100.0)
     assert run.outcome == "diverged"
     assert "steps a turn, or fewer segments" in run.reason
-    assert run_of("elastic-stiff", 9.0).outcome == "ok"
 
 
 def test_one_value_is_shown_from_the_command_line() -> None:
@@ -192,16 +153,3 @@ def test_one_value_is_shown_from_the_command_line() -> None:
     told = flat(done.output)
     assert "a deflection, over the largest, is off by 0.029" in told
     assert "error of the deflection, over the largest: 0.0" in told
-
-
-def test_what_fails_is_drawn_with_its_nodes() -> None:
-    _, drawn = graded(CATALOGUE["elastic-step"], "pymunk", "tuned", 360.0, draw=True)
-    assert {"coupler-1-2", "coupler-2-3", "coupler-3-4"} <= {*drawn.drawing["points"]}  # type: ignore[misc]
-
-
-def test_the_page_says_what_errors_are_of(tmp_path: Path) -> None:
-    words = ["stability", "elastic-step", "--engine", "mujoco", "--profile", "as-shipped"]
-    done = crank_alone(*words, "-o", tmp_path, "--jobs", 1)
-    assert "Numbers: the worst error of the deflection, over the largest;" in done.stdout
-    page = (tmp_path / "stability.html").read_text(encoding="utf-8")
-    assert "Worst error of the deflection, over the largest:" in page

@@ -59,19 +59,16 @@ def test_every_end_has_its_own_rule(errors: ErrorSeries, name: str, word: str, s
     assert found.sample == sample
 
 
-def test_an_end_that_explains_others_is_told_before_them_and_each_has_a_meaning() -> None:
+def test_an_end_that_explains_others_is_told_before_them_and_what_swings_does_not_drift() -> None:
     assert set(MEANINGS) == set(OUTCOMES)
     open_ = run(gap=0.02 + NOUGHT, place=0.03 * TURN, departure=OTHER)
     assert outcome(open_, WITHIN).outcome == "branch-changed"
     assert outcome(replace(open_, status="diverged"), WITHIN).outcome == "diverged"
-
-
-def test_an_error_that_swings_does_not_drift() -> None:
     swinging = run(place=0.03 * np.abs(np.sin(math.pi * TURN / 4.0)))
     assert outcome(swinging, WITHIN).outcome == "degraded"
 
 
-def test_growth_within_the_class_is_told_as_a_number_and_held() -> None:
+def test_growth_within_the_class_is_held_and_none_told_of_few_turns_or_before_it_settles() -> None:
     healthy, slow = run(), run(place=1e-4 * TURN)
     slope, doubt = drift(slow)
     assert slope == pytest.approx(1e-4, rel=1e-9)
@@ -80,15 +77,9 @@ def test_growth_within_the_class_is_told_as_a_number_and_held() -> None:
         found = outcome(errors, WITHIN)
         assert found.outcome == "ok"
         assert word in found.reason
-
-
-def test_a_run_of_few_turns_has_no_drift() -> None:
     part = slice(0, 3 * SAMPLES)
     short = run(**{n: v[part] for n, v in vars(run()).items() if isinstance(v, np.ndarray)})
     assert all(math.isnan(number) for number in drift(short))
-
-
-def test_what_comes_before_the_run_has_settled_does_not_count() -> None:
     early = run(place=np.where(TURN < 1.0, 0.5, 1e-3))
     assert outcome(early, WITHIN).outcome == "degraded"
     assert outcome(replace(early, settled=SAMPLES), WITHIN).outcome == "ok"
@@ -99,14 +90,6 @@ def case(*values: float, scale: str = "log", good: tuple[Outcome, ...] = ("ok",)
     words |= {"name": "made-up", "parameter": "margin", "unit": "m", "scale": scale}
     trial = Trial(load_scene("fourbar-lecture-1"))
     return Case(values=values, trial=lambda _: trial, good=good, **words)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(99_999.0, "99999"), (100_000.0, "1e5"), (112_000.0, "1.12e5"), (0.25, "0.25")],
-)
-def test_whole_numbers_of_up_to_five_digits_are_written_out(value: float, text: str) -> None:
-    assert label(value) == text
 
 
 def held(given: Case, good: Callable[[float], bool]) -> tuple[Critical, list[Graded]]:
@@ -142,13 +125,12 @@ def test_bisection_closes_in_on_the_value_at_which_it_breaks(
     assert [run.value for run in runs if run.grid] == list(values)
 
 
-def test_whole_numbers_are_told_apart_one_by_one() -> None:
+def test_whole_numbers_are_told_apart_and_the_command_repeats_the_value_as_it_is_told() -> None:
+    written = [label(value) for value in (99_999.0, 100_000.0, 112_000.0, 0.25)]
+    assert written == ["99999", "1e5", "1.12e5", "0.25"]
     found, runs = held(case(100.0, 10.0, 1.0, scale="whole"), lambda v: v >= 7)
     assert (found.holds, found.fails) == (7.0, 6.0)
     assert all(run.value == round(run.value) for run in runs)
-
-
-def test_the_command_repeats_the_value_as_it_is_told() -> None:
     found, runs = held(case(1e-2, 1e-4), lambda v: v >= 7.77e-4)
     assert float(found.command.rpartition(" ")[2]) == found.fails
     assert all(float(run.label) == run.value for run in runs)
@@ -173,25 +155,12 @@ def test_a_line_that_holds_everywhere_or_not_at_once_is_not_bisected(
     assert found.words == words
 
 
-def test_only_the_values_before_the_first_failure_count_as_held() -> None:
+def test_values_before_the_first_that_does_not_end_as_the_case_names_count_as_held() -> None:
     found, _ = held(case(8.0, 4.0, 2.0, 1.0), lambda v: v not in (4.0, 5.66))
     assert found.holds > found.fails >= 4.0
-
-
-def test_a_line_that_holds_tells_its_worst_error_wherever_it_is() -> None:
-    given = case(1.0, 0.1, 0.01)
-    _, runs = held(given, lambda _: True)
-    uneven = [replace(run, error=e) for run, e in zip(runs, (1e-4, 7e-3, 1e-5), strict=True)]
-    assert "error up to 7e-03" in critical(given, uneven).words
-
-
-def test_a_value_of_0_ends_the_search_where_the_grid_does() -> None:
     found, runs = held(case(1.0, 1e-3, 0.0), lambda v: v > 0.0)
     assert len(runs) == 3
     assert (found.holds, found.fails) == (1e-3, 0.0)
-
-
-def test_a_good_end_is_the_one_that_the_case_names() -> None:
     found, _ = held(case(1.0, 0.1, good=("branch-changed",)), lambda v: v < 0.5)
     assert found.holds == pytest.approx(0.5, rel=0.05)
     assert found.fails < 0.5 <= found.holds

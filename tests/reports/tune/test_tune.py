@@ -6,9 +6,7 @@ import signal
 from dataclasses import replace
 from pathlib import Path
 
-import optuna
 import pytest
-from optuna.trial import TrialState
 from rich.console import Console
 
 from models.errors import CrankcheckError
@@ -18,7 +16,7 @@ from reports.tune.attempt import Attempt, Bench
 from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.mujoco.knobs import EVALUATIONS
-from sim.registry.offers import Knob, search_space
+from sim.registry.offers import search_space
 from tests.worlds.workshop import mujoco_disturbance
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
@@ -48,14 +46,13 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_one_seed_gives_the_same_in_two_halves(path: Path, whole: tuple[int, str]) -> None:
-    assert told(SMALL) == whole
-    assert told(replace(SMALL, seed=4)) != whole
     told(replace(SMALL, budget=4, output=path))
-    for _ in range(2):
-        assert told(replace(SMALL, output=path)) == whole
+    assert told(replace(SMALL, output=path)) == whole
 
 
-def test_what_is_found_reaches_the_target_no_dearer_than_tuned(whole: tuple[int, str]) -> None:
+def test_what_is_found_reaches_the_target_no_dearer_than_tuned_and_its_snippet_has_it(
+    whole: tuple[int, str],
+) -> None:
     code, text = whole
     assert code == 0
     tuned, found = line(text, "error of place")
@@ -66,21 +63,6 @@ def test_what_is_found_reaches_the_target_no_dearer_than_tuned(whole: tuple[int,
     assert cost[1] <= cost[0]
     told_ratio = re.search(r"found over profile tuned: (\S+) by the model", text)
     assert float(told_ratio[1]) == pytest.approx(cost[1] / cost[0], abs=0.0051)
-
-
-def test_where_all_else_is_dearer_the_profile_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    knob = Knob("iterations", (160, 170, 180))
-    space = replace(search_space("pymunk"), knobs=(knob,), starts=())
-    monkeypatch.setattr("reports.requests.tune.search_space", lambda name: space)
-    code, text = told(replace(SMALL, engine="pymunk", target=1e-3, budget=8))
-    assert code == 0
-    assert line(text, "iterations") == ["150", "150"]
-    assert "found over profile tuned: 1.00 by the model" in text
-    assert re.search(r"8 trials, of which [5-8] reach", text)
-
-
-def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) -> None:
-    _, text = whole
     assert f"{line(text, 'steps per turn')[1]} steps a turn" in text
     assert f'integrator="{line(text, "integrator")[1]}"' in text
     assert f' {line(text, "solref_dampratio")[1]}" solimp=' in text
@@ -105,14 +87,11 @@ def test_a_file_of_other_versions_or_starts_is_refused(
         told(replace(SMALL, output=kept))
 
 
-def test_what_the_clock_ended_is_told_and_not_kept(path: Path) -> None:
+def test_what_the_clock_ended_is_told_and_another_limit_refused(path: Path) -> None:
     request = replace(SMALL, budget=2, limit_s=1e-4, output=path)
-    for _ in range(2):
-        code, text = told(request)
-        assert code == 1
-        assert "The clock ended 2 of what was tried (--limit-s 0.0001)" in " ".join(text.split())
-    study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
-    assert {trial.state for trial in study.trials} == {TrialState.FAIL}
+    code, text = told(request)
+    assert code == 1
+    assert "The clock ended 2 of what was tried (--limit-s 0.0001)" in " ".join(text.split())
     with pytest.raises(CrankcheckError, match=r"with limit_s 0\.0001; asked was limit_s 20"):
         told(replace(request, limit_s=20.0))
 
@@ -127,19 +106,14 @@ def test_nothing_that_reaches_is_told_with_what_is_nearest(monkeypatch: pytest.M
     assert "space.iterations" not in text
 
 
-def test_several_scenes_are_tuned_together() -> None:
+def test_several_scenes_are_tuned_together_and_measured_cost_is_told() -> None:
     scenes = ("fourbar-lecture-1", "slider-crank-excel-210")
-    code, text = told(replace(SMALL, scenes=scenes, target=1e-4, budget=2))
+    code, text = told(replace(SMALL, scenes=scenes, target=1e-4, budget=2, timing=True))
     assert code == 0
     assert text.startswith("fourbar-lecture-1, slider-crank-excel-210, mujoco: error of place")
     assert line(text, "worst in")[0] == "slider-crank-excel-210"
-
-
-def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
-    code, text = told(replace(SMALL, timing=True, budget=1))
-    assert code == 0
-    assert line(text, "us per step") == ["1.00", "2.00"]
-    assert len(line(text, "ms per turn")) == 2
+    assert line(text, "us per step")[-2:] == ["3.00", "7.00"]
+    assert "ms per turn" in text
     assert "cost of a turn, found over profile tuned: " in text
     assert "A/A noise" in text
 
@@ -148,16 +122,11 @@ def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
     ("change", "words"),
     [
         ({"target": 0.0}, "--target 0: give an error of place from 1e-11"),
-        ({"target": float("nan")}, "--target nan"),
-        ({"target": 1.0}, "--target 1"),
         ({"budget": 0}, "--budget 0: give a number of trials"),
         ({"seed": -1}, "--seed -1: give a whole number"),
-        ({"seed": 2**32}, "--seed 4294967296"),
-        ({"turns": 0.0}, "--turns 0: give a number above 0"),
         ({"turns": 1e9}, r"--turns 1e\+09: .* take 12500 turns or less"),
         ({"limit_s": 0.0}, "--limit-s 0"),
         ({"scenes": ()}, "name a scene"),
-        ({"scenes": ("fourbar-lecture-11",)}, "neither a shipped scene nor a file"),
         ({"engine": "mujocko"}, "engine 'mujocko': unknown; did you mean mujoco"),
         ({"output": Path("nowhere/kept.db")}, "there is no folder"),
         ({"target": 1e-4}, "holds a search with target 1e-05; asked was target 0.0001"),
@@ -165,7 +134,6 @@ def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
         ({"engine": "pymunk"}, "with engine mujoco; asked was engine pymunk"),
         ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; asked was'),
         ({"turns": 3.0}, "with turns 2.0; asked was turns 3.0"),
-        ({"limit_s": 5.0}, "with limit_s 20.0; asked was limit_s 5.0"),
     ],
 )
 def test_bad_requests_and_the_file_of_another_search_are_refused_before_anything_runs(
@@ -196,14 +164,9 @@ def test_a_stopped_search_says_what_it_keeps_and_optuna_nothing(
         return real(bench, settings, best)
 
     monkeypatch.setattr(Bench, "attempt", attempt)
-    wanted = ""
-    for number in (2, 4):
-        calls.clear()
-        with pytest.raises(Stopped):
-            replace(SMALL, output=path).run(Console(quiet=True), Console(file=progress))
-        wanted += f"{number} of 6 trials are kept in {path}; the same command goes on from there\n"
-        assert progress.getvalue() == wanted
+    with pytest.raises(Stopped):
+        replace(SMALL, output=path).run(Console(quiet=True), Console(file=progress))
+    wanted = f"2 of 6 trials are kept in {path}; the same command goes on from there\n"
+    assert progress.getvalue() == wanted
     assert capsys.readouterr() == ("", "")
-    kept = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
-    assert len(kept.get_trials(states=(TrialState.COMPLETE,))) == 4
     assert sorted(each.name for each in path.parent.iterdir()) == [".kept.db.lock", "kept.db"]

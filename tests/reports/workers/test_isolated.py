@@ -21,7 +21,6 @@ from reports.workers.isolated import FEW, Isolated, Limits, Lost, as_they_end, r
 from reports.workers.signals import Stopped, run_child
 from tests.worlds import jobs
 from tests.worlds.programs import ROOT, until
-from tests.worlds.tiers import slowly
 
 LIMIT_S = 900.0
 """That of a job, which no job here takes."""
@@ -132,38 +131,24 @@ def lost(number: int, how: Lost) -> str:
     return f"{number}: {how.reason}"
 
 
-def test_results_come_in_order_and_what_is_lost_has_one_too() -> None:
+def test_results_come_in_order_and_what_is_lost_or_takes_too_long_has_one_too() -> None:
     heard: list[str] = []
     results = run_all(jobs.unlucky, MANY, 2, MUCH, lost, heard.append)
     assert results == ["0", "1", "2: the engine ended its process (exit code 3)", "3", "4", "5"]
     assert sorted(heard) == sorted(results)
+    wanted = ["3600: no end within 0.2 s"] * 2
+    assert run_all(jobs.sleepy, [3600] * 2, 2, Limits(0.2), lost, apart=True) == wanted
 
 
-@pytest.mark.parametrize(
-    ("seconds", "at_once", "limit_s"),
-    [
-        ([3600] * 2, 2, 0.2),
-        slowly([0, *[3600] * FEW], 3, 10.0, reason="a child that was ended has another one's turn"),
-    ],
-)
-def test_what_takes_too_long_is_lost(seconds: list[int], at_once: int, limit_s: float) -> None:
-    wanted = [f"{each}: no end within {limit_s:g} s" if each else "0" for each in seconds]
-    assert run_all(jobs.sleepy, seconds, at_once, Limits(limit_s), lost, apart=True) == wanted
-
-
-def test_few_are_done_here() -> None:
+def test_few_are_done_here_or_apart_where_they_must_be_and_what_one_raises_is_raised() -> None:
     here = str(os.getpid())
     assert run_all(jobs.where, MANY[:FEW], 2, MUCH, lost) == [here] * FEW
     assert run_all(jobs.where, MANY, 1, MUCH, lost) == [here] * len(MANY)
     assert here not in run_all(jobs.where, MANY[: FEW + 1], 2, MUCH, lost)
-
-
-@pytest.mark.parametrize("at_once", [1, 2])
-def test_few_are_apart_where_they_must_be_and_what_one_raises_is_raised_here(at_once: int) -> None:
-    results = run_all(jobs.unlucky, [1, 2], at_once, MUCH, lost, apart=True)
+    results = run_all(jobs.unlucky, [1, 2], 1, MUCH, lost, apart=True)
     assert results == ["1", "2: the engine ended its process (exit code 3)"]
     with pytest.raises(CrankcheckError, match="no 3"):
-        run_all(jobs.refuse, MANY, at_once, MUCH, lost)
+        run_all(jobs.refuse, MANY, 2, MUCH, lost)
 
 
 def test_at_the_end_all_children_are_ended_in_the_middle_of_their_work() -> None:
@@ -227,11 +212,7 @@ own.wait()
 @pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
 @pytest.mark.parametrize(
     ("patience_s", "hears", "how"),
-    [
-        (600.0, "hears", signal.SIGTERM),
-        (0.0, "hears", signal.SIGKILL),
-        (0.01, "is deaf", signal.SIGKILL),
-    ],
+    [(600.0, "hears", signal.SIGTERM), (0.01, "is deaf", signal.SIGKILL)],
 )
 def test_a_signal_ends_it_with_all_that_it_started(
     patience_s: float, hears: str, how: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
