@@ -63,20 +63,12 @@ TEXTS: dict[str, tuple[bytes, str]] = {
         r"row 11, column 'time_s': time goes back, from 0\.08.* s to 0\.07.* s.*sort"),
     "times that repeat": (text(*ROWS[:9], ROWS[8], *ROWS[9:]), "row 11, .*stands still.* sort"),
     "an empty cell": (cell(4, 2, ""), "row 6, column 'rocker_deg': the cell is empty; fill it"),
-    "a cell of spaces": (cell(4, 2, "  "), "row 6, column 'rocker_deg': the cell is empty; fill"),
-    "an empty time": (cell(4, 0, ""), "row 6, column 'time_s': the cell is empty"),
-    "an empty last cell": (cell(60, 3, ""), "row 62, column 'C_x_mm': the cell is empty"),
     "a hole": (text(*ROWS[:20], *ROWS[26:]), r"row 22.*gap.* 6 of them missing after t = .*fill"),
     "NaN": (cell(7, 2, "nan"), "row 9, column 'rocker_deg': found nan"),
-    "NaN in capitals": (cell(7, 2, "NaN"), "row 9, column 'rocker_deg': found nan"),
     "N/A": (cell(7, 2, "N/A"), "row 9, column 'rocker_deg': found .*N/A"),
     "infinite": (cell(7, 3, "-inf"), "row 9, column 'C_x_mm': found -inf"),
-    "too large": (cell(7, 3, "1e999"), "row 9, column 'C_x_mm': found .*inf|1e999"),
-    "an infinite time": (cell(60, 0, "inf"), "row 62, column 'time_s': found inf"),
     "a word": (cell(7, 2, "stalled"), "row 9, column 'rocker_deg': found 'stalled', no number"),
-    "a word in the first row": (cell(0, 2, "off"), "row 2, column 'rocker_deg': found 'off'"),
     "a number with its unit": (cell(7, 2, "12 deg"), "row 9, column 'rocker_deg': found '12 deg'"),
-    "a truth": (cell(7, 2, "true"), "row 9, column 'rocker_deg': found 'true', no number"),
     "a column of truths": (
         text(*(f"{row.split(',')[0]},{row.split(',')[1]},true,1" for row in ROWS)),
         "row 2, column 'rocker_deg': found 'true', no number"),
@@ -87,8 +79,6 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     "a word below remarks and blank lines": (
         text("# a", *ROWS[:3], "", "  ", "# b", *ROWS[3:7], "0.1,x,2,3"),
         "row 13, column 'crank_deg': found 'x', no number"),
-    "a short row below remarks and blank lines": (
-        text("# a", *ROWS[:3], "", "  ", "# b", *ROWS[3:7], "0.1"), "row 13: 1 fields, the header"),
     "two lines of names": (
         text("t,theta,theta,x", *ROWS, header="time,crank,rocker,C"),
         "line 2 holds words and no numbers, below the names in line 1: .*join them, or put #"),
@@ -97,7 +87,6 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     "tabs that line columns up": (
         text(*ROWS).replace(b",", b"\t\t"), "line 1: column 2 has no name; .*separator = ' '"),
     "remarks of 300 kB": (b"# a solver\n" * 30_000 + text(*ROWS), "within the first .* leave out"),
-    "hexadecimal": (cell(7, 2, "0x1p3"), "row 9, column 'rocker_deg': found '0x1p3', no number"),
     "digits in groups": (cell(7, 2, "1_000"), "row 9, column 'rocker_deg': found '1_000', no num"),
     "times of a clock on the wall": (
         text(*(f"2026-01-01 00:00:{n:02}.5,1,2,3" for n in range(50))),
@@ -127,11 +116,9 @@ TEXTS: dict[str, tuple[bytes, str]] = {
         r"'rocker angle \[mm\]': mm is a unit of length, and its name says angle"),
     "a unit of time that is none": (header("time_s", "time [deg]"), "time.*deg"),
     "empty": (b"", "empty; a log has a header and rows of numbers"),
-    "only line ends": (b"\n\n\n", "empty.*; a log has a header and rows"),
     "only a byte order mark": (b"\xef\xbb\xbf", "empty.*; a log has a header and rows"),
     "only remarks": (b"# a\n# b\n", "empty but for remarks; a log has a header and rows"),
     "only a header": (text(), "a header and no rows"),
-    "a header and units": (b"time,crank\ns,deg\n", "no rows"),
     "one row": (text(ROWS[0]), "1 row; a motion has at least"),
     "no header": (text(*ROWS[1:], header=ROWS[0]), "line 1 holds numbers and no names; put a head"),
     "a column without a name": (header("rocker_deg", ""), "line 1: column 3 has no name; give it"),
@@ -139,35 +126,19 @@ TEXTS: dict[str, tuple[bytes, str]] = {
         header("rocker_deg", "crank_deg"),
         "two columns are called 'crank_deg'; give each a name of its own"),
     "a row that is too short": (text(*ROWS[:5], "0.05,30", *ROWS[6:]), "row 7: 2 fields, the head"),
-    "a row that is too long": (
-        text(*ROWS[:5], ROWS[5] + ",1", *ROWS[6:]), "row 7: 5 fields, the header 4"),
     "a quote that never closes": (cell(7, 2, '"7'), "row 9|quote"),
     "nothing of the scene": (
         header("crank_deg,rocker_deg,C_x_mm", "a,b,c"),
         "no column is of scene fourbar-lecture-1, which has crank.*found .*write-map"),
-    "another scene's": (
-        header("crank_deg,rocker_deg,C_x_mm", "lever_deg,rod_deg,F_x_mm"),
-        "no column is of scene fourbar-lecture-1, which has crank"),
     "binary": (bytes(range(256)) * 99, "no text|not UTF-8 text|null bytes"),
-    "a picture": (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes(999), "null bytes|not UTF-8 text"),
-    "a workbook called .csv": (b"PK\x03\x04" + bytes(999), "null bytes"),
     "UTF-16": (text(*ROWS).decode().encode("utf-16"), "UTF-16 text; save the file as UTF-8"),
     "Latin 1": (header("rocker_deg", "rocker [°]").decode().encode("latin-1"), "not UTF-8 text; s"),
     "lines that end in \\r": (text(*ROWS).replace(b"\n", b"\r"), "lines end in|save the file with"),
-    "100,000 columns": (
-        text(",".join(["1"] * 100_000), header=",".join(f"c{k}" for k in range(100_000))),
-        "100000 columns; at most|first line is longer than"),
     "20,000 short columns": (
         text("1," * 20_000, header="".join(f"{k}," for k in range(20_000))),
         "2000. columns; at most 2000 are read"),
     "numbers of 1 MB": (cell(7, 2, "1" * 1_000_000), "row 9, column 'rocker_deg'"),
 }  # fmt: skip
-
-
-def rows_of(count: int, row: bytes, path: Path) -> None:
-    with path.open("wb") as file:
-        file.write(b"time_s,crank_deg\n")
-        file.writelines(row * 100_000 for _ in range(count // 100_000))
 
 
 def large(before: bytes, part: bytes, times: int, after: bytes, path: Path) -> None:
@@ -188,10 +159,9 @@ LARGE: dict[str, tuple[Made, str]] = {
         partial(large, text(*ROWS), "\n".join([*ROWS, ""]).encode(), 99, bytes(999)), "row|null"),
     "a header of 10 MB": (
         partial(large, b"", b"x", 10_000_000, text(*ROWS)), "its first line is longer than"),
-    "a header of 10 MB in names": (
-        partial(large, b"", b"rocker_deg,", 900_000, b"x\n1\n"), "its first line is longer than"),
     "a line of 9 MB": (partial(large, text(*ROWS[:3]), b"1", 9_000_000, b"\n1,2,3,4\n"), "row 5"),
-    "10 million rows": (partial(rows_of, 10_000_000, b"1,2\n"), "10000000 rows; at most .* are re"),
+    "10 million rows": (
+        partial(large, b"time_s,crank_deg\n", b"1,2\n", 10_000_000, b""), "10000000 rows; at"),
 }  # fmt: skip
 SPECIAL: dict[str, tuple[Made, str]] = {
     "30 GB": (sparse, "30000000000 bytes; at most .* are read"),
@@ -215,23 +185,12 @@ def bare(path: Path, **columns: object) -> None:
     pq.write_table(pa.table(columns), path)
 
 
-def cut_short(make: Callable[[Path], object], path: Path) -> None:
-    make(path)
-    path.write_bytes(path.read_bytes()[:-99])
-
-
 PARQUET: dict[str, tuple[Made, str]] = {
     "nested": (
         partial(table, rocker_deg=[[1.0, 2.0]] * 61),
         r"row 1, column 'rocker_deg': found .*1\.0.*no number"),
-    "a table in a column": (
-        partial(table, rocker_deg=[{"a": 1.0}] * 61),
-        "row 1, column 'rocker_deg': found .*, no number"),
     "text": (partial(table, rocker_deg=["x"] * 61), "row 1, column 'rocker_deg': found 'x', no nu"),
-    "truths": (partial(table, rocker_deg=[True] * 61), "column 'rocker_deg': found True, no num"),
     "nulls": (partial(table, rocker_deg=[1.0, None] * 30 + [2.0]), "row 2, .*the cell is empty"),
-    "all nulls": (partial(table, rocker_deg=pa.nulls(61)), "row 1, .*the cell is empty"),
-    "bytes": (partial(table, rocker_deg=[b"1"] * 61), "column 'rocker_deg': found .*no number"),
     "dates": (
         partial(table, rocker_deg=pa.array([1] * 61, pa.timestamp("ms"))),
         "column 'rocker_deg': found .*1970.*no number",
@@ -240,7 +199,6 @@ PARQUET: dict[str, tuple[Made, str]] = {
     "no rows": (partial(bare, time_s=pa.array([], pa.float64())), "no rows"),
     "no columns": (bare, "no columns|no rows|empty"),
     "text that is none": (text(*ROWS), "no Parquet that can be read"),
-    "cut short": (partial(cut_short, table), "no Parquet that can be read"),
     "empty": (b"", "empty"),
 }  # fmt: skip
 
@@ -267,15 +225,6 @@ def notes_first(path: Path) -> None:
     made.active.append(["made today"])
     made.create_sheet("log").append(HEADER.split(","))
     made.save(path)
-
-
-def empty_book(path: Path) -> None:
-    openpyxl.Workbook().save(path)
-
-
-def archive(path: Path) -> None:
-    with zipfile.ZipFile(path, "w") as file:
-        file.writestr("a", "b")
 
 
 def bomb(path: Path) -> None:
@@ -324,23 +273,17 @@ LAUGHS = (
 )
 WORKBOOKS: dict[str, tuple[Made, str]] = {
     "a formula without its number": (partial(book, C9="=A9*2"), "row 9, column 'rocker_deg'"),
-    "an error": (partial(book, C9="#DIV/0!"), "row 9, column 'rocker_deg'.*"),
     "text": (partial(book, C9="x"), "row 9, column 'rocker_deg': found 'x', no number"),
-    "an empty cell": (partial(book, C9=None), "row 9, column 'rocker_deg': the cell is empty"),
     "merged cells": (partial(book, merged="C9:C12"), "row 10, column 'rocker_deg': the cell is em"),
-    "a merged header": (partial(book, merged="B1:C1"), "column 3 has no name"),
     "a sheet of remarks": (
         notes_first, "sheet 'Sheet': a header and no rows; .*say sheet in .file. of the map: log"),
     "numbers for names": (
         partial(book, A1=0.5, B1=1.5, C1=2.5, D1=3.5), "sheet 'Sheet': row 1 holds numbers and no"),
     "hours": (partial(book, A2=time(0, 0, 1)), "row 2, column 'time_s': found '00:00:01'.*seconds"),
     "an empty sheet": (partial(book, first="first"), "sheet 'first' is empty"),
-    "no sheet of numbers": (empty_book, "is empty"),
     "a bomb": (bomb, "bytes when it is unpacked; at most .* are read|no workbook"),
     "a cell far away": (
         partial(sheet_of, inside=FAR), "cells up to row 300000 and column 1000; at most"),
     "laughs": (partial(sheet_of, inside=LAUGHS), "no workbook that can be read"),
     "text that is none": (text(*ROWS), "no workbook that can be read"),
-    "cut short": (partial(cut_short, book), "no workbook that can be read"),
-    "another archive": (archive, "no workbook that can be read"),
-}  # fmt: skip
+    }  # fmt: skip

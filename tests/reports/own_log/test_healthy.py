@@ -1,5 +1,5 @@
 """A stranger's log of a linkage that is right is within 1e-3 rad, or of a length, in whatever dress
-it comes. The stranger's integration is a second opinion: it shares no line with ours, and agrees.
+it comes. The stranger's own solution is a second opinion: it shares no line with ours, and agrees.
 Of a log whose names say nothing, the map that is written is a form, and filled in it reads it."""
 
 import ast
