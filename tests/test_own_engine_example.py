@@ -43,16 +43,15 @@ def test_installed_it_is_listed_checked_swept_and_shown(
     checked = told("engines check penalty --clause EC41")
     assert "HOLDS THE CONTRACT: penalty 1.0, 1 of 1 clause" in checked
     Path("study.toml").write_text(
-        'scenes = ["fourbar-lecture-1"]\nsteps_per_turn = [90, 180, 360]\n'
+        'scenes = ["fourbar-lecture-1"]\nsteps_per_turn = [90, 180]\n'
         '[[variants]]\nengine = "penalty_engine:ENGINE"\nprofile = "tuned"\n'
     )
     swept = told("sweep --study study.toml -o out --no-timing --jobs 1")
-    assert "3 cells: 3 run now" in swept
+    assert "2 cells: 2 run now" in swept
     told("report out --format md -o summary.md")
     summary = Path("summary.md").read_text()
     assert "penalty 1.0" in summary
     assert "penalty_engine" not in summary
-    told("diff out out")
 
 
 def test_it_is_out_of_tolerance_by_its_own_name() -> None:

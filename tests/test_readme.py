@@ -27,6 +27,8 @@ LONG = {
     "a sweep, shown in every way; each is tested by its room",
     "crankcheck selftest": "26 s: every fault is planted by tests/reports/selftest",
     "crankcheck stability grashof-excess n-fourbar": "10 s: every case runs in tests/reports",
+    "crankcheck stability grashof-excess --engine mujoco --profile as-shipped --at 1e-4": "2 s: "
+    "tests/reports/stability has the verdict at a value",
 }
 """Commands that take their time, and where else what they do is tested."""
 MOST_BYTES = 12_000

@@ -9,8 +9,8 @@ those that anybody reads off the drawings.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,30 +23,19 @@ Point = tuple[float, float]
 @dataclass(frozen=True)
 class Linkage:
     """Bars with their points, each in the frame of its bar [m], whose first is the origin; blocks
-    on the x-axis, by the point that they carry; a crank. By pin, the ``pairs``: which bars are
-    placed by meeting there, and to which side, 1 to the left or ahead."""
+    on the x-axis, by the point that they carry. By pin, the ``pairs``: the bars that are placed by
+    meeting there, to the left of the line between their origins, or the one bar, ahead."""
 
     ground: Mapping[str, Point]
     bars: Mapping[str, Mapping[str, Point]]
     blocks: tuple[str, ...]
-    pairs: Mapping[str, tuple[tuple[str, ...], int]]
-    crank: str = "crank"
+    pairs: Mapping[str, tuple[str, ...]]
     speed_rad_s: float = 10.0
     start_deg: float = 90.0
 
     @property
     def period_s(self) -> float:
         return math.tau / abs(self.speed_rad_s)
-
-    def otherwise(self) -> Linkage:
-        """The same bars, the last pair of them put together the other way."""
-        pin, (bars, side) = list(self.pairs.items())[-1]
-        return replace(self, pairs={**self.pairs, pin: (bars, -side)})
-
-    def stretched(self, bar: str, factor: float) -> Linkage:
-        """The linkage with one bar that much longer."""
-        points = {name: (factor * x, factor * y) for name, (x, y) in self.bars[bar].items()}
-        return replace(self, bars={**self.bars, bar: points})
 
 
 ORIGIN = (0.0, 0.0)
@@ -58,13 +47,13 @@ FOURBAR = Linkage(
         "rocker": {"D": ORIGIN, "C": (0.2, 0.0)},
     },
     blocks=(),
-    pairs={"C": (("coupler", "rocker"), 1)},
+    pairs={"C": ("coupler", "rocker")},
 )
 SLIDER_CRANK = Linkage(
     ground={"A": ORIGIN},
     bars={"crank": FOURBAR.bars["crank"], "rod": {"B": ORIGIN, "C": (0.3, 0.0)}},
     blocks=("C",),
-    pairs={"C": (("rod",), 1)},
+    pairs={"C": ("rod",)},
     start_deg=30.0,
 )
 SIXBAR = Linkage(
@@ -76,7 +65,7 @@ SIXBAR = Linkage(
         "lever": {"G": ORIGIN, "F": (0.25, 0.0)},
     },
     blocks=(),
-    pairs={**FOURBAR.pairs, "F": (("rod", "lever"), 1)},
+    pairs={**FOURBAR.pairs, "F": ("rod", "lever")},
 )
 LINKAGES = {
     "fourbar-lecture-1": FOURBAR,
@@ -120,12 +109,12 @@ class Course:
             acceleration + (1j * alpha - omega**2) * arm,
         )
 
-    def hang(self, pin: str, bars: tuple[str, ...], side: int) -> None:
+    def hang(self, pin: str, bars: tuple[str, ...]) -> None:
         """Find the angles of the bars that meet in a pin."""
         ends = [self.moved(next(iter(self.linkage.bars[bar]))) for bar in bars]
         own = [complex(*self.linkage.bars[bar][pin]) for bar in bars]
         find = _two_bars if len(bars) == 2 else _rod_and_block
-        for bar, at, (arm, omega, alpha) in zip(bars, own, find(ends, own, side), strict=True):
+        for bar, at, (arm, omega, alpha) in zip(bars, own, find(ends, own), strict=True):
             self.angles[bar] = np.unwrap(np.angle(arm / at)), omega, alpha
 
 
@@ -133,27 +122,27 @@ Found = list[tuple[Vectors, Array, Array]]
 """Of each bar the way from its origin to the pin, its angular velocity and acceleration."""
 
 
-def _two_bars(ends: list[tuple[Vectors, ...]], own: list[complex], side: int) -> Found:
+def _two_bars(ends: Sequence[tuple[Vectors, ...]], own: list[complex]) -> Found:
     (p, vp, ap), (q, vq, aq) = ends
     apart = q - p
     span = np.abs(apart)
     along = (abs(own[0]) ** 2 - abs(own[1]) ** 2 + span**2) / (2.0 * span)
-    one = apart / span * (along + 1j * side * np.sqrt(abs(own[0]) ** 2 - along**2))
+    one = apart / span * (along + 1j * np.sqrt(abs(own[0]) ** 2 - along**2))
     other = one - apart
 
     def turning(difference: Vectors) -> tuple[Array, Array]:
         """The real m and n of i (m one - n other) = difference."""
         across = (1j * one * other.conj()).real
-        return tuple((difference * arm.conj()).real / across for arm in (other, one))
+        return (difference * other.conj()).real / across, (difference * one.conj()).real / across
 
     m, n = turning(vq - vp)
     gains = turning(aq - ap + m**2 * one - n**2 * other)
     return list(zip((one, other), (m, n), gains, strict=True))
 
 
-def _rod_and_block(ends: list[tuple[Vectors, ...]], own: list[complex], side: int) -> Found:
+def _rod_and_block(ends: Sequence[tuple[Vectors, ...]], own: list[complex]) -> Found:
     ((p, v, a),) = ends
-    arm = side * np.sqrt(abs(own[0]) ** 2 - p.imag**2) - 1j * p.imag
+    arm = np.sqrt(abs(own[0]) ** 2 - p.imag**2) - 1j * p.imag
     omega = -v.imag / arm.real
     return [(arm, omega, (omega**2 * arm.imag - a.imag) / arm.real)]
 
@@ -162,7 +151,7 @@ def course(linkage: Linkage, time_s: Array) -> Course:
     """The motion at those times [s], before the start as well."""
     theta = math.radians(linkage.start_deg) + linkage.speed_rad_s * time_s
     constant = np.full_like(time_s, linkage.speed_rad_s), np.zeros_like(time_s)
-    found = Course(linkage, time_s, {linkage.crank: (theta, *constant)})
-    for pin, (bars, side) in linkage.pairs.items():
-        found.hang(pin, bars, side)
+    found = Course(linkage, time_s, {"crank": (theta, *constant)})
+    for pin, bars in linkage.pairs.items():
+        found.hang(pin, bars)
     return found

@@ -325,19 +325,10 @@ def _last_pin(change: Callable[[Array, Array], tuple[Array, Array]]) -> Fault:
     return of_forces(changed)
 
 
-def _in_frame(force: Array) -> Array:
-    return force @ np.array([[0.8, 0.6], [-0.6, 0.8]])
-
-
 def _gap(forces: Forces) -> Forces:
     torque = forces.torque.copy()
     torque[7] = np.nan
     return replace(forces, torque=torque)
-
-
-def _a_step_late(forces: Forces) -> Forces:
-    """The forces of the step before, as if an impulse were of the wrong end of its step."""
-    return replace(forces.each_series(_late), time_s=forces.time_s)
 
 
 def _half_a_step_late(forces: Forces) -> Forces:
@@ -466,8 +457,6 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
         lambda _: _Integrated(drives=("prescribed", "servo")), set()),
     "in seconds": ("EC54", "a thousandth as fast", _in_seconds, {"EC52", "EC53"}),
     "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0, 0.0), {"EC93"}),
-    "nearly weightless": ("EC55", "free, gravity along y moves", _pulled(0.01, 0.01), {"EC93"}),
-    "too heavy": ("EC55", "free, gravity along y moves", _pulled(10.0, 10.0), {"EC93"}),
     "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), {"EC93"}),
     "slowed": (
         "EC55", "without gravity, the centres of mass move", meddling(_damped(1e-9)),
@@ -487,10 +476,6 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
         {"EC85", "EC86"}),
     "a pin's sign": (
         "EC83", "coupler: ", _last_pin(lambda one, two: (-one, -two)), {"EC84", "EC85", "EC86"}),
-    "a body's frame": (
-        "EC83", "rocker: ", _last_pin(lambda one, two: (_in_frame(one), _in_frame(two))),
-        {"EC84", "EC85", "EC86"}),
-    "a step late": ("EC84", "is that of +1.00 steps", of_forces(_a_step_late), {"EC85"}),
     "half a step late": ("EC84", "is that of -0.50 steps", of_forces(_half_a_step_late), {"EC85"}),
     "without loads": (
         "EC85", "a force over time in the ground's frame on rocker",

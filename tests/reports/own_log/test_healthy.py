@@ -21,7 +21,7 @@ from tests.reports.own_log.conftest import Judge
 from tests.worlds import stranger
 from tests.worlds.fuzzing import ACTING
 from tests.worlds.stranger import FOURBAR, LINKAGES, Linkage, course
-from tests.worlds.stranger_faults import COLUMNS, GERMAN, GUISES, PER_TURN, SHORT, disguised
+from tests.worlds.stranger_guises import COLUMNS, GERMAN, GUISES, PER_TURN, SHORT, disguised
 from tests.worlds.stranger_log import DEG, Dress, even, logged, map_text, single, uneven
 
 PLAIN = "fourbar-lecture-1"

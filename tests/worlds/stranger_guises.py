@@ -1,13 +1,7 @@
-"""The logs of a stranger: in the guises that a right one may come in, and with a fault in each.
-
-Faults are planted in a log that is right, whatever its columns are called, but for two: a linkage
-put together the other way, and one whose coupler is 1 % longer than the drawing says.
-"""
+"""The logs of a stranger: a plain one of each linkage, and guises that a right one may come in."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-
-import numpy as np
 
 from tests.worlds.stranger import FOURBAR, LINKAGES, Array, Linkage
 from tests.worlds.stranger_log import (
@@ -22,11 +16,6 @@ from tests.worlds.stranger_log import (
     map_text,
     uneven,
 )
-
-AT = 0.37
-"""Where in a log the fault of a moment is, as a part of its rows."""
-LATE = 2.5
-"""Samples."""
 
 
 def _bar(name: str) -> list[Column]:
@@ -52,124 +41,6 @@ COLUMNS: dict[str, list[Column]] = {
         *_pin("F")],
 }  # fmt: skip
 """A plain log of each linkage, whose headers say it all."""
-
-
-@dataclass(frozen=True)
-class Culprits:
-    """The columns of a linkage's log that the faults are planted in, the pin at which it is put
-    together the other way, and the bar that is longer."""
-
-    swapped: tuple[str, str]
-    unit: tuple[str, float]
-    sign: str
-    late: str
-    branch: str
-    longer: str
-    stuck: str
-    turn: str
-    filtered: str
-
-
-CULPRITS = {
-    "fourbar-lecture-1": Culprits(
-        swapped=("coupler_deg", "rocker_deg"), unit=("rocker_deg", 1.0 / DEG),  # radians
-        sign="coupler_omega_rad_s", late="rocker_omega_rad_s", branch="C", longer="coupler",
-        stuck="C_x_mm", turn="crank_deg", filtered="rocker_omega_rad_s"),
-    "slider-crank-central": Culprits(
-        swapped=("B_x_mm", "B_y_mm"), unit=("C_slider_displacement_mm", 1e-3),  # metres
-        sign="rod_deg", late="C_slider_speed_m_s", branch="C", longer="rod",
-        stuck="rod_deg", turn="crank_deg", filtered="C_slider_speed_m_s"),
-    "sixbar-watt": Culprits(
-        swapped=("rod_omega_rad_s", "lever_omega_rad_s"), unit=("F_vx_m_s", 1e3),  # mm/s
-        sign="F_y_mm", late="lever_deg", branch="F", longer="rod",
-        stuck="lever_omega_rad_s", turn="coupler_deg", filtered="F_vx_m_s"),
-}  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Planted:
-    """A log with a fault, the columns that are spoilt (none where all are), and what else is to be
-    named."""
-
-    log: Log
-    columns: tuple[str, ...]
-    named: str = ""
-
-
-def stuck(log: Log, column: str, rows: int = 1) -> Log:
-    """A reading that was not renewed, for so many rows."""
-    series = log[column].copy()
-    at = round(AT * series.size)
-    series[at : at + rows] = series[at - 1]
-    return {**log, column: series}
-
-
-def lost_turn(log: Log, column: str) -> Log:
-    """A counter of turns that missed one."""
-    series = log[column].copy()
-    series[round(AT * series.size) :] -= 360.0
-    return {**log, column: series}
-
-
-def smoothed(log: Log, column: str) -> Log:
-    """A low-pass of the first order, with a time constant of 20 rows, of which some may be longer
-    than others."""
-    series, clock = log[column].copy(), next(iter(log.values()))
-    steps = np.diff(clock)
-    shares = 1.0 - np.exp(-steps / (20.0 * np.mean(steps)))
-    for k, share in enumerate(shares, 1):
-        series[k] = series[k - 1] + share * (series[k] - series[k - 1])
-    return {**log, column: series}
-
-
-def averaged(log: Log, column: str, rows: int) -> Log:
-    """The mean of so many rows about each; where they are not all there, those that are."""
-    ones = np.ones(rows)
-    number = np.convolve(np.ones(log[column].size), ones, "same")
-    return {**log, column: np.convolve(log[column], ones, "same") / number}
-
-
-def planted(
-    scene: str, time_s: Array, columns: Sequence[Column] | None = None
-) -> dict[str, Callable[[], Planted]]:
-    """The ten faults in the log of a linkage at those times [s], by name."""
-    linkage, culprits = LINKAGES[scene], CULPRITS[scene]
-    columns = columns or COLUMNS[scene]
-    delay_s = LATE * float(np.ptp(time_s)) / (time_s.size - 1)
-
-    def log(of: Linkage = linkage, columns: Sequence[Column] = columns) -> Log:
-        return logged(of, time_s, columns)
-
-    def column(change: Callable[[Log, str], Log], name: str) -> Callable[[], Planted]:
-        return lambda: Planted(change(log(), name), (name,))
-
-    def times(factor: float, name: str = "time_s") -> Log:
-        return {key: factor * each if key == name else each for key, each in log().items()}
-
-    def swapped(one: str, other: str) -> Log:
-        return log() | {one: log()[other], other: log()[one]}
-
-    late = [
-        replace(each, later_s=each.later_s - delay_s) if each.header == culprits.late else each
-        for each in columns
-    ]
-    unit, per = culprits.unit
-    return {
-        "swapped columns": lambda: Planted(swapped(*culprits.swapped), culprits.swapped),
-        "wrong unit": lambda: Planted(times(per, unit), (unit,)),
-        "wrong sign": lambda: Planted(times(-1.0, culprits.sign), (culprits.sign,)),
-        "late channel": lambda: Planted(log(columns=late), (culprits.late,)),
-        "drifted clock": lambda: Planted(times(1.0 + 1e-3), ()),
-        "other branch": lambda: Planted(log(linkage.otherwise()), (), culprits.branch),
-        "scaled length": lambda: Planted(
-            log(linkage.stretched(culprits.longer, 1.01)), (), culprits.longer
-        ),
-        "stuck sample": column(stuck, culprits.stuck),
-        "lost turn": column(lost_turn, culprits.turn),
-        "filtered signal": column(smoothed, culprits.filtered),
-    }
-
-
 PER_TURN = 60
 STEP_S = FOURBAR.period_s / PER_TURN
 
@@ -279,7 +150,7 @@ def disguised(scene: str) -> Guise:
         new = replace(old, header=f"signal {number}")
         if old.what == "angle":
             turn_from = -180.0 if number % 4 else 0.0
-            parent = bars[bars.index(old.of) - 1] if old.of != linkage.crank else ""
+            parent = bars[bars.index(old.of) - 1] if old.of != "crank" else ""
             new = replace(new, turn_from=turn_from, parent=parent)
         elif old.what == "omega":
             new = replace(new, per=DEG if number % 4 == 1 else -RPM, later_s=delay_s)
