@@ -149,14 +149,14 @@ def drivers(draw: st.DrawFn) -> Tree:
 
 def _stretch(draw: st.DrawFn, tree: Tree) -> None:
     """A number at an end of its range, or beyond."""
-    if numbers := _leaves(tree, float):
+    if numbers := _numbers(tree):
         path = draw(st.sampled_from(numbers))
         _put(_at(tree, path[:-1]), path[-1], draw(EXTREME))
 
 
 def _twin(draw: st.DrawFn, tree: Tree) -> None:
     """Two numbers that are the same: parallelograms, kites, points that meet."""
-    if numbers := _leaves(tree, float):
+    if numbers := _numbers(tree):
         path, other = draw(st.sampled_from(numbers)), draw(st.sampled_from(numbers))
         _put(_at(tree, path[:-1]), path[-1], _at(tree, other))
 
@@ -175,9 +175,8 @@ def _tie(draw: st.DrawFn, tree: Tree) -> None:
         holder[name] = holder.pop(key)
 
 
-def _leaves(tree: Tree, kind: type) -> list[Path]:
-    """Where there is something of a kind."""
-    return [path for path in _paths(tree) if isinstance(_at(tree, path), kind)]
+def _numbers(tree: Tree) -> list[Path]:
+    return [path for path in _paths(tree) if isinstance(_at(tree, path), float)]
 
 
 def _spoil(draw: st.DrawFn, tree: Tree) -> None:

@@ -249,12 +249,11 @@ def _a_little_fast(asked: Asked) -> Asked:
     return asked._replace(scene=replace(scene, driver=replace(scene.driver, law=law)))
 
 
-def _pulled(share_x: float, share_y: float) -> Fault:
-    """Free, it has a share of gravity, and says that it has all."""
+def _pulled(share_y: float) -> Fault:
+    """Free, it has a share of gravity in y alone, and says that it has all."""
 
     def pulled(asked: Asked) -> Asked:
-        x, y = asked.scene.gravity_m_s2
-        other = replace(asked.scene, gravity_m_s2=(share_x * x, share_y * y))
+        other = replace(asked.scene, gravity_m_s2=(0.0, share_y * asked.scene.gravity_m_s2[1]))
         return asked._replace(scene=other) if asked.drive == "free" else asked
 
     return meddling(
@@ -456,8 +455,8 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
         "EC53", "placing is integrated with order 2",
         lambda _: _Integrated(drives=("prescribed", "servo")), set()),
     "in seconds": ("EC54", "a thousandth as fast", _in_seconds, {"EC52", "EC53"}),
-    "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0, 0.0), {"EC93"}),
-    "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), {"EC93"}),
+    "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0), {"EC93"}),
+    "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(1.0), {"EC93"}),
     "slowed": (
         "EC55", "without gravity, the centres of mass move", meddling(_damped(1e-9)),
         {"EC92", "EC93", "EC94"}),
