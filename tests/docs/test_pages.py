@@ -6,6 +6,7 @@ import posixpath
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import Any
 
 import pytest
@@ -22,7 +23,8 @@ from tests.worlds.command import COMMAND
 from tests.worlds.pages import ran
 
 WRITTEN = sources()
-SITE = staging.pages()
+site = cache(staging.pages)
+"""Made where it is asked for: all commands are loaded for it."""
 
 
 def leaves(entries: list[Any]) -> Iterator[str]:
@@ -36,7 +38,7 @@ def leaves(entries: list[Any]) -> Iterator[str]:
 
 def test_every_page_stands_in_the_navigation_once_and_begins_with_its_title() -> None:
     config = tomllib.loads((HERE / "zensical.toml").read_text(encoding="utf-8"))
-    assert sorted(leaves(config["project"]["nav"])) == sorted(SITE)
+    assert sorted(leaves(config["project"]["nav"])) == sorted(site())
     assert not [path for path, page in WRITTEN.items() if not page.startswith("# ")]
 
 
@@ -108,8 +110,8 @@ def test_code_is_left_as_it_is_and_what_is_made_is_on_its_page() -> None:
     code = "\n\n```console\n$ a\n```\n\n- b\n\n  ```text\n  a\n  ```\n"
     written = staging.outside_code(f"a `a` a{code}", lambda prose: prose.replace("a", "A"))
     assert written == f"A `a` A{code}"
-    assert not [place for place, page in SITE.items() if MADE.search(page)]
-    assert "[analytic.dyads](analytic/dyads.md)" in SITE["reference/theory-code.md"]
+    assert not [place for place, page in site().items() if MADE.search(page)]
+    assert "[analytic.dyads](analytic/dyads.md)" in site()["reference/theory-code.md"]
 
 
 def test_every_command_stands_there_with_every_option_its_default_and_limits() -> None:
