@@ -24,6 +24,7 @@ from analytic.structure.mobility import analyse
 from models.errors import ReachError
 from models.motion import Motion
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.scene.joints import frames
 from models.scene.laws import ConstantSpeed, Law, Oscillating
 
 Draw = Callable[[float, float], float]
@@ -339,25 +340,17 @@ def _on_its_branch(designed: Designed) -> Designed:
     return replace(designed, scene=fitting[0])
 
 
-def _is_layout(scene: Scene, frames: Mapping[str, tuple[float, float, float]]) -> bool:
+def _is_layout(scene: Scene, laid_out: Mapping[str, tuple[float, float, float]]) -> bool:
     try:
-        motion = solve(scene, np.zeros(1), bound=False)
+        found = frames(scene, solve(scene, np.zeros(1), bound=False).state())
     except ReachError:
         return False
+    places = ((found[name], laid_out[name]) for name in scene.links)
     return all(
-        abs(math.remainder(float(motion.links[name].theta[0]) - frames[name][2], math.tau)) < 1e-9
-        and all(
-            abs(complex(*motion.points[point].position[0]) - place) < 1e-9
-            for point, place in _places(scene.links[name], frames[name]).items()
-        )
-        for name in scene.links
+        math.dist(frame.origin, (x, y)) < 1e-9
+        and abs(math.remainder(frame.theta - angle, math.tau)) < 1e-9
+        for frame, (x, y, angle) in places
     )
-
-
-def _places(link: Link, frame: tuple[float, float, float]) -> dict[str, complex]:
-    x, y, angle = frame
-    turn = cmath.rect(1.0, angle)
-    return {name: complex(x, y) + turn * complex(*local) for name, local in link.points.items()}
 
 
 def _with_margin(designed: Designed, margin: float = MARGIN) -> Designed:
