@@ -125,7 +125,7 @@ TYPED = {
     "solve('shaper', [0.0]).frame()": "pandas.core.frame.DataFrame",
     "check('shaper').findings[0].level": "Literal['pass'] | Literal['advice'] | Literal['fail']",
     "judge('shaper', 'log.csv', target=1e-3)": "crankcheck.reports.requests.judge.LogVerdict",
-    "judge('shaper', cc.run('shaper'))": "crankcheck.reports.requests.check.CellVerdict",
+    "judge('shaper', cc.run('shaper'))": "crankcheck.reports.requests.compare.CellVerdict",
     "report('out')": "pathlib.Path",
 }
 """What a user's type checker makes of calls."""
