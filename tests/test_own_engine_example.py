@@ -1,8 +1,5 @@
 """The engine of examples/engine as its reader has it: spelled, installed, swept, with faults."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,18 +7,8 @@ import pytest
 
 from reports.selftest.trial import FAULTS, sites
 from sim.registry import engine
-from tests.test_architecture import ROOT
 from tests.worlds.command_line import flat, told
-from tests.worlds.own_engines import CODE, EXAMPLE, fresh, installed, with_faults
-from tests.worlds.tiers import slow
-
-THREE_FAULTS = {
-    "velocity_shift=SHIFT": "velocity_shift=0.5",
-    "VERSION, check, PenaltySession": "VERSION, lambda settings: None, PenaltySession",
-    "        check(settings)\n": "",
-    "[every] * (steps // every)": "[every] * (steps // every - 1)",
-}
-"""Velocities of another instant, every setting taken, a sample less."""
+from tests.worlds.own_engines import CODE, fresh, installed
 
 
 @pytest.fixture(autouse=True)
@@ -56,33 +43,15 @@ def test_installed_it_is_listed_checked_swept_and_shown(
     checked = told("engines check penalty --clause EC41")
     assert "HOLDS THE CONTRACT: penalty 1.0, 1 of 1 clause" in checked
     Path("study.toml").write_text(
-        'scenes = ["fourbar-lecture-1"]\nsteps_per_turn = [90, 180, 360]\n'
+        'scenes = ["fourbar-lecture-1"]\nsteps_per_turn = [90, 180]\n'
         '[[variants]]\nengine = "penalty_engine:ENGINE"\nprofile = "tuned"\n'
     )
     swept = told("sweep --study study.toml -o out --no-timing --jobs 1")
-    assert "3 cells: 3 run now" in swept
+    assert "2 cells: 2 run now" in swept
     told("report out --format md -o summary.md")
     summary = Path("summary.md").read_text()
     assert "penalty 1.0" in summary
     assert "penalty_engine" not in summary
-    told("diff out out")
-
-
-@slow("the clauses that find them have wrong engines of their own in tests/reports/contract")
-def test_three_faults_are_each_named_with_their_cure() -> None:
-    Path("faulty_penalty.py").write_text(with_faults(THREE_FAULTS))
-    clauses = "--clause EC11 --clause EC13 --clause EC32 --clause EC41"
-    said = flat(told(f"engines check faulty_penalty:ENGINE {clauses} --jobs 1", code=1))
-    for words in (
-        "ok EC11",
-        "OUT EC13 a wrong setting is refused with SettingError",
-        "OUT EC32 a log holds the current sample",
-        "record gave 40 samples, and has to give 41",
-        "OUT EC41 velocities belong to the instant",
-        "cure: In check, call check_ranges for the numbers",
-        "BREAKS THE CONTRACT: penalty 1.0, 3 clauses of 4: EC13, EC32, EC41",
-    ):
-        assert words in said
 
 
 def test_it_is_out_of_tolerance_by_its_own_name() -> None:
@@ -98,31 +67,14 @@ def test_it_is_out_of_tolerance_by_its_own_name() -> None:
         ("tune fourbar-lecture-1 --target 1e-3 --engine X", "engine penalty: it has no knobs"),
         ("history X 1.0", "history penalty: it has released versions of mujoco"),
         ("verify slotted-lever --engine X", "slotted-lever, penalty, tuned: penalty: it has no sl"),
-        ("run slotted-lever -o log.csv --engine X", "slotted-lever, penalty: unsupported: penalty"),
         ("verify fourbar-lecture-1 --drive servo --engine X", "penalty: it has no servo"),
         ("selftest --fault joint-dropped --engine X", "found --engine penalty"),
     ],
 )
 def test_what_it_has_not_is_said(line: str, words: str) -> None:
     assert words in flat(told(line.replace("X", "penalty_engine:ENGINE"), code=2))
-    assert not Path("log.csv").exists()
 
 
 def test_faults_are_planted_where_it_holds_the_scene() -> None:
     engine("penalty_engine:ENGINE")
     assert sites([FAULTS["row-lost"]], ["penalty"]) == [("fourbar-lecture-1", "penalty")]
-
-
-@slow("pip and a whole contract in 8 s; without it, each clause is checked in the process")
-def test_pip_installs_it_from_its_folder_and_it_holds_the_contract(tmp_path: Path) -> None:
-    source, site = tmp_path / "source", tmp_path / "site"
-    source.mkdir()
-    for path in EXAMPLE.glob("*.*"):
-        (source / path.name).write_bytes(path.read_bytes())
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
-    subprocess.run([*pip, "--target", str(site), str(source)], check=True)
-    command = [sys.executable, "-P", "-m", "crankcheck", "engines", "check", "penalty"]
-    env = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{site}"}
-    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert b"HOLDS THE CONTRACT: penalty 1.0, 24 of 24 clauses" in done.stdout

@@ -14,7 +14,7 @@ import pytest
 
 from reports.selftest.trial import FAULTS
 from reports.stability.grading import CATALOGUE
-from tests.worlds.pages import IN_PARTS, blocks, commands, faults_of, parts, same, threads
+from tests.worlds.pages import IN_PARTS, blocks, commands, faults_of, parts, same
 from tests.worlds.tiers import slowly
 
 ROOT = Path(__file__).parents[1]
@@ -27,6 +27,8 @@ LONG = {
     "a sweep, shown in every way; each is tested by its room",
     "crankcheck selftest": "26 s: every fault is planted by tests/reports/selftest",
     "crankcheck stability grashof-excess n-fourbar": "10 s: every case runs in tests/reports",
+    "crankcheck stability grashof-excess --engine mujoco --profile as-shipped --at 1e-4": "2 s: "
+    "tests/reports/stability has the verdict at a value",
 }
 """Commands that take their time, and where else what they do is tested."""
 MOST_BYTES = 12_000
@@ -58,11 +60,8 @@ def test_every_command_of_a_page_is_tried_once_in_one_of_its_parts(page: str) ->
     assert len({command for command, _, _ in whole[0]}) == len(whole[0])
 
 
-def test_what_takes_long_stands_on_a_page() -> None:
+def test_what_takes_long_stands_on_a_page_and_not_in_the_readme_which_is_short() -> None:
     assert not set(LONG) - {first for page in PAGES for first in parts(page)}
-
-
-def test_the_readme_is_short_and_has_no_example_that_takes_long() -> None:
     assert len(README.encode()) <= MOST_BYTES
     assert len(parts(README)) >= 3
     assert not set(LONG) & set(parts(README))
@@ -86,17 +85,6 @@ def test_pages_count_all_faults_that_are_planted_and_hard_cases_that_run_unnamed
     assert lost == []
 
 
-def test_what_uses_a_file_comes_after_what_writes_it() -> None:
-    told = ["run a -o log.csv", "solve", "judge a log.csv", "sweep b -o out", "diff out out"]
-    scripts = ["read('log.csv')", "read('out/cells')", "print('about')"]
-    assert threads(told, scripts) == [
-        ["run a -o log.csv", "judge a log.csv", "read('log.csv')"],
-        ["solve"],
-        ["sweep b -o out", "diff out out", "read('out/cells')"],
-        ["print('about')"],
-    ]
-
-
 def test_the_two_commands_stand_in_the_readme_and_in_the_makefile() -> None:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for target in ("verify", "test"):
@@ -111,7 +99,6 @@ def test_the_two_commands_stand_in_the_readme_and_in_the_makefile() -> None:
         ("rocker 4.676 rad", "rocker 4.677 rad", False),
         ("ok rocker 4.676", "ok  rocker 4.700", True),
         ("ok rocker 4.676", "ok  rocker 5.700", False),
-        ("rocker 1", "coupler 1", False),
         ("rocker ... rad", "rocker 4.677 rad", True),
         ("rocker ... rad", "rocker 4.677 deg", False),
     ],

@@ -122,21 +122,16 @@ def test_packages_of_our_names_in_the_users_folder_hide_nothing(
 
 
 TYPED = {
-    "solve('shaper', np.zeros(1))": "crankcheck.reports.requests.solution.Solution",
     "solve('shaper', [0.0]).frame()": "pandas.core.frame.DataFrame",
-    "run(Path('a.toml'), 'mujoco', dt_s=1e-3)": "crankcheck.reports.requests.run.Simulation",
     "check('shaper').findings[0].level": "Literal['pass'] | Literal['advice'] | Literal['fail']",
     "judge('shaper', 'log.csv', target=1e-3)": "crankcheck.reports.requests.judge.LogVerdict",
-    "judge('shaper', cc.run('shaper'))": "crankcheck.reports.requests.check.CellVerdict",
-    "compare('shaper', {'t': [0.0]}).errors": "crankcheck.reports.compare.errors.Errors",
-    "sweep(['shaper'], 'out').verdict": "Literal['within'] | Literal['out']",
+    "judge('shaper', cc.run('shaper'))": "crankcheck.reports.requests.compare.CellVerdict",
     "report('out')": "pathlib.Path",
 }
 """What a user's type checker makes of calls."""
 REFUSED = {
     "solve(3)": "arg-type",
     "run('shaper', steps=90)": "call-arg",
-    "check('shaper', tolerance={'angle': 'x'})": "dict-item",
     "judge('shaper', cc.run('shaper'), step_s=1e-3)": "call-overload",
     "undo": "attr-defined",
 }
@@ -168,30 +163,6 @@ SOLVES = """
 motion = crankcheck.solve(crankcheck.load_scene("shaper"), [0.0])
 print(type(motion).__module__, crankcheck.__file__)
 """
-PROJECT = """\
-import models.linkage, reports.table
-from crankcheck import solve
-from crankcheck.testing import assert_within
-
-LOG = {"time_s": models.linkage.TIME_S, "rocker_rad": models.linkage.rocker_rad()}
-
-
-def test_that_passes():
-    assert_within("fourbar-lecture-1", LOG, angle=1e-9)
-
-
-def test_that_fails():
-    assert_within("fourbar-lecture-1", {**LOG, "rocker_rad": reports.table.off(LOG)}, angle=1e-3)
-"""
-LINKAGE = """\
-import crankcheck
-
-TIME_S = [k / 100 for k in range(60)]
-
-
-def rocker_rad():
-    return crankcheck.solve("fourbar-lecture-1", TIME_S).links["rocker"].theta
-"""
 
 
 def test_import_is_the_wheel_and_five_lines_print_a_verdict(installed: Path, mine: Path) -> None:
@@ -204,24 +175,6 @@ def test_import_is_the_wheel_and_five_lines_print_a_verdict(installed: Path, min
     assert done.stdout.startswith("within\nprofile tuned (gated)\n")
     assert "\nok fourbar-lecture-1      mujoco 1.2e-07 " in done.stdout
     assert "\nWITHIN TOLERANCE: 1 cell (1 scene x 1 engine)\n" in done.stdout
-
-
-@slow("pytest in a process, beside the wheel; the command there is tried in `make test`")
-def test_a_project_with_packages_of_our_names_asserts_with_the_wheel(
-    installed: Path, mine: Path
-) -> None:
-    (mine / "models" / "linkage.py").write_text(LINKAGE)
-    (mine / "reports" / "table.py").write_text("def off(log): return log['rocker_rad'] + 0.01\n")
-    (mine / "crankcheck").rmdir()
-    (mine / "test_linkage.py").write_text(PROJECT)
-    command = [installed / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider"]
-    done = ran(*command, "--import-mode=prepend", "test_linkage.py", cwd=mine)
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "1 failed, 1 passed" in done.stdout
-    told = [line.removeprefix("E").strip() for line in done.stdout.splitlines()]
-    assert "OUT  the log, scene fourbar-lecture-1" in told
-    assert "OUT OF TOLERANCE: 1 of 1 error over 60 samples of fourbar-lecture-1" in told
-    assert [line for line in told if line.startswith("OUT rocker_rad")]
 
 
 @slow("a minute: all tests that start the command as a process, once more with that of the wheel")
@@ -242,7 +195,7 @@ def test_an_engine_that_pip_installs_beside_the_wheel_holds_the_contract(
     subprocess.run([*pip, "--target", str(site), str(mine / "source")], check=True)
     path = {"PYTHONPATH": str(site)}
     done = ran(installed / "crankcheck", "engines", "check", "penalty", cwd=mine, **path)
-    assert (done.returncode, "HOLDS THE CONTRACT" in done.stdout) == (0, True), done.stdout
+    assert (done.returncode, "1.0, 24 of 24 clauses" in done.stdout) == (0, True), done.stdout
     sweep = "sweep fourbar-lecture-1 --engine penalty --profile tuned --no-timing -o out"
     steps = ("--steps-per-turn", "90,180")
     done = ran(installed / "crankcheck", *sweep.split(), *steps, cwd=mine, **path)

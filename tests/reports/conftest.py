@@ -52,7 +52,7 @@ def disturbed(fake_engine: ModuleType) -> Callable[..., Run]:
         steps: int = STEPS,
         **options: object,
     ) -> Run:
-        engine = fake_engine.FakeEngine(exact=solve, disturb=disturb, **options)
+        engine = fake_engine.FakeEngine(disturb=disturb, **options)
         state = solve(scene, np.zeros(1)).state()
         return run(scene, state, engine, dt_s=scene.driver.law.period_s / STEPS, steps=steps)
 

@@ -5,6 +5,7 @@ coupler 0.25, rocker 0.2, ground 0.3 m, rods of 1 kg/m, crank from 90 deg); the 
 follow from the law of cosines.
 """
 
+import cmath
 import math
 import re
 from collections.abc import Callable
@@ -33,14 +34,30 @@ def angles(crank: Array) -> tuple[Array, Array]:
     return np.unwrap(np.arctan2(cy - by, cx - bx)), rocker
 
 
-def rates(crank: float, speed: float) -> tuple[float, float]:
-    """Angular velocities of coupler and rocker [rad/s], from the law of sines of the velocities."""
-    coupler, rocker = (float(each[0]) for each in angles(np.array([crank])))
-    across = math.sin(rocker - coupler)
+COUPLER_START, ROCKER_START = (float(each[0]) for each in angles(np.array([START])))
+
+
+def rates(speed: float) -> tuple[float, float]:
+    """Angular velocities of coupler and rocker at the start [rad/s], from the law of sines of the
+    velocities."""
+    across = math.sin(ROCKER_START - COUPLER_START)
     return (
-        speed * CRANK / COUPLER * math.sin(crank - rocker) / across,
-        speed * CRANK / ROCKER * math.sin(crank - coupler) / across,
+        speed * CRANK / COUPLER * math.sin(START - ROCKER_START) / across,
+        speed * CRANK / ROCKER * math.sin(START - COUPLER_START) / across,
     )
+
+
+def bars(speed: float) -> list[tuple[float, complex, float, complex, float]]:
+    """Of crank, coupler and rocker at the start: length and mass, place of the centre, angle,
+    velocity and angular velocity."""
+    of_coupler, of_rocker = rates(speed)
+    b, away = cmath.rect(CRANK, START), cmath.rect(ROCKER, ROCKER_START)
+    of_b, of_c = 1j * speed * b, 1j * of_rocker * away
+    return [
+        (CRANK, b / 2, START, of_b / 2, speed),
+        (COUPLER, (b + GROUND + away) / 2, COUPLER_START, (of_b + of_c) / 2, of_coupler),
+        (ROCKER, GROUND + away / 2, ROCKER_START, of_c / 2, of_rocker),
+    ]
 
 
 def worst(found: tuple[Array, ...], exact: tuple[Array, ...]) -> float:
@@ -49,21 +66,16 @@ def worst(found: tuple[Array, ...], exact: tuple[Array, ...]) -> float:
 
 def exudyn_fourbar(system: Any, speed: float) -> list[Any]:
     """The four-bar added to a system, driven; the nodes of crank, coupler and rocker."""
-    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
-    of_coupler, of_rocker = rates(START, speed)
-    b = np.array([CRANK * math.cos(START), CRANK * math.sin(START)])
-    c = np.array([GROUND + ROCKER * math.cos(rocker), ROCKER * math.sin(rocker)])
-    d = np.array([GROUND, 0.0])
-    of_b, of_c = speed * _across(b), of_rocker * _across(c - d)
-    bars = (
-        (CRANK, b / 2, START, of_b / 2, speed),
-        (COUPLER, (b + c) / 2, coupler, (of_b + of_c) / 2, of_coupler),
-        (ROCKER, (c + d) / 2, rocker, of_c / 2, of_rocker),
-    )
     ground = system.AddObject(items.ObjectGround())
     made = [
-        exudyn_body(system, length, length**3 / 12, [*place, theta], [*velocity, omega])
-        for length, place, theta, velocity, omega in bars
+        exudyn_body(
+            system,
+            length,
+            length**3 / 12,
+            [place.real, place.imag, theta],
+            [velocity.real, velocity.imag, omega],
+        )
+        for length, place, theta, velocity, omega in bars(speed)
     ]
     nodes, bodies = zip(*made, strict=True)
     pins = (
@@ -83,10 +95,6 @@ def exudyn_fourbar(system: Any, speed: float) -> list[Any]:
         items.ObjectConnectorCoordinate(markerNumbers=ends, velocityLevel=True, offset=speed)
     )
     return list(nodes)
-
-
-def _across(vector: Array) -> Array:
-    return np.array([-vector[1], vector[0]])
 
 
 def exudyn_body(
@@ -131,10 +139,8 @@ def exudyn_error(snippet: str, steps: int, speed: float) -> float:
         _, coupler, rocker = simulated(system, simulation, nodes)
     except exu.SolverError:
         return math.inf
-    started = (float(each[0]) for each in angles(np.array([START])))
-    exact = angles(START + speed * coupler[:, 0])
-    found = tuple(first + log[:, 3] for first, log in zip(started, (coupler, rocker), strict=True))
-    return worst(found, exact)
+    found = COUPLER_START + coupler[:, 3], ROCKER_START + rocker[:, 3]
+    return worst(found, angles(START + speed * coupler[:, 0]))
 
 
 def measured_in_exudyn(snippet: str) -> str:
@@ -176,9 +182,11 @@ def measured_as_we_did(snippet: str) -> str:
 
 
 def fourbar_bodies(text: str, flywheel: float) -> str:
-    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
     return text.format(
-        crank=START, coupler_in_crank=coupler - START, rocker=rocker, flywheel=flywheel
+        crank=START,
+        coupler_in_crank=COUPLER_START - START,
+        rocker=ROCKER_START,
+        flywheel=flywheel,
     )
 
 
@@ -212,47 +220,38 @@ def _turned(
     model: mujoco.MjModel, steps: int, speed: float, crank: Callable[[Array], Array]
 ) -> float:
     """The error over two turns, where the true angle of the crank follows from the angles."""
-    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
     start = mujoco.MjData(model)
-    of_coupler, of_rocker = rates(START, speed)
+    of_coupler, of_rocker = rates(speed)
     start.qvel[:] = speed, of_coupler - speed, of_rocker
     start.ctrl[:] = speed
     turned = np.empty((TURNS * steps + 1, 3))
     for row in turned:
         row[:] = start.qpos
         mujoco.mj_step(model, start)
-    exact = angles(crank(turned))
-    found = (START + turned[:, 0] + coupler - START + turned[:, 1], rocker + turned[:, 2])
-    return worst(found, exact)
+    found = turned[:, 0] + COUPLER_START + turned[:, 1], ROCKER_START + turned[:, 2]
+    return worst(found, angles(crank(turned)))
 
 
 def pymunk_fourbar(
     space: pymunk.Space, speed: float
 ) -> tuple[tuple[pymunk.Body, ...], tuple[pymunk.Constraint, ...]]:
     """The four-bar added to a space: crank, coupler and rocker, and their joints."""
-    at_start = tuple(float(each[0]) for each in angles(np.array([START])))
-    b = CRANK * math.cos(START), CRANK * math.sin(START)
-    c = GROUND + ROCKER * math.cos(at_start[1]), ROCKER * math.sin(at_start[1])
-    of_coupler, of_rocker = rates(START, speed)
     crank = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     crank.angle, crank.angular_velocity = START, speed
-    coupler = pymunk.Body(0.25, 0.25 * 0.25**2 / 12)
-    coupler.position = (b[0] + c[0]) / 2, (b[1] + c[1]) / 2
-    coupler.angle, coupler.angular_velocity = at_start[0], of_coupler
-    rocker = pymunk.Body(0.2, 0.2 * 0.2**2 / 12)
-    rocker.position = (GROUND + c[0]) / 2, c[1] / 2
-    rocker.angle, rocker.angular_velocity = at_start[1], of_rocker
-    of_c = -of_rocker * c[1], of_rocker * (c[0] - GROUND)
-    of_b = -speed * b[1], speed * b[0]
-    rocker.velocity = of_c[0] / 2, of_c[1] / 2
-    coupler.velocity = (of_b[0] + of_c[0]) / 2, (of_b[1] + of_c[1]) / 2
+    coupler, rocker = moving = (
+        pymunk.Body(COUPLER, COUPLER**3 / 12),
+        pymunk.Body(ROCKER, ROCKER**3 / 12),
+    )
+    for body, (_, place, theta, velocity, omega) in zip(moving, bars(speed)[1:], strict=True):
+        body.position, body.velocity = (place.real, place.imag), (velocity.real, velocity.imag)
+        body.angle, body.angular_velocity = theta, omega
     joints = (
         pymunk.PivotJoint(crank, coupler, (CRANK, 0.0), (-COUPLER / 2, 0.0)),
         pymunk.PivotJoint(coupler, rocker, (COUPLER / 2, 0.0), (ROCKER / 2, 0.0)),
         pymunk.PivotJoint(space.static_body, rocker, (GROUND, 0.0), (-ROCKER / 2, 0.0)),
     )
-    space.add(crank, coupler, rocker, *joints)
-    return (crank, coupler, rocker), joints
+    space.add(crank, *moving, *joints)
+    return (crank, *moving), joints
 
 
 class Clocked(pymunk.Space):

@@ -42,7 +42,6 @@ class Drawing:
     degrees: bool = False
     reads: float = 0.0
     balanced: bool = False
-    option: str = ""
 
 
 @dataclass
@@ -88,7 +87,7 @@ class _Writer:
             [
                 "<mujoco>",
                 f'  <compiler angle="{unit}"/>',
-                f'  <option gravity="{gravity}" {self.drawing.option}/>',
+                f'  <option gravity="{gravity}"/>',
                 "  <worldbody>",
                 *self._written(self.world, "    "),
                 "  </worldbody>",
@@ -167,9 +166,9 @@ class _Writer:
         place = self.placed[body].at(centre)
         # About other axes it is less: only that across the plane is the scene's.
         across = " ".join(repr(part * inertia) for part in (0.6, 0.7, 1.0))
-        quat = quaternion(made.axes.T @ self.turn)
+        axes = self._axes(made.axes.T @ self.turn)
         return (
-            f'<inertial pos="{self._local(made, place)}" quat="{self._vector(quat)}" '
+            f'<inertial pos="{self._local(made, place)}" xyaxes="{axes}" '
             f'mass="{mass!r}" diaginertia="{across}"/>'
         )
 
@@ -220,8 +219,8 @@ class _Writer:
             self.chance.shuffle(children)
         for child in children:
             place = self._vector(body.axes.T @ (child.origin - body.origin))
-            quat = self._vector(quaternion(body.axes.T @ child.axes))
-            yield f'{pad}<body name={quoteattr(child.name)} pos="{place}" quat="{quat}">'
+            axes = self._axes(body.axes.T @ child.axes)
+            yield f'{pad}<body name={quoteattr(child.name)} pos="{place}" xyaxes="{axes}">'
             yield from self._written(child, pad + "  ")
             yield f"{pad}</body>"
 
@@ -233,6 +232,10 @@ class _Writer:
         """A place of the plane in the frame of a body."""
         return self._vector(body.axes.T @ (self._space(place) - body.origin))
 
+    def _axes(self, matrix: Array) -> str:
+        """A rotation, by its first two columns."""
+        return self._vector(matrix[:, :2].T.ravel())
+
     @staticmethod
     def _vector(vector: Array) -> str:
         return " ".join(repr(float(part)) for part in vector)
@@ -241,20 +244,3 @@ class _Writer:
 def rotation(chance: random.Random) -> Array:
     matrix, _ = np.linalg.qr(np.array([[chance.gauss(0.0, 1.0) for _ in "xyz"] for _ in "xyz"]))
     return np.asarray(matrix * np.sign(np.linalg.det(matrix)))
-
-
-def quaternion(matrix: Array) -> Array:
-    """The rotation as a quaternion, w first."""
-    # Of the four products of w, x, y, z with one another the largest is taken as base.
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    squares = np.array([1 + a + e + i, 1 + a - e - i, 1 - a + e - i, 1 - a - e + i])
-    rows = np.array(
-        [
-            [squares[0], h - f, c - g, d - b],
-            [h - f, squares[1], b + d, c + g],
-            [c - g, b + d, squares[2], f + h],
-            [d - b, c + g, f + h, squares[3]],
-        ]
-    )
-    row = rows[int(np.argmax(squares))]
-    return np.asarray(row / np.linalg.norm(row))

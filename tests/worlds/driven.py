@@ -21,25 +21,23 @@ of the rods reach; and joints that pymunk's iterations solve or do not.
 import itertools
 import math
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pymunk
 from hypothesis import strategies as st
 
 from analytic.kinematics import solve
-from models.array import Array
 from models.errors import EngineError
 from models.files.assemble import scene_text
 from models.files.reading import parse_scene
 from models.mjcf.tree import plan
-from models.motion import State
 from models.scene import GROUND, Link, Point, Scene, Slider, span
 from models.scene.laws import ConstantSpeed
 from models.scene.moved import moved, scaled
 from reports.compare.hardness import curvature
 from reports.quantities.limits import DEFAULTS
+from sim.pymunk.convergence import left_over
 from sim.pymunk.settings import TUNED
 from sim.pymunk.space import build
 from tests.worlds.strategies import (
@@ -60,59 +58,7 @@ def contraction(scene: Scene) -> float:
     """The largest factor over a period that the error keeps in one iteration in the long run."""
     times = np.linspace(0.0, scene.driver.law.period_s, POSITIONS, endpoint=False)
     motion = solve(scene, times, bound=False)
-    return max(_radius(scene, motion.state(k)) for k in range(POSITIONS))
-
-
-def _radius(scene: Scene, state: State) -> float:
-    """The spectral radius of an iteration, in one position."""
-    model = build(scene, state)
-    free = [b for b in model.bodies.values() if b.body_type == pymunk.Body.DYNAMIC]
-    inverse = np.concatenate([[1 / b.mass, 1 / b.mass, 1 / b.moment] for b in free])
-    column = {id(body): 3 * k for k, body in enumerate(free)}
-    groups = [_rows(joint, column, len(inverse)) for joint in model.space.constraints]
-    rows = np.concatenate(groups)
-    matrix = (rows * inverse) @ rows.T
-    group = np.repeat(np.arange(len(groups)), [len(part) for part in groups])
-    done = group[:, None] >= group[None, :]
-    iteration = np.linalg.solve(np.where(done, matrix, 0.0), np.where(done, 0.0, matrix))
-    return float(np.max(np.abs(np.linalg.eigvals(iteration))))
-
-
-def _rows(joint: pymunk.Constraint, column: dict[int, int], width: int) -> Array:
-    """What a joint holds at rest, as rows that multiply the velocities of the bodies."""
-    if isinstance(joint, pymunk.GearJoint):
-        row = np.zeros((1, width))
-        for body, sign in ((joint.a, -1.0), (joint.b, 1.0)):
-            if id(body) in column:
-                row[0, column[id(body)] + 2] += sign
-        return row
-    rows = np.zeros((2, width))
-    for body, arm, sign in _arms(joint):
-        if id(body) in column:
-            k = column[id(body)]
-            rows[:, k : k + 2] += sign * np.eye(2)
-            rows[:, k + 2] += sign * np.array([-arm[1], arm[0]])
-    if isinstance(joint, pymunk.PivotJoint):
-        return rows
-    return _across(joint)[None] @ rows
-
-
-def _arms(joint: pymunk.Constraint) -> Iterator[tuple[pymunk.Body, pymunk.Vec2d, float]]:
-    """The bodies of a joint, from each to the place that it holds, and the sign of its motion."""
-    assert isinstance(joint, pymunk.PivotJoint | pymunk.PinJoint | pymunk.GrooveJoint)
-    place = joint.b.local_to_world(joint.anchor_b)
-    for body, sign in ((joint.a, -1.0), (joint.b, 1.0)):
-        yield body, place - body.position, sign
-
-
-def _across(joint: pymunk.Constraint) -> Array:
-    if isinstance(joint, pymunk.GrooveJoint):
-        a, b = (joint.a.local_to_world(end) for end in (joint.groove_a, joint.groove_b))
-        along = (b - a).normalized()
-        return np.array([-along.y, along.x])
-    assert isinstance(joint, pymunk.PinJoint)
-    away = joint.b.local_to_world(joint.anchor_b) - joint.a.local_to_world(joint.anchor_a)
-    return np.array(away.normalized())
+    return max(left_over(build(scene, motion.state(k))) for k in range(POSITIONS))
 
 
 CROSSED = tuple(form for form in FORMS if form.startswith("PRP"))

@@ -29,18 +29,15 @@ duration_s = 4.0
 [start]
 angles_deg = { crank = 30.0 }
 rates_rad_s = { crank = 2.0 }
-[springs.line]
-points = ["G", "S"]
-rate_n_m = 50.0
-free_m = 0.1
-[springs.turning]
-pin = "B"
-rate_n_m_rad = 0.3
-damping_n_m_s = 0.01
-free_deg = -20.0
-[springs.along]
-slider = "C"
-damping_n_s_m = 0.2
+[springs]
+line = { points = ["G", "S"], rate_n_m = 50.0, free_m = 0.1 }
+turning = { pin = "B", rate_n_m_rad = 0.3, damping_n_m_s = 0.01, free_deg = -20.0 }
+along = { slider = "C", damping_n_s_m = 0.2 }
+[friction]
+A = { torque_n_m = 0.004 }
+[loads]
+pulse = { link = "rod", law = "pulse", period_s = 0.2, start_s = 0.1, torque_n_m = 0.3 }
+switch = { block = "C", law = "steps", at_s = [0.0, 0.25, 0.5], force_n = [0.5, 1.0, 0.0] }
 [loads.motor]
 link = "crank"
 law = "table"
@@ -55,17 +52,6 @@ over = "speed"
 slider = "C"
 direction_deg = 180.0
 force_n = [0.0, 0.5]
-[loads.pulse]
-link = "rod"
-law = "pulse"
-period_s = 0.2
-start_s = 0.1
-torque_n_m = 0.3
-[loads.switch]
-block = "C"
-law = "steps"
-at_s = [0.0, 0.25, 0.5]
-force_n = [0.5, 1.0, 0.0]
 [loads.waves]
 link = "crank"
 law = "fourier"
@@ -74,8 +60,6 @@ period_deg = 360.0
 torque_n_m = 0.05
 cosines = [0.1]
 sines = [0.2, 0.03]
-[friction.A]
-torque_n_m = 0.004
 """
 
 

@@ -6,41 +6,19 @@ from functools import cache
 
 import numpy as np
 
-from models.files.reading import load_scene, parse_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.hard import double_parallelogram
 from reports.logs.channel import Channel
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import Sheet, sheet
 
-LOOPS = """
-name = "three-loops"
-source = "crank, and three dyads one after the other; the data are ours"
-
-[ground]
-points = { A = [0.0, 0.0], D = [0.3, 0.0], G = [0.65, 0.0], J = [1.0, 0.05] }
-
-[links]
-crank = { bar = ["A", "B"], length_m = 0.1 }
-coupler = { bar = ["B", "C"], length_m = 0.25 }
-rocker = { bar = ["D", "C"], length_m = 0.2 }
-rod = { bar = ["C", "F"], length_m = 0.36 }
-lever = { bar = ["G", "F"], length_m = 0.25 }
-strut = { bar = ["F", "H"], length_m = 0.35 }
-arm = { bar = ["J", "H"], length_m = 0.28 }
-
-[driver]
-link = "crank"
-speed_rad_s = 10.0
-start_deg = 90.0
-"""
 KINDS: Mapping[str, Callable[[], Scene]] = {
     "slotted lever": lambda: load_scene("slotted-lever"),
     "Scotch yoke": lambda: load_scene("scotch-yoke"),
     "inverted slider-crank": lambda: load_scene("whitworth"),
     "swinging driver": lambda: load_scene("tangent"),
     "parallel links": lambda: double_parallelogram("parallel", source="three rockers"),
-    "three loops": lambda: parse_scene(LOOPS, "three-loops"),
 }
 """By kind, what makes a scene of it."""
 PARTS: Mapping[str, Callable[[Channel], bool]] = {

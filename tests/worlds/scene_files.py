@@ -149,14 +149,14 @@ def drivers(draw: st.DrawFn) -> Tree:
 
 def _stretch(draw: st.DrawFn, tree: Tree) -> None:
     """A number at an end of its range, or beyond."""
-    if numbers := _leaves(tree, float):
+    if numbers := _numbers(tree):
         path = draw(st.sampled_from(numbers))
         _put(_at(tree, path[:-1]), path[-1], draw(EXTREME))
 
 
 def _twin(draw: st.DrawFn, tree: Tree) -> None:
     """Two numbers that are the same: parallelograms, kites, points that meet."""
-    if numbers := _leaves(tree, float):
+    if numbers := _numbers(tree):
         path, other = draw(st.sampled_from(numbers)), draw(st.sampled_from(numbers))
         _put(_at(tree, path[:-1]), path[-1], _at(tree, other))
 
@@ -175,9 +175,8 @@ def _tie(draw: st.DrawFn, tree: Tree) -> None:
         holder[name] = holder.pop(key)
 
 
-def _leaves(tree: Tree, kind: type) -> list[Path]:
-    """Where there is something of a kind."""
-    return [path for path in _paths(tree) if isinstance(_at(tree, path), kind)]
+def _numbers(tree: Tree) -> list[Path]:
+    return [path for path in _paths(tree) if isinstance(_at(tree, path), float)]
 
 
 def _spoil(draw: st.DrawFn, tree: Tree) -> None:
@@ -261,7 +260,6 @@ def _value(value: object) -> str:
     return repr(value)
 
 
-OVER = ("time", "angle", "omega", "speed", "displacement")
 UNIT = {"time": "s", "angle": "deg", "omega": "rad_s", "speed": "m_s", "displacement": "m"}
 
 
@@ -297,50 +295,44 @@ def _ends(links: object) -> set[str]:
 
 def _spring(draw: st.DrawFn, tree: Tree, points: list[str]) -> Tree:
     """A spring, a damper, or both, anywhere."""
-    rate, damping, free = (
-        draw(between(0.1, 100.0)),
-        draw(between(0.0, 1.0)),
-        draw(between(0.0, 0.4)),
-    )
+    rate, damping = draw(between(0.1, 100.0)), draw(between(0.0, 1.0))
+    free = draw(between(0.0, 0.4))
     kind = draw(st.sampled_from(["points", "points", "pin", "slider"]))
     if kind == "pin":
         own: Tree = {"pin": draw(st.sampled_from(["B", *points])), "rate_n_m_rad": rate}
         return own | {"damping_n_m_s": damping, "free_deg": 100.0 * free}
-    start = draw(st.sampled_from(["G"] * 4 + points))
-    where: Tree = {"points": [start, draw(st.sampled_from(points))]}
-    if kind == "slider" and tree["sliders"]:
-        where = {"slider": draw(st.sampled_from(sorted(tree["sliders"])))}  # type: ignore[call-overload]
+    where = _slider(draw, tree) if kind == "slider" else {}
+    ends = [draw(st.sampled_from(["G"] * 4 + points)), draw(st.sampled_from(points))]
+    where = where or {"points": ends}
     return where | {"rate_n_m": rate, "damping_n_s_m": damping, "free_m": free}
 
 
+def _slider(draw: st.DrawFn, tree: Tree) -> Tree:
+    names = sorted(tree["sliders"])  # type: ignore[call-overload]
+    return {"slider": draw(st.sampled_from(names))} if names else {}
+
+
 def _load(draw: st.DrawFn, tree: Tree, points: list[str]) -> Tree:
-    """A torque on the crank, by one of the laws, over one of what they go over."""
-    size, over = draw(between(-1.0, 1.0)), draw(st.sampled_from(OVER))
-    found: Tree = {"link": "crank"}
-    law = draw(st.sampled_from(["constant", "pulse", "steps", "fourier", "polynomial", "table"]))
-    if law == "constant":
-        return found | {"torque_n_m": size}
-    if law == "pulse":
-        return found | {"law": law, "torque_n_m": size, "period_s": draw(between(0.01, 0.1))}
-    if law == "steps":
-        times = [draw(between(0.0, 0.02)), draw(between(0.02, 0.04))]
-        return found | {"law": law, "torque_n_m": [size, -size], "at_s": times}
-    if over in ("speed", "displacement") and not tree["sliders"]:
-        over = "omega"
-    if over in ("speed", "displacement"):
-        found["slider"] = draw(st.sampled_from(sorted(tree["sliders"])))  # type: ignore[call-overload]
-    if law == "fourier" and over in ("omega", "speed"):  # which has no period
-        law = "polynomial"
-    found |= {"law": law, "over": over}
-    if law == "fourier":
-        over_period = {f"period_{UNIT[over]}": draw(between(0.05, 90.0))}
-        return found | {"torque_n_m": size, "cosines": [0.1], "sines": [0.1, 0.2], **over_period}
-    if law == "polynomial":
-        return found | {"torque_n_m": [size, -0.01]}
-    reach = draw(st.sampled_from([1.0, 400.0]))
-    table = {"interpolation": draw(st.sampled_from(["linear", "pchip"]))}
-    rows = {f"at_{UNIT[over]}": [-reach, 0.0, reach], "torque_n_m": [size, 0.0, -size]}
-    return found | table | rows
+    """A torque on the crank, by one of the laws, over one of what they go over; some of them have
+    no period, or no slider, and are refused."""
+    size, over = draw(between(-1.0, 1.0)), draw(st.sampled_from(list(UNIT)))
+    laws: dict[str, Tree] = {
+        "pulse": {"period_s": draw(between(0.01, 0.1))},
+        "steps": {"torque_n_m": [size, -size], "at_s": [0.0, draw(between(0.01, 0.04))]},
+        "fourier": {f"period_{UNIT[over]}": 90.0, "cosines": [0.1], "sines": [0.1, 0.2]},
+        "polynomial": {"torque_n_m": [size, -0.01]},
+        "table": {
+            "interpolation": draw(st.sampled_from(["linear", "pchip"])),
+            f"at_{UNIT[over]}": [-400.0, 0.0, 400.0],
+            "torque_n_m": [size, 0.0, -size],
+        },
+    }
+    law = draw(st.sampled_from(["", *laws]))
+    found: Tree = {"link": "crank", "torque_n_m": size} | ({"law": law} if law else {})
+    if law in ("fourier", "polynomial", "table"):
+        found["over"] = over
+        found |= _slider(draw, tree) if over in ("speed", "displacement") else {}
+    return found | laws.get(law, {})
 
 
 SHAPES = ("periodic", "quasi-static", "quasi-static", "straight")

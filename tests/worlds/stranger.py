@@ -1,96 +1,72 @@
 """Three linkages moved by somebody who has never heard of us: plain numpy, imports nothing of ours.
 
-Redundant coordinates: x, y and theta of every moving body. Two bodies that carry the same point are
-pinned there, a block slides on its line, and the crank is turned by a driving constraint. With the
-constraints phi(q, t) = 0 and their Jacobian J:
-
-    J q' = nu       nu = the crank's speed, else 0      velocities, at every stage of RK4
-    J q'' = gamma   gamma = what turns with omega^2     accelerations, at the samples
-
-The start is solved for by Newton's method from a rough guess, which also says in which of its two
-ways the linkage is put together. Numbers are those that anybody reads off the drawings.
+In complex numbers: a crank, and pairs of bars, or a rod and a block, that hang on what moves
+already. Where they meet is the intersection of two circles, or of one with the x-axis; rates follow
+from the loops once differentiated, accelerations from the loops twice differentiated. Numbers are
+those that anybody reads off the drawings.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Vectors = NDArray[np.complex128]
 Point = tuple[float, float]
-Pose = tuple[float, float, float]
-"""x [m], y [m], theta [deg]."""
-STEPS_PER_TURN = 240
-"""Of RK4, at least: they leave 1e-9 of a length or an angle after two turns."""
 
 
 @dataclass(frozen=True)
 class Linkage:
-    """Bars with their points, each in the frame of its bar [m]; blocks, each on a line through a
-    point of the ground and at an angle [deg], as the point that they carry; a crank.
-
-    ``guess`` is where the bodies are at the start, roughly; in ``other`` they are put together the
-    other way.
-    """
+    """Bars with their points, each in the frame of its bar [m], whose first is the origin; blocks
+    on the x-axis, by the point that they carry. By pin, the ``pairs``: the bars that are placed by
+    meeting there, to the left of the line between their origins, or the one bar, ahead."""
 
     ground: Mapping[str, Point]
     bars: Mapping[str, Mapping[str, Point]]
-    blocks: Mapping[str, tuple[Point, float]]
-    crank: str
-    speed_rad_s: float
-    start_deg: float
-    guess: Mapping[str, Pose]
-    other: Mapping[str, Pose]
+    blocks: tuple[str, ...]
+    pairs: Mapping[str, tuple[str, ...]]
+    speed_rad_s: float = 10.0
+    start_deg: float = 90.0
 
     @property
     def period_s(self) -> float:
         return math.tau / abs(self.speed_rad_s)
 
-    @cached_property
-    def bodies(self) -> Mapping[str, Mapping[str, Point]]:
-        return {**self.bars, **{name: {name: (0.0, 0.0)} for name in self.blocks}}
 
-    def otherwise(self) -> Linkage:
-        """The same bars, put together the other way."""
-        return replace(self, guess=self.other, other=self.guess)
-
-    def stretched(self, bar: str, factor: float) -> Linkage:
-        """The linkage with one bar that much longer."""
-        points = {name: (factor * x, factor * y) for name, (x, y) in self.bars[bar].items()}
-        return replace(self, bars={**self.bars, bar: points})
-
-
+ORIGIN = (0.0, 0.0)
 FOURBAR = Linkage(
-    ground={"A": (0.0, 0.0), "D": (0.3, 0.0)},
+    ground={"A": ORIGIN, "D": (0.3, 0.0)},
     bars={
-        "crank": {"A": (0.0, 0.0), "B": (0.1, 0.0)}, "coupler": {"B": (0.0, 0.0), "C": (0.25, 0.0)},
-        "rocker": {"D": (0.0, 0.0), "C": (0.2, 0.0)}},
-    blocks={}, crank="crank", speed_rad_s=10.0, start_deg=90.0,
-    guess={"crank": (0, 0, 90), "coupler": (0, 0.1, 20), "rocker": (0.3, 0, 110)},
-    other={"crank": (0, 0, 90), "coupler": (0, 0.1, -60), "rocker": (0.3, 0, 220)})  # fmt: skip
+        "crank": {"A": ORIGIN, "B": (0.1, 0.0)},
+        "coupler": {"B": ORIGIN, "C": (0.25, 0.0)},
+        "rocker": {"D": ORIGIN, "C": (0.2, 0.0)},
+    },
+    blocks=(),
+    pairs={"C": ("coupler", "rocker")},
+)
 SLIDER_CRANK = Linkage(
-    ground={"A": (0.0, 0.0)},
-    bars={"crank": {"A": (0.0, 0.0), "B": (0.1, 0.0)}, "rod": {"B": (0.0, 0.0), "C": (0.3, 0.0)}},
-    blocks={"C": ((0.0, 0.0), 0.0)},
-    crank="crank",
-    speed_rad_s=10.0,
+    ground={"A": ORIGIN},
+    bars={"crank": FOURBAR.bars["crank"], "rod": {"B": ORIGIN, "C": (0.3, 0.0)}},
+    blocks=("C",),
+    pairs={"C": ("rod",)},
     start_deg=30.0,
-    guess={"crank": (0, 0, 30), "rod": (0.09, 0.05, -10), "C": (0.4, 0, 0)},
-    other={"crank": (0, 0, 30), "rod": (0.09, 0.05, 190), "C": (-0.2, 0, 0)},
 )
 SIXBAR = Linkage(
     ground={**FOURBAR.ground, "G": (0.65, 0.0)},
     bars={
-        **FOURBAR.bars, "rocker": {"D": (0.0, 0.0), "C": (0.2, 0.0), "E": (0.12, -0.12)},
-        "rod": {"E": (0.0, 0.0), "F": (0.3, 0.0)}, "lever": {"G": (0.0, 0.0), "F": (0.25, 0.0)}},
-    blocks={}, crank="crank", speed_rad_s=10.0, start_deg=90.0,
-    guess={**FOURBAR.guess, "rod": (0.37, 0.15, 20), "lever": (0.65, 0, 90)},
-    other={**FOURBAR.guess, "rod": (0.37, 0.15, -70), "lever": (0.65, 0, 210)})  # fmt: skip
+        **FOURBAR.bars,
+        "rocker": {"D": ORIGIN, "C": (0.2, 0.0), "E": (0.12, -0.12)},
+        "rod": {"E": ORIGIN, "F": (0.3, 0.0)},
+        "lever": {"G": ORIGIN, "F": (0.25, 0.0)},
+    },
+    blocks=(),
+    pairs={**FOURBAR.pairs, "F": ("rod", "lever")},
+)
 LINKAGES = {
     "fourbar-lecture-1": FOURBAR,
     "slider-crank-central": SLIDER_CRANK,
@@ -101,144 +77,81 @@ LINKAGES = {
 
 @dataclass(frozen=True)
 class Course:
-    """What a linkage did: its coordinates with their first two rates, each (T, 3 n)."""
+    """What a linkage did: of each bar the angle with its first two rates, each (T,)."""
 
     linkage: Linkage
     time_s: Array
-    q: Array
-    v: Array
-    a: Array
+    angles: dict[str, tuple[Array, Array, Array]]
 
-    def angle(self, body: str) -> tuple[Array, Array, Array]:
-        k = 3 * list(self.linkage.bodies).index(body) + 2
-        return self.q[:, k], self.v[:, k], self.a[:, k]
+    def angle(self, bar: str) -> tuple[Array, Array, Array]:
+        return self.angles[bar]
 
     def point(self, name: str, on: str = "") -> tuple[Array, Array, Array]:
-        """Position, velocity, acceleration (T, 2) of a point, as the first body, or that ``on``
+        """Position, velocity, acceleration (T, 2) of a point, as the first bar, or that ``on``
         which it is said to be, carries it."""
-        bodies = self.linkage.bodies
-        on = on or next(body for body, points in bodies.items() if name in points)
-        x, y = bodies[on][name]
-        k = 3 * list(bodies).index(on)
-        theta, omega, alpha = (series[:, None] for series in self.angle(on))
-        along = np.hstack([np.cos(theta) * x - np.sin(theta) * y] * 2)
-        along[:, 1:] = np.sin(theta) * x + np.cos(theta) * y
-        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-        return (
-            self.q[:, k : k + 2] + along,
-            self.v[:, k : k + 2] + omega * across,
-            self.a[:, k : k + 2] + alpha * across - omega**2 * along,
+        place, velocity, acceleration = (
+            np.stack([each.real, each.imag], axis=1) for each in self.moved(name, on)
         )
+        return place, velocity, acceleration
+
+    def moved(self, name: str, on: str = "") -> tuple[Vectors, Vectors, Vectors]:
+        """As `point`, in complex numbers."""
+        still, bars = np.zeros(len(self.time_s), complex), self.linkage.bars
+        if name in self.linkage.ground:
+            return still + complex(*self.linkage.ground[name]), still, still
+        on = on or next(bar for bar, points in bars.items() if name in points)
+        place, velocity, acceleration = self.moved(next(iter(bars[on])))
+        theta, omega, alpha = self.angles[on]
+        arm = complex(*bars[on][name]) * np.exp(1j * theta)
+        return (
+            place + arm,
+            velocity + 1j * omega * arm,
+            acceleration + (1j * alpha - omega**2) * arm,
+        )
+
+    def hang(self, pin: str, bars: tuple[str, ...]) -> None:
+        """Find the angles of the bars that meet in a pin."""
+        ends = [self.moved(next(iter(self.linkage.bars[bar]))) for bar in bars]
+        own = [complex(*self.linkage.bars[bar][pin]) for bar in bars]
+        find = _two_bars if len(bars) == 2 else _rod_and_block
+        for bar, at, (arm, omega, alpha) in zip(bars, own, find(ends, own), strict=True):
+            self.angles[bar] = np.unwrap(np.angle(arm / at)), omega, alpha
+
+
+Found = list[tuple[Vectors, Array, Array]]
+"""Of each bar the way from its origin to the pin, its angular velocity and acceleration."""
+
+
+def _two_bars(ends: Sequence[tuple[Vectors, ...]], own: list[complex]) -> Found:
+    (p, vp, ap), (q, vq, aq) = ends
+    apart = q - p
+    span = np.abs(apart)
+    along = (abs(own[0]) ** 2 - abs(own[1]) ** 2 + span**2) / (2.0 * span)
+    one = apart / span * (along + 1j * np.sqrt(abs(own[0]) ** 2 - along**2))
+    other = one - apart
+
+    def turning(difference: Vectors) -> tuple[Array, Array]:
+        """The real m and n of i (m one - n other) = difference."""
+        across = (1j * one * other.conj()).real
+        return (difference * other.conj()).real / across, (difference * one.conj()).real / across
+
+    m, n = turning(vq - vp)
+    gains = turning(aq - ap + m**2 * one - n**2 * other)
+    return list(zip((one, other), (m, n), gains, strict=True))
+
+
+def _rod_and_block(ends: Sequence[tuple[Vectors, ...]], own: list[complex]) -> Found:
+    ((p, v, a),) = ends
+    arm = np.sqrt(abs(own[0]) ** 2 - p.imag**2) - 1j * p.imag
+    omega = -v.imag / arm.real
+    return [(arm, omega, (omega**2 * arm.imag - a.imag) / arm.real)]
 
 
 def course(linkage: Linkage, time_s: Array) -> Course:
-    """Integrate from time 0 to every one of the times [s], which rise."""
-    equations = _Equations(linkage)
-    q, now = equations.assembled(), 0.0
-    longest = linkage.period_s / STEPS_PER_TURN
-    samples = np.empty((len(time_s), q.size))
-    for k, time in enumerate(time_s):
-        steps = math.ceil((time - now) / longest)
-        for _ in range(steps):
-            q = equations.stepped(q, (time - now) / steps)
-        samples[k], now = q, time
-    velocity = equations.velocity(samples)
-    return Course(linkage, time_s, samples, velocity, equations.acceleration(samples, velocity))
-
-
-class _Equations:
-    """The constraints of a linkage: two of every pin, two of each block, one of the crank. ``ends``
-    at the pins are the constraint's first row, the body, its side (1 or -1), and its point."""
-
-    def __init__(self, linkage: Linkage) -> None:
-        self.linkage = linkage
-        names = list(linkage.bodies)
-        pins = list(_pins(linkage))
-        ends = [(2 * k, *end) for k, (pair, _) in enumerate(pins) for end in pair]
-        self.row = np.array([end[0] for end in ends])
-        self.body = np.array([3 * names.index(end[1]) for end in ends])
-        self.side = np.array([end[2] for end in ends], dtype=float)
-        self.x, self.y = (np.array([end[3][axis] for end in ends]) for axis in (0, 1))
-        size = 3 * len(names)
-        self.fixed = np.zeros((size, size))  # the part of the Jacobian that never changes
-        self.fixed[self.row, self.body] = self.side
-        self.fixed[self.row + 1, self.body + 1] = self.side
-        self.target = np.zeros(size)
-        for k, (_, place) in enumerate(pins):
-            self.target[2 * k : 2 * k + 2] = place
-        row = 2 * len(pins)
-        for name, (through, degrees) in linkage.blocks.items():
-            k, angle = 3 * names.index(name), math.radians(degrees)
-            normal = np.array([-math.sin(angle), math.cos(angle)])
-            self.fixed[row, k : k + 2] = normal
-            self.fixed[row + 1, k + 2] = 1.0
-            self.target[row : row + 2] = normal @ np.array(through), angle
-            row += 2
-        self.fixed[row, 3 * names.index(linkage.crank) + 2] = 1.0
-        self.target[row] = math.radians(linkage.start_deg)
-        self.nu = np.zeros(size)
-        self.nu[row] = linkage.speed_rad_s
-        assert row + 1 == size
-
-    def assembled(self) -> Array:
-        """The coordinates (3 n,) at the start, by Newton's method."""
-        poses = np.array([self.linkage.guess[name] for name in self.linkage.bodies], dtype=float)
-        poses[:, 2] = np.radians(poses[:, 2])
-        q = poses.ravel()
-        for _ in range(20):
-            jacobian, arm = self._jacobian(q)
-            residual = self.fixed @ q - self.target
-            np.add.at(residual, self.row, self.side * arm[0])
-            np.add.at(residual, self.row + 1, self.side * arm[1])
-            q = q - np.linalg.solve(jacobian, residual)
-        assert np.max(np.abs(residual)) < 1e-14, "the guess is too rough"
-        return q
-
-    def stepped(self, q: Array, step_s: float) -> Array:
-        k1 = self.velocity(q)
-        k2 = self.velocity(q + step_s / 2 * k1)
-        k3 = self.velocity(q + step_s / 2 * k2)
-        k4 = self.velocity(q + step_s * k3)
-        return np.asarray(q + step_s / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
-
-    def velocity(self, q: Array) -> Array:
-        return _solved(self._jacobian(q)[0], self.nu)
-
-    def acceleration(self, q: Array, v: Array) -> Array:
-        jacobian, arm = self._jacobian(q)
-        gamma = np.zeros_like(q)
-        inward = self.side * v[..., self.body + 2] ** 2
-        for axis in (0, 1):
-            np.add.at(gamma, (..., self.row + axis), inward * arm[axis])
-        return _solved(jacobian, gamma)
-
-    def _jacobian(self, q: Array) -> tuple[Array, tuple[Array, Array]]:
-        """The Jacobian (..., 3 n, 3 n), and from every body's origin to its ends."""
-        theta = q[..., self.body + 2]
-        cos, sin = np.cos(theta), np.sin(theta)
-        right, up = cos * self.x - sin * self.y, sin * self.x + cos * self.y
-        jacobian = np.empty((*q.shape, q.shape[-1]))
-        jacobian[...] = self.fixed
-        jacobian[..., self.row, self.body + 2] = -self.side * up
-        jacobian[..., self.row + 1, self.body + 2] = self.side * right
-        return jacobian, (right, up)
-
-
-def _pins(linkage: Linkage) -> Iterator[tuple[list[tuple[str, int, Point]], Point]]:
-    """The ends of each pin, (body, side, point), and where the ground holds it (0, 0 between two
-    bodies)."""
-    first: dict[str, tuple[str, Point]] = {}
-    for body, points in linkage.bodies.items():
-        for name, place in points.items():
-            if name in linkage.ground:
-                yield [(body, 1, place)], linkage.ground[name]
-            elif name in first:
-                other, there = first[name]
-                yield [(body, 1, place), (other, -1, there)], (0.0, 0.0)
-            else:
-                first[name] = body, place
-
-
-def _solved(matrix: Array, right: Array) -> Array:
-    """The solutions of linear equations, for one right side or for as many as matrices."""
-    return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
+    """The motion at those times [s], before the start as well."""
+    theta = math.radians(linkage.start_deg) + linkage.speed_rad_s * time_s
+    constant = np.full_like(time_s, linkage.speed_rad_s), np.zeros_like(time_s)
+    found = Course(linkage, time_s, {"crank": (theta, *constant)})
+    for pin, bars in linkage.pairs.items():
+        found.hang(pin, bars)
+    return found

@@ -7,8 +7,7 @@ Nothing is interpolated: a channel that is late is the linkage at an earlier tim
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -42,7 +41,7 @@ class Column:
 
     def numbers(self, linkage: Linkage, time_s: Array) -> Array:
         """The column (T,) in rows of those times [s]."""
-        motion = moved(linkage, time_s + self.later_s)
+        motion = course(linkage, time_s + self.later_s)
         series = self._series(motion, self.of)
         if self.parent:
             series = series - self._series(motion, self.parent)
@@ -56,35 +55,6 @@ class Column:
             return motion.angle(name)[ANGULAR.index(self.what)]
         rate, axis = PLANE[self.what]
         return motion.point(name, self.on)[rate][:, axis]
-
-
-def moved(linkage: Linkage, time_s: Array) -> Course:
-    """The linkage at those times; one of them before 0 is of the turns before."""
-    return _moved(_Same(linkage), np.ascontiguousarray(time_s).tobytes())
-
-
-@dataclass(frozen=True, eq=False)
-class _Same:
-    """A linkage that is the same if its numbers are."""
-
-    linkage: Linkage
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and repr(self.linkage) == repr(other.linkage)
-
-    def __hash__(self) -> int:
-        return hash(repr(self.linkage))
-
-
-@lru_cache(maxsize=64)
-def _moved(same: _Same, times: bytes) -> Course:
-    time_s = np.frombuffer(times)
-    turns = math.ceil(max(0.0, -time_s[0]) / same.linkage.period_s)  # it turns at constant speed
-    motion = course(same.linkage, time_s + turns * same.linkage.period_s)
-    k = 3 * list(same.linkage.bodies).index(same.linkage.crank) + 2
-    q = motion.q.copy()
-    q[:, k] -= turns * math.tau * math.copysign(1.0, same.linkage.speed_rad_s)
-    return replace(motion, time_s=time_s, q=q)
 
 
 def even(linkage: Linkage, turns: float = 2.0, samples_per_turn: int = 360) -> Array:
@@ -128,18 +98,11 @@ class Dress:
         lines = [*self.comments, self.separator.join(headers)]
         lines += [self.separator.join(self.units)] if self.units else []
         write = repr if self.digits is None else f"{{:.{self.digits}g}}".format
-        columns = [[write(x) for x in _plain(series)] for series in log.values()]
+        columns = [[write(x) for x in series.tolist()] for series in log.values()]
         rows = (self.separator.join(row) for row in zip(*columns, strict=True))
         lines += [row.replace(".", self.point) for row in rows]
         whole = "".join(line + self.newline for line in lines)
         return whole.encode("utf-8-sig" if self.mark else "utf-8")
-
-
-def _plain(series: Array) -> list[float]:
-    """The numbers (T,), those of single precision with no more digits than tell them apart."""
-    if series.dtype == np.float32:
-        return [float(str(x)) for x in series]
-    return series.tolist()
 
 
 def single(log: Log) -> Log:
@@ -162,13 +125,12 @@ def map_text(
     columns: Sequence[Column],
     clock: tuple[str, str] = ("time_s", "s"),
     file: str = "",
-    more: str = "",
 ) -> str:
     """A map that says all of every column, and of the file what is given."""
     parts = [f"[file]\n{file}"] if file else []
     parts.append(f'[time]\ncolumn = {json.dumps(clock[0])}\nunit = "{clock[1]}"')
     parts += [_channel(linkage, column) for column in columns]
-    return "\n\n".join([*parts, more]).strip() + "\n"
+    return "\n\n".join(parts) + "\n"
 
 
 def _channel(linkage: Linkage, column: Column) -> str:

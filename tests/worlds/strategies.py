@@ -24,6 +24,7 @@ from analytic.structure.mobility import analyse
 from models.errors import ReachError
 from models.motion import Motion
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.scene.joints import frames
 from models.scene.laws import ConstantSpeed, Law, Oscillating
 
 Draw = Callable[[float, float], float]
@@ -52,9 +53,9 @@ class Layout:
         """A place for a pin on a body."""
         return self.frames[body][0] + self.arm(0.2, 0.8) * self.reach.get(body, 1.0)
 
-    def lean(self, most: float) -> float:
-        """An angle up to ``most`` to either side, or half a turn from there."""
-        return self.number(-most, most) + math.pi * (self.number(0.0, 1.0) < 0.5)
+    def lean(self) -> float:
+        """An angle up to 0.9 to either side, or half a turn from there."""
+        return self.number(-0.9, 0.9) + math.pi * (self.number(0.0, 1.0) < 0.5)
 
     def local(self, body: str, place: complex) -> Point:
         origin, angle = self.frames[body]
@@ -162,7 +163,7 @@ def _rrp(form: str) -> Callable[[Layout], None]:
         rod = at.arm(0.5, 1.5)
         link = at.link(p1)
         at.pin(p1, pinned, link)
-        inner = _slide_end(at, form, line, cmath.phase(rod) + at.lean(0.9), p1 + rod)
+        inner = _slide_end(at, form, line, cmath.phase(rod) + at.lean(), p1 + rod)
         at.points[link][inner] = at.local(link, p1 + rod)
 
     return lay_out
@@ -177,7 +178,7 @@ def _rpr(form: str) -> Callable[[Layout], None]:
         known1, known2 = _either(at, *at.known_pair())
         p1 = at.near(known1)
         span = at.arm(0.6, 1.5)
-        angle = cmath.phase(-span) + at.lean(0.9)
+        angle = cmath.phase(-span) + at.lean()
         if form == "block":
             guide = at.link(p1)
             at.pin(p1 + span, known2, guide)
@@ -206,7 +207,7 @@ def _prp(form1: str, form2: str) -> Callable[[Layout], None]:
         place = at.frames[known1][0] + at.arm(0.3, 1.0)
         angle = at.number(-math.pi, math.pi)
         pin1 = _slide_end(at, form1, known1, angle, place)
-        pin2 = _slide_end(at, form2, known2, angle + math.pi / 2 + at.lean(0.9), place)
+        pin2 = _slide_end(at, form2, known2, angle + math.pi / 2 + at.lean(), place)
         at.merge(pin1, pin2)
 
     return lay_out
@@ -220,7 +221,7 @@ def _rpp(inner: str, outer: str) -> Callable[[Layout], None]:
         middle = at.link(p1)
         at.pin(p1 + at.arm(0.2, 0.6), middle)
         angle = at.number(-math.pi, math.pi)
-        across, where = angle + math.pi / 2 + at.lean(0.9), p1 + at.arm(0.0, 0.8)
+        across, where = angle + math.pi / 2 + at.lean(), p1 + at.arm(0.0, 0.8)
         if inner == "block":
             at.slide(middle, across, p1, None, at.pin(p1, pinned))
         else:
@@ -339,25 +340,17 @@ def _on_its_branch(designed: Designed) -> Designed:
     return replace(designed, scene=fitting[0])
 
 
-def _is_layout(scene: Scene, frames: Mapping[str, tuple[float, float, float]]) -> bool:
+def _is_layout(scene: Scene, laid_out: Mapping[str, tuple[float, float, float]]) -> bool:
     try:
-        motion = solve(scene, np.zeros(1), bound=False)
+        found = frames(scene, solve(scene, np.zeros(1), bound=False).state())
     except ReachError:
         return False
+    places = ((found[name], laid_out[name]) for name in scene.links)
     return all(
-        abs(math.remainder(float(motion.links[name].theta[0]) - frames[name][2], math.tau)) < 1e-9
-        and all(
-            abs(complex(*motion.points[point].position[0]) - place) < 1e-9
-            for point, place in _places(scene.links[name], frames[name]).items()
-        )
-        for name in scene.links
+        math.dist(frame.origin, (x, y)) < 1e-9
+        and abs(math.remainder(frame.theta - angle, math.tau)) < 1e-9
+        for frame, (x, y, angle) in places
     )
-
-
-def _places(link: Link, frame: tuple[float, float, float]) -> dict[str, complex]:
-    x, y, angle = frame
-    turn = cmath.rect(1.0, angle)
-    return {name: complex(x, y) + turn * complex(*local) for name, local in link.points.items()}
 
 
 def _with_margin(designed: Designed, margin: float = MARGIN) -> Designed:

@@ -21,9 +21,9 @@ def slowly(*case: object, reason: str, id: str | None = None) -> object:
     return pytest.param(*case, marks=slow(reason), id=id)
 
 
-def at_length(*case: object, reason: str, id: str | None = None) -> object:
+def at_length(*case: object, reason: str) -> object:
     """A case of a test that runs for releases, and what only such a number finds."""
-    return pytest.param(*case, marks=pytest.mark.long(reason=reason), id=id)
+    return pytest.param(*case, marks=pytest.mark.long(reason=reason))
 
 
 def few(cases: Iterable[object], quick: Collection[object], reason: str) -> list[object]:

@@ -23,7 +23,6 @@ from models.array import Array
 from tests.worlds.bare import (
     BODIES,
     CONNECT,
-    START,
     exudyn_body,
     exudyn_fourbar,
     exudyn_pin,
@@ -79,9 +78,13 @@ def _rest(simulation: Any) -> Array:
     exudyn_fourbar(system, SPEED)
     ground = system.AddObject(items.ObjectGround())
     swings, bounces, _ = bodies = [
-        _body(system, x, rates)
+        exudyn_body(system, 1.0, 0.03, [x, 0.0, 0.0], rates)
         for x, rates in ((2.0, [0.0] * 3), (4.0, [0.5, 0.0, 1.0]), (6.0, [1.0, 3.0, 2.0]))
     ]
+    for _, body in bodies:
+        marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
+        weight = items.LoadMassProportional(markerNumber=marker, loadVector=[0.0, -9.81, 0.0])
+        system.AddLoad(weight)
     exudyn_pin(system, (ground, 1.7), (swings[1], -0.3))
     ends = [
         system.AddMarker(items.MarkerBodyPosition(bodyNumber=body, localPosition=place))
@@ -91,13 +94,6 @@ def _rest(simulation: Any) -> Array:
     system.AddObject(items.ObjectConnectorCartesianSpringDamper(markerNumbers=ends, **given))
     rows = simulated(system, simulation, [node for node, _ in bodies])
     return np.concatenate([row[:, 1:] for row in rows], axis=1)
-
-
-def _body(system: Any, x: float, rates: list[float]) -> tuple[Any, Any]:
-    node, body = exudyn_body(system, 1.0, 0.03, [x, 0.0, 0.0], rates)
-    marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-    system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0.0, -9.81, 0.0]))
-    return node, body
 
 
 @dataclass(frozen=True)
@@ -184,7 +180,7 @@ def _mujoco_run(model: mujoco.MjModel) -> tuple[Array, mujoco.MjData]:
     for name, rate in (("falls", FALL), ("drifts", DRIFT)):
         first = model.joint(name).dofadr[0]
         state.qvel[first : first + 6] = rate
-    of_coupler, of_rocker = rates(START, SPEED)
+    of_coupler, of_rocker = rates(SPEED)
     state.qvel[-OF_LOOP:] = SPEED, of_coupler - SPEED, of_rocker
     state.ctrl[:] = SPEED
     rows = np.empty((round(LASTS_S / model.opt.timestep), model.nq))

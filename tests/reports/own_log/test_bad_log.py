@@ -21,7 +21,7 @@ from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds import bad_logs
 from tests.worlds.fuzzing import Ended, attempt
 from tests.worlds.stranger import FOURBAR
-from tests.worlds.stranger_faults import COLUMNS
+from tests.worlds.stranger_guises import COLUMNS
 from tests.worlds.stranger_log import even, logged
 from tests.worlds.tiers import few, slow
 

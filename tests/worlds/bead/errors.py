@@ -41,7 +41,7 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
     )
     at = instants_of(beside, time_s, beside.reference)
     parts = ComparedParts(
-        placed=_placed(beside),
+        placed=places(beside),
         notes=(),
         borne=force_rows(beside),
         departure=None,
@@ -55,10 +55,6 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
 
 def places(beside: Beside) -> list[Error]:
     """Phase and places alone."""
-    return _placed(beside)
-
-
-def _placed(beside: Beside) -> list[Error]:
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     tracks = beside.tracks(("phase", *named("place")), beside.reference)
     return [whole_row(track, at) for track in tracks]

@@ -47,7 +47,6 @@ class FakeEngine:
     fails_after: int | None = None
     diverges_after: int | None = None
     stopped: str = ""
-    warns: tuple[str, ...] = ()
     refuses: str = ""
     drives: tuple[Drive, ...] = get_args(Drive)
     changes: Callable[[Facts], Facts] = lambda facts: facts
@@ -134,9 +133,7 @@ class FakeSession:
         diverged = self._done + steps > limit
         self._done += steps
         stopped = engine.stopped if diverged else ""
-        return Log(
-            engine.disturb(poses), int(at[-1]), diverged, engine.warns, 1e-6 * steps, stopped
-        )
+        return Log(engine.disturb(poses), int(at[-1]), diverged, (), 1e-6 * steps, stopped)
 
     def read(self) -> Poses:
         time_s = np.array([self._start_s + self._dt * self._done])
