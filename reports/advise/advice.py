@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from reports.advise.demand import Demand, MeasuredStudy
 from reports.advise.search import LIMITS, SearchResult
-from reports.output.console import count, short
+from reports.output.numbers import count, short
 from reports.results.candidates import apart, equal, noise_of
 from reports.results.runs import grouped
 from reports.sweep.measured import Repeats, timed_in_turns

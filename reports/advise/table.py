@@ -11,8 +11,9 @@ from models.errors import few, harmless
 from reports.advise.advice import Advice, Offer
 from reports.advise.demand import Demand
 from reports.advise.search import WORDS, SearchResult, Worst
-from reports.output.console import count, grid, hanging, say_whole, short
+from reports.output.console import grid, hanging, say_whole
 from reports.output.formats import json_text
+from reports.output.numbers import count, short
 from reports.plan.steps import LEAST_STEPS_PER_TURN
 from sim.registry import engine
 

@@ -12,7 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError, few
 from reports.causes.world import World
 from reports.logs.channel import Channel
-from reports.output.console import duration, listed
+from reports.output.numbers import duration, listed
 
 CAUSE, CHOICE, NUMBER = 0.5, 0.5, 1.0
 """Cost of a cause at all, of a choice among several causes, and of one fitted number, in powers of

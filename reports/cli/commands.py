@@ -10,7 +10,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = {
     "verify": ("requests.options:VerifyOptions", """
 Run scenes in engines, or a model of your own, and hold them to the closed form; exit 1 when
 out of tolerance."""),
-    "selftest": ("requests.selftest:SelftestRequest", """
+    "selftest": ("requests.stability:SelftestRequest", """
 Plant faults in healthy runs, and see that the right rule catches each; exit 1 if not."""),
     "diff": ("requests.diff:DiffRequest", """
 Compare two stored runs; exit 1 when an error grew past the factor."""),
@@ -20,7 +20,7 @@ Run the same verification with several versions of an engine, and show what chan
 Run a grid of scenes, engines, settings and steps; keep and time every cell."""),
     "tune": ("requests.tune:TuneRequest", """
 Search an engine's settings for the cheapest that reach a target error."""),
-    "advise": ("requests.advise:AdviseRequest", """
+    "advise": ("requests.tune:AdviseRequest", """
 Say what engines reach at your frame time, and how few sub-steps reach a target.
 
 The exit code is 0 where some settings reach it, 1 where none do."""),

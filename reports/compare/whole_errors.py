@@ -19,7 +19,7 @@ from reports.compare import error_rows, errors
 from reports.compare.compare import Beside
 from reports.compare.hardness import curvature, inertia_share, load_slopes, unevenly_turned
 from reports.compare.tracks import length
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.quantities import named
 from reports.quantities.forces import acting, acting_at, largest_reaction, largest_torque, silent
 from reports.quantities.quantity import BodyKind

@@ -14,7 +14,7 @@ from models.errors import EngineError, few, harmless
 from models.files.reading import load_scene
 from reports.contract.clauses import CLAUSES
 from reports.contract.subject import Clause, NotTriedError, Subject
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end, in_order
 from sim.engine import Engine
 from sim.own_engine.watched import BrokenContractError, failure

@@ -16,7 +16,7 @@ from models.scene import Scene
 from models.scene.cut_links import line_of
 from models.scene.elastic import ElasticLink, Shape
 from models.scene.laws import ConstantSpeed
-from reports.output.console import count, error_text, listed, readable
+from reports.output.numbers import count, error_text, listed, readable
 
 NEAR = 0.1
 """Distance from a whole frequency ratio below which an undamped link is nearly resonant."""

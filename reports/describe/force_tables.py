@@ -20,7 +20,8 @@ from reports.describe.free_motion import (
     head_table,
     tables_over_time,
 )
-from reports.output.console import listed, plain_table
+from reports.output.console import plain_table
+from reports.output.numbers import listed
 
 
 def position_friction_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:

@@ -17,7 +17,8 @@ from models.motion import Forces, Motion, each_array
 from models.scene import Scene
 from models.scene.driver import driver_place
 from reports.describe.facts import SpeedFacts
-from reports.output.console import count, error_text, plain_table
+from reports.output.console import plain_table
+from reports.output.numbers import count, error_text
 from sim.engine import Run
 
 if TYPE_CHECKING:

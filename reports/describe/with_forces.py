@@ -16,7 +16,7 @@ from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.driver import driver_place, driver_shown, driver_unit
-from reports.output.console import count, listed
+from reports.output.numbers import count, listed
 
 UNCERTAIN = 1e-6
 """Limit for a number smaller than its own bound: it is 0 where the bound is less than this part of

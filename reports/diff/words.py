@@ -5,7 +5,7 @@ import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.results import runs
 from reports.results.candidates import equal, noise_of
 from reports.results.changes import CellPair, Diff, ErrorChange, Word, other_settings

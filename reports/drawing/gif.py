@@ -22,7 +22,7 @@ from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import ForceArrows, force_arrows
-from reports.output.console import readable
+from reports.output.numbers import readable
 from reports.protocol.way import way_of
 
 INK = "#1f2933"

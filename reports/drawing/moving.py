@@ -27,7 +27,7 @@ from models.scene.laws import Oscillating
 from reports.compare.last_turn import Trace
 from reports.compare.tracks import angle_error
 from reports.drawing.shape import true_motion
-from reports.output.console import DIGITS, finite
+from reports.output.numbers import DIGITS, finite
 
 LEVELS = 32767
 MISSING = -32768

@@ -25,7 +25,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 from reports.figures.drawing import Mark, around, ends, fitted, marks, measured
 from reports.figures.sheet import Panels, grid, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
-from reports.output.console import duration
+from reports.output.numbers import duration
 from reports.protocol.length import SECONDS, TURNS, common_clock
 from reports.results.lines import Line, Named, named
 from reports.results.overview import Report, notes

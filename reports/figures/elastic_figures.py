@@ -24,7 +24,7 @@ from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
 from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
 from reports.figures.style import INK, PAGE_IN, QUIET, SMALL, FigureSet, Look, note, shorten
-from reports.output.console import readable
+from reports.output.numbers import readable
 from reports.protocol.length import SECONDS, TURNS
 from reports.protocol.way import way_of
 

@@ -19,7 +19,7 @@ from reports.drawing.moving import told_places
 from reports.figures.drawing import ends
 from reports.figures.sheet import corner_words, grid, tenfold
 from reports.figures.style import INK, Look, power_of_ten
-from reports.output.console import short
+from reports.output.numbers import short
 from reports.results.error_parts import ErrorParts, Split, split, worst_body
 from reports.results.lines import Line, label, named
 from reports.results.overview import Report, notes

@@ -19,7 +19,7 @@ from reports.figures.drawing import DASHES
 from reports.figures.force_turn import ForceTurn, hodographs, loaded
 from reports.figures.sheet import Curve, LinePanel, line_figure
 from reports.figures.style import FRONT, INK, QUIET, FigureSet, Look
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 TORQUE: Look = {"color": "#1f5f9e", "linewidth": 1.4}
 MEAN: Look = {"color": INK, "linewidth": 0.8, "linestyle": (0, (5.0, 2.0))}

@@ -28,7 +28,7 @@ from reports.figures import style
 from reports.figures.mechanism import mechanism_at
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import INK, TINY
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from models.motion import LinkMotion
 from models.scene import Scene
 from reports.figures import style
 from reports.figures.sheet import ONE, LinePanel, line_figure, sheet
-from reports.output.console import error_text
+from reports.output.numbers import error_text
 
 LEAST, MOST, IN_A_TURN = 2401, 7201, 180
 """Samples: of a motion that hardly turns, of one that turns very often, and in a turn at its

@@ -17,7 +17,7 @@ from reports.drawing.shape import true_motion
 from reports.figures.drawing import Mark, around, marks
 from reports.figures.sheet import Panels, corner_words, grid, sheet, tenfold
 from reports.figures.style import INK, PAGE_IN, Look, logarithmic, mark_zero, power_of_ten, shorten
-from reports.output.console import duration, short
+from reports.output.numbers import duration, short
 from reports.results.lines import named
 from reports.results.overview import Report, notes
 

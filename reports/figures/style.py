@@ -33,7 +33,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullForma
 from models.array import Array
 from models.scene import Scene
 from reports.describe.facts import describe_law
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.output.write import clean, crankcheck_version, write
 
 Look = dict[str, Any]

@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from reports.history.verification import FOLLOWED, FollowedError, VersionResult, errors_of
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.results.changes import CellPair, Diff, ErrorChange, compare, floor, other_settings
 from reports.results.runs import CellName, grouped
 

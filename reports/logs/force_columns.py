@@ -22,7 +22,7 @@ from models.errors import CrankcheckError, cut, few
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Scene
 from models.scene.joints import joined_at
-from reports.output.console import listed
+from reports.output.numbers import listed
 
 if TYPE_CHECKING:
     from reports.logs.columns import Columns

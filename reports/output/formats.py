@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as Xml
 
-from reports.output.console import finite
+from reports.output.numbers import finite
 from reports.output.write import clean, crankcheck_version, write
 
 if TYPE_CHECKING:

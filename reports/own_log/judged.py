@@ -22,7 +22,7 @@ from reports.judge.tolerance import Limit, refuse_forces_unasked
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import UNITS
 from reports.logs.log_beside import LogBeside, beside_truth, lacking, readings_of
-from reports.output.console import error_text
+from reports.output.numbers import error_text
 from reports.own_log.drives import DriveFit, LogDrive
 from reports.own_log.log_limits import (
     HeldLog,

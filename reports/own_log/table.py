@@ -13,8 +13,9 @@ from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
 from reports.judge.rules import RULES, titled
 from reports.judge.rules.rule import share
-from reports.output.console import count, error_text, grid, hanging, short, show_failed
+from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, folded, plain, remark, suite_of, table
+from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
 from reports.own_log.log_limits import log_kind
 

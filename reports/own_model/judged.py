@@ -10,7 +10,7 @@ from reports.judge.cell import Checked, unfinished
 from reports.judge.halving import worst_place
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding
-from reports.output.console import short
+from reports.output.numbers import short
 from reports.own_model.account import (
     CheckedLine,
     ModelAccount,

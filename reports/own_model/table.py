@@ -14,8 +14,9 @@ from models.files.assemble import scene_text
 from reports.judge.halving import worst_place
 from reports.judge.rows import cell_row, error_row
 from reports.judge.rules import RULES, titled
-from reports.output.console import count, error_text, grid, hanging, listed, short, show_failed
+from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import json_text
+from reports.output.numbers import count, error_text, listed, short
 from reports.own_model.account import CheckedLine, ModelAccount, told
 from reports.own_model.judged import PARTS, JudgedModel, errors_of
 from reports.verify.table import HALVED, MARKS, halved, mark

@@ -10,7 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from reports.drawing.moving import embedded, policy
-from reports.output.console import NONE, count, duration, error_text, readable
+from reports.output.numbers import NONE, count, duration, error_text, readable
 from reports.page.sections import OF_WAYS, SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion

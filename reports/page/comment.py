@@ -5,8 +5,8 @@ import math
 from collections.abc import Iterator
 
 from reports.judge.rules import RULES
-from reports.output.console import count, listed, short
 from reports.output.formats import code, fitted, folded, plain, table
+from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.protocol.length import clock_of
 from reports.results.candidates import MEANS, Costs

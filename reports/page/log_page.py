@@ -11,7 +11,7 @@ from reports.drawing.moving import goes_round, packed, singles
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
 from reports.logs.channel import Channel
-from reports.output.console import count, readable
+from reports.output.numbers import count, readable
 from reports.own_log import table
 from reports.own_log.judged import JudgedLog, LogRow
 from reports.page.build import Head, assembled

@@ -22,7 +22,7 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Link, Scene
 from reports.logs.channel import Reading
-from reports.output.console import listed
+from reports.output.numbers import listed
 
 Off = dict[str, Array]
 """Displacements (T, 2) [m] by point."""

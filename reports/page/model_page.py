@@ -10,7 +10,7 @@ from models.errors import harmless
 from reports.drawing.moving import INSTANTS, displacements, drawing, singles
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.own_model import table
 from reports.own_model.account import CheckedLine
 from reports.own_model.judged import PARTS, JointGap, JudgedModel, errors_of

@@ -28,7 +28,7 @@ from reports.describe.free_motion import free_notes, instants
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points, packed
 from reports.drawing.shape import size_of_motion, turn_of
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words

@@ -12,7 +12,7 @@ from models.errors import CrankcheckError, few
 from models.files.reading import names_of_scenes, scene_texts, shipped
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.output.console import count as told
+from reports.output.numbers import count as told
 from reports.plan.requirements import chosen_engines, refuse_rigid, scenes_of
 from reports.plan.singular import gives_forces
 from reports.plan.study import UNITS, Study, Variant

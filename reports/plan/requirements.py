@@ -18,7 +18,7 @@ from models.scene import Scene
 from models.scene.cut_links import with_rigid_links
 from models.scene.driver import Controlled
 from reports.judge.tolerance import check_names
-from reports.output.console import listed
+from reports.output.numbers import listed
 from reports.plan.steps import FREE_STEP_S, STEPS_PER_TURN, counted_free, positive
 from reports.protocol.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
 from reports.protocol.way import StudyLinks, way_of

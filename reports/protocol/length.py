@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from models.scene import Scene
 from reports.compare.compare import SETTLING
-from reports.output.console import duration
+from reports.output.numbers import duration
 
 Springs = Literal["plain", "corrected", "beam"]
 """Springs between segments: with the beam's stiffness over a segment, or such that the chain has

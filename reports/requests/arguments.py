@@ -21,7 +21,7 @@ from models.errors import CrankcheckError, shown, suggestion
 from models.files.assemble import scene_text
 from models.files.reading import every_shipped, load_scene
 from models.scene import KEPT, Scene
-from reports.output.console import listed
+from reports.output.numbers import listed
 from reports.plan import chosen_study
 from reports.plan.steps import positive
 from reports.plan.study import StudyValue

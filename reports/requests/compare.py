@@ -17,7 +17,8 @@ from reports.compare.compare import Truth
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.judge.cell import Cell, Checked, check_run
 from reports.judge.tolerance import check_names
-from reports.output.console import grid, say, short
+from reports.output.console import grid, say
+from reports.output.numbers import short
 from reports.output.write import provenance
 from reports.plan.requirements import given_of, refuse_giving_way, refuse_unfollowed
 from reports.plan.steps import positive

@@ -17,8 +17,9 @@ from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.judge import tolerance
 from reports.logs.map_file import Map, map_text, read_map
-from reports.output.console import finite, say_whole
+from reports.output.console import say_whole
 from reports.output.formats import junit
+from reports.output.numbers import finite
 from reports.output.write import Outputs, check_file, provenance, write
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log, row_table

@@ -13,8 +13,9 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError, suggestion
 from reports.judge.cell import Checked
-from reports.output.console import count, say, say_whole
+from reports.output.console import say, say_whole
 from reports.output.formats import csv, json_text
+from reports.output.numbers import count
 from reports.output.write import Outputs, provenance
 from reports.plan.requirements import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.singular import silent_note

@@ -8,7 +8,7 @@ from typing import Literal
 
 from models.errors import CrankcheckError
 from reports.judge.three_steps import AT_ROUNDING
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.quantities.limits import ELASTIC, FREE
 from reports.results.runs import COMPARED, CellName, StoredCell, StoredRun
 from reports.store.manifest import BUSY

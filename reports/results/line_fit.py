@@ -16,7 +16,7 @@ import numpy as np
 
 from models.array import Array
 from reports.judge.three_steps import AT_ROUNDING
-from reports.output.console import count, short
+from reports.output.numbers import count, short
 from reports.results import fit_forms
 from reports.results.floor_fit import ALIGNMENTS, ORDERS, ErrorCurve, reach, straight, within
 

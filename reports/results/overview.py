@@ -12,7 +12,7 @@ from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
 from models.files.reading import parse_scene
 from models.scene import Scene
-from reports.output.console import count, duration, listed
+from reports.output.numbers import count, duration, listed
 from reports.plan.requirements import under_control
 from reports.protocol.length import SECONDS, TURNS, clock_of, common_clock
 from reports.protocol.way import TARGETS, WAYS, way_of_row

@@ -13,7 +13,8 @@ from rich.markup import escape
 from rich.text import Text
 
 from models.errors import few
-from reports.output.console import grid, short
+from reports.output.console import grid
+from reports.output.numbers import short
 from reports.protocol.length import clock_of
 from reports.protocol.way import WAYS, ResultKind, way
 from reports.results.candidates import (

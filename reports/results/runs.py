@@ -11,7 +11,7 @@ from typing import TypeVar
 from models.errors import few
 from reports.judge.cell import Cell, Checked
 from reports.judge.rows import cell_row
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.protocol.length import SECONDS, TURNS, Clock, clock_of, common_clock
 from reports.quantities.limits import EVERY
 from reports.results.candidates import apart

@@ -15,7 +15,7 @@ from models.scene import Scene
 from reports.compare.compare import Beside, Truth
 from reports.compare.whole_errors import force_rows
 from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
-from reports.output.console import DIGITS, finite
+from reports.output.numbers import DIGITS, finite
 from reports.protocol.way import own_parts
 from reports.stability.case import Case, Trial, Yardstick, yardsticks
 from reports.stability.grades import outcome

@@ -12,7 +12,7 @@ from pydantic import TypeAdapter
 
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError, regular_bytes
-from reports.output.console import finite
+from reports.output.numbers import finite
 
 Outcome = Literal[
     "ok",

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from rich.console import Console
 from rich.text import Text
 
-from reports.output.console import plain_table, short
+from reports.output.console import plain_table
+from reports.output.numbers import short
 from reports.stability.case import WITHIN
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome, with_forces

@@ -17,7 +17,7 @@ import pyarrow.compute as pc  # type: ignore[import-untyped]  # as above
 
 from models.errors import CrankcheckError, harmless
 from models.files.inputs import UnreadableError, regular_bytes
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.output.write import crankcheck_version
 from reports.plan.grid import digest
 

@@ -16,7 +16,8 @@ from rich.console import Console
 from models.errors import CrankcheckError, harmless
 from reports.judge.cell import Cell, unfinished
 from reports.judge.rows import cell_row
-from reports.output.console import count, say, tell
+from reports.output.console import say, tell
+from reports.output.numbers import count
 from reports.output.write import provenance
 from reports.plan.grid import Grid, Task, grid
 from reports.plan.study import Study

@@ -20,8 +20,9 @@ from reports.judge.cell import Checked
 from reports.judge.rules import FORCES, RULES, titled
 from reports.judge.rules.rule import Finding
 from reports.judge.three_steps import Convergence
-from reports.output.console import count, grid, hanging, show_failed
+from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, remark, suite_of
+from reports.output.numbers import count
 from reports.protocol.way import WAYS
 from reports.quantities import QUANTITIES, named
 

@@ -18,7 +18,7 @@ from reports.causes.cause import BROUGHT_WITHIN, Rows, picked
 from reports.causes.inquiry import WELL, Inquiry
 from reports.causes.world import World
 from reports.logs.kinds import UNITS
-from reports.output.console import duration
+from reports.output.numbers import duration
 
 MOST_FITS = 4
 """Channels to which a clock is fitted, one after another."""

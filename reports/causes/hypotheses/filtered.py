@@ -14,7 +14,7 @@ from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account, fitted, later
 from reports.causes.cause import CauseSize, Excerpt
 from reports.causes.inquiry import Inquiry
-from reports.output.console import duration
+from reports.output.numbers import duration
 
 WIDEST = 0.25
 """Largest part of a stretch for the width of a mean."""

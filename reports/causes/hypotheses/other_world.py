@@ -18,7 +18,7 @@ from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
 from reports.logs.kinds import UNITS
-from reports.output.console import listed
+from reports.output.numbers import listed
 
 MOST_CHOICES = 6
 """Largest number of choices of assembly: two to this power are tried one by one."""

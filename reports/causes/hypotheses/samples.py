@@ -12,7 +12,7 @@ from reports.causes.account import BOUNDED, CAUSE, CHOICE, Account
 from reports.causes.cause import BROUGHT_WITHIN, Excerpt, Rows
 from reports.causes.inquiry import Inquiry
 from reports.logs.kinds import UNITS
-from reports.output.console import listed
+from reports.output.numbers import listed
 
 SHOWN = 3
 """Places that are named one by one; the others are counted."""

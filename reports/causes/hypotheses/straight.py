@@ -13,7 +13,7 @@ from reports.causes.cause import BROUGHT_WITHIN, CauseSize, Excerpt, Rows, level
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
 from reports.logs.kinds import UNITS, si
-from reports.output.console import listed
+from reports.output.numbers import listed
 
 TURNS = (0, 1, -1, 2, -2)
 """Whole turns from which a scaled angle may count."""

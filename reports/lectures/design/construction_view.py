@@ -21,7 +21,7 @@ from models.scene import Scene
 from reports.figures.style import INK
 from reports.lectures.drawing.sheets.paper import arc_places, cut_line, near_angles
 from reports.lectures.drawing.sheets.scheme import extent_of, sense_of_law
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 GIVEN, AUXILIARY, OTHERS = "#2e6f9e", "#a9b3bf", "#d3dfe9"
 """Colours of given elements, of auxiliary lines, and of the mechanism's other positions; the last

@@ -14,7 +14,8 @@ from analytic.lectures.synthesis.examine import Examined
 from analytic.lectures.synthesis.sensitivity import Sensitivity, Spread
 from analytic.lectures.synthesis.solutions import Solutions
 from reports.lectures.design.proof import Met, in_words, unit_of
-from reports.output.console import count, grid
+from reports.output.console import grid
+from reports.output.numbers import count
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,7 +19,7 @@ from reports.lectures.design.design_tables import proof_rows, remarks
 from reports.lectures.design.proof import Met
 from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_assemblies
-from reports.output.console import count, listed
+from reports.output.numbers import count, listed
 from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section

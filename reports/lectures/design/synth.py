@@ -23,8 +23,9 @@ from models.scene import Scene
 from reports.lectures.design import design_tables
 from reports.lectures.design.proof import Met, by_reference, limit_of, proven
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.output.console import count, grid, say
+from reports.output.console import grid, say
 from reports.output.formats import csv
+from reports.output.numbers import count
 from reports.output.write import check_folder, provenance, write
 from reports.plan.requirements import chosen_engines, chosen_profiles
 from reports.requests.arguments import told_at_the_call

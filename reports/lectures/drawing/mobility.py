@@ -14,7 +14,8 @@ from models.errors import CrankcheckError, harmless
 from models.lectures.scheme import HIGHER, Scheme
 from models.lectures.scheme_files import find_scheme, load_scheme, scheme_text, shipped_schemes
 from models.lectures.touching import Touching, load_touching, shipped_contacts
-from reports.output.console import count, grid, hanging, say_whole
+from reports.output.console import grid, hanging, say_whole
+from reports.output.numbers import count
 from reports.output.write import check_file, write
 from reports.requests.options import argument, output_option
 

@@ -32,7 +32,8 @@ from reports.lectures.drawing.sheets.polygon_page import (
 )
 from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
 from reports.logs.map_file import Map, read_map
-from reports.output.console import grid, readable, say_whole
+from reports.output.console import grid, say_whole
+from reports.output.numbers import readable
 from reports.output.write import check_file, write
 from reports.requests.options import PaperSize, SceneName, option, output_option, seconds
 

@@ -24,7 +24,8 @@ from reports.describe.facts import place_at
 from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_assemblies
-from reports.output.console import count, grid, roman, say
+from reports.output.console import grid, say
+from reports.output.numbers import count, roman
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName, option, output_option
 

@@ -14,8 +14,9 @@ from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
 from models.scene import Scene
-from reports.output.console import NONE, error_text, grid, readable, say, say_each
+from reports.output.console import grid, say, say_each
 from reports.output.formats import json_text
+from reports.output.numbers import NONE, error_text, readable
 from reports.output.write import crankcheck_version
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
 from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, FigureSet, Look, shorten
 from reports.lectures.machine import cycle_rows
 from reports.lectures.machine.cycle_rows import CycleSeries, cycle_series
-from reports.output.console import count, readable
+from reports.output.numbers import count, readable
 from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section

@@ -10,7 +10,7 @@ from analytic.elastic.natural import FrequencySensitivity, link_modes, lowest_ra
 from analytic.lectures.vibration.floquet import STABLE
 from analytic.lectures.vibration.over_speeds import HIGHEST, InertiaMap, OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 NEAR = 2.0
 """Sensitivity from which on a resonance is reported as near; without one it is about 1."""

@@ -17,7 +17,8 @@ from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from models.array import Array
 from reports.lectures.machine import vibration_rows
 from reports.lectures.machine.cycle_rows import numbers_text
-from reports.output.console import NONE, count, grid, readable, say, say_each
+from reports.output.console import grid, say, say_each
+from reports.output.numbers import NONE, count, readable
 
 MODES = 6
 """Most modes of the mechanism on the terminal; files have all."""

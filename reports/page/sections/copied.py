@@ -10,7 +10,7 @@ import pandas as pd
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.page.sections.section import Section
 from reports.quantities import QUANTITIES
 from reports.results.lines import Named, called, named

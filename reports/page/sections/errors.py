@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from reports.output.console import count, error_text
+from reports.output.numbers import count, error_text
 from reports.page.sections.section import Section
 from reports.protocol.way import TARGETS
 from reports.quantities import QUANTITIES

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.drawing.moving import embedded
-from reports.output.console import count, error_text
+from reports.output.numbers import count, error_text
 from reports.page.sections.section import PageReport, Section, fitting
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import OUTCOMES, CaseFacts, Graded, Matrix, Outcome, Picture

@@ -16,7 +16,7 @@ from reports.compare.free_facts import window_means
 from reports.describe.facts import describe_law, facts
 from reports.drawing import moving
 from reports.drawing.shape import true_motion
-from reports.output.console import duration, error_text
+from reports.output.numbers import duration, error_text
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.results.error_parts import CurveBody, ErrorParts, Split, split, worst_body
 from reports.results.lines import Line

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from reports.output.console import count, duration, error_text, listed
+from reports.output.numbers import count, duration, error_text, listed
 from reports.page.sections.section import Section
 from reports.results.lines import Line, Look, named
 from reports.results.overview import Report

@@ -14,7 +14,7 @@ from reports.compare.compare import Truth
 from reports.compare.errors import Error, Errors, largest
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import AtCrank, LogBeside
-from reports.output.console import error_text, listed
+from reports.output.numbers import error_text, listed
 from reports.own_log.drives import DriveFit, truth_of_log
 from reports.own_log.judged import column_text
 from reports.own_log.log_limits import HeldLog, LogRequest, limits_by_column

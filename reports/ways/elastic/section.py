@@ -7,7 +7,7 @@ import numpy as np
 from models.array import Array
 from reports.compare.last_turn import Trace
 from reports.drawing.moving import first_turn, packed
-from reports.output.console import duration
+from reports.output.numbers import duration
 from reports.page.sections.section import Section, WaySection
 from reports.protocol.length import SECONDS, TURNS, Clock, clock_of
 from reports.results.lines import Line

@@ -18,7 +18,7 @@ from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
 from reports.logs.kinds import KINDS
 from reports.logs.log_beside import LogBeside
-from reports.output.console import error_text, listed, short
+from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_limits import EVERY, HeldLog, LogRequest
 from reports.plan.requirements import refuse_unreleased

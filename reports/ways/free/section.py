@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from reports.output.console import duration
+from reports.output.numbers import duration
 from reports.page.sections.errors import drawn
 from reports.page.sections.motion import FreeCourses, sizes_of
 from reports.page.sections.section import BUDGET, Section, WaySection, steps_held

@@ -11,7 +11,7 @@ import pytest
 
 from reports.drawing.moving import LEVELS, embedded, packed, policy, singles, size_of
 from reports.output import console
-from reports.output.console import DIGITS, NONE, count, finite, listed
+from reports.output.numbers import DIGITS, NONE, count, finite, listed
 from tests.reports.drawing.test_moving import unpacked
 
 HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""

@@ -14,7 +14,7 @@ from models.errors import CrankcheckError
 from reports.figures.free_figures import _over_one_turn
 from reports.figures.free_runs import free_runs
 from reports.figures.style import FORMATS
-from reports.requests.report import FiguresRequest
+from reports.requests.figures import FiguresRequest
 from reports.results.overview import Report
 from reports.store.reader import read_store
 from tests.worlds.free_store import SCENE as LET_GO
@@ -50,7 +50,7 @@ FAULTS = {
 def as_svg(store: Path, folder: Path) -> Path:
     """All of a store, as SVG alone: fonts of a PDF take twice the time of all else."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.requests.report.FORMATS", ("svg",))
+        patch.setattr("reports.requests.figures.FORMATS", ("svg",))
         figures(store, folder)
     return folder
 

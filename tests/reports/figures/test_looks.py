@@ -19,7 +19,7 @@ from reports.figures.drawing import COLOURS, marks
 from reports.figures.error_parts import LOOKS
 from reports.figures.mechanism import draw
 from reports.figures.style import cut, styled, width_in
-from reports.requests.report import FIGURES
+from reports.requests.figures import FIGURES
 from reports.results.lines import label, lines
 from reports.results.overview import Report
 from reports.store.manifest import Manifest

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.judge.cell import unfinished
-from reports.output.console import short
+from reports.output.numbers import short
 from reports.own_model import account, table
 from reports.own_model.account import CheckedLine, ModelAccount
 from reports.own_model.judged import JudgedModel, errors_of, judged_model

@@ -13,7 +13,7 @@ from rich.console import Console
 from models.errors import CrankcheckError, harmless
 from models.files.reading import parse_scene, shipped
 from reports.page.build import page as built
-from reports.requests.report import FiguresRequest
+from reports.requests.figures import FiguresRequest
 from reports.store.reader import read_store
 from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import Tab
@@ -150,7 +150,7 @@ def test_a_browser_runs_nothing_of_it(wide: Tab, page: Path) -> None:
 def test_figures_are_drawn_with_the_source_as_text(
     store: Path, tmp_path: Path, kinds: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.requests.report.FORMATS", kinds)
+    monkeypatch.setattr("reports.requests.figures.FORMATS", kinds)
     FiguresRequest(store, tmp_path, only=["mechanism"]).run(Console(quiet=True), Console())
     root = Xml.parse(tmp_path / f"mechanism-{NAME}.svg").getroot()
     assert not [each for each in root.iter() if str(each.tag).endswith("script")]
@@ -165,7 +165,7 @@ def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
 ) -> None:
     stored = read_store(store)
     away = replace(stored, cells=stored.cells.assign(scene="../../escaped"))
-    monkeypatch.setattr("reports.requests.report.read_store", lambda _: away)
+    monkeypatch.setattr("reports.requests.figures.read_store", lambda _: away)
     with pytest.raises(CrankcheckError, match=r"'\.\./\.\./escaped' of the store: not the name"):
         FiguresRequest(store, tmp_path / "a" / "figs").run(Console(quiet=True), Console())
     assert list(tmp_path.rglob("*escaped*")) == []

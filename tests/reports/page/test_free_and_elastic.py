@@ -15,7 +15,7 @@ from reports.page.build import page
 from reports.page.comment import summary
 from reports.page.sections import SECTIONS
 from reports.page.sections.section import PageReport
-from reports.requests.report import _planned
+from reports.requests.figures import _planned
 from reports.results.recommend import Recommendation, recommendation_table, recommendations
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store

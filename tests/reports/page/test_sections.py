@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from models.files.reading import find_scene
-from reports.output.console import duration
+from reports.output.numbers import duration
 from reports.page.build import render
 from reports.page.sections.copied import reading_forces as build_forces
 from reports.page.sections.copied import recommendation as build_recommendation

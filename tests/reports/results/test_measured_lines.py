@@ -13,7 +13,7 @@ import pytest
 
 from models.files.reading import load_scene
 from reports.judge.cell import Cell, check
-from reports.output.console import short
+from reports.output.numbers import short
 from reports.results.floor_fit import opposed
 from reports.results.line_fit import LineFit, fit_line, words
 

@@ -20,7 +20,7 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map, read_map
 from reports.logs.meanings import understood, wanted
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.own_log.log_limits import LogRequest, log_kind
 
 LOGGED = "#8e24aa"

@@ -22,7 +22,7 @@ from reports.lectures.drawing.sheets.paper import (
     round_scale,
     text,
 )
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 EXACT, DRAWN, RAY, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#e6e6e6"
 DASHED = (0, (4, 2))

@@ -13,7 +13,8 @@ from models.scene.driver import driver_unit
 from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, line, text
-from reports.output.console import grid, listed
+from reports.output.console import grid
+from reports.output.numbers import listed
 
 ROW_MM = 2.55
 GAP_MM = 2.5

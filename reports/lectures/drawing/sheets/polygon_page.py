@@ -27,7 +27,7 @@ from reports.lectures.drawing.sheets import polygon_sheet
 from reports.lectures.drawing.sheets.paper import sheet_note
 from reports.lectures.drawing.sheets.polygon_drawing import POLES, lower_case
 from reports.lectures.drawing.sheets.polygon_table import drawn_links
-from reports.output.console import count
+from reports.output.numbers import count
 from reports.output.write import crankcheck_version
 
 

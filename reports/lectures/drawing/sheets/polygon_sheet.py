@@ -40,7 +40,7 @@ from reports.lectures.drawing.sheets.paper import (
 from reports.lectures.drawing.sheets.polygon_drawing import draw_polygon, polygon_letters
 from reports.lectures.drawing.sheets.polygon_instant import LoggedInstant
 from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 GAP = 4.0
 LEFT_SHARE, SCHEME_SHARE = 0.38, 0.5

@@ -16,7 +16,7 @@ from reports.lectures.drawing.sheets.graph_drawing import LOGGED
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper, text
 from reports.lectures.drawing.sheets.polygon_drawing import lower_case
 from reports.lectures.drawing.sheets.polygon_on_paper import STAR, DrawnPolygon
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 RATES = {"velocity": "1/s", "acceleration": "1/s^2"}
 REASONS = {"velocity": "as omega is 0", "acceleration": "as omega and alpha are 0"}

@@ -22,7 +22,7 @@ from reports.lectures.drawing.workbook.formulas import (
     Input,
     evaluated,
 )
-from reports.output.console import readable
+from reports.output.numbers import readable
 
 MOST_MEMBERS = 20
 CLOSE_DEG = 0.1

@@ -32,7 +32,8 @@ from reports.lectures.drawing.workbook.live_workbook import (
     live_workbook,
     scene_family_workbook,
 )
-from reports.output.console import count, say_whole
+from reports.output.console import say_whole
+from reports.output.numbers import count
 from reports.output.write import crankcheck_version, write
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
