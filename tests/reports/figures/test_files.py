@@ -1,31 +1,47 @@
 """The files of `crankcheck figures`, of a driven store and of free runs: whole, labelled, and the
-same on any day."""
+same on any day; nothing over something else, and curves told apart without colour."""
 
 import io
+import itertools
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from models.files.reading import find_scene, load_scene, read_text
+from reports.figures.drawing import marks
 from reports.figures.free_figures import _over_one_turn
 from reports.figures.free_runs import free_runs
-from reports.figures.style import FORMATS
-from reports.requests.figures import FiguresRequest
+from reports.figures.mechanism import draw
+from reports.figures.style import FORMATS, cut, styled, width_in
+from reports.requests.figures import FIGURES, FiguresRequest
+from reports.results.lines import lines
 from reports.results.overview import Report
+from reports.store.manifest import Manifest
 from reports.store.reader import read_store
+from tests.reports.results.made import cell, stored
+from tests.worlds.free_store import LASTS_S
 from tests.worlds.free_store import SCENE as LET_GO
 from tests.worlds.small_store import SCENES
-from tests.worlds.tiers import slow
+from tests.worlds.tiers import few
 
 OF_SCENES = ("work-precision", "convergence", "split", "mechanism")
 EACH = {f"{name}-{scene}" for name in OF_SCENES for scene in SCENES}
 ALL = EACH | {"work-precision", "convergence", "profile"}
 LABELS = {
-    "work-precision": ("time per simulated turn [s]", "largest error: angle [rad], place / L [-]"),
+    "work-precision": ("time per simulated turn [s]",),
     "convergence": ("steps per turn", "largest error: angle [rad], place / L [-]"),
     "convergence-": ("time step [s]", ": order 1.0"),
     "split": ("angle of crank [deg]", "[10⁻³ rad]", "drive", "closure", "floor", "discretisation"),
@@ -88,32 +104,24 @@ def flat(path: Path) -> str:
 
 
 def test_there_is_an_svg_of_each_figure_that_a_store_has(drawn: Path, drawn_free: Path) -> None:
+    """With its fonts, as wide as a column or a page of a paper, and labels with units."""
     assert {path.name for path in drawn.iterdir()} == {f"{name}.svg" for name in ALL}
     assert {path.stem for path in drawn_free.iterdir()} == {f"{n}-{LET_GO}" for n in FREE_LABELS}
+    for path in drawn.glob("*.svg"):
+        assert "@font-face{font-family:'DejaVu Sans'" in path.read_text(), path.name
+        width = float(re.match(r"([\d.]+)pt", ET.parse(path).getroot().attrib["width"])[1])  # type: ignore[index]
+        wide = path.stem in ("work-precision", "convergence", "profile") or "split" in path.stem
+        assert width / 72 == pytest.approx(7.0 if wide else 3.4), path.name
+        for name in (each for each in LABELS if path.name.startswith(each)):
+            for words in LABELS[name]:
+                assert words in flat(path), path.name
 
 
-@slow("a PDF takes a third of a second: one of them is read by the other tests")
-def test_there_is_a_pdf_of_each_with_its_fonts(store: Path, tmp_path: Path) -> None:
-    figures(store, tmp_path)
-    names = {path.name for path in tmp_path.iterdir()}
-    assert names == {f"{name}.{kind}" for name in ALL for kind in ("svg", "pdf")}
-    for path in tmp_path.glob("*.pdf"):
-        has_fonts(path)
-
-
-@pytest.mark.parametrize("name", LABELS)
-def test_axes_are_labelled_with_units_and_words_can_be_read(drawn: Path, name: str) -> None:
-    for path in drawn.glob(f"{name}*.svg"):
-        for label in LABELS[name]:
-            assert label in flat(path), path.name
-
-
-@pytest.mark.parametrize("name", FREE_LABELS)
-def test_a_free_figure_says_what_it_shows(drawn_free: Path, name: str) -> None:
-    found = flat(drawn_free / f"{name}-{LET_GO}.svg")
-    for label in (*FREE_LABELS[name], *(["mujoco"] if name != "mechanism" else [])):
-        assert label in found
-    assert "steps per turn" not in found
+def test_a_free_figure_says_what_it_shows(drawn_free: Path) -> None:
+    for name, labels in FREE_LABELS.items():
+        found = flat(drawn_free / f"{name}-{LET_GO}.svg")
+        assert {label for label in labels if label not in found} == set()
+        assert "steps per turn" not in found
 
 
 def test_what_was_run_and_what_failed_stand_under_a_result(drawn: Path) -> None:
@@ -129,56 +137,28 @@ def test_what_was_run_and_what_failed_stand_under_a_result(drawn: Path) -> None:
     assert "failed" not in flat(drawn / "convergence-fourbar-lecture-1.svg")
 
 
-def test_an_svg_and_a_pdf_bring_their_fonts(drawn: Path, chosen: tuple[Path, str]) -> None:
-    for path in drawn.glob("*.svg"):
-        assert "@font-face{font-family:'DejaVu Sans'" in path.read_text(), path.name
-    has_fonts(chosen[0] / "mechanism-slotted-lever.pdf")
-
-
-def has_fonts(path: Path) -> None:
-    raw = path.read_bytes()
-    assert raw.startswith(b"%PDF-1."), path.name
-    assert raw.rstrip().endswith(b"%%EOF"), path.name
-    assert b"/FontFile2" in raw, path.name  # TrueType
-    assert b"/Type3" not in raw, path.name
-
-
-def test_paper_widths(drawn: Path) -> None:
-    for path in drawn.glob("*.svg"):
-        width = float(re.match(r"([\d.]+)pt", ET.parse(path).getroot().attrib["width"])[1])  # type: ignore[index]
-        wide = path.stem in ("work-precision", "convergence", "profile") or "split" in path.stem
-        assert width / 72 == pytest.approx(7.0 if wide else 3.4), path.name
-
-
-def same_and_undated(one: Path, other: Path, count: int) -> None:
-    made = sorted(one.iterdir())
-    assert len(made) == count
-    for path in made:
-        assert path.read_bytes() == (other / path.name).read_bytes(), path.name
-        assert b"CreationDate" not in path.read_bytes()
-        assert b"dc:date" not in path.read_bytes()
+def test_scene_and_only_choose_and_a_pdf_brings_its_fonts(chosen: tuple[Path, str]) -> None:
+    folder, said = chosen
+    assert {p.name for p in folder.iterdir()} == {f"mechanism-slotted-lever.{k}" for k in FORMATS}
+    assert "1 figure, each as .svg and .pdf" in said
+    raw = (folder / "mechanism-slotted-lever.pdf").read_bytes()
+    assert raw.startswith(b"%PDF-1.")
+    assert raw.rstrip().endswith(b"%%EOF")
+    assert b"/FontFile2" in raw  # TrueType
+    assert b"/Type3" not in raw
 
 
 def test_a_second_run_gives_the_same_bytes(
     drawn: Path, chosen: tuple[Path, str], store: Path, tmp_path: Path
 ) -> None:
     figures(store, tmp_path, [SCENES[1]], ["mechanism"])
-    same_and_undated(tmp_path, chosen[0], 2)
+    for path in tmp_path.iterdir():
+        raw = path.read_bytes()
+        assert raw == (chosen[0] / path.name).read_bytes(), path.name
+        assert b"CreationDate" not in raw
+        assert b"dc:date" not in raw
     name = "mechanism-slotted-lever.svg"
     assert (tmp_path / name).read_bytes() == (drawn / name).read_bytes()
-
-
-@slow("two seconds: a diagram has marks, legends and clipping that a mechanism has not")
-def test_a_second_run_gives_the_same_bytes_of_a_diagram_too(store: Path, tmp_path: Path) -> None:
-    for folder in ("one", "other"):
-        figures(store, tmp_path / folder, SCENES[:1], ["work-precision", "mechanism"])
-    same_and_undated(tmp_path / "one", tmp_path / "other", 4)
-
-
-def test_scene_and_only_choose(chosen: tuple[Path, str]) -> None:
-    folder, said = chosen
-    assert {p.name for p in folder.iterdir()} == {f"mechanism-slotted-lever.{k}" for k in FORMATS}
-    assert "1 figure, each as .svg and .pdf" in said
 
 
 def test_what_there_is_not_and_a_file_for_a_folder_are_refused(store: Path, tmp_path: Path) -> None:
@@ -210,3 +190,110 @@ def test_a_phase_diagram_over_one_turn_goes_on_at_the_other_side(way: float) -> 
     assert speed[cut - 1] == speed[cut + 1] == pytest.approx(3.0)
     assert np.isnan(speed[cut])
     assert within.size == 7
+
+
+DRIVEN = [name for name, drawing in FIGURES.items() if "driven" in drawing.drives]
+SHOWN = [(name, scene) for name in DRIVEN for scene in (*SCENES, None)]
+EMPTY = {("split", None), ("mechanism", None), *(("profile", scene) for scene in SCENES)}
+QUICK = {(n, scene) for n in DRIVEN for scene in (SCENES[1], None)} - {("profile", SCENES[1])}
+OF_FREE = [name for name, drawing in FIGURES.items() if "let go" in drawing.drives]
+LETTERED = ("scotch-yoke", "sixbar-stephenson", "shaper", "tangent")
+OTHER = "what differs between figures is that one is of a scene, of all, or of what was let go"
+
+
+def boxes(figure: Figure) -> list[tuple[str, Bbox]]:
+    """Every text that is drawn, with where it stands [pixel]."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    renderer = canvas.get_renderer()
+    outside = {text for axes in figure.axes for text in _undrawn(axes)}
+    texts = (text for text in figure.findobj(Text) if text.get_visible() and text not in outside)
+    return [(t.get_text(), t.get_window_extent(renderer)) for t in texts if t.get_text().strip()]
+
+
+def _undrawn(axes: Axes) -> Iterator[Text]:
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = sorted(axis.get_view_interval())
+        for tick in axis.get_major_ticks():
+            if not low <= tick.get_loc() <= high:
+                yield from (tick.label1, tick.label2)
+
+
+def has_room(draw: Callable[..., Figure | None], *arguments: object) -> None:
+    """Every word on the sheet, and none on another."""
+    with styled():
+        figure = draw(*arguments)
+        assert figure is not None
+        found, page = boxes(figure), figure.bbox
+    assert len(found) > 5
+    for text, box in found:
+        inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
+        assert inside, f"{text!r} leaves the sheet"
+    for (a, first), (b, second) in itertools.combinations(found, 2):
+        shared = Bbox.intersection(first, second)
+        assert shared is None or min(shared.width, shared.height) < 2.0, f"{a!r} on {b!r}"
+
+
+@pytest.fixture(scope="module")
+def report(store: Path) -> Report:
+    return Report(read_store(store))
+
+
+def figure_of(report: Report, name: str, scene: str | None) -> Figure | None:
+    drawing = FIGURES[name]
+    if scene is None:
+        return drawing.over_all(report) if drawing.over_all else None
+    return drawing.of(report, scene) if drawing.of else None
+
+
+@pytest.mark.parametrize("shown", few(SHOWN, QUICK, OTHER), ids=str)
+def test_words_keep_off_each_other_and_the_edge(
+    report: Report, shown: tuple[str, str | None]
+) -> None:
+    if shown in EMPTY:
+        assert figure_of(report, *shown) is None
+    else:
+        has_room(figure_of, report, *shown)
+
+
+@pytest.mark.parametrize("name", few(OF_FREE, {"let-go", "energy"}, OTHER))
+def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: str) -> None:
+    free = Report(read_store(free_store))
+    has_room(figure_of, free, name, LET_GO)
+    if name == "energy":
+        ends = [axes.get_xlim() for axes in figure_of(free, name, LET_GO).axes]
+        assert ends == [(0.0, pytest.approx(LASTS_S))] * len(ends)
+
+
+@pytest.mark.parametrize("scene", few(LETTERED, {"shaper", "sixbar-stephenson"}, OTHER))
+def test_letters_and_names_of_a_drawing_find_room(scene: str) -> None:
+    made = stored([cell(scene, "tuned", 90, 1e-3, 1.0)])
+    made = replace(made, manifest=Manifest({scene: read_text(find_scene(scene))}))
+    with styled():
+        found = boxes(draw(Report(made), scene))
+    names = {text for text, _ in found}
+    for link in load_scene(scene).links.values():
+        assert {link.name, *link.points} <= names
+    for (a, first), (b, second) in itertools.combinations(found, 2):
+        assert Bbox.intersection(first, second) is None, f"{a!r} on {b!r}"
+
+
+def test_a_name_that_is_too_long_loses_its_middle() -> None:
+    name = "a variant with a name that no column has room for, iterations=20"
+    short = cut(name, 1.5)
+    assert width_in(short) <= 1.5 < width_in(name)
+    assert short.startswith("a variant")
+    assert short.endswith("iterations=20")
+    assert "…" in short
+    assert cut("short", 1.5) == "short"
+
+
+@pytest.mark.parametrize("number", [4, 30])
+def test_no_two_variants_share_marker_and_dashes(number: int) -> None:
+    named = itertools.product(("mujoco", "pymunk", "third"), range(number))
+    rows = [cell("a", f"v{i}", 90, 1e-3, 1.0, engine=engine) for engine, i in named]
+    found = marks(lines(stored(rows)))
+    assert len(found) == 3 * number
+    assert len({(mark.marker, mark.dashes) for mark in found.values()}) == 3 * number
+    for mark in found.values():
+        Line2D([], [], **mark.style)  # matplotlib knows the marker and takes the dashes

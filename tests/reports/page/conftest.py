@@ -1,5 +1,6 @@
 """A small real store, its page, and a browser that reads it with the network off."""
 
+import itertools
 import os
 import shutil
 from collections.abc import Callable, Iterator
@@ -10,36 +11,40 @@ import pandas as pd
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from models.files.reading import load_scene
+from reports.output.write import provenance
 from reports.page import build
+from reports.stability.case import Case, Trial
+from reports.stability.grading import graded
 from reports.stability.matrix import Matrix
+from reports.stability.running import critical
 from reports.store.reader import Stored, read_store
-from tests.reports.page import hard_runs
 from tests.reports.page.hostile import evil
 from tests.reports.page.tab import PHONE, WIDE, Tab
 from tests.worlds.command_line import crank
 from tests.worlds.in_process import in_this_process
-from tests.worlds.tiers import slowly
 
 STUDY = """
 scenes = ["fourbar-lecture-1", "shaper"]
 steps_per_turn = [90, 180, 360]
 turns = 1
-[[variants]]
-engine = "mujoco"
-profile = "as-shipped"
-[[variants]]
-engine = "mujoco"
-profile = "tuned"
-[[variants]]
-name = "no bias"                    # comes apart on the shaper
-engine = "pymunk"
-profile = "as-shipped"
-settings = { error_bias = 0.0 }
-[[variants]]
-engine = "pymunk"
-profile = "tuned"
+variants = [
+  { engine = "mujoco", profile = "as-shipped" },
+  { engine = "mujoco", profile = "tuned" },
+  { name = "no bias", engine = "pymunk", profile = "as-shipped", settings = { error_bias = 0.0 } },
+  { engine = "pymunk", profile = "tuned" },
+]
 """
-FULL = "scenes, engines and times beside each other: what is left out of a page is another part"
+"""Without its bias pymunk comes apart on the shaper."""
+LINES = tuple((e, p) for e in ("mujoco", "pymunk") for p in ("as-shipped", "tuned"))
+STEPS = (360.0, 90.0, 30.0, 12.0)
+BETWEEN = 60.0
+"""A value that stands for one that a bisection looked at."""
+SCENES = {
+    "fourbar-lecture-1": ("Large steps", "Crank-rocker in ever larger steps"),
+    "slider-crank-offset": ("Large steps", "Offset slider-crank in ever larger steps"),
+    "shaper": ("Heavy slides", "Shaper: a heavy ram on a slotted lever"),
+}
 Write = Callable[[str], Path]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 INSTALL = "apt-get install chromium"
@@ -106,10 +111,31 @@ def evil_page(small: Stored, written: Write) -> Path:
     return written(build.page(evil(small)))
 
 
+def case_of(name: str) -> Case:
+    (group, title), scene = SCENES[name], load_scene(name)
+    return Case(
+        name=f"{name}-steps", group=group, title=title, source=scene.source,
+        truth="The closed form at every instant.",
+        expected="follows, with an error that falls with the square of the step",
+        parameter="steps in a turn", values=STEPS, labels=tuple(f"{n:g}" for n in STEPS),
+        trial=lambda steps: Trial(scene, steps),
+    )  # fmt: skip
+
+
 @pytest.fixture(scope="session")
 def matrix() -> Matrix:
     """Three scenes in ever larger steps, in both engines with both profiles."""
-    return hard_runs.matrix()
+    runs, pictures, ends = [], [], []
+    cases = [case_of(name) for name in SCENES]
+    for case, line in itertools.product(cases, LINES):
+        found = [graded(case, *line, steps, draw=True) for steps in (*STEPS, BETWEEN)]
+        own = [replace(run, grid=run.value != BETWEEN) for run, _ in found]
+        runs += own
+        pictures += [picture for _, picture in found if picture is not None]
+        ends.append(critical(case, own))
+    facts = provenance({"mujoco": "4.0.0", "pymunk": "7.3.1"})
+    known = tuple(case.facts() for case in cases)
+    return Matrix(facts, known, tuple(runs), tuple(ends), tuple(pictures))
 
 
 @pytest.fixture(scope="session")
@@ -120,16 +146,6 @@ def hard_page(matrix: Matrix, written: Write) -> Path:
 @pytest.fixture(scope="session")
 def tiny_page(tiny: Stored, written: Write) -> Path:
     return written(build.page(tiny))
-
-
-@pytest.fixture(scope="session", params=["tiny", slowly("small", reason=FULL)])
-def paged(request: pytest.FixtureRequest) -> tuple[Stored, Path]:
-    return request.getfixturevalue(request.param), request.getfixturevalue(f"{request.param}_page")
-
-
-@pytest.fixture(scope="session")
-def both_page(paged: tuple[Stored, Path], matrix: Matrix, written: Write) -> Path:
-    return written(build.page(paged[0], matrix))
 
 
 def chromium() -> str:

@@ -8,9 +8,7 @@ import pytest
 from playwright.sync_api import Locator, Page
 
 from models.array import Array
-from tests.reports.page.conftest import chromium
 from tests.reports.page.tab import Tab
-from tests.worlds.tiers import slow
 
 SECTIONS = ("precision", "convergence", "motion")
 LINKS = "#motion-picture .reference .link"
@@ -43,18 +41,6 @@ def opened(wide: Tab, small_page: Path) -> Tab:
     return wide.visit(small_page, *SECTIONS)
 
 
-def test_without_a_browser_tests_are_skipped_and_fail_in_ci(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    ends = (pytest.skip.Exception, pytest.fail.Exception)
-    monkeypatch.setenv("PATH", "/nowhere")
-    for in_ci, end in zip(("", "true"), ends, strict=True):
-        monkeypatch.setenv("CI", in_ci)
-        with pytest.raises(ends, match="apt-get install chromium") as raised:
-            chromium()
-        assert raised.type is end
-
-
 def test_printing_draws_what_was_not_scrolled_to(wide: Tab, small_page: Path) -> None:
     page = wide.open(small_page).page
     page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
@@ -67,7 +53,9 @@ def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(open
     opened.every_control_has_a_name()
 
 
-def test_a_switch_of_the_legend_takes_a_trace_out_and_brings_it_back(page: Page) -> None:
+def test_a_switch_of_the_legend_takes_out_a_trace_or_an_engine_and_brings_it_back(
+    page: Page,
+) -> None:
     before = traces(page, "precision-chart")
     assert all(before.values())
     assert {"mujoco tuned", "pymunk tuned", "front"} <= set(before)
@@ -77,16 +65,12 @@ def test_a_switch_of_the_legend_takes_a_trace_out_and_brings_it_back(page: Page)
     assert [name for name, shown in after.items() if not shown] == ["mujoco tuned"]
     box.check()
     assert traces(page, "precision-chart") == before
-
-
-@pytest.mark.parametrize("section", ["precision", "convergence"])
-def test_an_engine_is_switched_as_a_whole(page: Page, section: str) -> None:
-    engine = page.locator(f"#{section}-legend [data-group='mujoco']")
+    engine = page.locator("#precision-legend [data-group='mujoco']")
     engine.uncheck()
-    found = traces(page, f"{section}-chart")
+    found = traces(page, "precision-chart")
     assert {name.split()[0] for name, shown in found.items() if not shown} == {"mujoco"}
     assert any(shown for name, shown in found.items() if name.startswith("pymunk"))
-    page.locator(f"#{section}-legend [data-item='0']").check()
+    page.locator("#precision-legend [data-item='0']").check()
     assert engine.evaluate("each => each.indeterminate")
 
 
@@ -132,31 +116,15 @@ def test_tables_sort_by_their_numbers_up_and_down_and_are_filtered(page: Page) -
     assert head.get_attribute("aria-sort") == "descending"
     last = page.locator(f"{table} tbody tr").last
     assert last.locator("td").nth(4).get_attribute("data-value") == ""  # nothing goes last
-    cells = page.locator("#provenance details", has_text="cells as a table")
-    cells.locator("> summary").click()
-    rows = page.locator("#cells tbody tr:visible")
-    assert rows.count() == 24
+    page.locator("#provenance details", has_text="cells as a table").locator("> summary").click()
     page.fill("#cells-filter", "shaper tuned 360")
-    assert rows.count() == 2
+    assert page.locator("#cells tbody tr:visible").count() == 2
     assert page.locator("#cells-filter-told").inner_text() == "2 shown"
 
 
-def test_the_drawing_moves_and_stops(opened: Tab) -> None:
-    still = opened.drawn(LINKS)
-    opened.elapse(150)
-    assert opened.drawn(LINKS) == still  # reduced motion is wanted: it waits to be asked
-    play = opened.page.locator("#motion-play")
-    play.click()
-    assert play.inner_text() == "Pause"
-    opened.elapse(200)
-    assert opened.drawn(LINKS) != still
-    play.click()
-    stopped = opened.drawn(LINKS)
-    opened.elapse(150)
-    assert opened.drawn(LINKS) == stopped
-
-
-def test_the_drawing_moves_by_itself_where_motion_is_welcome(opened: Tab, page: Page) -> None:
+def test_the_drawing_moves_by_itself_where_motion_is_welcome_and_stops(
+    opened: Tab, page: Page
+) -> None:
     page.emulate_media(reduced_motion="no-preference")
     page.locator("#precision").scroll_into_view_if_needed()
     top = "document.getElementById('motion-picture').getBoundingClientRect().top"
@@ -166,9 +134,16 @@ def test_the_drawing_moves_by_itself_where_motion_is_welcome(opened: Tab, page: 
     moved = "([links, before]) => document.querySelector(links).getAttribute('d') !== before"
     page.wait_for_function(moved, arg=[LINKS, opened.drawn(LINKS)[0]])
     page.locator("#motion-play").click()
+    stopped = opened.drawn(LINKS)
+    opened.elapse(150)
+    assert opened.drawn(LINKS) == stopped
 
 
-def test_the_crank_is_turned_by_the_keyboard(opened: Tab, page: Page) -> None:
+def test_the_keyboard_skips_to_the_verdict_and_turns_the_crank(opened: Tab, page: Page) -> None:
+    page.locator("body").evaluate("each => { each.tabIndex = -1; each.focus(); }")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    assert page.evaluate("() => document.activeElement.id") == "main"
     slider = page.locator("#motion-slider")
     slider.focus()
     page.keyboard.press("Home")
@@ -185,7 +160,11 @@ def test_the_crank_is_turned_by_the_keyboard(opened: Tab, page: Page) -> None:
     assert cursor.bounding_box() != place
 
 
-def test_an_error_is_magnified_by_the_factor(opened: Tab, page: Page) -> None:
+def test_an_error_is_magnified_by_the_factor_and_shown_with_its_parts(
+    opened: Tab, page: Page
+) -> None:
+    parts = ["total", "drive", "model floor", "discretisation", "closure: widest gap / L"]
+    assert list(traces(page, "motion-chart")) == parts
     page.select_option("#motion-steps", "90")
     page.locator("#motion-slider").focus()
     page.keyboard.press("End")
@@ -203,28 +182,6 @@ def test_an_error_is_magnified_by_the_factor(opened: Tab, page: Page) -> None:
     assert "cut off" in opened.text("#motion-readout")
     page.locator("#motion-visible").click()
     assert page.input_value("#motion-factor") in ("10", "100", "1000")
-
-
-def test_the_parts_of_the_error_are_drawn_and_can_be_switched(page: Page) -> None:
-    parts = ["total", "drive", "model floor", "discretisation", "closure: widest gap / L"]
-    assert list(traces(page, "motion-chart")) == parts
-    page.locator("#motion-parts [data-item='drive']").uncheck()
-    assert not traces(page, "motion-chart")["drive"]
-    page.select_option("#motion-scale", "linear")
-    chart = "document.getElementById('motion-chart')"
-    assert page.evaluate(f"() => {chart}._fullLayout.yaxis.type") == "linear"
-    series = page.evaluate(f"() => {chart}.data.slice(0, 4).map(each => [...each.y])")
-    total, drive, floor, rest = np.array(series, dtype=float)
-    off = np.max(np.abs(total - drive - floor - rest))
-    assert off / np.max(np.abs(total)) < 1e-4
-
-
-def test_the_first_stop_of_tab_skips_to_the_verdict(page: Page) -> None:
-    page.locator("body").evaluate("each => { each.tabIndex = -1; each.focus(); }")
-    page.keyboard.press("Tab")
-    assert page.evaluate("() => document.activeElement.className") == "skip"
-    page.keyboard.press("Enter")
-    assert page.evaluate("() => document.activeElement.id") == "main"
 
 
 def test_a_script_that_came_in_anyway_is_not_run(opened: Tab) -> None:
@@ -265,10 +222,3 @@ def test_hostile_text_does_nothing(wide: Tab, evil_page: Path) -> None:
 
 def test_nothing_runs_out_of_a_phone(phone: Tab, small_page: Path) -> None:
     phone.visit(small_page, *SECTIONS).nothing_runs_out()
-
-
-@slow("a section that has less to show is read as text by `test_page`")
-def test_a_page_without_times_and_with_one_scene_works(wide: Tab, tiny_page: Path) -> None:
-    page = wide.open(tiny_page, *SECTIONS).page
-    assert not page.locator("#precision-cost").is_visible()
-    assert traces(page, "precision-chart") == {"pymunk tuned": True}

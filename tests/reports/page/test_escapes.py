@@ -16,29 +16,21 @@ from reports.page.build import page as built
 from reports.requests.figures import FiguresRequest
 from reports.store.reader import read_store
 from tests.reports.page.hostile import Outline
-from tests.reports.page.tab import Tab
 from tests.worlds.command_line import crank
 from tests.worlds.fuzzing import COMMANDS, attempt
 from tests.worlds.scene_files import toml
-from tests.worlds.tiers import few, slowly
 
 NASTY = (
     "=1+cmd|' /C calc'!A0 </script><script>window.hacked = 1</script><!-- --> -- ]]> <b>&amp; \" ' "
     "[bold red]x[/b] [/] | `code` \\ $\\frac{1}{$ $x^{2}_{ {{ 7 * 7 }} {% if %} %s {0} $HOME @team "
     "javascript:alert(1) \u0645\u0631\u062d\u0628\u0627 \u96e8 \U0001f980 \ue000 a\u0300 --"
 )
-FILES = (
-    "<script>alert(1)<!--", "a&b", "..", "-o", "--help", "a b'\"`", "[bold]", "$HOME", "{{7*7}}%s",
-    "\u202egnp", "a\nb", "a\x1b[2Jb", "\x9b31m", os.fsdecode(b"\xff\xfe"), "x" * 240, " ", "|ls",
-    "\u0645\u0631\u062d\u0628\u0627", "=1+1", "CON", "\\..\\x",
-)  # fmt: skip
-"""Names of files, without the ending: what a file system takes, but for the slash."""
-WORST = {
+WORST = (
     "<script>alert(1)<!--", "[bold]", "-o", "\u202egnp", "a\nb", "a\x1b[2Jb",
     os.fsdecode(b"\xff\xfe"), "x" * 240,
-}  # fmt: skip
+)  # fmt: skip
+"""Names of files, without the ending: tags, styles, options, and what a terminal obeys."""
 NAME = "fourbar-lecture-1"
-LIKE = "another sign of the same kind: of tags, styles, options, or one that a terminal obeys"
 
 
 def nasty_text() -> str:
@@ -83,10 +75,9 @@ def test_the_model_is_xml_that_compiles_and_tells_the_source(scene: Path) -> Non
     mujoco.MjModel.from_xml_string(text)
 
 
-@pytest.mark.parametrize("limit", [[], ["--tol", "angle=1e-12"]], ids=["angle", "tolerance"])
-def test_a_verification_says_and_writes_text(scene: Path, tmp_path: Path, limit: list[str]) -> None:
-    ended = crank("verify", scene, "--turns", "0.2", "-o", tmp_path, *limit)
-    assert ended.exit_code == len(limit) / 2
+def test_a_verification_says_and_writes_text(scene: Path, tmp_path: Path) -> None:
+    limit = ("--tol", "angle=1e-12")
+    assert crank("verify", scene, "--turns", "0.2", "-o", tmp_path, *limit).exit_code == 1
     Xml.parse(tmp_path / "verify.junit.xml")
     cells = pd.read_csv(tmp_path / "verify.csv", dtype=str, keep_default_na=False)
     numbers = pd.to_numeric(cells.stack(), errors="coerce")
@@ -94,15 +85,11 @@ def test_a_verification_says_and_writes_text(scene: Path, tmp_path: Path, limit:
         assert not cell.startswith(("=", "+", "-", "@", "\t", "\r"))
 
 
-@pytest.mark.parametrize("ending", [".csv", ".xlsx"])
-def test_a_table_of_the_motion_holds_no_formula(scene: Path, tmp_path: Path, ending: str) -> None:
+def test_a_workbook_of_the_motion_holds_no_formula_of_the_file(scene: Path, tmp_path: Path) -> None:
     (tmp_path / "[").mkdir()
-    path = tmp_path / "[" / f"b]{ending}"
+    path = tmp_path / "[" / "b].xlsx"
     result = crank("solve", scene, "-o", path)
     assert f"{path}: 361 samples" in result.output.replace("\n", "")
-    if ending == ".csv":
-        assert all(name[0].isalpha() for name in pd.read_csv(path).columns)
-        return
     book = openpyxl.load_workbook(path)
     rows = (row for name in ("motion", "source") for row in book[name])
     assert {cell.data_type for row in rows for cell in row} == {"s", "n"}
@@ -110,17 +97,6 @@ def test_a_table_of_the_motion_holds_no_formula(scene: Path, tmp_path: Path, end
     assert own
     assert not any(NASTY in formula for formula in own)
     assert NASTY in [cell.value for cell in book["source"]["B"]]
-
-
-@pytest.mark.parametrize("command", ["export {} -o [/b].xml", "view {} -o [/b].png"])
-def test_a_place_in_brackets_is_no_style(
-    scene: Path, tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("[").mkdir()
-    result = crank(*(each.format(scene) for each in command.split()))
-    assert result.exit_code == 0, result.output
-    assert result.output.startswith("[/b].")
 
 
 def test_terminal_page_and_summary_show_the_source_as_text(
@@ -140,24 +116,15 @@ def test_terminal_page_and_summary_show_the_source_as_text(
     assert "hacked" not in summary  # only names and reasons are told
 
 
-def test_a_browser_runs_nothing_of_it(wide: Tab, page: Path) -> None:
-    wide.open(page)
-    assert wide.page.evaluate("typeof window.hacked") == "undefined"
-    assert wide.page.locator(".note", has_text="window.hacked").count() > 0
-
-
-@pytest.mark.parametrize("kinds", [["svg"], slowly(["svg", "pdf"], reason="fonts take 0.5 s")])
 def test_figures_are_drawn_with_the_source_as_text(
-    store: Path, tmp_path: Path, kinds: list[str], monkeypatch: pytest.MonkeyPatch
+    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.requests.figures.FORMATS", kinds)
+    monkeypatch.setattr("reports.requests.figures.FORMATS", ["svg"])
     FiguresRequest(store, tmp_path, only=["mechanism"]).run(Console(quiet=True), Console())
     root = Xml.parse(tmp_path / f"mechanism-{NAME}.svg").getroot()
     assert not [each for each in root.iter() if str(each.tag).endswith("script")]
     shown = " ".join("".join(text.itertext()) for text in root.iter() if text.text)
     assert "</script><script>window.hacked" in shown.replace("\n", "")
-    if "pdf" in kinds:
-        assert (tmp_path / f"mechanism-{NAME}.pdf").read_bytes().startswith(b"%PDF-")
 
 
 def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
@@ -171,7 +138,7 @@ def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
     assert list(tmp_path.rglob("*escaped*")) == []
 
 
-@pytest.mark.parametrize("name", few(FILES, WORST, LIKE), ids=ascii)
+@pytest.mark.parametrize("name", WORST, ids=ascii)
 def test_the_name_of_a_file_is_text(name: str) -> None:
     good, bad = nasty_text().encode(), b"[links\n"
     for command in dict.fromkeys(COMMANDS):
@@ -184,7 +151,7 @@ def test_the_name_of_a_file_is_text(name: str) -> None:
     assert ended.errors.startswith(first)
 
 
-@pytest.mark.parametrize("name", FILES, ids=ascii)
+@pytest.mark.parametrize("name", WORST, ids=ascii)
 def test_the_name_of_a_file_that_is_not_there_is_text(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

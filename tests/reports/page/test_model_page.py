@@ -15,10 +15,9 @@ from reports.page.model_page import model_page
 from sim.registry.own_models import Disturbance
 from tests.reports.page.conftest import Write
 from tests.reports.page.hostile import Outline, embedded_in, stands_alone
-from tests.reports.page.tab import OUT, Tab
+from tests.reports.page.tab import Tab
 from tests.reports.page.test_log_page import NASTY, words
 from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
-from tests.worlds.tiers import slow
 
 SECTIONS = ["verdict", "lines", "motion", "disturbing", "recommended", "made"]
 MEGABYTE = 1_000_000
@@ -55,6 +54,9 @@ def test_it_stands_alone_is_small_and_tells_all_parts(text: str, rubbing: Judged
     assert len(lines) == 3
     assert all(line["course"]["error"]["samples"] > 100 for line in lines)
     assert [line["look"] for line in embedded_in(text, "motion")["lines"]] == [0, 1, 2]
+    account = replace(rubbing.account, request=replace(rubbing.account.request, converge=False))
+    without_finer = model_page(replace(rubbing, account=account), FACTS)
+    assert [len(re.findall('class="chart', each)) for each in (text, without_finer)] == [2, 1]
 
 
 def test_many_disturbances_of_a_kind_stand_in_a_drawer() -> None:
@@ -63,13 +65,9 @@ def test_many_disturbances_of_a_kind_stand_in_a_drawer() -> None:
     assert text.count("acts on joint knee</li>") == ACTUATORS
 
 
-def test_a_model_of_which_nothing_ran_still_has_its_page(rubbing: JudgedModel) -> None:
-    text = model_page(lost(rubbing), FACTS)
-    assert Outline(text).sections() == [name for name in SECTIONS if name != "lines"]
-    assert "Not drawn, as nothing was logged" in text
-
-
-def test_nothing_of_a_file_acts_on_the_page(rubbing: JudgedModel) -> None:
+def test_a_model_of_which_nothing_ran_has_a_page_and_nothing_of_a_file_acts_on_it(
+    rubbing: JudgedModel,
+) -> None:
     account, bare = rubbing.account, lost(rubbing)
     request = replace(account.request, path=Path(f"{NASTY.replace('/', '')}.xml"), joint=NASTY)
     hostile = replace(
@@ -78,26 +76,24 @@ def test_nothing_of_a_file_acts_on_the_page(rubbing: JudgedModel) -> None:
         open_m={NASTY: 1.0, **account.open_m},
     )  # fmt: skip
     text = model_page(JudgedModel(account=hostile, lines=bare.lines), FACTS)
-    outline, plain = Outline(text), Outline(model_page(bare, FACTS))
+    calm = model_page(bare, FACTS)
+    outline, plain = Outline(text), Outline(calm)
+    assert plain.sections() == [name for name in SECTIONS if name != "lines"]
+    assert "Not drawn, as nothing was logged" in calm
     assert outline.open == []
     assert outline.sections()[0] == "verdict"
     assert not {"\u202e", "\x1b"} & set(text)
     assert len(outline.named("script")) == len(plain.named("script"))
 
 
-@pytest.fixture(scope="module")
-def path(written: Write, text: str) -> Path:
-    return written(text)
-
-
-def test_the_scripts_draw_every_line_that_is_switched_on(wide: Tab, path: Path) -> None:
-    page = wide.visit(path, "lines", "motion").page
+def test_the_scripts_draw_every_line_that_is_switched_on(
+    wide: Tab, written: Write, text: str
+) -> None:
+    page = wide.open(written(text), "lines", "motion").page
     course, steps = (f"document.getElementById('lines-{each}')" for each in ("course", "steps"))
     names = ["as-written", "contacts-off", "recommended", "limit"]
     assert page.evaluate(f"{course}.data.map(each => each.name)") == names
     assert page.evaluate(f"{steps}.data.map(each => each.y.length)") == [3, 3, 3]
-    low, high = page.evaluate(f"{steps}.layout.yaxis.range")
-    assert low < -6.0 < -2.0 < high
     assert page.locator("#motion-picture .run").count() == 3
     assert "as-written" in wide.text("#motion-readout")
     wide.every_control_has_a_name(is_reached_by_tab=False)
@@ -110,29 +106,3 @@ def test_the_scripts_draw_every_line_that_is_switched_on(wide: Tab, path: Path) 
     low, high = page.evaluate(f"{steps}.layout.yaxis.range")
     assert high - low >= 1.0
     assert "gap" in page.evaluate(f"{course}.layout.yaxis.title.text")
-
-
-@pytest.fixture(scope="module")
-def without_finer(written: Write, rubbing: JudgedModel) -> Path:
-    request = replace(rubbing.account.request, converge=False)
-    one = replace(rubbing, account=replace(rubbing.account, request=request))
-    return written(model_page(one, FACTS))
-
-
-def test_without_finer_steps_there_is_no_diagram_of_them(text: str, without_finer: Path) -> None:
-    found = without_finer.read_text(encoding="utf-8")
-    assert [len(re.findall('class="chart', each)) for each in (text, found)] == [2, 1]
-    assert Outline(found).sections() == SECTIONS
-
-
-@slow("the page as text is another one; that its scripts take it is seen in no other way")
-def test_the_scripts_draw_a_page_without_finer_steps(wide: Tab, without_finer: Path) -> None:
-    wide.open(without_finer, "lines")
-    assert wide.page.locator(".chart").count() == 1
-
-
-@slow("pages of stores and logs are laid out by the same style, and are read on a phone")
-def test_it_fits_a_phone(phone: Tab, path: Path) -> None:
-    phone.open(path, "lines", color_scheme="dark")
-    phone.needs_no_scrolling_aside()
-    assert phone.page.evaluate(OUT) == []

