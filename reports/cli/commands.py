@@ -20,7 +20,7 @@ Run the same verification with several versions of an engine, and show what chan
 Run a grid of scenes, engines, settings and steps; keep and time every cell."""),
     "tune": ("requests.tune:TuneRequest", """
 Search an engine's settings for the cheapest that reach a target error."""),
-    "advise": ("requests.tune:AdviseRequest", """
+    "advise": ("requests.advise:AdviseRequest", """
 Say what engines reach at your frame time, and how few sub-steps reach a target.
 
 The exit code is 0 where some settings reach it, 1 where none do."""),

@@ -27,17 +27,7 @@ from models.errors import CrankcheckError, EngineError, cut, few, shown, suggest
 from models.motion import Forces, SliderForces, State
 from models.scene import Scene
 from models.scene.joints import bodies, joined_at
-from sim.engine import (
-    BodyPose,
-    Drive,
-    Engine,
-    Facts,
-    ForceSession,
-    Log,
-    Poses,
-    Session,
-    Settings,
-)
+from sim.engine import BodyPose, Drive, Engine, Facts, ForceSession, Log, Poses, Session, Settings
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

@@ -24,9 +24,7 @@ from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from models.scene.hard import WindowChain
 from models.scene.joints import centre_of, mass_of
-from tests.analytic.free.mechanisms import (
-    released,
-)
+from tests.analytic.free.mechanisms import released
 from tests.analytic.multibody.scenes import by_bodies
 from tests.second_opinions.period import period
 from tests.worlds.tiers import slowly

@@ -8,15 +8,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve, solve_driven
-from analytic.mechanism.cycle import (
-    Along,
-    Output,
-    Travel,
-    extreme_speeds,
-    series,
-    travel,
-    travels,
-)
+from analytic.mechanism.cycle import Along, Output, Travel, extreme_speeds, series, travel, travels
 from analytic.mechanism.fourbar import (
     FourBar,
     four_bar_type,

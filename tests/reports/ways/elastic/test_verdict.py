@@ -11,9 +11,7 @@ from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
-from reports.plan.requirements import (
-    held_steps,
-)
+from reports.plan.requirements import held_steps
 from reports.selftest.elastic_changes import in_beam, in_given, stiffer_beam
 from reports.selftest.elastic_faults import springs, stiffer
 from tests.worlds.tiers import few
