@@ -18,7 +18,7 @@ import numpy as np
 from models.errors import CrankcheckError, shown, suggestion
 from models.files.reading import every_shipped, load_scene
 from models.scene import KEPT, Scene
-from reports.output.console import listed
+from reports.output.numbers import listed
 from reports.plan.steps import positive
 from reports.quantities.limits import EVERY
 from sim.engine import SettingValue

@@ -21,7 +21,7 @@ from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
 from reports.protocol.way import way_of
-from reports.requests import arguments, options
+from reports.requests import arguments, options, sweep_arguments
 from reports.requests.options import argument, option, output_option
 from reports.requests.shown import Shown
 from reports.workers.isolated import checked_limits
@@ -141,23 +141,23 @@ def sweep(
 
     where = arguments.path_of(folder, "folder")
     chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
-    arguments.refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
-    manner = arguments.manner_of(
+    sweep_arguments.refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
+    manner = sweep_arguments.manner_of(
         limit_s, memory_gb, jobs, timing=timing, keep_trajectories=keep_trajectories, again=again
     )
     named = names_in(engines, "engines")
     told = load_study(None if study is None else arguments.path_of(study, "study"))
     with ExitStack() as kept:
         choice = StudyChoice(
-            arguments.scene_names(scenes, kept),
+            sweep_arguments.scene_names(scenes, kept),
             named,
             names_in(profiles, "profiles"),
-            arguments.numbers_of(steps_per_turn, "--steps-per-turn"),
+            sweep_arguments.numbers_of(steps_per_turn, "--steps-per-turn"),
             None if turns is None else positive("--turns", turns, "turns of the driver"),
-            arguments.overrides_of(settings, study_engines(told, named)),
+            sweep_arguments.overrides_of(settings, study_engines(told, named)),
             arguments.is_true(forces, "forces"),
             arguments.is_true(free, "free"),
-            arguments.numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
+            sweep_arguments.numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
             None if duration_s is None else positive("--duration", duration_s, "seconds"),
             [chosen_segments(count) for count in arguments.each_of(segments)],
             [chosen_springs(text) for text in names_in(springs, "springs")],
@@ -166,7 +166,7 @@ def sweep(
         console = terminal(stderr=True)
         console.quiet = not arguments.is_true(progress, "progress")
         laid, done = swept(
-            asked, where, manner, arguments.command_of(choice, where, study), console
+            asked, where, manner, sweep_arguments.command_of(choice, where, study), console
         )
     return Sweep(where, len(laid.tasks), done)
 

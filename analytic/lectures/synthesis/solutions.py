@@ -17,8 +17,7 @@ from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunctio
 from analytic.lectures.synthesis.path.fit import Progress
 from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
-from analytic.lectures.synthesis.quick_return import quick_return_proposals
-from analytic.lectures.synthesis.rocker import rocker_proposals
+from analytic.lectures.synthesis.quick_return import quick_return_proposals, rocker_proposals
 from analytic.lectures.synthesis.slider_crank_strokes import stroke_proposals
 from analytic.lectures.synthesis.straight_line import hoeken, straight_line
 from analytic.lectures.synthesis.straight_part import peaucellier

@@ -22,8 +22,7 @@ from models.scene.loads import ConstantFriction, CoulombFriction, Load
 from models.scene.tabulated import Tabulated
 from reports.describe.elastic_course import drawn_course
 from reports.figures.elastic_figures import ELASTIC_FIGURES
-from reports.figures.force_figures import FORCE_FIGURES, mean_torque
-from reports.figures.force_turn import force_turn
+from reports.figures.force_figures import FORCE_FIGURES, force_turn, mean_torque
 from reports.lectures.drawing.workbook.family import FamilyCurves, family_curves
 from reports.lectures.drawing.workbook.live_workbook import formulas_of
 from reports.lectures.drawing.workbook.solve_family import (

@@ -13,8 +13,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.logs.map_file import ChannelTable, Map
 from reports.page.log_curves import DrawnChannel, curves, extreme_rows, turn_s
-from reports.page.log_motion import LoggedBodies, logged_bodies, truth_of_all
-from reports.page.log_placing import LogPlacement
+from reports.page.log_motion import LoggedBodies, LogPlacement, logged_bodies, truth_of_all
 from tests.reports.page.judged_logs import SCENE, TURN_S, angles, judged, motion_of, points
 
 MOTION = motion_of()
