@@ -22,7 +22,7 @@ from models.files.reading import kinds, load_scene, shipped
 from models.motion import Motion
 from models.scene.laws import Oscillating
 from reports.drawing import gif
-from reports.requests import export
+from reports.requests import engines
 from sim.registry import Availability
 from sim.run import run
 from tests.worlds.command_line import crank, refused, told
@@ -87,7 +87,7 @@ def test_engines_lists_versions_profiles_and_settings_with_reasons_and_what_is_m
     assert [word for word in ("mujoco", "tuned", "as-shipped") if word not in plain] == []
     assert len(full.splitlines()) > len(plain.splitlines()) + 5
     missing = (Availability("mujoco", None, "pip install mujoco"),)
-    monkeypatch.setattr(export, "available", lambda: missing)
+    monkeypatch.setattr(engines, "available", lambda: missing)
     assert "not installed: pip install mujoco" in told("engines")
 
 

@@ -36,7 +36,7 @@ from reports.drawing.moving import (
     size_of,
 )
 from reports.drawing.svg import COLOURS, HEIGHT, WIDTH, svg
-from reports.output import console
+from reports.output import numbers
 from reports.output.numbers import DIGITS, NONE, finite
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.reports.page.test_style import contrast
@@ -222,7 +222,7 @@ def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
 def test_numbers_have_no_needless_exponent_errors_two_digits_and_times_three(
     way: str, value: float | None, text: str
 ) -> None:
-    assert getattr(console, way)(value) == text
+    assert getattr(numbers, way)(value) == text
 
 
 SAMPLES = 37

@@ -230,12 +230,12 @@ def test_a_turn_that_is_claimed_wrongly_is_a_fault() -> None:
     assert one.defects == ["goes 0.2 m, time ratio 1: take a longer rod"]
 
 
-def offset(**given: float) -> Solutions:
+def offset_by(**given: float) -> Solutions:
     return solutions_of(StrokeTask(**HEAD, stroke_m=0.1, form="offset", **given))
 
 
 def test_near_their_limits_ratios_and_offsets_keep_their_digits_and_beyond_are_refused() -> None:
-    found = offset(time_ratio=2.995)
+    found = offset_by(time_ratio=2.995)
     assert len(found.sound) == 12
     for one in found.sound:
         assert max(one.off) < 1e-15 / one.least_sine**2
@@ -243,8 +243,8 @@ def test_near_their_limits_ratios_and_offsets_keep_their_digits_and_beyond_are_r
         low, high = sorted(((stretched - folded) % math.tau, (folded - stretched) % math.tau))
         assert high / low == pytest.approx(2.995, rel=1e-13)
     with pytest.raises(CrankcheckError, match="has one below 3, and transmits"):
-        offset(time_ratio=2.9999)
-    (one,) = offset(time_ratio=1.0001, offset_m=1e-9).sound
+        offset_by(time_ratio=2.9999)
+    (one,) = offset_by(time_ratio=1.0001, offset_m=1e-9).sound
     assert -one.scene.sliders["B"].through_m[1] == pytest.approx(1e-9, rel=1e-12)
     assert max(one.off) < 1e-14
 
@@ -255,7 +255,7 @@ def best(kind: str, name: str) -> Examined:
 
 
 @functools.cache
-def central() -> Examined:
+def central_stroke() -> Examined:
     task = StrokeTask(name="x", source="a test", stroke_m=0.1, rod_m=0.3)
     return solutions_of(task).examined[0]
 
@@ -263,7 +263,7 @@ def central() -> Examined:
 def test_slopes_and_the_largest_clearance_of_a_central_slider_crank_are_known() -> None:
     """At the ends of its stroke s = l +- r: a length goes in whole, the pivot's height not at
     all."""
-    found = sensitivity(central())
+    found = sensitivity(central_stroke())
     slope = {one.words: abs(found.slopes[:, k]) for k, one in enumerate(found.dimensions)}
     for words in ("crank A x", "rod B x", "ground O2 x"):
         assert slope[words] == pytest.approx([1.0, 1.0], abs=1e-8)
@@ -275,7 +275,7 @@ def test_slopes_and_the_largest_clearance_of_a_central_slider_crank_are_known() 
     clearance, row = found.largest_clearance([3e-4, 6e-4])
     assert clearance == pytest.approx(1e-4, rel=1e-6)  # three pins in line
     assert row == 0
-    measured = [one.words for one in found.dimensions if is_measured(central(), one)]
+    measured = [one.words for one in found.dimensions if is_measured(central_stroke(), one)]
     assert measured == ["ground O2 x", "ground O2 y", "crank A x", "rod B x"]  # one of each bar
 
 
@@ -296,7 +296,7 @@ def test_a_monte_carlo_stays_within_the_worst_case_and_comes_near(kind: str, nam
 
 
 def test_the_same_seed_gives_the_same() -> None:
-    one = central()
+    one = central_stroke()
     first, second, other = (monte_carlo(one, 1e-4, [1e-4] * 2, 10, seed=k) for k in (0, 0, 1))
     assert first.largest.tolist() == second.largest.tolist()
     assert other.largest.tolist() != first.largest.tolist()
