@@ -257,7 +257,7 @@ def _largest_torque(scene: Scene) -> float:
 
 
 def passing_times(law: Law, angles: Sequence[float]) -> Array:
-    """Return the times of successive driver angles [rad] [s]: in the first turn and later ones, or
+    """Return the times [s] of successive driver angles [rad]: in the first turn and later ones, or
     in the first whole swing from end to end that leads through them in their order."""
     theta = np.asarray(angles)
     if isinstance(law, Oscillating):
