@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +58,24 @@ class Columns:
             more = f" ({bad.size} such cells)" if bad.size > 1 else ""
             raise CrankcheckError(f"{self.at(name, row)}: {what}{more}; {cure}")
         return found
+
+    def exact(self, name: str, row: int) -> Decimal:
+        """Return the number in a cell with all its digits."""
+        cell = np.asarray(self.raw[name])[row : row + 1].tolist()[0]
+        return Decimal(cell.strip().replace(",", ".") if isinstance(cell, str) else cell)
+
+    def less(self, name: str, zero: Decimal) -> Array:
+        """Return a column as numbers, like `numbers`, less a number that is subtracted before they
+        are rounded: of a clock in nanoseconds since 1970 a float has but every 256th."""
+        found, values = self.numbers(name), np.asarray(self.raw[name])
+        if not zero:
+            return found
+        if values.dtype.kind == "f":
+            return found - float(zero)
+        if values.dtype.kind == "i":
+            whole = int(zero)
+            return np.asarray((values.astype(np.int64) - whole) - float(zero - whole))
+        return np.array([float(self.exact(name, row) - zero) for row in range(found.size)])
 
     def require(self, asked: Iterable[str], where: str) -> None:
         """Refuse names in a map, at ``where``, that the log lacks. Raises CrankcheckError."""

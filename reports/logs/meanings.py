@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
 
 import numpy as np
 
@@ -73,14 +74,20 @@ def unit_of_time(column: str, map_: Map) -> str:
     return map_.time.unit or (told[1] if told else si("time"))
 
 
-def further_instants(columns: Columns, column: str, zero_s: float, scene: Scene) -> Array:
-    """Return the instants in a further column of times [s]. Raises CrankcheckError for times that
-    go back, or far from the start."""
+def further_instants(columns: Columns, column: str, zero_s: Decimal, scene: Scene) -> Array:
+    """Return the instants in a further column of times, after ``zero_s`` [s]. Raises
+    CrankcheckError for times that go back, or far from the start."""
     told = time_of(column)
-    time_s = columns.numbers(column) * UNITS["time"][told[1] if told else si("time")]
+    time_s = _seconds(columns, column, told[1] if told else si("time"), zero_s)
     refuse_back(columns, column, time_s)
-    refuse_far(columns, column, time_s - zero_s, scene)
-    return np.asarray(time_s - zero_s)
+    refuse_far(columns, column, time_s, scene)
+    return time_s
+
+
+def _seconds(columns: Columns, column: str, unit: str, zero_s: Decimal) -> Array:
+    """Return a column of times in seconds after ``zero_s``."""
+    size = UNITS["time"][unit]
+    return np.asarray(columns.less(column, zero_s / Decimal(str(size))) * size)
 
 
 EVEN = 0.02
@@ -91,16 +98,19 @@ HOLE = 1.9
 """Ratio of an interval to the usual one from which on samples are missing."""
 
 
-def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -> Array:
-    """Return the times of all rows [s], (T,). Raises CrankcheckError for fewer than 2 rows; times
-    that go back or stand still; samples missing in an even log, unless ``holes`` are intended."""
-    time_s = columns.numbers(column) * UNITS["time"][unit]
+def instants(
+    columns: Columns, column: str, unit: str, zero_s: Decimal, *, holes: bool = False
+) -> Array:
+    """Return the times of all rows after ``zero_s`` [s], (T,). Raises CrankcheckError for fewer
+    than 2 rows; times that go back or stand still; samples missing in an even log, unless ``holes``
+    are intended."""
+    time_s = _seconds(columns, column, unit, zero_s)
     if time_s.size < 2:
         raise CrankcheckError(f"{columns.source}: {time_s.size} row; a motion has at least 2")
     refuse_back(columns, column, time_s)
     if not holes:
         _refuse_holes(columns, column, time_s, np.diff(time_s))
-    return np.asarray(time_s)
+    return time_s
 
 
 def refuse_back(columns: Columns, column: str, time_s: Array) -> None:
@@ -125,7 +135,8 @@ def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> No
         raise CrankcheckError(
             f"{columns.source}, column {cut(column)!r}: t = {far:.9g} s is {turns:.3g} turns of "
             f"{scene.driver.joint} after the start; count the time from the start of the motion, "
-            f"or from the first row: zero = {'first'!r} in [time] of the map"
+            f"or from the first row: zero = {'first'!r} in [time] of the map, and say unit there "
+            "where it is another, as 'ns'"
         )
 
 
@@ -179,9 +190,10 @@ def understood(
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
         raise CrankcheckError(f"{_nothing_found_text(columns, scene, unused)} {in_python}")
     main = times["time"]
-    base = instants(columns, main, unit_of_time(main, map_), holes=map_.file.holes == "meant")
-    zero_s = float(base[0]) if map_.time.zero else 0.0
-    base = base - zero_s
+    unit, zero_s = unit_of_time(main, map_), Decimal(0)
+    if map_.time.zero and columns.numbers(main).size:
+        zero_s = columns.exact(main, 0) * Decimal(str(UNITS["time"][unit]))
+    base = instants(columns, main, unit, zero_s, holes=map_.file.holes == "meant")
     refuse_far(columns, main, base, scene)
     others = {c: further_instants(columns, c, zero_s, scene) for c in times.values() if c != main}
 
@@ -198,8 +210,8 @@ def understood(
         scene=scene,
         time_s=base,
         readings=readings(channels),
-        stamp=(main, unit_of_time(main, map_)),
-        zero_s=zero_s,
+        stamp=(main, unit),
+        zero_s=float(zero_s),
         copies=readings(copies),
         gaps=gaps_told(columns, gaps),
         unused=tuple(unused),

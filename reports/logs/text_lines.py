@@ -283,20 +283,32 @@ def _are_units(fields: Sequence[str]) -> bool:
 
 
 def _header_in_remarks(lines: Sequence[str], at: int, separator: str) -> tuple[str, str] | None:
-    """Return the last remark above numbers that has a name for each, as numpy writes a header, and
-    the units in a remark below it, "" for none; None for no such remark."""
+    """Return the last remark above a row that has a name for each cell, as numpy writes a header,
+    and the units in a remark below it, "" for none; None for no such remark."""
     units = ""
     for text in _remarks(lines[:at]):
         mark = separator or separator_of(text, lines[at])
         names, fields = fields_of(text, mark), fields_of(lines[at], mark)
         if len(names) != len(fields) or not all(names) or are_numbers(names):
             continue
-        if not are_numbers(fields):
+        if not are_numbers(fields) and not _goes_on(lines, at, mark):
             return None
         if units or not _are_units(names):
             return text, units
         units = text
     return (units, "") if units else None
+
+
+def _goes_on(lines: Sequence[str], at: int, separator: str) -> bool:
+    """True if a line has numbers, and words in the same columns as the line below it: a row, such
+    as that of a message with a name in it, and no header."""
+    below = _next(lines, at + 1)
+    if below is None:
+        return False
+    fields, others = (fields_of(lines[n], separator) for n in (at, below))
+    pairs = list(zip(fields, others, strict=False))
+    alike = [is_number(field) == is_number(other) for field, other in pairs if field and other]
+    return any(map(is_number, fields)) and all(alike)
 
 
 def _units_remark(lines: Sequence[str], columns: int, separator: str) -> str:

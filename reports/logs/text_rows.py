@@ -17,6 +17,8 @@ DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
 """Part of a number on either side of its decimal comma."""
 HEXADECIMAL = re.compile(rb"0[xX]")
 """A prefix that arrow takes for a whole number."""
+LONG = re.compile(r"-?(\d{16,}|\d{8,}[.,]\d+)")
+"""A number whose last digits a float may lose, as that of a clock which counts from 1970."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class RowReader:
         self._refuse_misfit_first(fields)
         names = self.header.names
         types = {
-            name: pa.float64() if text_lines.is_number(field) else pa.string()
+            name: _type_of(field)
             for name, field in zip(names, fields, strict=True)
             if wanted(name) or not name
         }
@@ -99,7 +101,9 @@ class RowReader:
             except pa.ArrowInvalid:
                 if misfits:
                     raise
-                return table(dict.fromkeys(types, pa.string()) if HEXADECIMAL.search(text) else {})
+                if HEXADECIMAL.search(text):
+                    return table(dict.fromkeys(types, pa.string()))
+                return table({name: of for name, of in types.items() if of == pa.string()})
         except (pa.ArrowException, OSError, ValueError) as error:
             why = misfits[0] if misfits else cut(str(error).splitlines()[0], 200)
             raise UnreadableError(f"{why}; every row has as many fields as the header") from None
@@ -119,6 +123,13 @@ class RowReader:
 
     def _line(self, row: int) -> int:
         return self.header.first + 1 + text_lines.row_line(self.below.passed, row)
+
+
+def _type_of(field: str) -> pa.DataType:
+    """Return the type of a column by its first cell; text keeps every digit."""
+    if LONG.fullmatch(field):
+        return pa.int64() if field.lstrip("-").isdigit() else pa.string()
+    return pa.float64() if text_lines.is_number(field) else pa.string()
 
 
 def _refuse_count(found: int, names: int, at: int, separator: str, *, ends: bool) -> None:

@@ -273,7 +273,7 @@ def _stamps_text(inquiry: Inquiry) -> str:
     log = inquiry.case.log
     column, unit = log.stamp
     size = UNITS["time"].get(unit, 1.0)
-    numbers = (log.time_s + log.zero_s) / size
+    numbers = log.time_s / size  # less the first of them, where the map says so
     times = f"the times (column {column})" if column else "the times"
     for decimals in DECIMALS:
         steps = numbers * 10.0**decimals

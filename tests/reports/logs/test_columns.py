@@ -1,6 +1,7 @@
 """Files of columns: separators, headers and units are found, and what can not be read is told."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -60,7 +61,11 @@ OTHERS: list[tuple[str, list[str], object]] = [
     ("t,rocker\n# s,deg\n0,1\n", ["t [s]", "rocker [deg]"], [(0, 1)]),
     ("t [s] rocker [deg]\n0 1\n", ["t [s]", "rocker [deg]"], [(0, 1)]),
     ("# t s\n0 1\n", ["t", "s"], [(0, 1)]),
-]
+    *((f"{head}{mark}t,of,a,frame\n{rows}", ["t", "a"], [(0, 1), (1, 2)])
+      for mark in ("%", "# ", "//") for head in ("", "# made, by, a, 3\n", "# by, a, robot, of 3\n")
+      for rows in ("0,rocker,1,\n1,rocker,2,\n", "0,on,1,\n# half\n1,,2,x\n")),
+    ("# by, a solver\nt,2\n0,1\n", ["t", "2"], [(0, 1)]),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "names", "rows"), OTHERS)
@@ -68,7 +73,8 @@ def test_columns_that_spaces_line_up_quotes_and_rows_of_units_are_read(
     tmp_path: Path, text: str, names: list[str], rows: object
 ) -> None:
     name = "log.txt" if text == LINED else "log.csv"
-    assert_rows(read_columns(written(tmp_path, text, name)), rows, names)
+    found = read_columns(written(tmp_path, text, name))
+    assert_rows(replace(found, raw={n: found.raw[n] for n in found.raw if n in names}), rows, names)
 
 
 def test_decimal_commas_are_read_and_points_refused_where_the_map_says_so(tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 """Columns become readings, by their names, as people write them, and by a map."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,11 +15,12 @@ from models.scene import Scene
 from reports.compare.compare import Truth
 from reports.describe.free_motion import motion_frame
 from reports.logs.channel import OwnLog
-from reports.logs.columns import columns_of
+from reports.logs.columns import columns_of, read_columns
 from reports.logs.kinds import KINDS, LENGTH, Meaning
 from reports.logs.map_file import FileTable, map_of, map_text, read_map
 from reports.logs.meanings import time_of, understood
 from reports.logs.names import SceneNames, meaning
+from reports.logs.text_rows import Layout
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 1.2, 400)
@@ -117,6 +118,45 @@ def test_times_may_count_from_the_first_row_and_a_hole_may_be_meant() -> None:
                  channel=[{"column": "junk", "ignore": True}])  # fmt: skip
     assert log.time_s.size == 400
     assert log.unused == (("junk", "the map leaves it out"),)
+
+
+COUNTS_NS = 1606383274123456789 + (np.arange(60) * 8726646).astype(np.int64)
+"""Nanoseconds since 1970: a float has every 256th of them."""
+CLOCKS: dict[str, tuple[str, Callable[[int], str], str]] = {
+    "ns": ("ns", str, "."),
+    "s": ("s", lambda ns: f"{ns // 10**9}.{ns % 10**9:09}", "."),
+    "ms, with commas": ("ms", lambda ns: f"{ns // 10**6},{ns % 10**6:06}", ","),
+    "s, words below": ("s", lambda ns: f"{ns // 10**9}.{ns % 10**9:09}", "."),
+}
+
+
+@pytest.mark.parametrize("case", [*CLOCKS, "frame", "unsigned", "cells", "parquet", "xlsx"])
+def test_times_of_a_clock_are_subtracted_before_they_are_rounded(case: str, tmp_path: Path) -> None:
+    unit, shown, decimal = CLOCKS.get(case, ("ns", str, "."))
+    rates = {"rocker_rad_s": np.arange(60), "velocity_time_ns": COUNTS_NS + 7}
+    if case in ("frame", "unsigned", "cells"):
+        of = {"frame": "int64", "unsigned": "uint64", "cells": object}[case]
+        columns = columns_of(pd.DataFrame({"clock": COUNTS_NS.astype(of), **rates}))
+    else:
+        path = tmp_path / f"log.{case if case in ('parquet', 'xlsx') else 'csv'}"
+        frame = pd.DataFrame({"clock": [shown(int(ns)) for ns in COUNTS_NS], **rates})
+        if case == "parquet":
+            frame.assign(clock=COUNTS_NS).to_parquet(path)
+        elif case == "xlsx":
+            frame.astype(str).to_excel(path, index=False)
+        else:
+            note = {"crank_rad": ["1", *["-"] * 59]} if "words" in case else {}
+            frame.assign(**note).to_csv(path, sep=";", index=False)
+        columns = read_columns(path, Layout(decimal=decimal))
+    told = {
+        "time": {"column": "clock", "unit": unit, "zero": "first"},
+        "channel": [{"column": c, "ignore": True} for c in columns.raw if c == "crank_rad"],
+    }
+    log = understood(columns, SCENE, map_of(told, "the map"))
+    after_s = (COUNTS_NS - COUNTS_NS[0]) * 1e-9
+    assert np.allclose(log.time_s, after_s, rtol=1e-15, atol=0.0)
+    assert np.allclose(log.readings[0].instants, after_s + 7e-9, rtol=1e-15, atol=0.0)
+    assert log.zero_s == pytest.approx(1606383274.123456789, abs=1e-6)
 
 
 HUGE = np.full(400, 1e300)
