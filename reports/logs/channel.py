@@ -65,6 +65,11 @@ class Channel:
         return np.asarray(error - math.tau * turns)
 
 
+def is_driver(channel: Channel, scene: Scene) -> bool:
+    """True for the angle of the driven link itself."""
+    return channel.of == scene.driver.link and channel.kind.turns and not channel.relative_to
+
+
 @dataclass(frozen=True)
 class Reading:
     """The numbers of a channel in SI (T,), and their instants [s] (T,)."""
@@ -101,7 +106,8 @@ class OwnLog:
     """A user's log, as its columns were understood: instants (T,) [s] and one reading a channel.
 
     ``stamp`` is the column of the instants, and its unit; ``zero_s`` was subtracted from its times
-    [s].
+    [s]. A table over the driver's angle is not ``timed``: its instants are those of a driver that
+    turns from row to row at its peak speed.
 
     Several ``readings`` may be of one rate of a point, or of one link, each relative to another.
     ``copies`` are readings of a point's position on further bodies, for the gap; ``gaps`` are
@@ -120,6 +126,7 @@ class OwnLog:
     unused: tuple[tuple[str, str], ...] = ()
     forces: LogForces | None = None
     left_out: int = 0
+    timed: bool = True
 
     def first(self, rows: int) -> OwnLog:
         """Return the log with its first rows alone; itself where these are all."""

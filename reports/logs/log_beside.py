@@ -15,14 +15,16 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.array import Array
+from models.errors import ReachError
 from models.motion import Forces, Motion, Order
 from models.scene import Scene
 from reports.compare.compare import Beside, Truth
 from reports.compare.errors import Error
 from reports.compare.tracks import Track, tracks
-from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
+from reports.logs.channel import Channel, OwnLog, Reading, is_driver, logged_motion
 from reports.protocol.way import way_of
 from reports.quantities import QUANTITIES, named
+from reports.quantities.quantity import Role
 from sim.engine import Run
 
 EVEN = 1e-6
@@ -35,20 +37,26 @@ the driver left out, as a second reference of that size takes as much as all els
 @dataclass(frozen=True)
 class AtCrank(Truth):
     """The reference at the logged angles of the driver, where the log has them: its positions.
-    Rates are by the scene's law, as the measure of its difficulty."""
+    Rates are by the scene's law, as the measure of its difficulty; ``with_rates`` if they are
+    judged as well."""
 
     time_s: Array | None = None
     crank_rad: Array | None = None
+    with_rates: bool = False
+
+    def crank_at(self, time_s: Array) -> Array:
+        """Return the driver's angle at instants of the rows [rad]; at others interpolated."""
+        assert self.time_s is not None
+        assert self.crank_rad is not None
+        if np.array_equal(time_s, self.time_s):
+            return self.crank_rad
+        return np.interp(time_s, self.time_s, self.crank_rad)
 
     def at(self, time_s: Array) -> Motion:
         """Return the reference at instants of the rows; other angles are interpolated."""
-        assert self.time_s is not None
-        assert self.crank_rad is not None
         instants = time_s.tobytes()
         if instants not in self._motions:
-            crank = self.crank_rad
-            if not np.array_equal(time_s, self.time_s):
-                crank = np.interp(time_s, self.time_s, crank)
+            crank = self.crank_at(time_s)
             _, omega, alpha = self.scene.driver.law.at(time_s)
             self._motions[instants] = solve_driven(
                 self.scene,
@@ -107,9 +115,16 @@ class LogBeside(Beside):
     def incomplete(self) -> str:
         return ""
 
+    def driver_at(self, time_s: Array, reference: Motion) -> Array:
+        if isinstance(self.truth, AtCrank):
+            return self.truth.crank_at(time_s)
+        return super().driver_at(time_s, reference)
+
     def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
-        alone = named("place", "closure") if self.geometry_alone else quantities
-        judged = [name for name in quantities if name in alone]
+        judged = list(quantities)
+        if self.geometry_alone:
+            rates: Sequence[Role] = ("derived",) * getattr(self.truth, "with_rates", False)
+            judged = [name for name in quantities if name in named("place", "closure", *rates)]
         if self.motion.time_s.size > MANY:
             every = tuple(tracks(self.scene, self.run, reference, judged))
         else:
@@ -133,10 +148,20 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
     """Return the log beside the reference, and the equivalent run. Raises CrankcheckError."""
     scene, way = log.scene, way_of(log.scene)
     instants = {order: _instants(log, order) for order in (0, 1, 2)}
-    moved = logged_motion(
-        log, lambda order: truth.at(instants[order]), lambda reading: reading.error(truth)
-    )
     alone = isinstance(truth, AtCrank)
+    try:
+        moved = logged_motion(
+            log, lambda order: truth.at(instants[order]), lambda reading: reading.error(truth)
+        )
+    except ReachError as error:
+        if alone or not scene.driver.is_crank:
+            raise
+        has = any(is_driver(each.channel, scene) for each in log.readings)
+        cure = "judge it at its own" if has else "log the"
+        raise ReachError(
+            f"{error} If its driver goes another way than the scene's, {cure} angle of "
+            f"{scene.driver.link}: --drive logged"
+        ) from None
     borne = None if alone else log.forces
     steps = round((log.time_s[-1] - log.time_s[0]) / step_s) if step_s else 0
     run = Run(
@@ -206,6 +231,14 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
         there += [(name, body) for bodies in every for body in bodies]
     there += [(name, beside.scene.name) for name in way.unlogged]
     return tuple(f"{name} of {body}" for name, body in there if (name, body) not in held)
+
+
+def aside(log: OwnLog, not_judged: Sequence[str]) -> tuple[str, ...]:
+    """Return those of the quantities without a verdict (`lacking`) that the log has."""
+    side = cast(LogSide, way_of(log.scene).part("log"))
+    channels = [each.channel for each in log.readings]
+    there = {f"{name} of {c.of}" for c in channels for name in side.judged_as(log.scene, c)}
+    return tuple(name for name in not_judged if name in there)
 
 
 def readings_of(log: OwnLog, error: Error) -> tuple[Reading, ...]:

@@ -148,13 +148,9 @@ def _check_words(map_: Map, place: str) -> None:
 def map_text(log: OwnLog, file: FileTable) -> str:
     """Return the map of a log as understood, with the other columns as remarks, and the entries of
     the original map on the file."""
-    lines = [
-        *HEAD,
-        "",
-        *file_lines(file),
-        "[time]",
-        *_entries({"column": log.stamp[0], "unit": log.stamp[1]}),
-    ]
+    lines = [*HEAD, "", *file_lines(file)]
+    if log.timed:
+        lines += ["[time]", *_entries({"column": log.stamp[0], "unit": log.stamp[1]})]
     if log.zero_s:
         lines.append('zero = "first"')
     for reading in (*log.readings, *log.copies):

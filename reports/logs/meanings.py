@@ -12,7 +12,7 @@ from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from models.scene.laws import MOST_TURNS
 from reports.logs import map_file
-from reports.logs.channel import Channel, OwnLog, Reading
+from reports.logs.channel import Channel, OwnLog, Reading, is_driver
 from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, reading
 from reports.logs.columns import Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
@@ -42,8 +42,8 @@ def time_of(column: str, told: str = "") -> tuple[str, str] | None:
 
 
 def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
-    """Return the columns of times, by kind: that of all rows is ``time``. Raises CrankcheckError
-    for none, and for two."""
+    """Return the columns of times, by kind: that of all rows is ``time``, "" for none. Raises
+    CrankcheckError for two."""
     found: dict[str, list[str]] = {}
     others = {one.column for one in map_.channel if one.ignore or map_.time.column is not None}
     for column in columns.raw:
@@ -52,11 +52,6 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
     if map_.time.column is not None:
         columns.require([map_.time.column], "[time] column")
         found["time"] = [map_.time.column]
-    if "time" not in found:
-        raise CrankcheckError(
-            f"{columns.source}: no column of times; found {few(map(cut, columns.raw), 8)}; name "
-            "one time_s or time_ms, or say it in [time] of a map"
-        )
     for whose, several in found.items():
         if len(several) > 1:
             raise CrankcheckError(
@@ -65,7 +60,57 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
                 if whose == "time"
                 else f"{columns.source}: two columns for {whose}: {', '.join(several[:2])}"
             )
-    return {whose: several[0] for whose, several in found.items()}
+    return {"time": "", **{whose: several[0] for whose, several in found.items()}}
+
+
+def driver_channel(
+    columns: Columns, scene: Scene, channels: Iterable[Channel], others: Iterable[str]
+) -> Channel:
+    """Return the driver's angle, at which a log without times is judged. Raises CrankcheckError
+    where that is not logged, where one of the ``others`` may be the times, and for scenes that take
+    times."""
+    crank = next((each for each in channels if is_driver(each, scene)), None)
+    cranked = scene.driver.is_crank and not (scene.is_free or scene.elastic)
+    clock = next(filter(may_be_times, others), "")
+    if crank and cranked and not clock:
+        return crank
+    cure = ""
+    if clock:
+        cure = f" ({cut(clock)!r} may be it; if not, ignore = true in its [[channel]])"
+    elif cranked:
+        cure = (
+            "; a frame number over its rate is a time, and a log with the angle of "
+            f"{scene.driver.name} needs none"
+        )
+    raise CrankcheckError(
+        f"{columns.source}: no column of times; found {few(map(cut, columns.raw), 8)}; name one "
+        f"time_s or time_ms, or say it in [time] of a map{cure}"
+    )
+
+
+CLOCKS = {"time", "times", "t", "timestamp", "stamp", "clock", "date", "datetime", "sec", "secs",
+          "seconds", "zeit", "temps", "tiempo", "tempo", "tid", "czas"}  # fmt: skip
+
+
+def may_be_times(column: str) -> bool:
+    """True if a word or the unit of a column without meaning is of time."""
+    name, unit = without_unit(column)
+    words = re.split(r"[^a-zµμ]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())
+    last = spelled_unit(words[-1]) if len(words) > 1 else ""
+    return "time" in (DIMENSION.get(unit), DIMENSION.get(last)) or not CLOCKS.isdisjoint(words)
+
+
+def turning_s(crank: Reading, scene: Scene) -> Array:
+    """Return the instants [s], (T,), at which the driver is at logged angles if it turns from row
+    to row at its peak speed. Raises CrankcheckError for angles that are all the same."""
+    angle = np.unwrap(crank.values) if crank.channel.wrapped else crank.values
+    path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(angle)))])
+    if not path[-1] > 0.0:
+        raise CrankcheckError(
+            f"column {cut(crank.channel.column)!r}: {scene.driver.link} stands still, and a log "
+            "without times is judged at its angles; log several, or a column of times"
+        )
+    return np.asarray(path / scene.driver.law.peak_speed_rad_s)
 
 
 def unit_of_time(column: str, map_: Map) -> str:
@@ -156,6 +201,7 @@ def _refuse_holes(columns: Columns, column: str, time_s: Array, steps: Array) ->
     )
 
 
+NO_INSTANTS = np.empty(0)
 A_FORCE = "a force, which is judged with --forces"
 
 
@@ -165,7 +211,8 @@ def understood(
     """Return the log of a scene, with its ``forces`` on request; meanings of columns by the user's
     map replace those by their names.
 
-    Raises CrankcheckError for no column of times, or one that goes back; no column of the scene;
+    Raises CrankcheckError for no column of times, or one that goes back (a log with the driver's
+    angle needs none, `driver_channel`); no column of the scene;
     two columns for one quantity; units that contradict their kind; cells that are no numbers; a map
     with unknown names.
     """
@@ -186,20 +233,32 @@ def understood(
     unused += lengths
     channels, copies, spare = judged_channels(channels, scene)
     unused += spare
+    main, angle = times["time"], None
+    if not main:
+        others = [name for name, reason in unused if reason != map_file.LEFT_OUT]
+        angle = driver_channel(columns, scene, channels, [*others, *filter(None, times.values())])
+        if borne:
+            raise CrankcheckError(
+                f"--forces: {columns.source} has no column of times, which forces take; add one, "
+                "or leave --forces out"
+            )
     if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
         raise CrankcheckError(f"{_nothing_found_text(columns, scene, unused)} {in_python}")
-    main = times["time"]
-    unit, zero_s = unit_of_time(main, map_), Decimal(0)
-    if map_.time.zero and columns.numbers(main).size:
-        zero_s = columns.exact(main, 0) * Decimal(str(UNITS["time"][unit]))
-    base = instants(columns, main, unit, zero_s, holes=map_.file.holes == "meant")
-    refuse_far(columns, main, base, scene)
-    others = {c: further_instants(columns, c, zero_s, scene) for c in times.values() if c != main}
+    unit, zero_s = "", Decimal(0)
+    if angle:
+        base = turning_s(reading(columns, angle, told.get(angle.column), NO_INSTANTS), scene)
+    else:
+        unit = unit_of_time(main, map_)
+        if map_.time.zero and columns.numbers(main).size:
+            zero_s = columns.exact(main, 0) * Decimal(str(UNITS["time"][unit]))
+        base = instants(columns, main, unit, zero_s, holes=map_.file.holes == "meant")
+        refuse_far(columns, main, base, scene)
+    further = {c: further_instants(columns, c, zero_s, scene) for c in times.values() if c != main}
 
     def readings(some: Sequence[Channel]) -> tuple[Reading, ...]:
         return tuple(
-            reading(columns, each, told.get(each.column), others.get(each.time, base))
+            reading(columns, each, told.get(each.column), further.get(each.time, base))
             for each in some
         )
 
@@ -212,6 +271,7 @@ def understood(
         readings=readings(channels),
         stamp=(main, unit),
         zero_s=float(zero_s),
+        timed=not angle,
         copies=readings(copies),
         gaps=gaps_told(columns, gaps),
         unused=tuple(unused),

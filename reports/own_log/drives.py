@@ -9,11 +9,11 @@ import numpy as np
 
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
-from models.errors import CrankcheckError, shown
+from models.errors import CrankcheckError, cut, few, shown
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.compare.compare import Truth
-from reports.logs.channel import OwnLog, Reading
+from reports.logs.channel import OwnLog, Reading, is_driver
 from reports.logs.log_beside import MANY, AtCrank
 
 LogDrive = Literal["scene", "fitted", "logged"]
@@ -57,6 +57,14 @@ def refuse_geometry_alone(drive: LogDrive, *, forces: bool) -> None:
         )
 
 
+def why_aside(drive: LogDrive, driver: str) -> str:
+    """Return the reason why quantities in a log are not judged at the logged angle."""
+    at = f"at the logged angle of {driver}"
+    return (
+        f"--drive logged judges the geometry alone, {at}" if drive == "logged" else f"judged {at}"
+    )
+
+
 def chosen_drive(text: str) -> LogDrive:
     """Return the drive of that name. Raises CrankcheckError for another."""
     for name in get_args(LogDrive):
@@ -69,19 +77,20 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     """Return the reference, and the fit of its drive. Raises CrankcheckError for a drive that the
     log, or the scene's law, does not allow; a crank that leaves its range."""
     links, points = _compared(log)
-    if drive == "scene":
+    if drive == "scene" and log.timed:
         return Truth(log.scene, links=links, points=points), None
     refuse_other_than_cranked(log.scene, f"--drive {drive}")
     crank = crank_reading(log)
-    if drive == "logged":
+    if drive == "logged" or not log.timed:
+        _refuse_rates_without_times(log, drive)
         if crank is None or not np.array_equal(crank.instants, log.time_s):
             raise CrankcheckError(
                 f"--drive logged: {log.source} has no angle of {log.scene.driver.link} at the "
                 f"times of its rows; log {log.scene.driver.link}_rad, or use --drive fitted"
             )
         angle = _continuous(log, crank)
-        truth = AtCrank(log.scene, links=links, points=points, time_s=log.time_s, crank_rad=angle)
-        return truth, None
+        at = {"time_s": log.time_s, "crank_rad": angle, "with_rates": drive == "scene"}
+        return AtCrank(log.scene, links=links, points=points, **at), None
     if not isinstance(log.scene.driver.law, ConstantSpeed):
         raise CrankcheckError(
             f"--drive fitted: the driver of {log.scene.name} has no constant speed that could be "
@@ -90,6 +99,24 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     fit = _of_crank(log, crank) if crank else _of_places(log)
     scene = moved(log.scene, fit.speed_rad_s, fit.start_rad)
     return Truth(scene, links=links, points=points), fit
+
+
+def _refuse_rates_without_times(log: OwnLog, drive: LogDrive) -> None:
+    """Refuse a fit, and the rates of a driver without a constant speed. Raises CrankcheckError."""
+    if log.timed or drive == "logged":
+        return
+    if drive == "fitted":
+        raise CrankcheckError(
+            f"--drive fitted: {log.source} has no column of times, which a speed takes; leave "
+            "--drive out, and it is judged at its angles of the driver"
+        )
+    rates = [each.channel.column for each in log.readings if each.channel.kind.order]
+    if rates and not isinstance(log.scene.driver.law, ConstantSpeed):
+        raise CrankcheckError(
+            f"{log.source} has no column of times, and the driver of {log.scene.name} no constant "
+            f"speed: no rate is known for {few(map(cut, rates), 6)}; log the times, or judge the "
+            "geometry alone with --drive logged"
+        )
 
 
 def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
@@ -113,16 +140,7 @@ def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
 
 def crank_reading(log: OwnLog) -> Reading | None:
     """Return the reading of the driver's angle, if there is one."""
-    return next(
-        (
-            each
-            for each in log.readings
-            if each.channel.of == log.scene.driver.link
-            and each.channel.kind.turns
-            and not each.channel.relative_to
-        ),
-        None,
-    )
+    return next((each for each in log.readings if is_driver(each.channel, log.scene)), None)
 
 
 def moved(scene: Scene, speed_rad_s: float, start_rad: float) -> Scene:
@@ -136,6 +154,8 @@ def _continuous(log: OwnLog, crank: Reading) -> Array:
     scene's driver, so that samples may be far apart."""
     if not crank.channel.wrapped:
         return crank.values
+    if not log.timed:
+        return np.unwrap(crank.values)
     led = log.scene.driver.law.at(crank.instants)[0]
     return np.asarray(led + np.unwrap(crank.values - led))
 

@@ -21,9 +21,9 @@ from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import Limit, refuse_forces_unasked
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import UNITS
-from reports.logs.log_beside import LogBeside, beside_truth, lacking, readings_of
+from reports.logs.log_beside import LogBeside, aside, beside_truth, lacking, readings_of
 from reports.output.numbers import error_text
-from reports.own_log.drives import DriveFit, LogDrive
+from reports.own_log.drives import DriveFit, LogDrive, why_aside
 from reports.own_log.log_limits import (
     HeldLog,
     LogRequest,
@@ -94,7 +94,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)
     assert errors is not None
-    errors = _of_what_is_held(errors, log)
+    errors = without_times(_of_what_is_held(errors, log), log)
     if not errors.rows:
         held = [each.channel.name for each in log.readings]
         held += [f"gap of {gap.of} (a gap is of a pin or a slider)" for gap in log.gaps]
@@ -103,6 +103,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
             f"{few(held, 6)}"
         )
     not_judged = lacking(log, beside)
+    _refuse_aside(log, not_judged, required, request.drive)
     absent = absent_names(log.scene, required, not_judged, errors)
     chosen = log_limits(beside.scene, errors, request.target, request.step_s)
     departure = errors.departure
@@ -156,9 +157,31 @@ def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
     return tuple(replace(finding, cure="") for finding in judge(evidence, rules))
 
 
+def _refuse_aside(
+    log: OwnLog,
+    not_judged: Sequence[str],
+    required: Sequence[tuple[str, str, str]],
+    drive: LogDrive,
+) -> None:
+    """Refuse required quantities that the log has, and that its drive leaves without a verdict."""
+    for told in aside(log, not_judged):
+        one, _, of = told.partition(" of ")
+        name = next((n for n, q, body in required if q == one and body in ("", of)), None)
+        if name is not None:
+            raise CrankcheckError(
+                f"--require {name}: the log has the {told.replace('drive of', 'angle of')}; "
+                f"{why_aside(drive, log.scene.driver.name)}: leave it out"
+            )
+
+
 def _refuse_step(log: OwnLog, step_s: float) -> None:
     if not (math.isfinite(step_s) and step_s >= 0.0):
         raise CrankcheckError(f"--step {step_s:g}: give a time above 0, in seconds")
+    if step_s and not log.timed:
+        raise CrankcheckError(
+            f"--step {step_s:g}: {log.source} has no column of times, which a step takes; give "
+            "--target"
+        )
     shortest = float(np.min(np.diff(log.time_s)))
     if step_s > shortest * (1.0 + 1e-3) and step_s > 0.0:
         raise CrankcheckError(
@@ -173,6 +196,14 @@ def _of_what_is_held(errors: Errors, log: OwnLog) -> Errors:
     held |= set(log.forces.columns) if log.forces else set()
     sure = {key: number for key, number in errors.uncertain.items() if key in held}
     return replace(errors, uncertain=sure)
+
+
+def without_times(errors: Errors, log: OwnLog) -> Errors:
+    """Return errors of a log without times: they are largest at an angle of the driver alone."""
+    if log.timed:
+        return errors
+    rows = tuple(replace(row, time_of_maximum_s=math.nan) for row in errors.rows)
+    return replace(errors, rows=rows)
 
 
 LONGEST = 60

@@ -13,9 +13,11 @@ from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
 from reports.judge.rules import RULES, titled
 from reports.judge.rules.rule import share
+from reports.logs.log_beside import aside
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, folded, plain, remark, suite_of, table
 from reports.output.numbers import count, error_text, short
+from reports.own_log.drives import why_aside
 from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
 from reports.own_log.log_limits import log_kind
 
@@ -107,7 +109,7 @@ def _table(rows: Sequence[LogRow], width: int) -> Table:
     for row in sorted(rows, key=lambda row: row.verdict == "within"):
         mark = Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red")
         names, what, *numbers = _texts(row)
-        at = [f"{row.error.time_of_maximum_s:.4g}"] if width >= WIDE else []
+        at = [f"{row.error.time_of_maximum_s:.4g}".replace("nan", "-")] if width >= WIDE else []
         table.add_row(mark, Text(names), Text(what), *numbers, *at)
     return table
 
@@ -148,8 +150,8 @@ def _rest(console: Console, judged: JudgedLog) -> None:
         hanging(console, "drive: ", fit_text(judged))
     if text := rest_text(judged):
         hanging(console, "", text)
-    if judged.not_judged:
-        hanging(console, "not judged: ", f"{missing_text(judged)}, which the log has not")
+    for line in not_judged_lines(judged):
+        hanging(console, "not judged: ", line)
     for line in unused_lines(judged):
         hanging(console, "not used: ", line)
     for note in judged.notes:
@@ -165,10 +167,18 @@ def unused_lines(judged: JudgedLog) -> list[str]:
     return [f"{few(columns, FEW)}: {reason}" for reason, columns in reasons.items()]
 
 
-def missing_text(judged: JudgedLog) -> str:
-    """Return the parts of the scene that are not judged, quantity by quantity."""
+def not_judged_lines(judged: JudgedLog) -> list[str]:
+    """Return the parts of the scene that are not judged, a line for each reason."""
+    there = aside(judged.log, judged.not_judged)
+    lacking = [each for each in judged.not_judged if each not in there]
+    why = why_aside(judged.drive, judged.scene.driver.name)
+    lines = [f"{_by_quantity(there)}: {why}"] if there else []
+    return [*lines, *([f"{_by_quantity(lacking)}, which the log has not"] if lacking else [])]
+
+
+def _by_quantity(parts: Sequence[str]) -> str:
     bodies: dict[str, list[str]] = {}
-    for each in judged.not_judged:
+    for each in parts:
         quantity, _, body = each.partition(" of ")
         bodies.setdefault("angle" if quantity == "drive" else quantity, []).append(body)
     return "; ".join(f"{quantity} of {few(names, FEW)}" for quantity, names in bodies.items())
@@ -199,16 +209,19 @@ def verdict_line(judged: JudgedLog) -> Text:
 def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
     """Return the reference and scale of the numbers, and versions."""
     drives = {
-        "scene": "the scene's driver",
+        "scene": "the scene's driver"
+        if judged.log.timed
+        else ("the logged angle of the driver, at the scene's speed"),
         "fitted": "a driver fitted to the log",
         "logged": "the logged angle of the driver (geometry alone)",
     }
     assert judged.errors is not None
     time_s = judged.log.time_s
     step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
+    times = f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}"
     return [
         judged.errors.compared_with(f" moved by {drives[judged.drive]}"),
-        f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}; limits from "
+        f"{times if judged.log.timed else 'No times'}; limits from "
         f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
@@ -258,8 +271,7 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     ]
     parts.append(table(HEADS, cells, COMMENT_ROOM, "errors"))
     told = [f"drive: {fit_text(judged)}"] if judged.fit else []
-    if judged.not_judged:
-        told.append(f"not judged: {missing_text(judged)}, which the log has not")
+    told += [f"not judged: {line}" for line in not_judged_lines(judged)]
     told += filter(None, [rest_text(judged)])
     told += [*(f"not used: {line}" for line in unused_lines(judged)), *judged.notes]
     if told:

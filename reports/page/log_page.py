@@ -82,7 +82,7 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
             "notes": [sentence_text(note) for note in judged.notes],
             "rows": [_row(row, numbers) for row in rows],
             "rest": table.rest_text(judged),
-            "not_judged": table.missing_text(judged),
+            "not_judged": table.not_judged_lines(judged),
             "unused": [(name_text(name), sentence_text(why)) for name, why in unused[:MOST_UNUSED]],
             "number": len(unused),
         },
@@ -267,7 +267,8 @@ def _settings(judged: JudgedLog) -> dict[str, str]:
     return {
         "log": name_text(log.source),
         "scene": judged.scene.name,
-        "rows": f"{time_s.size}, t = {time_s[0]:.6g} to {time_s[-1]:.6g} s",
+        "rows": f"{time_s.size}, t = {time_s[0]:.6g} to {time_s[-1]:.6g} s"
+        + " at the driver's peak speed, as the log has no times" * (not log.timed),
         **({"time": stamp} if log.stamp[0] else {}),
         "drive": judged.drive,
         "step": f"{judged.step_s:g} s" if judged.step_s else "not known",

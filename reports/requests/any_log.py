@@ -135,11 +135,9 @@ def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
     """A frame, its times among its columns, and its name in messages. Raises CrankcheckError."""
     import pandas as pd
 
-    from reports.logs.meanings import time_of
-
     if isinstance(log, pd.DataFrame):
         levels = [each for each in log.index.names if each is not None]
-        if any(time_of(str(each)) for each in levels) and not {*levels} & {*log.columns}:
+        if levels and not {*levels} & {*log.columns}:  # the times, or the driver's angle
             log = log.reset_index()
         _refuse_empty(log.columns, "the frame")
         return log, "the frame"

@@ -124,6 +124,7 @@ def compare(
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.log_beside import beside_truth
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone
+    from reports.own_log.judged import without_times
     from reports.own_log.log_limits import LogRequest, log_kind
 
     chosen = chosen_drive(one_of(drive, "--drive", any_log.LOG_DRIVES))
@@ -135,7 +136,7 @@ def compare(
     log, truth, _ = log_kind(scene).truth(log, asked)
     errors = comparing.compare(beside_truth(log, truth, step_s=step))
     assert errors is not None
-    return Comparison(scene, log.source, errors)
+    return Comparison(scene, log.source, without_times(errors, log))
 
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:

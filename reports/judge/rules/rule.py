@@ -1,5 +1,6 @@
 """The rules' interface: a rule, its evidence, and its finding."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
@@ -92,7 +93,6 @@ def share(error: Error) -> str:
 def place(error: Error) -> str:
     """Return an error in words: body, size, and where it is largest."""
     driver = place_in_words(error.driver_at_maximum_rad, error.driver_unit, ".1f")
-    return (
-        f"{error.body_kind} {error.body}: {measure(error)} at t = {error.time_of_maximum_s:.4g} s, "
-        f"driver {driver}"
-    )
+    time_s = error.time_of_maximum_s  # none of a log over the driver's angle
+    at = "at" if math.isnan(time_s) else f"at t = {time_s:.4g} s,"
+    return f"{error.body_kind} {error.body}: {measure(error)} {at} driver {driver}"

@@ -3,16 +3,19 @@ cause explains, he is told what part of the error it is, and how that goes on.""
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
 import crankcheck
-from analytic.kinematics import solve
+from analytic.kinematics import solve, solve_driven
 from crankcheck import CrankcheckError, LogVerdict
 from crankcheck.testing import assert_within
 from models.array import Array
+from models.errors import ReachError
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.describe.free_motion import motion_frame
@@ -21,6 +24,7 @@ from reports.judge.rules import RULES
 from reports.own_log import drives
 from reports.own_log.drives import moved
 from reports.own_log.judged import log_rows
+from reports.own_log.table import not_judged_lines
 from tests.worlds.tiers import slowly
 
 SCENE = load_scene("fourbar-lecture-1")
@@ -167,6 +171,90 @@ def test_the_geometry_alone_is_judged_at_the_logged_crank() -> None:
     assert "velocity of rocker" in one.not_judged
     with pytest.raises(CrankcheckError, match="no angle of crank"):
         judged({"rocker": ROCKER.theta}, drive="logged")
+    lines = not_judged_lines(one)
+    assert [("velocity of rocker" in line, "has not" in line) for line in lines] == [
+        (True, False), (False, True)
+    ]  # fmt: skip
+    for name in ("velocity", "rocker.velocity", "crank.angle"):
+        with pytest.raises(CrankcheckError, match=r"the log has the .* drive logged judges the g"):
+            judged(columns, drive="logged", require=name)
+
+
+SHORT = """name = "short"
+source = "own numbers: the crank swings between limits"
+[ground]
+points = {A = [0, 0], D = [0.5, 0]}
+[links]
+crank = {bar = ["A", "B"], length_m = 0.2}
+coupler = {bar = ["B", "C"], length_m = 0.25}
+rocker = {bar = ["D", "C"], length_m = 0.6}
+[driver]
+link = "crank"
+speed_rad_s = -2.0
+start_deg = 100.0
+[branch]
+C = 1
+"""
+
+
+def test_a_drive_that_leads_out_of_reach_names_that_which_judges_the_log(tmp_path: Path) -> None:
+    (tmp_path / "short.toml").write_text(SHORT, encoding="utf-8")
+    scene = load_scene(tmp_path / "short.toml")
+    time_s = np.linspace(0.0, 2.0, 200)
+    crank = np.radians(90.0 + 10.0 * np.cos(4.0 * time_s))
+    still = solve_driven(scene, crank, 0.0 * crank, 0.0 * crank)
+    columns = {"t": time_s, "rocker": still.links["rocker"].theta}
+    for more, words in (({"crank": crank}, "judge it at its own"), ({}, "log the")):
+        with pytest.raises(ReachError, match=f"{words} angle of crank: drive logged"):
+            crankcheck.judge(scene, {**columns, **more}, target=1e-9)
+    columns["crank"] = crank
+    assert crankcheck.judge(scene, columns, target=1e-9, drive="logged").verdict == "within"
+
+
+TURNED = np.degrees(CRANK.theta)
+TABLES: dict[str, dict[str, object]] = {
+    "degrees": {"crank_deg": TURNED},
+    "a frame number": {"frame": np.arange(601), "crank_deg": TURNED % 360.0},
+    "falling": {"crank_deg": TURNED},
+    "to and fro": {"crank_deg": TURNED},
+    "a motor's angle": {"No": np.arange(601), "motor [rad]": CRANK.theta},
+}
+
+
+@pytest.mark.parametrize("case", TABLES)
+def test_a_table_over_the_angle_of_the_crank_needs_no_times(case: str) -> None:
+    columns = TABLES[case] | {
+        "rocker_deg": np.degrees(ROCKER.theta), "C_x": C.position[:, 0],
+        "rocker_rad_s": ROCKER.omega,
+        "coupler_rad_s2": COUPLER.alpha, "mu_deg": np.degrees(ROCKER.theta - COUPLER.theta),
+    }  # fmt: skip
+    rows = {"falling": slice(None, None, -7), "to and fro": np.r_[0:300:5, 300:0:-5]}.get(
+        case, slice(0, None, 5)
+    )
+    columns = {name: np.asarray(each)[rows] for name, each in columns.items()}
+    judge = partial(crankcheck.judge, SCENE, target=1e-9)
+    one = judge(columns)
+    assert one.verdict == "within"
+    assert {(row.quantity, row.body) for row in one.errors.rows} == {
+        ("angle", "rocker"), ("position", "C"), ("velocity", "rocker"), ("acceleration", "coupler"),
+    }  # fmt: skip
+    driver = next(name for name in columns if "deg" in name or "[rad]" in name)
+    assert judge(pd.DataFrame(columns).set_index(driver)).verdict == "within"
+    each = ("rocker_deg", "C_x", "rocker_rad_s", "coupler_rad_s2")
+    for name in each[list(TABLES).index(case) :][:1]:
+        wrong = {**columns, name: columns[name] * 1.001}
+        out = judge(wrong)
+        assert out.verdict == "out"
+        assert [row.columns for row in log_rows(out) if row.verdict == "out"] == [(name,)]
+        assert " at driver " in out.failures[0].text
+    alone = judge(columns, drive="logged")
+    assert {row.quantity for row in alone.errors.rows} == {"angle", "position"}
+    for asked, words in (
+        ({"drive": "fitted"}, "which a speed takes"),
+        ({"step_s": 1e-3}, "which a step takes"),
+    ):
+        with pytest.raises(CrankcheckError, match=words):
+            judge(columns, **asked)
 
 
 @pytest.mark.parametrize(

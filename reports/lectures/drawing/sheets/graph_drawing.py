@@ -60,7 +60,13 @@ class SheetLog:
 
     @staticmethod
     def of_log(log: OwnLog) -> SheetLog:
-        """Take a log that was read. Raises CrankcheckError for another motion, too."""
+        """Take a log that was read. Raises CrankcheckError for one without times, and for another
+        motion, too."""
+        if not log.timed:
+            raise CrankcheckError(
+                f"{log.source}: no column of times, which a drawing over the time takes; add one, "
+                "such as time_s"
+            )
         if log.scene.is_free:
             known, truth, _ = log_kind(log.scene).truth(log, LogRequest())
             link = log.scene.driver.link
