@@ -21,6 +21,9 @@ from reports.logs.workbook import plain, sheet_columns
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
 MOST_BYTES = 600_000_000
+SPARSE = 0.2
+"""Part of cells without a number from which on a column may be of another rate."""
+ONE_FILE = "write a file for each, with its own times and rows, and judge one after the other"
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,8 @@ class Columns:
             row = int(bad[0])
             what = self.cell(name, row)
             cure = "fill it, cut the log there, or leave the column out ([[channel]] ignore = true)"
+            if bad.size >= SPARSE * found.size:
+                cure = f"if it is of another rate or clock than the rest, {ONE_FILE}; else {cure}"
             more = f" ({bad.size} such cells)" if bad.size > 1 else ""
             raise CrankcheckError(f"{self.at(name, row)}: {what}{more}; {cure}")
         return found

@@ -14,7 +14,7 @@ from models.scene.laws import MOST_TURNS
 from reports.logs import map_file
 from reports.logs.channel import Channel, OwnLog, Reading, is_driver
 from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, reading
-from reports.logs.columns import Columns
+from reports.logs.columns import ONE_FILE, SPARSE, Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
 from reports.logs.kinds import DIMENSION, LENGTH, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
@@ -56,11 +56,14 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
         if len(several) > 1:
             raise CrankcheckError(
                 f"{columns.source}: two columns of times, {several[0]!r} and {several[1]!r}; say "
-                f"which in [time] of a map, and ignore the other"
+                "which in [time] of a map, and ignore the other, or say time in the [[channel]] of "
+                f"columns that go by it; of two rates, {ONE_FILE}"
                 if whose == "time"
                 else f"{columns.source}: two columns for {whose}: {', '.join(several[:2])}"
             )
-    return {"time": "", **{whose: several[0] for whose, several in found.items()}}
+    clocks = (one.time for one in map_.channel if one.time in columns.raw and time_of(one.time))
+    further = {f"clock {name}": name for name in clocks}
+    return {"time": "", **{whose: several[0] for whose, several in found.items()}, **further}
 
 
 def driver_channel(
@@ -168,7 +171,7 @@ def refuse_back(columns: Columns, column: str, time_s: Array) -> None:
         raise CrankcheckError(
             f"{columns.at(column, row + 1)}: time {does}, from {time_s[row]:.9g} s to "
             f"{time_s[row + 1]:.9g} s ({back.size} such rows); sort the rows, and keep one of each "
-            "instant"
+            f"instant{f'; of two rates, {ONE_FILE}' if back.size >= SPARSE * steps.size else ''}"
         )
 
 

@@ -56,9 +56,13 @@ def sheet_columns(raw: bytes, asked: str) -> SheetTable:
     try:
         return _of_rows(rows)
     except UnreadableError as error:
-        others = [each for each in sheets if each != name]
-        which = f"; if the log is another sheet, say sheet in [file] of the map: {few(others, 8)}"
-        raise UnreadableError(f"sheet {name!r}{error}{which if others else ''}") from None
+        at = sheets.index(name)
+        others, which = [*sheets[at + 1 :], *sheets[:at]], ""
+        if others:
+            which = (
+                f"; if the log is another, as {few(others, 8)}, say sheet = {others[0]!r} in [file]"
+            )
+        raise UnreadableError(f"sheet {name!r}{error}{which}") from None
 
 
 def _rows(sheet: Any) -> list[Sequence[object]]:

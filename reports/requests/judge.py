@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -43,23 +44,43 @@ if TYPE_CHECKING:
 def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     """Write the map of a log, or a form of it to be filled in; return a description of it.
 
-    Raises CrankcheckError for a log that no map alone can mend.
+    An entry that a refusal of the log names, such as a decimal comma, is made. Raises
+    CrankcheckError for a log that no map alone can mend.
     """
     from reports.logs.columns import read_columns  # pandas, which takes a third of a second
     from reports.logs.meanings import blank_map, understood, wanted
 
-    columns = read_columns(log, map_.layout, wanted(scene, map_))
-    try:
-        text = map_text(understood(columns, scene, map_), map_.file)
-    except CrankcheckError:
-        blank = blank_map(columns, scene, map_)
-        if blank is None:
-            raise
-        text, lacks = blank
+    fault: CrankcheckError | None = None
+    tried, entries = [map_], dict[str, str]()
+    while True:
+        blank = None
+        try:
+            columns = read_columns(log, map_.layout, wanted(scene, map_))
+            blank = blank_map(columns, scene, map_)
+            text = map_text(understood(columns, scene, map_), map_.file)
+        except CrankcheckError as error:
+            fault = fault or error
+            entry = ENTRY.search(str(error))
+            if entry and (mended := _with_entry(map_, *entry.groups())) not in tried:
+                map_, entries[entry[1]] = mended, f", {entry[0]}"
+                tried.append(map_)
+                continue
+            if blank is None:
+                raise fault from None
+            text, lacks = blank
+            write(path, text)
+            return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
         write(path, text)
-        return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
-    write(path, text)
-    return f"what {log} says, as it was understood"
+        return f"what {log} says, as it was understood{''.join(entries.values())}"
+
+
+ENTRY = re.compile(r"(\w+) = '([^']+)' in \[(file|time)\]")
+"""An entry of a map in the words of a refusal."""
+
+
+def _with_entry(map_: Map, key: str, value: str, table: str) -> Map:
+    part = getattr(map_, table).model_copy(update={key: value})
+    return map_.model_copy(update={table: part})
 
 
 def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[[], str]]:

@@ -275,7 +275,7 @@ WORKBOOKS: dict[str, tuple[Made, str]] = {
     "an empty cell": (partial(book, C9=None), "row 9, column 'rocker_deg': the cell is empty"),
     "merged cells": (partial(book, merged="C9:C12"), "row 10, column 'rocker_deg': the cell is em"),
     "a sheet of remarks": (
-        notes_first, "sheet 'Sheet': a header and no rows; .*say sheet in .file. of the map: log"),
+        notes_first, "sheet 'Sheet': a header and no rows; .*say sheet = .log. in .file."),
     "numbers for names": (
         partial(book, A1=0.5, B1=1.5, C1=2.5, D1=3.5), "sheet 'Sheet': row 1 holds numbers and no"),
     "hours": (partial(book, A2=time(0, 0, 1)), "row 2, column 'time_s': found '00:00:01'.*seconds"),

@@ -76,6 +76,10 @@ READ: dict[str, tuple[dict[str, object], dict[str, object]]] = {
                       "relative_to": "coupler"}]},
     ),
     "a delay": (LATE, {"channel": [{"column": "rocker_rad_s", "delay_s": 0.002}]}),
+    "a clock of its own": (
+        {**LATE, "t [ms]": 1e3 * (TIME_S + 0.002)},
+        {"time": {"column": "time_s"}, "channel": [{"column": "rocker_rad_s", "time": "t [ms]"}]},
+    ),
     "times of velocities": ({**LATE, "velocity_time_s": TIME_S + 0.002}, {}),
     "a clock of which the map says the unit": (
         {"time_ms [s]": TIME_S, "rocker": ROCKER.theta}, {"time": {"unit": "s"}},
@@ -174,6 +178,11 @@ REFUSED: list[tuple[dict[str, object], dict[str, object], str]] = [
     ({"C.x_mm": HUGE * 1e-281}, {}, r"row 0, column 'C.x_mm': found 1e\+19 mm; .* 1e\+15 m"),
     ({"rocker [rev]": HUGE * 1e8}, {}, r"found 1e\+308 rev"),
     ({"C_gap_ft": HUGE * 1e8}, {}, r"column 'C_gap_ft': found 1e\+308 ft"),
+    ({**ALONE, "C_x": np.where(np.arange(400) % 4, np.nan, 0.1)}, {},
+     "column 'C_x': found nan .300 such cells.; if it is of another rate or clock than the rest, "
+     "write a file for each"),
+    ({"t": np.repeat(TIME_S[::2], 2), **ALONE}, {}, "stands still.* of two rates, write a file"),
+    ({**ALONE, "timestamp": TIME_S}, {}, r"or say time in the \[\[channel\]\] .* write a file for"),
     ({**ALONE, VELOCITY: TIME_S[::-1]}, {}, "row 1, .*velocity_time_s.: time goes back"),
     ({**ALONE, ACCELERATION: 0 * TIME_S}, {}, "row 1, .*acceleration_time_s.: time stands still"),
     ({**ALONE, VELOCITY: TIME_S * 1e30}, {}, "velocity_time_s.: t = .* turns of crank after"),

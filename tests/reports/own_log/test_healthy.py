@@ -113,6 +113,38 @@ def test_the_written_map_reads_the_log_alike(name: str, judge: Judge, tmp_path: 
     assert one == other
 
 
+GERMAN_ROWS = Dress(";", ",", digits=9).text(TURN)
+PLAIN_ROWS = Dress(digits=9).text(TURN).splitlines(keepends=True)
+UNREADABLE: dict[str, bytes] = {
+    "commas": GERMAN_ROWS,
+    "commas below whole numbers": Dress(";", ",", digits=9).text(
+        {name: TURN[name] for name in ("time_s", "crank_deg")}
+    ),
+    "tabs that line up": b"".join(PLAIN_ROWS).replace(b",", b"\t\t"),
+    "a clock": Dress(";", ",").text({**TURN, "time_s": TURN["time_s"] + 1.7e9}),
+    "a hole": b"".join([*PLAIN_ROWS[:20], *PLAIN_ROWS[23:]]),
+    "sheet": b"",
+}
+
+
+@pytest.mark.parametrize("case", UNREADABLE)
+def test_a_map_is_written_of_a_log_that_is_not_read_without_one(
+    case: str, judge: Judge, tmp_path: Path
+) -> None:
+    log: bytes | Path = UNREADABLE[case]
+    if case == "sheet":
+        log = tmp_path / "log.xlsx"
+        with pd.ExcelWriter(log) as book:
+            for name in ("cover", "notes"):
+                pd.DataFrame([["of", None], [None, "today"]]).to_excel(book, sheet_name=name)
+            frame = pd.DataFrame(TURN).map(lambda x: f"{x:.9f}".replace(".", ","))
+            frame.to_excel(book, sheet_name="it", index=False)
+    written = tmp_path / "written.toml"
+    judge(PLAIN, log, code=2)
+    judge(PLAIN, log, "--write-map", written)
+    judge(PLAIN, log, "--map", written)
+
+
 def test_the_map_that_is_written_ignores_what_a_map_ignores(judge: Judge, tmp_path: Path) -> None:
     text = Dress().text({**TURN, "rocker.theta_rad": TURN["rocker_deg"]})
     written = tmp_path / "written.toml"
