@@ -157,10 +157,10 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         if alone or not scene.driver.is_crank:
             raise
         has = any(is_driver(each.channel, scene) for each in log.readings)
-        cure = "judge it at its own" if has else "log the"
         raise ReachError(
-            f"{error} If its driver goes another way than the scene's, {cure} angle of "
-            f"{scene.driver.link}: --drive logged"
+            f"{error} If the log goes another way than the scene's driver, "
+            f"{'judge it at its own' if has else 'log the'} angle of {scene.driver.link}: "
+            "--drive logged"
         ) from None
     borne = None if alone else log.forces
     steps = round((log.time_s[-1] - log.time_s[0]) / step_s) if step_s else 0

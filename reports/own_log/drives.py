@@ -59,10 +59,8 @@ def refuse_geometry_alone(drive: LogDrive, *, forces: bool) -> None:
 
 def why_aside(drive: LogDrive, driver: str) -> str:
     """Return the reason why quantities in a log are not judged at the logged angle."""
-    at = f"at the logged angle of {driver}"
-    return (
-        f"--drive logged judges the geometry alone, {at}" if drive == "logged" else f"judged {at}"
-    )
+    what = "--drive logged judges the geometry alone," if drive == "logged" else "judged"
+    return f"{what} at the logged angle of {driver}"
 
 
 def chosen_drive(text: str) -> LogDrive:
@@ -82,15 +80,16 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     refuse_other_than_cranked(log.scene, f"--drive {drive}")
     crank = crank_reading(log)
     if drive == "logged" or not log.timed:
-        _refuse_rates_without_times(log, drive)
+        if drive != "logged":
+            _refuse_without_times(log, drive)
         if crank is None or not np.array_equal(crank.instants, log.time_s):
             raise CrankcheckError(
                 f"--drive logged: {log.source} has no angle of {log.scene.driver.link} at the "
                 f"times of its rows; log {log.scene.driver.link}_rad, or use --drive fitted"
             )
         angle = _continuous(log, crank)
-        at = {"time_s": log.time_s, "crank_rad": angle, "with_rates": drive == "scene"}
-        return AtCrank(log.scene, links=links, points=points, **at), None
+        truth = AtCrank(log.scene, links=links, points=points, time_s=log.time_s, crank_rad=angle)
+        return replace(truth, with_rates=drive == "scene"), None
     if not isinstance(log.scene.driver.law, ConstantSpeed):
         raise CrankcheckError(
             f"--drive fitted: the driver of {log.scene.name} has no constant speed that could be "
@@ -101,10 +100,8 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     return Truth(scene, links=links, points=points), fit
 
 
-def _refuse_rates_without_times(log: OwnLog, drive: LogDrive) -> None:
+def _refuse_without_times(log: OwnLog, drive: LogDrive) -> None:
     """Refuse a fit, and the rates of a driver without a constant speed. Raises CrankcheckError."""
-    if log.timed or drive == "logged":
-        return
     if drive == "fitted":
         raise CrankcheckError(
             f"--drive fitted: {log.source} has no column of times, which a speed takes; leave "

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Literal
 
 import numpy as np
@@ -103,7 +104,8 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
             f"{few(held, 6)}"
         )
     not_judged = lacking(log, beside)
-    _refuse_aside(log, not_judged, required, request.drive)
+    why = why_aside(request.drive, log.scene.driver.name)
+    _refuse_aside(aside(log, not_judged), required, why)
     absent = absent_names(log.scene, required, not_judged, errors)
     chosen = log_limits(beside.scene, errors, request.target, request.step_s)
     departure = errors.departure
@@ -157,21 +159,12 @@ def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
     return tuple(replace(finding, cure="") for finding in judge(evidence, rules))
 
 
-def _refuse_aside(
-    log: OwnLog,
-    not_judged: Sequence[str],
-    required: Sequence[tuple[str, str, str]],
-    drive: LogDrive,
-) -> None:
-    """Refuse required quantities that the log has, and that its drive leaves without a verdict."""
-    for told in aside(log, not_judged):
-        one, _, of = told.partition(" of ")
-        name = next((n for n, q, body in required if q == one and body in ("", of)), None)
-        if name is not None:
-            raise CrankcheckError(
-                f"--require {name}: the log has the {told.replace('drive of', 'angle of')}; "
-                f"{why_aside(drive, log.scene.driver.name)}: leave it out"
-            )
+def _refuse_aside(there: Sequence[str], required: Sequence[tuple[str, str, str]], why: str) -> None:
+    """Refuse required quantities that are in the log, and that its drive leaves out."""
+    for (name, quantity, body), told in product(required, there):
+        if told == f"{quantity} of {body}" or (not body and told.startswith(f"{quantity} of ")):
+            has = told.replace("drive of", "angle of")
+            raise CrankcheckError(f"--require {name}: the log has the {has}; {why}: leave it out")
 
 
 def _refuse_step(log: OwnLog, step_s: float) -> None:
@@ -179,8 +172,7 @@ def _refuse_step(log: OwnLog, step_s: float) -> None:
         raise CrankcheckError(f"--step {step_s:g}: give a time above 0, in seconds")
     if step_s and not log.timed:
         raise CrankcheckError(
-            f"--step {step_s:g}: {log.source} has no column of times, which a step takes; give "
-            "--target"
+            f"--step {step_s:g}: {log.source} has no times, which a step takes; give --target"
         )
     shortest = float(np.min(np.diff(log.time_s)))
     if step_s > shortest * (1.0 + 1e-3) and step_s > 0.0:

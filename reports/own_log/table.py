@@ -171,9 +171,9 @@ def not_judged_lines(judged: JudgedLog) -> list[str]:
     """Return the parts of the scene that are not judged, a line for each reason."""
     there = aside(judged.log, judged.not_judged)
     lacking = [each for each in judged.not_judged if each not in there]
-    why = why_aside(judged.drive, judged.scene.driver.name)
-    lines = [f"{_by_quantity(there)}: {why}"] if there else []
-    return [*lines, *([f"{_by_quantity(lacking)}, which the log has not"] if lacking else [])]
+    why = f": {why_aside(judged.drive, judged.scene.driver.name)}"
+    parts = ((there, why), (lacking, ", which the log has not"))
+    return [f"{_by_quantity(names)}{reason}" for names, reason in parts if names]
 
 
 def _by_quantity(parts: Sequence[str]) -> str:
@@ -209,9 +209,7 @@ def verdict_line(judged: JudgedLog) -> Text:
 def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
     """Return the reference and scale of the numbers, and versions."""
     drives = {
-        "scene": "the scene's driver"
-        if judged.log.timed
-        else ("the logged angle of the driver, at the scene's speed"),
+        "scene": "the scene's driver" if judged.log.timed else "the logged angle of the driver",
         "fitted": "a driver fitted to the log",
         "logged": "the logged angle of the driver (geometry alone)",
     }
@@ -219,9 +217,10 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
     time_s = judged.log.time_s
     step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
     times = f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}"
+    times = times if judged.log.timed else "No times: rates are at the scene's speed"
     return [
         judged.errors.compared_with(f" moved by {drives[judged.drive]}"),
-        f"{times if judged.log.timed else 'No times'}; limits from "
+        f"{times}; limits from "
         f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]

@@ -61,10 +61,14 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
         except CrankcheckError as error:
             fault = fault or error
             entry = ENTRY.search(str(error))
-            if entry and (mended := _with_entry(map_, *entry.groups())) not in tried:
-                map_, entries[entry[1]] = mended, f", {entry[0]}"
-                tried.append(map_)
-                continue
+            if entry:
+                key, value, table = entry.groups()
+                part = getattr(map_, table).model_copy(update={key: value})
+                mended = map_.model_copy(update={table: part})
+                if mended not in tried:
+                    map_, entries[key] = mended, f", {entry[0]}"
+                    tried.append(map_)
+                    continue
             if blank is None:
                 raise fault from None
             text, lacks = blank
@@ -76,11 +80,6 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
 
 ENTRY = re.compile(r"(\w+) = '([^']+)' in \[(file|time)\]")
 """An entry of a map in the words of a refusal."""
-
-
-def _with_entry(map_: Map, key: str, value: str, table: str) -> Map:
-    part = getattr(map_, table).model_copy(update={key: value})
-    return map_.model_copy(update={table: part})
 
 
 def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[[], str]]:

@@ -57,7 +57,7 @@ def doubled(name: str) -> bytes:
 TEXTS: dict[str, tuple[bytes, str]] = {
     "no column of times": (
         text(*(row.split(",", 2)[2] for row in ROWS), header=HEADER.split(",", 2)[2]),
-        "no column of times; found .*rocker_deg.*time_s.* the angle of crank needs none"),
+        "no column of times; found .*rocker_deg.*time_s.* angle of crank, none are needed"),
     **{f"{name}, which may be the times": (header("time_s", name), f"no column of times; .*{name}")
        for name in ("stamp", "Zeit", "counter_ms")},
     "times that go back": (

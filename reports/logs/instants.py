@@ -1,0 +1,138 @@
+"""The instants of the rows of a log: by its column of times, or by the angle of its driver."""
+
+import re
+from collections.abc import Iterable
+from decimal import Decimal
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError, cut, few
+from models.scene import Scene
+from models.scene.laws import MOST_TURNS
+from reports.logs.channel import Channel, Reading, is_driver
+from reports.logs.columns import ONE_FILE, SPARSE, Columns
+from reports.logs.kinds import DIMENSION, UNITS, spelled_unit, without_unit
+
+
+def seconds(columns: Columns, column: str, unit: str, zero_s: Decimal) -> Array:
+    """Return a column of times in seconds after ``zero_s``."""
+    size = UNITS["time"][unit]
+    return np.asarray(columns.less(column, zero_s / Decimal(str(size))) * size)
+
+
+EVEN = 0.02
+"""Relative difference below which intervals are equal."""
+MOSTLY = 0.9
+"""The share of equal intervals in an even log."""
+HOLE = 1.9
+"""Ratio of an interval to the usual one from which on samples are missing."""
+
+
+def instants(
+    columns: Columns, column: str, unit: str, zero_s: Decimal, *, holes: bool = False
+) -> Array:
+    """Return the times of all rows after ``zero_s`` [s], (T,). Raises CrankcheckError for fewer
+    than 2 rows; times that go back or stand still; samples missing in an even log, unless ``holes``
+    are intended."""
+    time_s = seconds(columns, column, unit, zero_s)
+    if time_s.size < 2:
+        raise CrankcheckError(f"{columns.source}: {time_s.size} row; a motion has at least 2")
+    refuse_back(columns, column, time_s)
+    if not holes:
+        _refuse_holes(columns, column, time_s, np.diff(time_s))
+    return time_s
+
+
+def refuse_back(columns: Columns, column: str, time_s: Array) -> None:
+    """Refuse times that go back or stand still. Raises CrankcheckError."""
+    steps = np.diff(time_s)
+    back = np.flatnonzero(steps <= 0.0)
+    if back.size:
+        row = int(back[0])
+        does = "goes back" if steps[row] < 0.0 else "stands still"
+        raise CrankcheckError(
+            f"{columns.at(column, row + 1)}: time {does}, from {time_s[row]:.9g} s to "
+            f"{time_s[row + 1]:.9g} s ({back.size} such rows); sort the rows, and keep one of each "
+            f"instant{f'; of two rates, {ONE_FILE}' if back.size >= SPARSE * steps.size else ''}"
+        )
+
+
+def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> None:
+    """Refuse times so late that the place within a turn is lost. Raises CrankcheckError."""
+    far = float(np.max(np.abs(time_s)))
+    turns = far / scene.driver.law.period_s
+    if turns > MOST_TURNS:
+        raise CrankcheckError(
+            f"{columns.source}, column {cut(column)!r}: t = {far:.9g} s is {turns:.3g} turns of "
+            f"{scene.driver.joint} after the start; count the time from the start of the motion, "
+            f"or from the first row: zero = {'first'!r} in [time] of the map, and say unit there "
+            "where it is another, as 'ns'"
+        )
+
+
+def _refuse_holes(columns: Columns, column: str, time_s: Array, steps: Array) -> None:
+    usual = float(np.median(steps))
+    same = np.abs(steps - usual) <= EVEN * usual
+    far = np.flatnonzero(steps > HOLE * usual)
+    if far.size == 0 or np.mean(same) < MOSTLY:
+        return
+    row = int(far[0])
+    lacking = round(float(steps[row]) / usual) - 1
+    raise CrankcheckError(
+        f"{columns.at(column, row + 1)}: a gap of {steps[row]:.4g} s in a log of a sample every "
+        f"{usual:.4g} s, {lacking} of them missing after t = {time_s[row]:.6g} s ({far.size} such "
+        f"gaps); fill them, cut the log there, or say {cut('holes = ' + repr('meant'))} in [file] "
+        "of the map"
+    )
+
+
+def driver_channel(
+    columns: Columns,
+    scene: Scene,
+    channels: Iterable[Channel],
+    others: Iterable[str],
+    *,
+    forces: bool,
+) -> Channel:
+    """Return the driver's angle, at which a log without times is judged. Raises CrankcheckError
+    where that is not logged, where one of the ``others`` may be the times, and for scenes and
+    ``forces`` that take times."""
+    crank = next((each for each in channels if is_driver(each, scene)), None)
+    cranked = scene.driver.is_crank and not (scene.is_free or scene.elastic or forces)
+    clock = next(filter(may_be_times, others), "")
+    if crank and cranked and not clock:
+        return crank
+    cure = f" ({cut(clock)!r} may be it; if not, ignore = true in its [[channel]])" if clock else ""
+    if cranked and not clock:
+        cure = f"; frame numbers over their rate are times; with the angle of {scene.driver.name}, "
+        cure += "none are needed"
+    raise CrankcheckError(
+        f"{columns.source}: no column of times; found {few(map(cut, columns.raw), 8)}; name one "
+        f"time_s or time_ms, or say it in [time] of a map{cure}"
+    )
+
+
+CLOCKS = {"time", "times", "t", "timestamp", "stamp", "clock", "date", "datetime", "sec", "secs",
+          "seconds", "zeit", "temps", "tiempo", "tempo", "tid", "czas"}  # fmt: skip
+
+
+def may_be_times(column: str) -> bool:
+    """True if a word or the unit of a column without meaning is of time."""
+    name, unit = without_unit(column)
+    words = re.split(r"[^a-zµμ]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())
+    last = spelled_unit(words[-1]) if len(words) > 1 else ""
+    return "time" in (DIMENSION.get(unit), DIMENSION.get(last)) or not CLOCKS.isdisjoint(words)
+
+
+def turning_s(crank: Reading, scene: Scene) -> Array:
+    """Return the instants [s], (T,), at which the driver is at logged angles if it turns from row
+    to row at its peak speed. Raises CrankcheckError for angles that are all the same."""
+    angle = np.unwrap(crank.values) if crank.channel.wrapped else crank.values
+    path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(angle)))])
+    if not path[-1] > 0.0:
+        raise CrankcheckError(
+            f"column {cut(crank.channel.column)!r}: {scene.driver.link} stands still, and a log "
+            "without times is judged at its angles; log several, or a column of times"
+        )
+    return np.asarray(path / scene.driver.law.peak_speed_rad_s)
