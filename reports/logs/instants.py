@@ -103,7 +103,10 @@ def driver_channel(
     clock = next(filter(may_be_times, others), "")
     if crank and cranked and not clock:
         return crank
-    cure = f" ({cut(clock)!r} may be it; if not, ignore = true in its [[channel]])" if clock else ""
+    cure = ", which forces take" * forces
+    cure += (
+        f" ({cut(clock)!r} may be it; if not, ignore = true in its [[channel]])" if clock else ""
+    )
     if cranked and not clock:
         cure = f"; frame numbers over their rate are times; with the angle of {scene.driver.name}, "
         cure += "none are needed"

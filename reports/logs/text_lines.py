@@ -300,15 +300,17 @@ def _header_in_remarks(lines: Sequence[str], at: int, separator: str) -> tuple[s
 
 
 def _goes_on(lines: Sequence[str], at: int, separator: str) -> bool:
-    """True if a line has numbers, and words in the same columns as the line below it: a row, such
-    as that of a message with a name in it, and no header."""
+    """True if a line is a row with words in it, such as a message with a name, and no header: most
+    of its cells are numbers, or it has some, and one is empty or its words are in the columns of
+    those in the line below."""
     below = _next(lines, at + 1)
-    if below is None:
+    fields = fields_of(lines[at], separator)
+    count = sum(map(is_number, fields))
+    if below is None or not count:
         return False
-    fields, others = (fields_of(lines[n], separator) for n in (at, below))
-    pairs = list(zip(fields, others, strict=False))
-    alike = [is_number(field) == is_number(other) for field, other in pairs if field and other]
-    return any(map(is_number, fields)) and all(alike)
+    pairs = zip(fields, fields_of(lines[below], separator), strict=False)
+    alike = all(is_number(field) == is_number(other) for field, other in pairs if other)
+    return alike or not all(fields) or 2 * count > len(fields)
 
 
 def _units_remark(lines: Sequence[str], columns: int, separator: str) -> str:

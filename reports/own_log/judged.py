@@ -105,7 +105,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         )
     not_judged = lacking(log, beside)
     why = why_aside(request.drive, log.scene.driver.name)
-    _refuse_aside(aside(log, not_judged), required, why)
+    _refuse_aside(aside(log, not_judged), required, why, errors)
     absent = absent_names(log.scene, required, not_judged, errors)
     chosen = log_limits(beside.scene, errors, request.target, request.step_s)
     departure = errors.departure
@@ -159,10 +159,14 @@ def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
     return tuple(replace(finding, cure="") for finding in judge(evidence, rules))
 
 
-def _refuse_aside(there: Sequence[str], required: Sequence[tuple[str, str, str]], why: str) -> None:
+def _refuse_aside(
+    there: Sequence[str], required: Sequence[tuple[str, str, str]], why: str, judged: Errors
+) -> None:
     """Refuse required quantities that are in the log, and that its drive leaves out."""
+    bodies = {row.body for row in judged.rows}
     for (name, quantity, body), told in product(required, there):
-        if told == f"{quantity} of {body}" or (not body and told.startswith(f"{quantity} of ")):
+        one, _, of = told.partition(" of ")
+        if (quantity == one and body in ("", of)) or (not quantity and body == of not in bodies):
             has = told.replace("drive of", "angle of")
             raise CrankcheckError(f"--require {name}: the log has the {has}; {why}: leave it out")
 

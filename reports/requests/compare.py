@@ -166,7 +166,7 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             f"{worst.body_kind} {worst.body}",
             f"{short(worst.maximum)} {worst.unit}",
             f"{short(worst.pure)} {QUANTITIES[worst.quantity].of(worst.body_kind).share}",
-            f"{worst.time_of_maximum_s:.4g}",
+            f"{worst.time_of_maximum_s:.4g}".replace("nan", "-"),
             _driver(worst),
         )
         for worst in worst_rows(errors)

@@ -201,8 +201,9 @@ def judge(
     scene : Scene, str or path
         A shipped name, the path of a scene file, or a scene.
     log : path, DataFrame, Mapping, Motion or Run
-        A file (.csv, .tsv, .txt, .parquet, .xlsx), a frame, columns by name, or a motion; for a run
-        the verdict is that of `check` without other steps.
+        A file (.csv, .tsv, .txt, .parquet, .xlsx), a frame, columns by name, or a motion; without
+        times it is judged at its angles of the driver. For a run the verdict is that of `check`
+        without other steps.
     target : float, Mapping or None
         The largest error as a pure number (rad; lengths over that of the longest link), for all
         quantities together or for each.

@@ -181,13 +181,17 @@ def _delay_account(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
             if CLEAR * inquiry.excerpts[column].rest(errors[column]) <= 1.0
             and inquiry.excerpts[column].moves(expected[column])
         ]
-    instants = later(by_s, inquiry.step_s)
+    instants, timed = later(by_s, inquiry.step_s), inquiry.case.log.timed
+    if not timed:
+        driver = inquiry.world.scene.driver
+        angle = math.degrees(abs(by_s) * driver.law.peak_speed_rad_s)
+        instants = f"{angle:.4g} deg of {driver.link} {instants.split()[-1]}, or its angles are off"
     told = inquiry.account(
         "delay",
         CAUSE + NUMBER,
         errors,
         f"{{who}} {{belongs}} {instants}",
-        corrections={c: {"delay_s": inquiry.channel(c).delay_s + by_s} for c in errors},
+        corrections={c: {"delay_s": inquiry.channel(c).delay_s + by_s} for c in errors if timed},
         expected=expected,
         besides=advised,
     )

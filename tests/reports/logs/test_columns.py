@@ -62,8 +62,9 @@ OTHERS: list[tuple[str, list[str], object]] = [
     ("t [s] rocker [deg]\n0 1\n", ["t [s]", "rocker [deg]"], [(0, 1)]),
     ("# t s\n0 1\n", ["t", "s"], [(0, 1)]),
     *((f"{head}{mark}t,of,a,frame\n{rows}", ["t", "a"], [(0, 1), (1, 2)])
-      for mark in ("%", "# ", "//") for head in ("", "# made, by, a, 3\n", "# by, a, robot, of 3\n")
-      for rows in ("0,rocker,1,\n1,rocker,2,\n", "0,on,1,\n# half\n1,,2,x\n")),
+      for mark, head in (("%", ""), ("# ", "# made, by, a, 3\n"), ("//", "# by, a, robot, of 3\n"))
+      for rows in ("0,rocker,1,\n1,rocker,2,\n", "0,on,1,\n# half\n1,,2,x\n",
+                   "0,on,1,4\n1,7,2,4\n")),
     ("# by, a solver\nt,2\n0,1\n", ["t", "2"], [(0, 1)]),
 ]  # fmt: skip
 
