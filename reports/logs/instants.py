@@ -120,12 +120,19 @@ CLOCKS = {"time", "times", "t", "timestamp", "stamp", "clock", "date", "datetime
           "seconds", "zeit", "temps", "tiempo", "tempo", "tid", "czas"}  # fmt: skip
 
 
-def may_be_times(column: str) -> bool:
-    """True if a word or the unit of a column without meaning is of time."""
+def unit_named(column: str) -> str:
+    """Return the unit of time at the end of the name of a column, "" for none."""
     name, unit = without_unit(column)
-    words = re.split(r"[^a-zµμ]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())
-    last = spelled_unit(words[-1]) if len(words) > 1 else ""
-    return "time" in (DIMENSION.get(unit), DIMENSION.get(last)) or not CLOCKS.isdisjoint(words)
+    last = re.split(r"[^A-Za-zµμ]+", name)[-1]
+    unit = unit or (spelled_unit(last) if last != name else "")
+    return unit if DIMENSION.get(unit) == "time" else ""
+
+
+def may_be_times(column: str) -> bool:
+    """True if a word or the unit of a column is of time."""
+    words = re.split(r"[^A-Za-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", column))
+    named = not CLOCKS.isdisjoint(word.lower() for word in words if word != "T")  # a torque
+    return named or bool(unit_named(column))
 
 
 def turning_s(crank: Reading, scene: Scene) -> Array:

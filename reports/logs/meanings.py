@@ -18,10 +18,12 @@ from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_j
 from reports.logs.instants import (
     driver_channel,
     instants,
+    may_be_times,
     refuse_back,
     refuse_far,
     seconds,
     turning_s,
+    unit_named,
 )
 from reports.logs.kinds import DIMENSION, LENGTH, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
@@ -68,22 +70,23 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
                 if whose == "time"
                 else f"{columns.source}: two columns for {whose}: {', '.join(several[:2])}"
             )
-    clocks = (one.time for one in map_.channel if one.time in columns.raw and time_of(one.time))
-    further = {f"clock {name}": name for name in clocks}
+    clocks = (one.time or "" for one in map_.channel if one.time in columns.raw)
+    further = {f"clock {name}": name for name in clocks if may_be_times(name)}
     return {"time": "", **{whose: several[0] for whose, several in found.items()}, **further}
 
 
 def unit_of_time(column: str, map_: Map) -> str:
     """Return the unit of the times of all rows."""
     told = time_of(column, map_.time.unit or "")
-    return map_.time.unit or (told[1] if told else si("time"))
+    return map_.time.unit or (told[1] if told else unit_named(column) or si("time"))
 
 
 def further_instants(columns: Columns, column: str, zero_s: Decimal, scene: Scene) -> Array:
     """Return the instants in a further column of times, after ``zero_s`` [s]. Raises
     CrankcheckError for times that go back, or far from the start."""
     told = time_of(column)
-    time_s = seconds(columns, column, told[1] if told else si("time"), zero_s)
+    unit = told[1] if told else unit_named(column) or si("time")
+    time_s = seconds(columns, column, unit, zero_s)
     refuse_back(columns, column, time_s)
     refuse_far(columns, column, time_s, scene)
     return time_s

@@ -77,8 +77,10 @@ READ: dict[str, tuple[dict[str, object], dict[str, object]]] = {
     ),
     "a delay": (LATE, {"channel": [{"column": "rocker_rad_s", "delay_s": 0.002}]}),
     "a clock of its own": (
-        {**LATE, "t [ms]": 1e3 * (TIME_S + 0.002)},
-        {"time": {"column": "time_s"}, "channel": [{"column": "rocker_rad_s", "time": "t [ms]"}]},
+        {"clock_us": 1e6 * TIME_S, "rocker_rad_s": LATE["rocker_rad_s"],
+         "time_imu [ms]": 1e3 * (TIME_S + 0.002)},
+        {"time": {"column": "clock_us"},
+         "channel": [{"column": "rocker_rad_s", "time": "time_imu [ms]"}]},
     ),
     "times of velocities": ({**LATE, "velocity_time_s": TIME_S + 0.002}, {}),
     "a clock of which the map says the unit": (
