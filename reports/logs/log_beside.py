@@ -123,7 +123,7 @@ class LogBeside(Beside):
     def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
         judged = list(quantities)
         if self.geometry_alone:
-            rates: Sequence[Role] = ("derived",) * getattr(self.truth, "with_rates", False)
+            rates: list[Role] = ["derived"] if getattr(self.truth, "with_rates", False) else []
             judged = [name for name in quantities if name in named("place", "closure", *rates)]
         if self.motion.time_s.size > MANY:
             every = tuple(tracks(self.scene, self.run, reference, judged))
