@@ -46,7 +46,7 @@ def _head(judged: JudgedLog, facts: Mapping[str, str]) -> Head:
             f"beside the {judged.truth_name} of {judged.scene.name}",
             count(len(judged.log.readings), "channel"),
             count(time_s.size, "row"),
-            f"{time_s[-1] - time_s[0]:.4g} s",
+            f"{time_s[-1] - time_s[0]:.4g} s" if judged.log.timed else "no times",
         ),
         made=name_text(facts.get("made", "")),
         first="verdict",
@@ -209,9 +209,10 @@ def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
     """Yield a channel in sentences: its quantity, its largest error, and the limits."""
     yield f"{name_text(curve.column)}: {curve.name}, in {curve.unit}."
     largest = f"{readable(abs(curve.largest), 4)} {curve.unit}"
-    yield f"Its largest error is {largest}, at t = {curve.worst_s:.6g} s."
+    yield f"Its largest error is {largest}{f', at t = {curve.worst_s:.6g} s' * judged.log.timed}."
     if not curve.judged:
-        yield f"It is not judged with --drive {judged.drive}."
+        why = f"with --drive {judged.drive}" if judged.log.timed else "where it leads the truth"
+        yield f"It is not judged {why}."
     for row in curve.judged:
         error = row.error
         joined = " of both its coordinates together" if len(row.columns) > 1 else ""
