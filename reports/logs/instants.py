@@ -29,7 +29,7 @@ HOLE = 1.9
 """Ratio of an interval to the usual one from which on samples are missing."""
 
 
-def instants(
+def of_rows(
     columns: Columns, column: str, unit: str, zero_s: Decimal, *, holes: bool = False
 ) -> Array:
     """Return the times of all rows after ``zero_s`` [s], (T,). Raises CrankcheckError for fewer

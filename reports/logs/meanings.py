@@ -10,21 +10,11 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
-from reports.logs import map_file
+from reports.logs import instants, map_file
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, reading
 from reports.logs.columns import ONE_FILE, Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
-from reports.logs.instants import (
-    driver_channel,
-    instants,
-    may_be_times,
-    refuse_back,
-    refuse_far,
-    seconds,
-    turning_s,
-    unit_named,
-)
 from reports.logs.kinds import DIMENSION, LENGTH, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
 from reports.logs.names import SceneNames, meaning
@@ -71,24 +61,24 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
                 else f"{columns.source}: two columns for {whose}: {', '.join(several[:2])}"
             )
     clocks = (one.time or "" for one in map_.channel if one.time in columns.raw)
-    further = {f"clock {name}": name for name in clocks if may_be_times(name)}
+    further = {f"clock {name}": name for name in clocks if instants.may_be_times(name)}
     return {"time": "", **{whose: several[0] for whose, several in found.items()}, **further}
 
 
 def unit_of_time(column: str, map_: Map) -> str:
     """Return the unit of the times of all rows."""
     told = time_of(column, map_.time.unit or "")
-    return map_.time.unit or (told[1] if told else unit_named(column) or si("time"))
+    return map_.time.unit or (told[1] if told else instants.unit_named(column) or si("time"))
 
 
 def further_instants(columns: Columns, column: str, zero_s: Decimal, scene: Scene) -> Array:
     """Return the instants in a further column of times, after ``zero_s`` [s]. Raises
     CrankcheckError for times that go back, or far from the start."""
     told = time_of(column)
-    unit = told[1] if told else unit_named(column) or si("time")
-    time_s = seconds(columns, column, unit, zero_s)
-    refuse_back(columns, column, time_s)
-    refuse_far(columns, column, time_s, scene)
+    unit = told[1] if told else instants.unit_named(column) or si("time")
+    time_s = instants.seconds(columns, column, unit, zero_s)
+    instants.refuse_back(columns, column, time_s)
+    instants.refuse_far(columns, column, time_s, scene)
     return time_s
 
 
@@ -131,12 +121,14 @@ def understood(
         unit = unit_of_time(main, map_)
         if map_.time.zero and columns.numbers(main).size:
             zero_s = columns.exact(main, 0) * Decimal(str(UNITS["time"][unit]))
-        base = instants(columns, main, unit, zero_s, holes=map_.file.holes == "meant")
-        refuse_far(columns, main, base, scene)
+        base = instants.of_rows(columns, main, unit, zero_s, holes=map_.file.holes == "meant")
+        instants.refuse_far(columns, main, base, scene)
     else:
         others = {name for name, reason in unused if reason != map_file.LEFT_OUT} | {*further}
-        angle = driver_channel(columns, scene, channels, others, forces=bool(borne))
-        base = turning_s(reading(columns, angle, told.get(angle.column), np.empty(0)), scene)
+        angle = instants.driver_channel(columns, scene, channels, others, forces=bool(borne))
+        base = instants.turning_s(
+            reading(columns, angle, told.get(angle.column), np.empty(0)), scene
+        )
     apart = {name: further_instants(columns, name, zero_s, scene) for name in further}
 
     def readings(some: Sequence[Channel]) -> tuple[Reading, ...]:
