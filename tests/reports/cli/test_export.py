@@ -1,7 +1,6 @@
 """`crankcheck export`, of what is let go or bends as well: a model that runs as it is; `view`,
 `scenes` and `engines`; and `run`, the log of a run, with `recipe`."""
 
-import math
 import re
 import shlex
 from pathlib import Path
@@ -10,7 +9,6 @@ import mujoco
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.axes import Axes
 from PIL import Image
 
 from analytic.elastic.discretisation import Modes
@@ -20,7 +18,6 @@ from analytic.kinematics import solve
 from models.files.assemble import scene_text
 from models.files.reading import kinds, load_scene, shipped
 from models.motion import Motion
-from models.scene.laws import Oscillating
 from reports.drawing import gif
 from reports.requests import engines
 from sim.registry import Availability
@@ -116,25 +113,6 @@ def test_view_without_a_screen_draws_an_animation_that_moves(
             film.seek(index)
             frames.append(film.convert("RGB").tobytes())
     assert len(set(frames)) > 1
-
-
-def test_what_a_slider_drives_is_drawn_with_its_forces(tmp_path: Path) -> None:
-    told("view slider-crank-by-piston --forces -o", tmp_path / "motion.png")
-
-
-def test_a_strip_of_a_swinging_driver_shows_both_ends_of_its_swing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    titles: list[str] = []
-    monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))
-    scene = load_scene("tangent")
-    law = scene.driver.law
-    assert isinstance(law, Oscillating)
-    gif.strip(scene)
-    shown = [float(title.split()[-2]) for title in titles]
-    for side in (-1.0, 1.0):
-        end = math.degrees(law.centre_rad + side * law.amplitude_rad)
-        assert min(abs(angle - end) for angle in shown) <= 0.5
 
 
 COARSE = "--steps-per-turn 90 --turns 1"
