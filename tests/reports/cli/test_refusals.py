@@ -10,13 +10,14 @@ import pytest
 from models.files.assemble import scene_text
 from models.files.reading import load_scene, shipped
 from tests.analytic.dyads.test_redundant import parallelogram
-from tests.worlds.command_line import crank, refused
+from tests.worlds.command_line import crank_alone, refused
 from tests.worlds.loading import massless
 
 HERE = Path(__file__)
 V, ONCE = "verify fourbar-lecture-1", "verify fourbar-lecture-1 --steps-per-turn 360 --turns 1"
 PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
 FAMILY = "solve fourbar-lecture-1 --family BC=0.25,0.3 -o f.xlsx"
+SHORT = "--steps-per-turn 90 --turns 1"
 RECIPE = "recipe forces --engine mujoco"
 GRAPH = "graph fourbar-lecture-1 --of rocker"
 POLYGON = "polygon fourbar-lecture-1"
@@ -111,6 +112,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     "solve slotted-lever --family R=0.1,0.12": "-o FILE.xlsx, FILE.html, FILE.svg, FILE.pdf",
     "run fourbar-swing --turns 1": "--turns: fourbar-swing is let go, and has no turns",
     "run shaper --duration 1": "--duration: it is of runs that are let go, and shaper is driven",
+    f"run shaper {SHORT} --every 91 -o l.csv": "--every 91: the run of shaper has 90 steps",
     f"{RECIPE} --scene tangent": "driver",
     f"{RECIPE} --steps-per-turn 4": "at least 8 are needed",
     f"{RECIPE} --steps-per-turn 1e300": ["1e+300", "300000 at most"],
@@ -189,5 +191,5 @@ def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
 ) -> None:
     monkeypatch.chdir(place)
     before, words = sorted(place.rglob("*")), MISTAKES[line]
-    refused(crank(*line.split()), *([words] if isinstance(words, str) else words))
+    refused(crank_alone(*line.split()), *([words] if isinstance(words, str) else words))
     assert sorted(place.rglob("*")) == before
