@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.axes import Axes
 from PIL import Image
 
 from analytic.elastic.discretisation import Modes
@@ -113,6 +114,15 @@ def test_view_without_a_screen_draws_an_animation_that_moves(
             film.seek(index)
             frames.append(film.convert("RGB").tobytes())
     assert len(set(frames)) > 1
+
+
+def test_a_strip_of_a_swinging_driver_shows_both_ends_of_its_swing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    titles: list[str] = []
+    monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))
+    gif.strip(load_scene("tangent"))
+    assert {-40, 40} <= {round(float(title.split()[-2])) for title in titles}
 
 
 COARSE = "--steps-per-turn 90 --turns 1"

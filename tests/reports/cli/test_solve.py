@@ -13,16 +13,26 @@ import pytest
 import crankcheck
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
+from analytic.structure.mobility import analyse
 from models.files.assemble import scene_text
 from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from models.scene.loads import CoulombFriction
+from reports.describe.facts import facts
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.without_pdf import without_pdf
 
 PISTON = "slider-crank-by-piston"
 FOURBAR = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+
+
+def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
+    links = dict(fourbar.links)
+    for name, held, tip, length in (("crank", "A", "B", 0.2), ("rocker", "D", "C", 0.1)):
+        links[name] = replace(links[name], points={held: (0.0, 0.0), tip: (length, 0.0)})
+    (said, *_) = facts(replace(fourbar, links=links), analyse(fourbar))
+    assert said.startswith("crank-rocker driven at its rocker (s + l")
 
 
 def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(tmp_path: Path) -> None:

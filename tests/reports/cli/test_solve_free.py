@@ -52,6 +52,11 @@ def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     assert "Sensitivity" in text
 
 
+def test_a_picture_is_told_of(tmp_path: Path) -> None:
+    said = told("view fourbar-pulse -o", tmp_path / "pulse.png")
+    assert "fourbar-pulse in free motion" in flat(said)
+
+
 def test_what_shows_on_the_way_is_one_message(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
     old, new = "at_rad_s = [-40.0, 60.0]", "at_rad_s = [-1.0, 2.5]"

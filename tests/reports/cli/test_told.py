@@ -7,7 +7,6 @@ import pytest
 from rich.console import Console
 
 from reports.judge.cell import Checked, check
-from reports.requests.solve import SolveRequest
 from reports.verify.table import show
 from tests.worlds.command_line import flat, told
 from tests.worlds.turns import of_turns
@@ -163,10 +162,3 @@ def test_a_verdict_is_whole_at_every_width(checked: list[Checked], width: int) -
             assert one.convergence.words in table
     assert ("   gap " in text) is (width >= 80)
     assert ("accel." in text) is (width >= 100)
-
-
-def test_a_motion_fits_as_well() -> None:
-    stream = io.StringIO()
-    SolveRequest("sixbar-watt").run(Console(file=stream, width=60), Console())
-    assert max(len(line.rstrip()) for line in stream.getvalue().splitlines()) <= 60
-    assert CLIPPED not in stream.getvalue()

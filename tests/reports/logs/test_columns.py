@@ -38,7 +38,6 @@ def assert_rows(found: Columns, rows: object = ROWS, names: Sequence[str] = ("t"
         "% a solver, of today, in s\n%t;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
         "sep=;\nt;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
         't "a b"\n0 1.5\n0.1  -2.25\n0.2 3e-7\n',
-        '"t"\t"a b"\n"0"\t"1.5"\n0.1\t-2.25\n0.2\t3e-7\n',
         '# don"t\nt,a b\n# "\n0,1.5\n# don"t\n0.1,-2.25\n# "\n0.2,3e-7\n',
         "t,a b\n#0,9\n0,1.5\n#0.05,9\n0.1,-2.25\n0.2,3e-7\n",
         "t,a b,\n0,1.5,\n# half, of it,\n0.1,-2.25,\n0.2,3e-7,\n",

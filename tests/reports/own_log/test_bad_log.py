@@ -39,11 +39,9 @@ OPTIONS: dict[str, str] = {
     f"{JUDGE} --target nan": "'nan' is not a number above 0",
     f"{JUDGE} --target angel=1e-3": "'angel' is no quantity; .*angle",
     f"{JUDGE} --target 1e-3 --require rockr": "--require 'rockr': neither a q.*rocker",
-    f"{JUDGE} --target 1e-3 --drive logd": "--drive 'logd'.*logged",
     f"{JUDGE} --target 1e-3 --write-map nowhere/map.toml": "nowhere",
     "judge nowhere FILE --target 1e-3": "nowhere",
     f"{JUDGE} --target 1e-3 --map nowhere.toml": "nowhere.toml",
-    f"{JUDGE} --target 1e-3 --format pdf": "'pdf'",
     f"{JUDGE} --target 1e-3 -o OUT.pdf": "pdf",
 }
 OF_ROCKER: dict[str, str] = {
