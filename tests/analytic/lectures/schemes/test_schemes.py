@@ -2,7 +2,6 @@
 and classes of joints from contacts: the problem book's examples, lower pairs, any frame."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -94,11 +93,6 @@ def test_the_derivative_of_the_closure_is_that_of_differences_and_of_each_joint(
         assert np.allclose(opened, slope[:, loops.columns[joint.name]], atol=1e-9)
 
 
-def renamed(scheme: Scheme, links: Mapping[str, str]) -> tuple[SchemeJoint, ...]:
-    ends = [tuple(links.get(end, end) for end in each.between) for each in scheme.joints]
-    return tuple(replace(j, between=own) for j, own in zip(scheme.joints, ends, strict=True))
-
-
 @pytest.mark.parametrize("name", COUNTS)
 def test_without_what_is_passive_the_count_is_the_mobility(name: str) -> None:
     mobility = known(name)
@@ -151,13 +145,6 @@ def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
     assert (flat.near.is_singular, shaky.near.is_singular) == (True, False)
     assert (flat.near.here, flat.real, flat.yielding) == (2, 1, 0)
     assert (shaky.near.here, shaky.real, shaky.yielding) == (1, 0, 1)
-
-
-def test_a_twist_of_the_frame_is_one_about_the_drawings_origin() -> None:
-    frame = DrawingFrame((1.0, 2.0, 3.0), 0.5)
-    axis, place = (0.0, 0.6, 0.8), (1.5, 1.0, 2.0)
-    there = frame.in_drawing(rotation(frame.at(place), axis))
-    assert np.allclose(there, rotation(place, axis))
 
 
 def test_lengths_that_are_a_little_off_are_told() -> None:
@@ -245,7 +232,9 @@ def test_a_spatial_scheme_is_refused() -> None:
 
 def test_the_new_link_has_a_name_of_its_own() -> None:
     scheme = load_scheme("cam-flat-follower")
-    joints = renamed(scheme, {"cam": "B-link"})
+    renamed = [tuple({"cam": "B-link"}.get(end, end) for end in j.between) for j in scheme.joints]
+    pairs = zip(scheme.joints, renamed, strict=True)
+    joints = tuple(replace(joint, between=own) for joint, own in pairs)
     taken = replace(scheme, links=("B-link", "follower"), joints=joints)
     assert replaced(taken).links == ("B-link", "follower", "B-link-2")
 
