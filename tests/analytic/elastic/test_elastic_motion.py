@@ -1,6 +1,6 @@
 """Driven mechanisms with elastic links: the rigid limit, how far the reference is trusted, instants
 and sizes of any kind, laws of the driver; and their integration: against a library's method, by its
-energy, beside the equations with every coordinate kept, and by nodes that end what is stiff.
+energy, beside the equations with every coordinate kept, and by nodes that are exact as they say.
 """
 
 import math
@@ -314,6 +314,19 @@ def test_it_agrees_with_the_equations_of_every_coordinate(turns: float) -> None:
     start = driven.first.now.q[0], driven.first.now.rates[0]
     kept = DrivenMultipliers(driven.form.assembly, start, until_s)
     assert apart(driven.at(time_s), kept.at(time_s), "coupler") < 1e-8
+
+
+@pytest.mark.parametrize("count", [2, 3, 10])
+def test_by_radaus_nodes_polynomials_up_to_their_order_are_exact(count: int) -> None:
+    rule = radau(count)
+    assert rule.places[-1] == 1.0
+    for power in range(2 * count - 1):
+        assert rule.end_once @ rule.places**power == pytest.approx(1.0 / (power + 1), rel=1e-12)
+    for power in range(count):
+        whole = rule.places ** (power + 1) / (power + 1)
+        once, twice = (by @ rule.places**power for by in (rule.once, rule.twice))
+        np.testing.assert_allclose(once, whole, atol=1e-13)
+        np.testing.assert_allclose(twice, whole * rule.places / (power + 2), atol=1e-13)
 
 
 def test_by_radaus_nodes_what_is_stiff_is_gone_after_a_step() -> None:

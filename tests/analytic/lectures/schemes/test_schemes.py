@@ -147,6 +147,13 @@ def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
     assert (shaky.near.here, shaky.real, shaky.yielding) == (1, 0, 1)
 
 
+def test_a_twist_of_the_frame_is_one_about_the_drawings_origin() -> None:
+    frame = DrawingFrame((1.0, 2.0, 3.0), 0.5)
+    axis, place = (0.0, 0.6, 0.8), (1.5, 1.0, 2.0)
+    there = frame.in_drawing(rotation(frame.at(place), axis))
+    assert np.allclose(there, rotation(place, axis))
+
+
 def test_lengths_that_are_a_little_off_are_told() -> None:
     scheme = load_scheme("bennett")
     joints = {joint.name: joint for joint in scheme.joints}
