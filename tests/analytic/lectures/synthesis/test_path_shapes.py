@@ -9,12 +9,14 @@ import pytest
 from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.path import task as unit
 from analytic.lectures.synthesis.path.atlas import (
+    at_shares,
     atlas,
     curves,
     descriptors,
     match,
     shares,
     similar,
+    smooth,
 )
 from analytic.lectures.synthesis.path.candidate import FourBarCandidate, drafted, in_order
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, cognates
@@ -202,3 +204,20 @@ def test_no_curve_is_similar_to_a_zigzag_and_one_of_three_points_is_refused() ->
     assert similar(star, 1)[0].similarity < 0.95
     with pytest.raises(CrankcheckError, match="path of 3 points"):
         similar([0j, 1 + 0j, 1j])
+
+
+def test_shares_are_those_of_the_length() -> None:
+    line = np.array([[0.0, 1.0, 3.0, 4.0], [0.0, 2.0, 2.5, 10.0]]) * (1.0 + 1j)
+    share = shares(line)
+    assert share == pytest.approx(np.array([[0.0, 0.25, 0.75, 1.0], [0.0, 0.2, 0.25, 1.0]]))
+    wanted = np.array([[0.0, 0.5, 1.0], [0.1, 0.225, 1.0]])
+    places = at_shares(share, line, wanted)
+    assert places == pytest.approx(np.array([[0.0, 2.0, 4.0], [1.0, 2.25, 10.0]]) * (1.0 + 1j))
+
+
+def test_a_smooth_curve_of_a_circle_is_one() -> None:
+    points = np.exp(2j * np.pi * np.arange(12) / 12)
+    curve, share = smooth(points, closed=True)
+    assert np.abs(curve) == pytest.approx(1.0, abs=1e-3)
+    assert share == pytest.approx(np.arange(12) / 12, abs=1e-4)
+    assert curve[-1] == pytest.approx(curve[0])
