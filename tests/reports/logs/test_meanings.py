@@ -176,10 +176,8 @@ REFUSED: list[tuple[dict[str, object], dict[str, object], str]] = [
      r"turns of crank after the start; .* zero = 'first'"),
     ({"time_ms [s]": TIME_S, "rocker": ROCKER.theta}, {}, "ms and s"),
     ({"rocker_deg": HUGE}, {}, r"row 0, column 'rocker_deg': found 1e\+300 deg; .* 1e\+07 turns"),
-    ({"rocker": np.where(TIME_S > 1, -7e7, 0.0)}, {}, "row 333, column 'rocker'"),
     ({"C.x_mm": HUGE * 1e-281}, {}, r"row 0, column 'C.x_mm': found 1e\+19 mm; .* 1e\+15 m"),
     ({"rocker [rev]": HUGE * 1e8}, {}, r"found 1e\+308 rev"),
-    ({"C_gap_ft": HUGE * 1e8}, {}, r"column 'C_gap_ft': found 1e\+308 ft"),
     ({**ALONE, "C_x": np.where(np.arange(400) % 4, np.nan, 0.1)}, {},
      "column 'C_x': found nan .300 such cells.; if it is of another rate or clock than the rest, "
      "write a file for each"),
