@@ -59,8 +59,8 @@ def refuse_geometry_alone(drive: LogDrive, *, forces: bool) -> None:
 
 def why_aside(drive: LogDrive, driver: str) -> str:
     """Return the reason why quantities in a log are not judged at the logged angle."""
-    what = "--drive logged judges the geometry alone" if drive == "logged" else "the log is judged"
-    return f"{what}, at its angle of {driver}"
+    what = "--drive logged judges the geometry alone," if drive == "logged" else "the log is judged"
+    return f"{what} at its angle of {driver}"
 
 
 def chosen_drive(text: str) -> LogDrive:

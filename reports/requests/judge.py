@@ -66,7 +66,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
                 part = getattr(map_, table).model_copy(update={key: value})
                 mended = map_.model_copy(update={table: part})
                 if mended not in tried:
-                    map_, entries[key] = mended, f", {entry[0]}"
+                    map_, entries[key] = mended, f", with {entry[0]}"
                     tried.append(map_)
                     continue
             if blank is None:
