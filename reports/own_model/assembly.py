@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,8 @@ from sim.registry.own_models import MOST_TURNS, OwnModel
 
 MOST_CHOICES = 8
 """Most choices that are tried, two to this power; beyond it the user chooses."""
+SHUT = 1e-3
+"""Largest distance of a pose from the assembly in which it is drawn shut."""
 ALIKE = 0.1
 """A pose fits two assemblies if it is nearer to the best than the next by less than this share."""
 TURN = math.tau
@@ -71,21 +74,58 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
             f"are found by trying; choose {len(left) - MOST_CHOICES} or more with --branch NAME=1 "
             f"or NAME=-1, of {', '.join(left)}"
         )
-    ranked = sorted(_fits(own, bare, numbered, request.branch), key=lambda fit: fit[0])
+    every = partial(_fits, own, bare, numbered, request=request)
+    ranked = sorted(every(request.branch), key=lambda fit: fit.far)
     if not ranked:
         raise CrankcheckError(f"{request.path}: {_why_not_assembled(own, bare, request)}")
-    far, scene = ranked[0]
-    if len(ranked) > 1 and ranked[1][0] - far < ALIKE * ranked[1][0]:
-        choices = " or ".join(_words(fit[1].branch) for fit in ranked[:2])
+    # A pose that is shut says the assembly by itself, within the ranges or not.
+    able = [fit for fit in ranked if not fit.outside or fit.far <= SHUT] or ranked
+    best, scene = able[0], able[0].scene
+    if len(able) > 1 and able[1].far - best.far < ALIKE * able[1].far:
+        choices = " or ".join(_words(fit.scene.branch) for fit in able[:2])
         raise CrankcheckError(
             f"{request.path}: the pose fits two assemblies equally well, {choices}; choose with "
             "--branch NAME=1 or NAME=-1, or start from another pose with --key"
         )
-    notes = [f"assembly: {_words(scene.branch)}, nearest to the pose"] if keys else []
-    if request.start_deg is not None:
-        law = replace(law, start_rad=math.radians(request.start_deg))
-        scene = _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
-    return AssembledModel(scene, tuple(notes))
+    notes = [f"assembly: {_words(scene.branch)}, {_how(left, request)}"] if keys else []
+    if keys and len(able) < len(ranked):
+        notes[0] += " of those within all ranges"
+        notes[0] += f"; nearer is {_broken(ranked[0])}" if best is not ranked[0] else ""
+    if best.outside:
+        others = every({}) if len(keys) <= MOST_CHOICES else []
+        within = [_words(fit.scene.branch) for fit in others if not fit.outside]
+        cure = f"{within[0]} stays within all ranges" if within else "no assembly found is within"
+        notes.append(f"start: {_broken(best)}; {cure}")
+    return AssembledModel(_started(scene, request), tuple(notes))
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """An assembly at the pose: the largest distance of a body's drawn frame from it over the
+    longest link, or angle [rad]; and the joints that break their ranges where the run starts."""
+
+    far: float
+    scene: Scene
+    outside: Sequence[str]
+
+
+def _how(left: Sequence[str], request: ModelRequest) -> str:
+    """Return the reason for an assembly, of which ``left`` are the choices that nobody named."""
+    if not left:
+        return "as --branch names it"
+    return "beside what --branch names " * bool(request.branch) + "nearest to the pose"
+
+
+def _broken(fit: _Fit) -> str:
+    return f"{_words(fit.scene.branch) or 'the assembly'}, where {few(fit.outside, SHOWN)}"
+
+
+def _started(scene: Scene, request: ModelRequest) -> Scene:
+    """Return a scene at the start that the request names. Raises CrankcheckError as `_led_to`."""
+    if request.start_deg is None:
+        return scene
+    law = replace(scene.driver.law, start_rad=math.radians(request.start_deg))
+    return _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
 
 
 def _words(branch: Mapping[str, int]) -> str:
@@ -118,10 +158,13 @@ def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
 
 
 def _fits(
-    own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
-) -> Iterator[tuple[float, Scene]]:
-    """Yield every assembly, with the distance of the drawn pose from it: the largest distance of a
-    body's frame over the longest link, or angle [rad]."""
+    own: OwnModel,
+    bare: Scene,
+    choices: Mapping[str, Sequence[int]],
+    chosen: Mapping[str, int],
+    request: ModelRequest,
+) -> Iterator[_Fit]:
+    """Yield every assembly with the ``chosen`` signs."""
     left = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
     for signs in itertools.product(*(choices[key] for key in left)):
@@ -132,10 +175,17 @@ def _fits(
         except CrankcheckError:
             continue
         placed = frames(scene, state)
-        yield (
-            max(_distance(placed[name], drawn[name], scene.longest_m) for name in drawn),
-            scene,
-        )
+        far = max(_distance(placed[name], drawn[name], scene.longest_m) for name in drawn)
+        yield _Fit(far, scene, _outside(own, scene, request))
+
+
+def _outside(own: OwnModel, scene: Scene, request: ModelRequest) -> Sequence[str]:
+    """Describe the joints out of their ranges where the run starts; none where it can not."""
+    try:
+        begun = _started(scene, request)
+        return own.outside(begun, solve(begun, np.zeros(1), bound=False).state())
+    except CrankcheckError:
+        return []
 
 
 def _distance(frame: Frame, pose: BodyPose, longest_m: float) -> float:

@@ -107,6 +107,10 @@ class ReadModel:
             if each.kind == "weld"
         ]
 
+    def outside(self, scene: Scene, state: State) -> list[str]:
+        """Describe the joints that a state puts outside their declared ranges."""
+        return self.planar.outside(scene, state)
+
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
         """Put the model into states of its closed form."""
         try:

@@ -87,6 +87,11 @@ class OwnModel(Protocol):
         """List the welds that unite bodies of the linkage, with these bodies, in words."""
         ...
 
+    def outside(self, scene: Scene, state: State) -> Sequence[str]:
+        """Describe the joints that a state puts outside their declared ranges, with the readings;
+        the driven joint is none of them."""
+        ...
+
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
         """Put the model into states of its closed form. Raises EngineError where the engine sees a
         loop open that is closed there."""

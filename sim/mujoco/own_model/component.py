@@ -179,6 +179,11 @@ def is_hinge(model: Any, joint: int) -> bool:
     return bool(JOINTS[int(model.jnt_type[joint])] == "hinge")
 
 
+def reading(coordinate: float, hinge: bool) -> str:
+    """Return a joint coordinate in words."""
+    return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
+
+
 def joint_name(model: Any, joint: int) -> str:
     """Return the name of a joint, or of its body."""
     name = name_of(model, "joint", joint)

@@ -14,6 +14,7 @@ from sim.mujoco.own_model.component import (
     Component,
     is_hinge,
     joint_name,
+    reading,
     rigid,
 )
 from sim.mujoco.own_model.file import body_name, equalities, name_of, tendon_bodies
@@ -137,7 +138,7 @@ def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Kind]:
             inertia = f"{rotor:.3g} {'kg m^2' if hinge else 'kg'}"
             yield "armature", f"{at}: an armature of {inertia}, which is hard to move"
         if model.jnt_limited[joint]:
-            span = " to ".join(_reading(float(end), hinge) for end in model.jnt_range[joint])
+            span = " to ".join(reading(float(end), hinge) for end in model.jnt_range[joint])
             more = ", and it is the driven one" if joint == driven else ""
             yield "limits", f"{at}: limited to {span}{more}"
             yield from _out_of_range(model, joint, at, hinge)
@@ -148,14 +149,14 @@ def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Kind
     drawn = float(model.qpos0[model.jnt_qposadr[joint]])
     low, high = (float(end) for end in model.jnt_range[joint])
     if not low <= drawn <= high:
-        text = f"{at}: it reads {_reading(drawn, hinge)} as it is drawn, outside its limits"
+        text = f"{at}: it reads {reading(drawn, hinge)} as it is drawn, outside its limits"
         yield "reading", f"{text}; is its ref right?"
 
 
 def _readings(model: Any, ids: set[int]) -> Iterator[Kind]:
     """Yield the joints that have a coordinate other than 0 as drawn, by their ref."""
     readings = [
-        f"{name} {_reading(ref, is_hinge(model, joint))}"
+        f"{name} {reading(ref, is_hinge(model, joint))}"
         for joint, _, name in _own(model, ids)
         if (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
     ]
@@ -180,10 +181,6 @@ def _keyframes(linkage: Linkage) -> Iterator[Kind]:
         if gap > OPEN * extent:
             called = name_of(model, "key", key) or str(key)
             yield "reading", f"keyframe {called}: loop {name} is open by {gap:.3g} m"
-
-
-def _reading(coordinate: float, hinge: bool) -> str:
-    return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
 
 
 def _tendons(model: Any, ids: set[int]) -> Iterator[Kind]:

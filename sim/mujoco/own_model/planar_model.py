@@ -13,7 +13,7 @@ from models.mjcf.tree import Freedom, Limb
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene.joints import blocks, sliding_angle
-from sim.mujoco.own_model.component import WORLD
+from sim.mujoco.own_model.component import WORLD, PlanarJoint, reading
 from sim.mujoco.own_model.linkage import Linkage, Placement, pair, size
 from sim.mujoco.own_model.scene import Matter, SceneRead
 
@@ -189,6 +189,13 @@ def _split(axes: Sequence[complex], vector: complex) -> list[float]:
     return [float(each) for each in solution]
 
 
+APART_RAD = 1e-3
+"""Distance from the file's own pose beyond which a hinge does not keep its whole turns."""
+PAST = 1e-3
+"""Distance beyond a range [rad], or over the size of the linkage, that is more than rounding."""
+ENDLESS = (-math.inf, math.inf)
+
+
 @dataclass(frozen=True, eq=False)
 class PlanarModel:
     """A model with its linkage and scene, from ``keyframe`` on, None for the pose as drawn."""
@@ -220,6 +227,49 @@ class PlanarModel:
             for body in self.linkage.component.bodies
             for joint in body.joints
         )
+
+    def start(self, scene: Scene, state: State) -> tuple[Array, Array, Array]:
+        """Return `coordinates` nearest to the model's own pose. A hinge that the assembly leads
+        away from that pose gets the whole turns that bring it within its range, if any do; the
+        driven one keeps the law's."""
+        near = np.array(self.limbs.senses) * self.qpos[list(self.limbs.positions)]
+        q, rate, push = coordinates(self.limbs, scene, state, near)
+        for at, (hinge, low, high) in enumerate(self.ranges):
+            own = self.joints[at].index == self.driven or abs(q[at] - near[at]) <= APART_RAD
+            if hinge and not own and not low <= q[at] <= high:
+                short = math.ceil((low - q[at]) / math.tau)
+                turns = short if q[at] < low else math.floor((high - q[at]) / math.tau)
+                moved = q[at] + math.tau * turns
+                q[at] = moved if low <= moved <= high else q[at]
+        return q, rate, push
+
+    @property
+    def ranges(self) -> list[tuple[bool, float, float]]:
+        """For each freedom: it is a hinge, and its declared range in the sense of the scene."""
+        model, found = self.model, []
+        for joint in self.joints:
+            ends = model.jnt_range[joint.index] if model.jnt_limited[joint.index] else ENDLESS
+            low, high = sorted(joint.sense * float(end) for end in ends)
+            found.append((joint.kind == "hinge", low, high))
+        return found
+
+    @property
+    def joints(self) -> list[PlanarJoint]:
+        """Joints of the linkage, one for each freedom."""
+        return [joint for body in self.linkage.component.bodies for joint in body.joints]
+
+    def outside(self, scene: Scene, state: State) -> list[str]:
+        """Describe the joints that a state puts outside their declared ranges, each with its
+        reading; the driven joint stands where it is put."""
+        told, extent = [], size(self.linkage)
+        q = self.start(scene, state)[0]
+        for joint, x, (hinge, low, high) in zip(self.joints, q, self.ranges, strict=True):
+            least = PAST * (1.0 if hinge else extent)
+            if joint.index != self.driven and not low - least <= x <= high + least:
+                read, *ends = (reading(joint.sense * each, hinge) for each in (x, low, high))
+                span = " to ".join(ends if joint.sense > 0 else reversed(ends))
+                told.append(f"joint {joint.name} reads {read}, outside its range of {span}")
+        return told
 
     @property
     def qpos(self) -> Array:

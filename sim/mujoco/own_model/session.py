@@ -71,8 +71,7 @@ class OwnModelSession(SteppedModel):
 
     def _place(self, scene: Scene, state: State) -> None:
         """Set all joints from the closed form, with velocities at the integrator's instant."""
-        near = self._senses * self._own.qpos[list(self._own.limbs.positions)]
-        q, rate, push = coordinates(self._own.limbs, scene, state, near)
+        q, rate, push = self._own.start(scene, state)
         rate = rate + self._shift * self._dt * push
         self._data.qpos[list(self._own.limbs.positions)] = self._senses * q
         self._data.qvel[list(self._own.limbs.rates)] = self._senses * rate
@@ -161,7 +160,7 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
     touching: dict[tuple[str, str], int] = {}
     low, high = np.full(model.nq, np.inf), np.full(model.nq, -np.inf)
     positions, senses = list(own.limbs.positions), np.array(own.limbs.senses)
-    q = senses * own.qpos[positions]
+    q = own.start(scene, states[0])[0]
     with heard(lambda _: None):
         for state in states:
             q = coordinates(own.limbs, scene, state, near=q)[0]

@@ -144,6 +144,40 @@ def test_a_model_whose_axis_is_rounded_is_within_and_one_whose_axis_is_off_is_re
         read(tmp_path, *rocker('axis="0 -1 3.5e-4"'))
 
 
+LAID = (
+    *(CLOSED, BY_SITES, 'fromto="0 0 0 -0.06626563 0 0.18870312"', 'fromto="0 0 0 -0.2 0 0"'),
+    *('name="rocker-tip" pos="-0.06626563 0 0.18870312"', 'name="rocker-tip" pos="-0.2 0 0"'),
+)
+"""The rocker is drawn flat: its joint reads -71 deg in one assembly, 34 deg in the other."""
+WITHIN = {
+    "the nearer is within": ("-2 0", {}, 1, "C +1, nearest to the pose of those within all ranges"),
+    "the other is within": (
+        "0 2", {}, -1,
+        "nearer is C +1, where joint D reads -70.65 deg, outside its range of 0 deg to 114.6 deg",
+    ),
+    "a whole turn further": ("-6.2 -4.5", {}, -1, "nearer is C +1, where joint D reads -70.65 deg"),
+    "from another start": ("0 2", {"start_deg": 30.0}, -1, "where joint D reads -55.71 deg"),
+    "the one that is named": ("0 2", {"branch": {"C": -1}}, -1, "C -1, as --branch names it"),
+    "named and without": (
+        "0 2", {"branch": {"C": 1}}, 1,
+        "start: C +1, where joint D reads -70.65 deg, outside its range of 0 deg to 114.6 deg; "
+        "C -1 stays within all ranges",
+    ),
+    "none is within": ("-0.1 0.1", {"branch": {"C": 1}}, 1, "no assembly found is within"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WITHIN)
+def test_an_assembly_that_breaks_a_range_is_left_out_or_told(case: str, tmp_path: Path) -> None:
+    ends, more, sign, words = WITHIN[case]
+    text = planted(*LAID, *rocker(f'range="{ends}"'))
+    account = read_text(tmp_path, text, converge=False, turns=0.5, **more)
+    assert account.scene.branch == {"C": sign}
+    told = "; ".join(account.notes)
+    assert words in told
+    assert ("led past" not in "".join(texts(account))) == ("start: " not in told)
+
+
 STIFF = 'solref="0.005 0.6" solimp="0.9999 0.9999 0.001 0.5 2"/>'
 SOFT = (' tolerance="1e-16"', "", f"<equality {STIFF}", "")
 RK4 = ' integrator="RK4"'
