@@ -19,7 +19,7 @@ from models.scene import Driver, Scene
 from models.scene.joints import Frame, frames
 from models.scene.laws import ConstantSpeed
 from sim.engine import BodyPose
-from sim.registry.own_models import MOST_TURNS, OwnModel
+from sim.registry.own_models import FAR_PIN, MOST_TURNS, OwnModel
 
 MOST_CHOICES = 8
 """Most choices that are tried, two to this power; beyond it the user chooses."""
@@ -77,7 +77,8 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     every = partial(_fits, own, bare, numbered, request=request)
     ranked = sorted(every(request.branch), key=lambda fit: fit.far)
     if not ranked:
-        raise CrankcheckError(f"{request.path}: {_why_not_assembled(own, bare, request)}")
+        why = f"{_why_not_assembled(own, bare, request)}{far_pins(own)}"
+        raise CrankcheckError(f"{request.path}: {why}")
     # A pose that is shut says the assembly by itself, within the ranges or not.
     able = [fit for fit in ranked if not fit.outside or fit.far <= SHUT] or ranked
     best, scene = able[0], able[0].scene
@@ -201,6 +202,12 @@ def _why_not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str
     except CrankcheckError as error:
         return f"{error}{_why_mobile(own, request)}"
     return "it can not be assembled in this pose"
+
+
+def far_pins(own: OwnModel) -> str:
+    """Return the pins far outside their bodies as the likely reason of a refusal; "" without."""
+    far = [each.text for each in own.disturbances if each.kind == FAR_PIN]
+    return f"; is it the linkage that you mean? {few(far, SHOWN)}" if far else ""
 
 
 def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:

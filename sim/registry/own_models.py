@@ -25,6 +25,10 @@ class Tour:
     passed: Sequence[str]
 
 
+FAR_PIN = "far pin"
+"""Kind of a disturbance: a pin far outside its body, so that another linkage was meant."""
+
+
 @dataclass(frozen=True)
 class Disturbance:
     """Something in a model that can move a run off its closed form: ``text`` names it, with its

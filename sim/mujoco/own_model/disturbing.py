@@ -11,70 +11,15 @@ from models.errors import few
 from sim.mujoco.own_model.component import (
     PARALLEL_DEG,
     WORLD,
-    Component,
     is_hinge,
     joint_name,
     reading,
     rigid,
 )
 from sim.mujoco.own_model.file import body_name, equalities, name_of, tendon_bodies
-from sim.mujoco.own_model.linkage import NEAR, Linkage, size
-from sim.registry.own_models import Disturbance
-
-ROUNDED = 1e-5
-"""Distance, over the size of the linkage, below which a difference is rounding of the file."""
-BARS = (mujoco.mjtGeom.mjGEOM_CAPSULE.value, mujoco.mjtGeom.mjGEOM_CYLINDER.value)
-BALL = mujoco.mjtGeom.mjGEOM_SPHERE.value
-
-
-def misses(linkage: Linkage) -> Iterator[str]:
-    """Yield the pins that are near to a mark of their body, and in none."""
-    extent = size(linkage)
-    for name, body, place in _pins(linkage.component):
-        near = [(abs(mark - place), what) for what, mark in _marks(linkage.component, body)]
-        distance, what = min(near, default=(0.0, ""))
-        if ROUNDED * extent < distance < NEAR * extent:
-            of = body_name(linkage.component.model, body)
-            yield f"{name}: its pin is {distance:.3g} m off {what} on body {of}"
-
-
-def _pins(component: Component) -> Iterator[tuple[str, int, complex]]:
-    """Yield name, rigid body and place of each copy of a pin, in the model as drawn."""
-    for body in component.bodies:
-        for joint in body.joints:
-            if joint.kind == "hinge":
-                yield from (
-                    (f"joint {joint.name}", b, joint.anchor) for b in (body.parent, body.id)
-                )
-    for each in component.closures:
-        for end, anchor in zip(each.bodies, each.anchors, strict=True):
-            if each.kind == "connect":
-                yield f"loop {each.name}", component.rigid(end), component.plane.flat(anchor)
-
-
-def _marks(component: Component, body: int) -> Iterator[tuple[str, complex]]:
-    """Yield the sites, the ends of bars and the centres of balls on a moving rigid body."""
-    model, data, plane = component.model, component.data, component.plane
-    if body == WORLD:
-        return
-    for site in range(model.nsite):
-        if rigid(model, int(model.site_bodyid[site])) == body:
-            name = name_of(model, "site", site) or "without a name"
-            yield f"site {name}", plane.flat(data.site_xpos[site])
-    for geom in range(model.ngeom):
-        if rigid(model, int(model.geom_bodyid[geom])) != body:
-            continue
-        name = name_of(model, "geom", geom)
-        of = f"geom {name}" if name else "a geom"
-        kind, middle = int(model.geom_type[geom]), plane.flat(data.geom_xpos[geom])
-        if kind == BALL:
-            yield f"the centre of {of}", middle
-        elif kind in BARS:
-            axis = np.array(data.geom_xmat[geom]).reshape(3, 3)[:, 2]
-            half = plane.flat(axis) * float(model.geom_size[geom, 1])
-            yield f"an end of {of}", middle + half
-            yield f"an end of {of}", middle - half
-
+from sim.mujoco.own_model.linkage import Linkage, size
+from sim.mujoco.own_model.pins import far_pins, misses
+from sim.registry.own_models import FAR_PIN, Disturbance
 
 SHOWN = 6
 OPEN = 1e-4
@@ -96,6 +41,7 @@ def disturbances(linkage: Linkage) -> list[Disturbance]:
         *_passive(model, ids, linkage.component.driven),
         *_readings(model, ids),
         *_keyframes(linkage),
+        *((FAR_PIN, text) for text in far_pins(linkage)),
         *(("missed", text) for text in misses(linkage)),
         *_tendons(model, ids),
         *_actuators(model, ids),
