@@ -44,7 +44,8 @@ class ProposedChange:
 class ModelAccount:
     """A model as read, from its ``files``: its scene, the openings of its own pose by joint [m],
     possible disturbances of a comparison, the lines to run, the proposals, first choice first, and
-    the recommended one; ``helps`` is False where none was seen to gain anything."""
+    the recommended one; ``helps`` is False where none was seen to gain anything;
+    ``base`` is a body that is held as the ground."""
 
     request: ModelRequest
     scene: Scene
@@ -58,6 +59,7 @@ class ModelAccount:
     recommended: ProposedChange
     files: Sequence[Path]
     helps: bool = True
+    base: str = ""
 
 
 @dataclass(frozen=True)
@@ -146,7 +148,8 @@ def read_here(request: ModelRequest) -> ModelAccount:
         dt_s=dt_s,
         steps=steps,
         open_m=own.open_m(),
-        notes=[*found.notes, *passed],
+        notes=[*own.notes, *found.notes, *passed],
+        base=own.base,
         disturbances=[*met, *own.disturbances],
         profiles=list(own.engine(proposals[0].advised).profiles),
         proposals=proposals,

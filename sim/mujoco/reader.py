@@ -98,6 +98,16 @@ class ReadModel:
         """List the joints that can still move while the driven joint is fixed."""
         return loose_joints(self.planar.linkage.component)
 
+    @property
+    def base(self) -> str:
+        """Body that is held in place of the ground."""
+        return self.planar.linkage.component.loop.base
+
+    @property
+    def notes(self) -> Sequence[str]:
+        """What was held, and left out."""
+        return self.planar.linkage.component.loop.notes
+
     def welds(self) -> list[str]:
         """List the welds that unite bodies of the linkage."""
         component = self.planar.linkage.component
@@ -172,7 +182,8 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         _refuse_not_finite(path, model, keyframe)
         model = _moved(model, keyframe)
     try:
-        joined = linkage(component(model, joint))
+        qpos = model.qpos0 if keyframe is None else model.key_qpos[keyframe]
+        joined = linkage(component(model, joint, qpos))
         scene = scene_of(joined, scene_name(path.stem, "model", ()), f"read off {path.name}")
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None

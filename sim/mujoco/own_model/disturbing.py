@@ -8,14 +8,8 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import few
-from sim.mujoco.own_model.component import (
-    PARALLEL_DEG,
-    WORLD,
-    is_hinge,
-    joint_name,
-    reading,
-    rigid,
-)
+from sim.mujoco.own_model.component import PARALLEL_DEG
+from sim.mujoco.own_model.driven_loop import WORLD, is_hinge, joint_name, reading, rigid
 from sim.mujoco.own_model.file import body_name, equalities, name_of, tendon_bodies
 from sim.mujoco.own_model.linkage import Linkage, size
 from sim.mujoco.own_model.pins import far_pins, misses

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
-from sim.mujoco.own_model.component import WORLD, Component, RigidBody, rigid
+from sim.mujoco.own_model.component import Component, RigidBody
+from sim.mujoco.own_model.driven_loop import WORLD, rigid
 from sim.mujoco.own_model.file import KINDS, SITE, body_name, name_of
 from sim.mujoco.own_model.linkage import NEAR, Linkage, size
 
@@ -65,7 +66,7 @@ def _marks(component: Component, body: int) -> Iterator[tuple[str, complex]]:
             yield f"an end of {of}", middle - half
 
 
-FAR = 2.0
+FAR = 3.0
 """Distance of a pin from the middle of its body, over the radius of all that is on the body, from
 which on it can hardly be meant."""
 CORNERS = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T

@@ -13,7 +13,8 @@ from models.mjcf.tree import Freedom, Limb
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene.joints import blocks, sliding_angle
-from sim.mujoco.own_model.component import WORLD, PlanarJoint, reading
+from sim.mujoco.own_model.component import PlanarJoint
+from sim.mujoco.own_model.driven_loop import WORLD, reading
 from sim.mujoco.own_model.linkage import Linkage, Placement, pair, size
 from sim.mujoco.own_model.scene import Matter, SceneRead
 
