@@ -44,8 +44,7 @@ class ProposedChange:
 class ModelAccount:
     """A model as read, from its ``files``: its scene, the openings of its own pose by joint [m],
     possible disturbances of a comparison, the lines to run, the proposals, first choice first, and
-    the recommended one; ``helps`` is False where none was seen to gain anything;
-    ``base`` is a body that is held as the ground."""
+    the recommended one; ``helps`` is False where none was seen to gain anything."""
 
     request: ModelRequest
     scene: Scene
@@ -59,7 +58,6 @@ class ModelAccount:
     recommended: ProposedChange
     files: Sequence[Path]
     helps: bool = True
-    base: str = ""
 
 
 @dataclass(frozen=True)
@@ -149,7 +147,6 @@ def read_here(request: ModelRequest) -> ModelAccount:
         steps=steps,
         open_m=own.open_m(),
         notes=[*own.notes, *found.notes, *passed],
-        base=own.base,
         disturbances=[*met, *own.disturbances],
         profiles=list(own.engine(proposals[0].advised).profiles),
         proposals=proposals,

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -88,7 +89,9 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
             f"{request.path}: the pose fits two assemblies equally well, {choices}; choose with "
             "--branch NAME=1 or NAME=-1, or start from another pose with --key"
         )
-    notes = [f"assembly: {_words(scene.branch)}, {_how(left, request)}"] if keys else []
+    how = "beside what --branch names " * bool(request.branch) + "nearest to the pose"
+    how = how if left else "as --branch names it"
+    notes = [f"assembly: {_words(scene.branch)}, {how}"] if keys else []
     if keys and len(able) < len(ranked):
         notes[0] += " of those within all ranges"
         notes[0] += f"; nearer is {_broken(ranked[0])}" if best is not ranked[0] else ""
@@ -100,21 +103,13 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     return AssembledModel(_started(scene, request), tuple(notes))
 
 
-@dataclass(frozen=True)
-class _Fit:
-    """An assembly at the pose: the largest distance of a body's drawn frame from it over the
-    longest link, or angle [rad]; and the joints that break their ranges where the run starts."""
+class _Fit(NamedTuple):
+    """An assembly: the largest distance of a body's drawn frame from it, over the longest link, or
+    angle [rad]; and the joints that break their ranges where the run starts."""
 
     far: float
     scene: Scene
     outside: Sequence[str]
-
-
-def _how(left: Sequence[str], request: ModelRequest) -> str:
-    """Return the reason for an assembly, of which ``left`` are the choices that nobody named."""
-    if not left:
-        return "as --branch names it"
-    return "beside what --branch names " * bool(request.branch) + "nearest to the pose"
 
 
 def _broken(fit: _Fit) -> str:

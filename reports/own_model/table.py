@@ -64,11 +64,12 @@ def _drive_text(account: ModelAccount) -> str:
     start = "the pose as drawn" if request.key is None else f"keyframe {request.key}"
     if request.start_deg is not None:
         start = f"{request.start_deg:g} deg"
-    on_base = f" and at rest on every joint that carries {account.base}" if account.base else ""
+    based = any(note.startswith("base:") for note in account.notes)
+    on = f"that hinge{', and at rest on the joints of the base' * based}"
     return (
         f"{request.joint} at {request.speed_rad_s:g} rad/s, {turns} from {start}, by a "
-        f"flywheel on that hinge{on_base}, set at run time, by whose ratio the solver's tolerance "
-        "is divided; nothing else is changed"
+        f"flywheel on {on}, set at run time, by "
+        "whose ratio the solver's tolerance is divided; nothing else is changed"
     )
 
 

@@ -99,11 +99,6 @@ class ReadModel:
         return loose_joints(self.planar.linkage.component)
 
     @property
-    def base(self) -> str:
-        """Body that is held in place of the ground."""
-        return self.planar.linkage.component.loop.base
-
-    @property
     def notes(self) -> Sequence[str]:
         """What was held, and left out."""
         return self.planar.linkage.component.loop.notes

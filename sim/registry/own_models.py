@@ -62,11 +62,6 @@ class OwnModel(Protocol):
     def dt_s(self) -> float: ...
 
     @property
-    def base(self) -> str:
-        """Body that a run holds where it is, as the ground of the loop; "" for the ground."""
-        ...
-
-    @property
     def notes(self) -> Sequence[str]:
         """Parts of the model that are held or left out, with the reason."""
         ...

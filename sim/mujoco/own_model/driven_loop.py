@@ -49,7 +49,7 @@ class DrivenLoop:
 
     ``model`` counts the base as ground, ``data`` is its pose. ``held`` are the freedoms of the base
     [columns of qvel], ``idle`` the equalities that would move it; ``follows`` says that bodies hang
-    on the loop or follow it. ``base`` is the name of a base that is held, "" for the ground.
+    on the loop or follow it; ``notes`` say what is held or left out.
     """
 
     model: Any
@@ -57,7 +57,6 @@ class DrivenLoop:
     driven: int
     bodies: tuple[int, ...]
     closures: tuple[ModelClosure, ...]
-    base: str = ""
     held: tuple[int, ...] = ()
     idle: tuple[int, ...] = ()
     follows: bool = False
@@ -81,13 +80,11 @@ def driven_loop(model: Any, joint: str, qpos: Array) -> DrivenLoop:
         equality that couples its coordinates.
     """
     data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
     driven = _driven(model, joint, _ties(model, equalities(model, data)[0]))
     crank = rigid(model, int(model.jnt_bodyid[driven]))
     base = rigid(model, int(model.body_parentid[crank]))
     above = _above(model, base)
-    joints = [each for body in above for each in _joint_range(model, body)]
-    for each in joints:
+    for each in _joints(model, above):
         at = slice(model.jnt_qposadr[each], [*model.jnt_qposadr, model.nq][each + 1])
         data.qpos[at] = qpos[at]
     mujoco.mj_kinematics(model, data)
@@ -97,41 +94,35 @@ def driven_loop(model: Any, joint: str, qpos: Array) -> DrivenLoop:
     grounded.body_weldid[np.isin(model.body_weldid, above)] = WORLD
     ties = _ties(grounded, closures)
     ids = _block((WORLD, crank), ties) - {WORLD}
-    beside = _reached({crank}, ties, {WORLD}) - ids
-    parts = list(_parts(beside, ties, ids | {WORLD}))
-    # Where the driven joint is in no loop at all, the reason is found in what hangs on it.
-    looped = len(ids) > 1 or any(_ends(grounded, each) <= {WORLD, crank} for each in closures)
-    loose = [part for part in parts if looped and _is_loose(grounded, data, part, closures)]
-    ids |= beside.difference(*loose)
+    hung = _reached({crank}, ties, {WORLD}) - ids
     ends = [_ends(grounded, each) for each in closures]
+    # Where the driven joint is in no loop at all, the reason is found in what hangs on it.
+    looped = len(ids) > 1 or any(on <= {WORLD, crank} for on in ends)
+    if not (looped and _is_loose(grounded, data, hung, closures)):
+        ids, hung = ids | hung, set()
     own = [c for c, on in zip(closures, ends, strict=True) if on & ids and on <= ids | {WORLD}]
     _refuse_open(model, own)
     followers = list(_followers(grounded, couplings, ids))
-    notes = []
-    if base != WORLD:
-        notes.append(
-            f"base: body {body_name(model, base)} is held ({_joints_of(model, above)}); the "
-            "motion of the loop against it does not depend on where it is"
-        )
-    if loose:
-        hung = sorted(set().union(*loose))
-        names = few([body_name(model, body) for body in hung], SHOWN)
-        notes.append(
-            f"left out: {names} ({_joints_of(model, hung)}); that hangs on the loop, which moves "
-            "without it"
-        )
-    for one, body in followers:
-        notes.append(f"left out: {one.name}, by which {body_name(model, body)} follows the loop")
+    notes = [
+        f"left out: {one.name}, by which {body_name(model, body)} follows the loop"
+        for one, body in followers
+    ]
+    if hung:
+        names = few([body_name(model, body) for body in sorted(hung)], SHOWN)
+        notes.insert(0, f"left out: {names} ({_joints_of(model, hung)}), hanging on the loop")
+    called = body_name(model, base) if base != WORLD else ""
+    if called:
+        how = "the motion of the loop against it does not depend on where it is"
+        notes.insert(0, f"base: body {called} is held ({_joints_of(model, above)}); {how}")
     return DrivenLoop(
         grounded,
         data,
         driven,
         tuple(sorted(ids)),
         tuple(own),
-        body_name(model, base) if base != WORLD else "",
-        tuple(dof for body in above for dof in _freedoms(model, body)),
+        tuple(_freedoms(model, above)),
         tuple(one.index for one, body in followers if rigid(grounded, body) == WORLD),
-        bool(loose or followers),
+        bool(hung or followers),
         tuple(notes),
     )
 
@@ -145,24 +136,21 @@ def _above(model: Any, body: int) -> list[int]:
     return found
 
 
-def _joint_range(model: Any, body: int) -> range:
-    first = int(model.body_jntadr[body])
-    return range(first, first + int(model.body_jntnum[body]))
+def _joints(model: Any, bodies: Collection[int]) -> list[int]:
+    return [int(joint) for joint in np.flatnonzero(np.isin(model.jnt_bodyid, list(bodies)))]
 
 
-def _freedoms(model: Any, body: int) -> range:
-    first = int(model.body_dofadr[body])
-    return range(first, first + int(model.body_dofnum[body]))
+def _freedoms(model: Any, bodies: Collection[int]) -> list[int]:
+    return [int(dof) for dof in np.flatnonzero(np.isin(model.dof_bodyid, list(bodies)))]
 
 
-def _joints_of(model: Any, bodies: Iterable[int]) -> str:
+def _joints_of(model: Any, bodies: Collection[int]) -> str:
     """Return the joints of rigid bodies in words."""
-    joints = [joint for body in bodies for joint in _joint_range(model, body)]
-    kinds = [JOINTS[int(model.jnt_type[joint])] for joint in joints]
-    kinds = [JOINTS[int(model.jnt_type[joint])] for joint in joints]
-    names = [name_of(model, "joint", joint) for joint in joints]
-    both = zip(names, kinds, strict=True)
-    return few([f"{kind} {name}" if name else f"a {kind}" for name, kind in both], SHOWN)
+    told = [
+        (JOINTS[int(model.jnt_type[joint])], name_of(model, "joint", joint))
+        for joint in _joints(model, bodies)
+    ]
+    return few([f"{kind} {name}" if name else f"a {kind}" for kind, name in told], SHOWN)
 
 
 def _ends(model: Any, closure: ModelClosure) -> set[int]:
@@ -174,7 +162,7 @@ def _ties(model: Any, closures: Sequence[ModelClosure]) -> Ties:
     nothing."""
     pairs = [tuple(rigid(model, body) for body in each.bodies) for each in closures]
     for root in range(1, model.nbody):
-        kinds = [JOINTS[int(model.jnt_type[joint])] for joint in _joint_range(model, root)]
+        kinds = [JOINTS[int(model.jnt_type[joint])] for joint in _joints(model, [root])]
         floats = kinds.count("slide") >= 2 and len(kinds) > kinds.count("slide")
         if rigid(model, root) == root and "free" not in kinds and not floats:
             pairs.append((root, rigid(model, int(model.body_parentid[root]))))
@@ -205,25 +193,17 @@ def _block(ends: tuple[int, int], ties: Ties) -> set[int]:
     return found
 
 
-def _parts(beside: set[int], ties: Ties, loop: set[int]) -> Iterator[set[int]]:
-    """Yield the connected parts of what hangs on a loop."""
-    left = set(beside)
-    while left:
-        part = _reached([left.pop()], ties, loop)
-        left -= part
-        yield part
-
-
 def _is_loose(model: Any, data: Any, part: set[int], closures: Sequence[ModelClosure]) -> bool:
-    """True if a part moves while the loop that it hangs on stands still."""
-    freedoms = [dof for body in part for dof in _freedoms(model, body)]
+    """True if bodies move while the loop that they hang on stands still, or may leave its plane."""
+    freedoms = _freedoms(model, part)
     rows = [
         np.vstack(speeds(model, data, each)[: 1 if each.kind == "connect" else 2])[:, freedoms]
         for each in closures
         if _ends(model, each) & part
     ]
     values = np.linalg.svd(np.vstack(rows), compute_uv=False) if rows else np.zeros(1)
-    return int(np.count_nonzero(values > NOTHING * (values[0] or 1.0))) < len(freedoms)
+    rank = int(np.count_nonzero(values > NOTHING * (values[0] or 1.0)))
+    return rank < len(freedoms) or len(freedoms) > len(_joints(model, part))
 
 
 def speeds(model: Any, data: Any, closure: ModelClosure) -> tuple[Array, Array]:
@@ -293,7 +273,7 @@ def _not_drivable(model: Any, index: int, ties: Ties) -> str:
     if len(block) > 2 and not block & {WORLD, *above[1:]}:
         return ""
     told = f"it turns against body {body_name(model, parent)}, and not against the ground"
-    movers = [b for b in above if any(model.jnt_type[j] != HINGE for j in _joint_range(model, b))]
+    movers = [b for b in above if any(model.jnt_type[j] != HINGE for j in _joints(model, [b]))]
     if movers and len(block) > 2:
         told += f", which its loop meets too; hold that body: take out {_joints_of(model, movers)}"
     return told

@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -194,7 +194,6 @@ APART_RAD = 1e-3
 """Distance from the file's own pose beyond which a hinge does not keep its whole turns."""
 PAST = 1e-3
 """Distance beyond a range [rad], or over the size of the linkage, that is more than rounding."""
-ENDLESS = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,45 +230,36 @@ class PlanarModel:
 
     def start(self, scene: Scene, state: State) -> tuple[Array, Array, Array]:
         """Return `coordinates` nearest to the model's own pose. A hinge that the assembly leads
-        away from that pose gets the whole turns that bring it within its range, if any do; the
-        driven one keeps the law's."""
+        away from that pose gets the whole turns that bring it within its range, if any do."""
         near = np.array(self.limbs.senses) * self.qpos[list(self.limbs.positions)]
         q, rate, push = coordinates(self.limbs, scene, state, near)
-        for at, (hinge, low, high) in enumerate(self.ranges):
-            own = self.joints[at].index == self.driven or abs(q[at] - near[at]) <= APART_RAD
-            if hinge and not own and not low <= q[at] <= high:
-                short = math.ceil((low - q[at]) / math.tau)
-                turns = short if q[at] < low else math.floor((high - q[at]) / math.tau)
-                moved = q[at] + math.tau * turns
-                q[at] = moved if low <= moved <= high else q[at]
+        for at, (joint, low, high) in enumerate(self._ranges()):
+            moved = joint.kind == "hinge" and abs(q[at] - near[at]) > APART_RAD
+            if moved and joint.index != self.driven and not low <= q[at] <= high:
+                first = q[at] + math.tau * math.ceil((low - q[at]) / math.tau)
+                last = q[at] + math.tau * math.floor((high - q[at]) / math.tau)
+                q[at] = (first if q[at] < low else last) if first <= high else q[at]
         return q, rate, push
 
-    @property
-    def ranges(self) -> list[tuple[bool, float, float]]:
-        """For each freedom: it is a hinge, and its declared range in the sense of the scene."""
-        model, found = self.model, []
-        for joint in self.joints:
-            ends = model.jnt_range[joint.index] if model.jnt_limited[joint.index] else ENDLESS
+    def _ranges(self) -> Iterator[tuple[PlanarJoint, float, float]]:
+        """Yield the joint of each freedom with its range, in the sense of the scene."""
+        for joint in (each for body in self.linkage.component.bodies for each in body.joints):
+            limited = self.model.jnt_limited[joint.index]
+            ends = self.model.jnt_range[joint.index] if limited else (-math.inf, math.inf)
             low, high = sorted(joint.sense * float(end) for end in ends)
-            found.append((joint.kind == "hinge", low, high))
-        return found
-
-    @property
-    def joints(self) -> list[PlanarJoint]:
-        """Joints of the linkage, one for each freedom."""
-        return [joint for body in self.linkage.component.bodies for joint in body.joints]
+            yield joint, low, high
 
     def outside(self, scene: Scene, state: State) -> list[str]:
-        """Describe the joints that a state puts outside their declared ranges, each with its
-        reading; the driven joint stands where it is put."""
-        told, extent = [], size(self.linkage)
-        q = self.start(scene, state)[0]
-        for joint, x, (hinge, low, high) in zip(self.joints, q, self.ranges, strict=True):
-            least = PAST * (1.0 if hinge else extent)
+        """Describe the joints beside the driven one that a state puts outside their ranges."""
+        told = []
+        for x, (joint, low, high) in zip(self.start(scene, state)[0], self._ranges(), strict=True):
+            hinge = joint.kind == "hinge"
+            least = PAST * (1.0 if hinge else size(self.linkage))
             if joint.index != self.driven and not low - least <= x <= high + least:
-                read, *ends = (reading(joint.sense * each, hinge) for each in (x, low, high))
-                span = " to ".join(ends if joint.sense > 0 else reversed(ends))
-                told.append(f"joint {joint.name} reads {read}, outside its range of {span}")
+                span = sorted(joint.sense * each for each in (low, high))
+                ends = " to ".join(reading(end, hinge) for end in span)
+                read = reading(joint.sense * x, hinge)
+                told.append(f"joint {joint.name} reads {read}, outside its range of {ends}")
         return told
 
     @property

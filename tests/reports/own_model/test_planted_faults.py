@@ -186,7 +186,7 @@ def test_a_pin_far_off_its_body_is_named_with_its_cure(fault: str, tmp_path: Pat
     except CrankcheckError as refused:
         told = str(refused)
     assert words in told
-    assert "; give it there" in told or "; MuJoCo puts it where the other body has it" in told
+    assert "; give it there" in told or "; connect two sites, one on each body" in told
 
 
 LAID = (
