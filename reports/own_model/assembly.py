@@ -120,7 +120,7 @@ def _started(scene: Scene, request: ModelRequest) -> Scene:
     """Return a scene at the start that the request names. Raises CrankcheckError as `_led_to`."""
     if request.start_deg is None:
         return scene
-    law = replace(scene.driver.law, start_rad=math.radians(request.start_deg))
+    law = ConstantSpeed(math.radians(request.start_deg), request.speed_rad_s)
     return _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
 
 
