@@ -228,11 +228,9 @@ def _followers(
             continue
         if not beside or seen.intersection(*beside):
             bodies = [body for side in beside or one.sides for body in side]
-            names = few(
-                [f"{body_name(model, b)} ({_joints_of(model, [b])})" for b in bodies], SHOWN
-            )
+            told = [f"{body_name(model, b)} ({_joints_of(model, [b])})" for b in bodies]
             raise ModelError(
-                f"{one.name}: a <{one.kind}> equality couples coordinates of {names} "
+                f"{one.name}: a <{one.kind}> equality couples coordinates of {few(told, SHOWN)} "
                 f"{'twice with' if beside else 'in'} the loop, of which no closed form is known; "
                 "take it out, and close loops with <connect>"
             )
@@ -243,6 +241,9 @@ def _followers(
 def _driven(model: Any, joint: str, ties: Ties) -> int:
     """Return the joint of that name, or refuse it as the driver."""
     names = [name_of(model, "joint", index) for index in range(model.njnt)]
+    why = _not_drivable(model, names.index(joint), ties) if joint and joint in names else ""
+    if joint and joint in names and not why:
+        return names.index(joint)
     able = [
         name for index, name in enumerate(names) if name and not _not_drivable(model, index, ties)
     ]
@@ -253,10 +254,7 @@ def _driven(model: Any, joint: str, ties: Ties) -> int:
         there = [name for name in names if name]
         hint = suggestion(joint, there, "it has") if there else "none of its joints has a name"
         raise ModelError(f"--drive {joint!r}: the model has no joint of that name; {hint}; {can}")
-    index = names.index(joint)
-    if why := _not_drivable(model, index, ties):
-        raise ModelError(f"--drive {joint!r}: {why}; {can}")
-    return index
+    raise ModelError(f"--drive {joint!r}: {why}; {can}")
 
 
 def _not_drivable(model: Any, index: int, ties: Ties) -> str:
