@@ -83,7 +83,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     # A pose that is shut says the assembly by itself, within the ranges or not.
     able = [fit for fit in ranked if not fit.outside or fit.far <= SHUT] or ranked
     best, scene = able[0], able[0].scene
-    if len(able) > 1 and able[1].far - best.far < ALIKE * able[1].far:
+    if _alike(able):
         choices = " or ".join(_words(fit.scene.branch) for fit in able[:2])
         raise CrankcheckError(
             f"{request.path}: the pose fits two assemblies equally well, {choices}; choose with "
@@ -92,7 +92,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     how = "beside what --branch names " * bool(request.branch) + "nearest to the pose"
     how = how if left else "as --branch names it"
     notes = [f"assembly: {_words(scene.branch)}, {how}"] if keys else []
-    if keys and len(able) < len(ranked):
+    if keys and (best is not ranked[0] or _alike(ranked)):
         notes[0] += " of those within all ranges"
         notes[0] += f"; nearer is {_broken(ranked[0])}" if best is not ranked[0] else ""
     if best.outside:
@@ -110,6 +110,11 @@ class _Fit(NamedTuple):
     far: float
     scene: Scene
     outside: Sequence[str]
+
+
+def _alike(fits: Sequence[_Fit]) -> bool:
+    """True if a pose fits the first two assemblies as well."""
+    return len(fits) > 1 and fits[1].far - fits[0].far < ALIKE * fits[1].far
 
 
 def _broken(fit: _Fit) -> str:
