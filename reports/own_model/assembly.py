@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -177,16 +178,14 @@ def _fits(
             continue
         placed = frames(scene, state)
         far = max(_distance(placed[name], drawn[name], scene.longest_m) for name in drawn)
-        yield _Fit(far, scene, _outside(own, scene, request))
-
-
-def _outside(own: OwnModel, scene: Scene, request: ModelRequest) -> Sequence[str]:
-    """Describe the joints out of their ranges where the run starts; none where it can not."""
-    try:
-        begun = _started(scene, request)
-        return own.outside(begun, solve(begun, np.zeros(1), bound=False).state())
-    except CrankcheckError:
-        return []
+        outside: Sequence[str] = ()
+        # A start that can not be assembled is refused later, with what it reaches.
+        with suppress(CrankcheckError):
+            begun = _started(scene, request)
+            if begun is not scene:
+                state = solve(begun, np.zeros(1), bound=False).state()
+            outside = own.outside(begun, state)
+        yield _Fit(far, scene, outside)
 
 
 def _distance(frame: Frame, pose: BodyPose, longest_m: float) -> float:

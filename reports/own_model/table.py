@@ -68,8 +68,8 @@ def _drive_text(account: ModelAccount) -> str:
     on = f"that hinge{', and at rest on the joints of the base' * based}"
     return (
         f"{request.joint} at {request.speed_rad_s:g} rad/s, {turns} from {start}, by a "
-        f"flywheel on {on}, set at run time, by "
-        "whose ratio the solver's tolerance is divided; nothing else is changed"
+        f"flywheel on {on}, set at run time, by whose ratio the solver's tolerance is divided; "
+        "nothing else is changed"
     )
 
 
