@@ -159,7 +159,7 @@ SPIN = '<body name="wheel"><joint name="spin"/><geom type="cylinder" size="0.05 
 GEARS = '<joint name="gears" joint1="{}" joint2="{}" polycoef="0 -2 0.1 0 0"/>'
 AT = 'qpos="1 2 3 0.8 0.3 0.4 0.33166248 0 0 0" qvel="1 1 1 1 1 1 1 1 1"'
 PLACED = f'<keyframe><key name="home" {AT}/></keyframe>'
-HELD = {
+CARRIED = {
     "on a slide": (on(SLIDE), "base: body base is held (slide go)"),
     "on a free body": (on("<freejoint/>"), "base: body base is held (a free)"),
     "on a free body, from a keyframe in which it moves": (
@@ -193,11 +193,11 @@ HELD = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", HELD)
+@pytest.mark.parametrize("case", CARRIED)
 def test_the_loop_is_judged_whatever_carries_it_hangs_on_it_or_follows_it(
     case: str, tmp_path: Path
 ) -> None:
-    edits, words = HELD[case]
+    edits, words = CARRIED[case]
     text = planted('gravity="0 0 0"', 'gravity="0 0 -9.81"', *edits)
     account = read_text(tmp_path, text, converge=False, key="home" if "<key " in text else None)
     assert_four_bar(account.scene)
