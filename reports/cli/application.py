@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import gc
 import inspect
 import os
 import sys
@@ -99,6 +100,7 @@ def main() -> None:
         try:
             with guarded():
                 install()
+                gc.set_threshold(20_000)  # a run makes many small objects and hardly any circles
                 broken_pipe_ends(at_once=True)
                 if sys.stdout is None:
                     raise CrankcheckError(

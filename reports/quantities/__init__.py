@@ -4,6 +4,7 @@ A new quantity is an entry here. Its columns, rows, limit, rule and diagrams fol
 """
 
 from collections.abc import Collection
+from functools import cache
 
 from reports.quantities import forces, free_and_elastic, places
 from reports.quantities.quantity import Quantity, Role
@@ -21,6 +22,7 @@ QUANTITIES: dict[str, Quantity] = {
 }
 
 
+@cache
 def named(*roles: Role) -> tuple[str, ...]:
     """Return the quantities of some roles."""
     return tuple(name for name, entry in QUANTITIES.items() if entry.role in roles)

@@ -56,33 +56,6 @@ def test_slider_crank_follows_the_lecture(name: str) -> None:
     assert np.all(turn <= motion.bound.links["rod"].theta + 32 * EPS * steep)
 
 
-def test_slotted_lever_adds_up_with_coriolis() -> None:
-    """What the lever, the sliding and Coriolis give the block is what the crank gives its pin."""
-    scene = load_scene("slotted-lever")
-    motion = solve(scene, np.linspace(0.0, 0.7, 300))
-    r, d, w, phi = 0.1, 0.3, 10.0, motion.links["crank"].theta
-    lever, slide, b = motion.links["lever"], motion.sliders["B"], motion.points["B"].position
-    square = r * r + d * d + 2 * r * d * np.sin(phi)
-    assert np.allclose(lever.omega, w * r * (r + d * np.sin(phi)) / square, rtol=0, atol=1e-13)
-    assert np.allclose(slide.displacement, np.sqrt(square), rtol=0, atol=1e-15)
-    place = b @ (1.0, 1j)
-    along = place / np.abs(place)
-    transport = (1j * lever.alpha - lever.omega**2) * place
-    coriolis = 2j * lever.omega * slide.speed * along
-    summed = transport + slide.acceleration * along + coriolis
-    crank = -(w**2) * (place - 1j * d)
-    assert np.abs(coriolis).max() > 1.0
-    assert np.allclose(summed, crank, rtol=0, atol=1e-12)
-    found = motion.points["B"].acceleration @ (1.0, 1j)
-    assert np.allclose(found, crank, rtol=0, atol=1e-12)
-
-
-SLIDER_CRANK = """
-ground.points = {{ O = [0.0, 0.0] }}
-links.crank = {{ bar = ["O", "B"], length_m = {crank} }}
-links.rod = {{ points = {{ B = [0.0, 0.0], A = [{rod}, 0.0], D = [{middle}, 0.0] }} }}
-sliders.A = {{ on = "ground", through_m = [0.0, {offset}] }}
-"""
 SLOTTED = """
 ground.points = {{ A = [{x!r}, {y!r}], C = [0.0, 0.0] }}
 links.crank = {{ bar = ["A", "B"], length_m = {crank} }}
@@ -98,8 +71,7 @@ def scene(
     head = 'name = "published"\nsource = "in print"\n'
     driver = f'\n[driver]\nlink = "crank"\nspeed_rad_s = {speed}\nstart_deg = {start}\n'
     grows = f'law = "accelerating"\nacceleration_rad_s2 = {gain}\n' if gain else ""
-    mechanism = text.format(**{"offset": 0.0, **numbers})
-    return parse_scene(head + mechanism + driver + grows, "test")
+    return parse_scene(head + text.format(**numbers) + driver + grows, "test")
 
 
 def test_crank_and_slotted_lever() -> None:

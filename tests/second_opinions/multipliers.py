@@ -27,10 +27,15 @@ from models.errors import CrankcheckError
 from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.driver import driver_course
-from tests.second_opinions.body_samples import BodySamples, body_samples, cross, weights_and_loads
+from tests.second_opinions.body_samples import (
+    BodySamples,
+    body_samples,
+    cross,
+    springs_on_bodies,
+    weights_and_loads,
+)
 from tests.second_opinions.constraints import Constraints
 from tests.second_opinions.friction import rubbing_samples
-from tests.second_opinions.spring_samples import springs_on_bodies
 
 REFINEMENTS = 2
 MOST = 400

@@ -18,9 +18,12 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.driver import driver_course
-from tests.second_opinions.body_samples import body_samples, weights_and_loads
+from tests.second_opinions.body_samples import (
+    body_samples,
+    springs_on_bodies,
+    weights_and_loads,
+)
 from tests.second_opinions.friction import rubbing_samples
-from tests.second_opinions.spring_samples import springs_on_bodies
 
 
 @dataclass(frozen=True)

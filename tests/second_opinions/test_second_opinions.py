@@ -1,6 +1,8 @@
 """The closed form against the second opinion, and what falls freely against its closed form."""
 
+import ast
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,7 +21,6 @@ from models.scene.hard import WindowChain
 from models.scene.joints import centre_of, frames
 from reports.contract.oscillators import centres
 from tests.analytic.chain import coordinates
-from tests.analytic.imported import reached
 from tests.analytic.test_bounds import SIX
 from tests.second_opinions import newton
 from tests.second_opinions.constraints import Constraints
@@ -152,6 +153,26 @@ def test_every_form_of_dyad_agrees_with_newton(form: str, count: int) -> None:
 )
 def test_chains_of_random_dyads_agree_with_newton(count: int) -> None:
     examples(count)(given(mechanisms())(_hold_to_newton))()
+
+
+ROOT = Path(__file__).parents[2]
+OURS = ("analytic", "tests.second_opinions")
+
+
+def reached(module: str) -> set[str]:
+    """The modules of `analytic`, and second opinions, that a module imports, so that two
+    computations are shown to be two."""
+    found, todo = set[str](), [module]
+    while todo:
+        name = todo.pop()
+        path = ROOT.joinpath(*name.split(".")).with_suffix(".py")
+        if name in found or not path.is_file():
+            continue
+        found.add(name)
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and str(node.module).startswith(OURS):
+                todo += [str(node.module), *(f"{node.module}.{a.name}" for a in node.names)]
+    return found
 
 
 def test_neither_computation_imports_the_other() -> None:

@@ -1,5 +1,7 @@
-"""Free motion: nothing drives the crank, and the engines still have to follow the closed form."""
+"""Free motion: nothing drives the crank, and the engines still have to follow the closed form; a
+flywheel that was worked out does in an engine what it was worked out for."""
 
+import math
 from dataclasses import replace
 from types import ModuleType
 from typing import Any
@@ -8,6 +10,9 @@ import numpy as np
 import pytest
 
 from analytic.free.exact_motions import ChainMotion
+from analytic.lectures.regulation.flywheel import wanted_flywheel
+from analytic.lectures.regulation.steady_cycle import cycle_scene
+from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import EngineError
 from models.files.reading import load_scene
 from models.motion import State
@@ -164,3 +169,21 @@ def test_the_energy_of_a_run_is_that_of_the_closed_form_at_the_instants_of_the_v
 def test_of_a_driven_mechanism_no_energy_is_told() -> None:
     for name in ENGINES:
         assert runs.ran(load_scene("shaper"), name, dt_s=1e-3, steps=10).energy is None
+
+
+def test_an_engine_runs_the_cycle_that_the_flywheel_is_for() -> None:
+    """The drive a constant torque, two cycles: nothing settles, so that the second is as the
+    first. Some 2 s, as loads that hang on the angle are asked for at every stage of a step."""
+    cycle = wanted_flywheel(TurningMachine.of(load_scene("engine-four-stroke")), 0.02).cycle
+    scene = cycle_scene(cycle, 2.05)
+    link = runs.ran(scene, "mujoco", per_turn=1400, drive="free").motion.links[scene.driver.link]
+    turned, whole = np.abs(link.theta - link.theta[0]), cycle.machine.cycle_rad
+    assert math.floor(turned[-1] / whole) == 2
+    for k in range(2):
+        inside = (turned >= k * whole) & (turned <= (k + 1) * whole)
+        speed, theta = np.abs(link.omega[inside]), link.theta[inside]
+        high, low = speed.max(), speed.min()
+        assert 2.0 * (high - low) / (high + low) == pytest.approx(0.02, rel=0.01)
+        for at, u in ((speed.argmax(), cycle.fastest), (speed.argmin(), cycle.slowest)):
+            off = math.remainder(theta[at] - cycle.driver_rad(u), whole)
+            assert abs(math.degrees(off)) < 0.5

@@ -203,23 +203,6 @@ def mujoco_error(snippet: str, steps: int, speed: float) -> float:
     flywheel = 1e12 * (0.55 * 0.3**2 + (0.1**3 + 0.25**3 + 0.2**3) / 12)
     text = fourbar_bodies(MJCF, flywheel)
     model = mujoco.MjModel.from_xml_string(pasted(text, measured_as_we_did(snippet)))
-    times = model.opt.timestep * np.arange(TURNS * steps + 1)
-    return _turned(model, steps, speed, lambda _: START + speed * times)
-
-
-def mujoco_error_of_geometry(snippet: str, steps: int, speed: float) -> float:
-    """As `mujoco_error`, at the angle that the crank has, driven by a motor of a user's own, with
-    nothing in force but what is."""
-    motor = f'<actuator><velocity joint="A" kv="{0.5 / speed}"/></actuator></mujoco>'
-    text = fourbar_bodies(MJCF, 0.0).replace("</mujoco>", motor)
-    model = mujoco.MjModel.from_xml_string(pasted(text, snippet))
-    return _turned(model, steps, speed, lambda turned: START + turned[:, 0])
-
-
-def _turned(
-    model: mujoco.MjModel, steps: int, speed: float, crank: Callable[[Array], Array]
-) -> float:
-    """The error over two turns, where the true angle of the crank follows from the angles."""
     start = mujoco.MjData(model)
     of_coupler, of_rocker = rates(speed)
     start.qvel[:] = speed, of_coupler - speed, of_rocker
@@ -229,7 +212,7 @@ def _turned(
         row[:] = start.qpos
         mujoco.mj_step(model, start)
     found = turned[:, 0] + COUPLER_START + turned[:, 1], ROCKER_START + turned[:, 2]
-    return worst(found, angles(crank(turned)))
+    return worst(found, angles(START + speed * model.opt.timestep * np.arange(len(turned))))
 
 
 def pymunk_fourbar(

@@ -118,14 +118,6 @@ SEEDS = {SIX_PINS: 47, ("RR", "RR", "PR"): 31, ("RR", "RR", "RP"): 44, ("RR", "P
 """Of drawn rows with as many assemblies as there can be, where these are rare."""
 
 
-@pytest.mark.parametrize("kinds", MOST, ids="-".join)
-def test_no_kind_has_more_and_each_can_have_as_many_as_said(kinds: Kinds) -> None:
-    seeds = {*range(16), SEEDS.get(kinds, 0)}
-    numbers = {len(assemblies(drawn(kinds, seed))) for seed in seeds}
-    assert max(numbers) == MOST[kinds]
-    assert all(number % 2 == MOST[kinds] % 2 for number in numbers)
-
-
 def test_kinds_with_two_legs_that_hold_the_angle_have_none() -> None:
     assert len(MOST) + len(SINGULAR) == 20  # of four kinds, three with repetition
     for kinds in SINGULAR:

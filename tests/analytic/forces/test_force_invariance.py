@@ -16,11 +16,11 @@ from models.files.reading import load_scene, shipped
 from models.motion import Forces
 from models.scene import Scene, moved
 from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.scene.loads import ConstantFriction, CoulombFriction, Friction
+from models.scene.loads import ConstantFriction, CoulombFriction
 from models.scene.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded, sprung
-from tests.worlds.other_way import MOVES, Change, faster, sped_up
+from tests.worlds.other_way import MOVES, Change, faster
 from tests.worlds.tiers import slowly
 
 CLOSE = 1e-11
@@ -88,15 +88,10 @@ def test_a_characteristic_is_carried(own: Characteristic, stretch: float, shift:
 
 def test_friction_grows_with_the_scene() -> None:
     """As forces and lengths do; what is over nothing stays."""
-
-    def rubs(radius_m: float, couple: float, force: float) -> dict[str, Friction]:
-        sizes = {"B": couple, "C": force}
-        constant = {joint: ConstantFriction(joint, size) for joint, size in sizes.items()}
-        return {"A": CoulombFriction("A", 0.1, radius_m), **constant}
-
-    scene = replace(load_scene("slider-crank-central"), friction=rubs(0.02, 3.0, 5.0))
-    assert moved.scaled(scene, 10.0).friction == rubs(0.2, 3000.0, 500.0)
-    assert sped_up(scene, 3.0).friction == rubs(0.02, 27.0, 45.0)
-    assert (
-        moved.mirrored(scene, sides_of(scene)).friction == moved.moved(scene, (1.0, 0.0)).friction
-    )
+    constant = {"B": ConstantFriction("B", 3.0), "C": ConstantFriction("C", 5.0)}
+    own = {"A": CoulombFriction("A", 0.1, 0.02), **constant}
+    scene = replace(load_scene("slider-crank-central"), friction=own)
+    grown = {"B": ConstantFriction("B", 3000.0), "C": ConstantFriction("C", 500.0)}
+    larger = {"A": CoulombFriction("A", 0.1, 0.2), **grown}
+    assert dict(moved.scaled(scene, 10.0).friction) == larger
+    assert dict(moved.mirrored(scene, sides_of(scene)).friction) == own

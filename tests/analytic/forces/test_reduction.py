@@ -1,7 +1,5 @@
-"""Inertia as one force, as two masses, at the driver, and in impulses that come a step late:
-numbers worked by hand, and what the bodies have themselves."""
+"""Inertia at the driver, and in impulses that come a step late: numbers worked by hand."""
 
-import math
 import random
 from dataclasses import replace
 
@@ -12,60 +10,13 @@ from analytic.forces.kinetostatics import forces
 from analytic.forces.late_impulses import LateImpulses, late_impulses
 from analytic.forces.virtual_power import reduced_machine
 from analytic.kinematics import solve
-from models.array import Array
 from models.files.reading import load_scene, parse_scene
 from models.scene import Driver
 from models.scene.characteristics import Constant
 from models.scene.laws import Accelerating, ConstantSpeed
 from models.scene.loads import Load
 from tests.analytic.test_bounds import SIX
-from tests.second_opinions.reduction import plane_motion, rotation, two_masses
 from tests.worlds.loading import loaded, sprung
-
-
-def cross(a: Array, b: Array) -> Array:
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
-def perp(a: Array) -> Array:
-    return np.stack([-a[:, 1], a[:, 0]], axis=1)
-
-
-def test_one_force_has_the_force_and_moment_of_the_link() -> None:
-    """About A: -m a_S, and r x (-m a_S) - J alpha; where a_A is parallel to a_SA too."""
-    rng = np.random.default_rng(7)
-    centre = rng.uniform(0.1, 0.5) * np.stack([np.cos(a := rng.uniform(0, 7, 50)), np.sin(a)], 1)
-    omega, alpha, a_a = rng.normal(0, 9, 50), rng.normal(0, 99, 50), rng.normal(0, 50, (50, 2))
-    of_s = alpha[:, None] * perp(centre) - omega[:, None] ** 2 * centre
-    a_a[::5] = 0.5 * of_s[::5]
-    mass, inertia = 1.7, 0.03
-    found = plane_motion(mass, inertia, centre, a_a, omega, alpha)
-    force = -mass * (a_a + of_s)
-    moment = cross(centre, force) - inertia * alpha
-    scale = np.hypot(*found.place.T) * np.hypot(*force.T)
-    np.testing.assert_array_equal(found.force, force)
-    assert np.all(np.abs(cross(found.place, found.force) - moment) <= 1e-13 * (1.0 + scale))
-    turning = rotation(mass, inertia, centre, omega, alpha)
-    about = -(inertia + mass * np.sum(centre**2, axis=1)) * alpha
-    assert cross(turning.place, turning.force) == pytest.approx(about, rel=1e-12, abs=1e-12)
-
-
-def test_two_masses_and_their_couple_have_the_inertia_of_the_link() -> None:
-    """Force, and moment about S, at any motion: sum r x (-m_i a_i) + excess alpha = -J alpha."""
-    rng = np.random.default_rng(3)
-    for _ in range(20):
-        mass, inertia, l1, l2 = rng.uniform(0.1, 2.0, 4)
-        omega, alpha, lean = rng.normal(0, 9, 3)
-        a_s = rng.normal(0, 9, 2)
-        found = two_masses(mass, inertia, l1, l2)
-        along = np.array([math.cos(lean), math.sin(lean)])
-        force, moment = np.zeros(2), found.excess * alpha
-        for part, at in ((found.first, -l1 * along), (found.second, l2 * along)):
-            a = a_s + alpha * np.array([-at[1], at[0]]) - omega**2 * at
-            force -= part * a
-            moment -= part * (at[0] * a[1] - at[1] * a[0])
-        assert force == pytest.approx(-mass * a_s, rel=1e-12, abs=1e-11)
-        assert moment == pytest.approx(-inertia * alpha, rel=1e-12, abs=1e-11)
 
 
 @pytest.mark.parametrize(("name", "springs"), [*((n, False) for n in SIX), ("shaper", True)])

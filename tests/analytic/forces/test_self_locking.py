@@ -128,26 +128,14 @@ def test_beside_locking_the_torque_grows_past_all_bounds_and_so_does_its_own() -
     assert np.abs(found.torque) == pytest.approx(rod * 0.1 * np.sin(phi + psi), rel=1e-4)
 
 
-def test_efficiency_of_a_press_lies_between_0_and_1() -> None:
-    rubs = {"A": 0.02, "B": 0.015, "C": 0.01}
-    pins = {joint: CoulombFriction(joint, 0.1, radius) for joint, radius in rubs.items()}
-    scene = steep(0.1)
-    found = efficiency(replace(scene, friction={**scene.friction, **pins}))
-    assert found.locked == ()
-    assert 0.5 < found.cycle < 1.0
-    assert found.put_in == pytest.approx(found.useful + found.wasted, rel=1e-12)
-    assert found.useful == pytest.approx(2 * 100.0 * 0.2, rel=1e-4)  # the force over two strokes
-    known = found.instantaneous[~np.isnan(found.instantaneous)]
-    assert known.min() >= 0.0
-    assert known.max() <= 1.0
-    assert len(known) > 300
-
-
 def test_an_instantaneous_efficiency_is_that_of_the_textbook() -> None:
     """Torque without friction over that with it: 1 - mu tan psi, psi the rod's lean."""
-    found = efficiency(steep(0.1), 90)
+    found = efficiency(steep(0.1))
     wanted = 1.0 - 0.1 * np.abs(np.tan(np.arcsin(np.sin(found.theta) / 1.1)))
     assert found.instantaneous == pytest.approx(wanted, abs=2e-4)
+    assert found.locked == ()
+    assert found.put_in == pytest.approx(found.useful + found.wasted, rel=1e-12)
+    assert found.useful == pytest.approx(2 * 100.0 * 0.2, rel=1e-4)  # the force over two strokes
     lossless = efficiency(replace(steep(), friction={}), 90)
     assert (lossless.cycle, lossless.wasted) == (pytest.approx(1.0, abs=1e-12), 0.0)
     assert np.nanmin(lossless.instantaneous) == 1.0

@@ -13,9 +13,9 @@ from analytic.prepared import prepared
 from models.files.reading import load_scene, parse_scene, shipped
 from tests.analytic.assur.triad_scenes import KINDS, triad
 from tests.analytic.forces.beside import AGREED, agreed, apart, out_of_balance, turn, unlocked
-from tests.analytic.imported import reached
 from tests.analytic.test_bounds import SIX
 from tests.second_opinions import multipliers
+from tests.second_opinions.test_second_opinions import reached
 from tests.worlds.loading import loaded, sprung
 from tests.worlds.tiers import few
 

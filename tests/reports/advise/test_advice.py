@@ -13,7 +13,7 @@ from models.files.reading import load_scene
 from reports.advise.advice import Advice, Offer, Price, Prices, offers
 from reports.advise.demand import MeasuredSteps, MeasuredStudy, choices, demanded
 from reports.advise.search import SearchResult, TriedRun, Worst
-from reports.advise.table import document, show_advice, word
+from reports.advise.table import document, show_advice
 from tests.worlds.command_line import flat
 
 DEMAND = demanded(
@@ -110,25 +110,17 @@ def test_the_best_of_each_engine_is_told_and_written_with_its_price_and_its_snip
     text = printed(every)
     for line in (
         "dt = 0.004166666666666667  # a frame of 0.0166667 s / 4",
-        "for _ in range(4):",
-        '<option timestep="0.016666666666666666" integrator="RK4"/>',
         "abacus",
         "pymunk as-shipped: no end",
         "error_bias 0",
     ):
         assert line in text
-    for words in (
-        "pymunk no bias, 4 steps a frame (4.167 ms): within 0.001, 7.9e-4 at worst; 0.03 % of",
-        "mujoco tuned, 1 step a frame (16.67 ms)",
-        "on each of 2 scenes at 10 rad/s, over 10 turns; at worst 7.9e-4",
-    ):
-        assert words in flat(text.replace("#", " "))
+    words = "pymunk no bias, 4 steps a frame (4.167 ms): within 0.001, 7.9e-4 at worst; 0.03 % of"
+    assert words in flat(text.replace("#", " "))
     assert "takes your own" not in text
-    assert "takes your own" in printed(replace(advice(), named=False))  # no scene
     content = json.loads(document(every))
     assert content["asked"]["frames_per_turn"] == pytest.approx(37.699, rel=1e-4)
     assert content["best"] == ["pymunk no bias", "mujoco tuned"]
-    assert content["study"] is None
     first, *_, before, last = content["settings"]
     assert f"{first['engine']} {first['name']}" == "pymunk no bias"
     promised = {"substeps": 4, "dt_s": DEMAND.frame_s / 4, "held_at": [8]}
@@ -154,14 +146,3 @@ def test_the_nearest_is_told_where_nothing_reaches_what_was_luck_and_what_has_no
     every = advice(FOUND[1], (FOUND[2][0], None))  # a process lost while it was timed
     assert labels(every.offers) == labels(every.best) == "mujoco tuned; pymunk no bias"
     assert "within 0.001, 7.9e-4 at worst\n" in printed(every)
-
-
-def test_the_frame_itself_gets_a_word() -> None:
-    for seen, words in (
-        (None, "too coarse"),
-        (worst(1, 9e-4), "within"),
-        (worst(1, 2e-3), "over"),
-        (worst(1, 2e-3, growth=1.2), "over, grows"),
-        (worst(1, math.inf, status="branch-changed"), "other branch"),
-    ):
-        assert word(seen, DEMAND.target) == words

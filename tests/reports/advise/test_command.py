@@ -145,25 +145,3 @@ def test_scenes_that_no_engine_can_hold_are_bad_input(tmp_path: Path) -> None:
     result = crank("advise", path, *LINE, "--engine", "mujoco")
     refused(result, "advise: mujoco ", "mass")
     assert result.stdout == ""
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("--dt 0", "--dt 0: give a number above 0"),
-        ("--engine mujocco", "engine 'mujocco': unknown; did you mean muj"),
-        ("fourbar-lectur-1", "neither a shipped scene nor a file. Did you mean"),
-        ("--study .", "no store of a sweep there"),
-        ("--json link.json", "link.json: a link, to"),
-    ],
-)
-def test_a_mistake_is_told_at_once_with_exit_code_2(
-    line: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("other").touch()
-    Path("link.json").symlink_to("other")
-    result = crank("advise", *LINE, *line.split())
-    refused(result, words)
-    assert result.stdout == ""
-    assert result.stderr.count("crankcheck: ") == 1

@@ -193,16 +193,13 @@ def test_the_least_sub_steps_are_steps_enough_for_a_turn_and_twice_the_most_are_
     ("changes", "words"),
     [
         ({"frame_s": 0.0}, "--dt 0: give a number above 0, in seconds for a frame"),
-        ({"frame_s": math.nan}, "--dt nan: "),
         ({"speed_rad_s": 0.0}, "--speed 0: .* clockwise it is negative"),
         ({"speed_rad_s": -math.inf}, "--speed -inf: "),
-        ({"target": 0.0}, "--target 0: give an error of place from 1e-11"),
         ({"target": 1.0}, "--target 1: .* to under 1"),
         ({"turns": 0.5}, "--turns 0.5: give 1 turn"),
         ({"frame_s": 1e4}, "--dt 10000: .* even in 4096 sub-steps; give one of 322 s at most"),
         ({"turns": 1e4}, "--turns 10000: 376991 frames, 37.7 in .*: take --turns 2.65e.03, or"),
         ({"frame_s": 1e-9}, "at most 100000 steps are run: ask for a longer frame"),
-        ({"speed_rad_s": 1e-9}, "at most 100000 steps are run: ask for"),
     ],
 )
 def test_what_can_not_be_asked_for_is_told(changes: dict[str, float], words: str) -> None:

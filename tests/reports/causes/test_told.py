@@ -70,15 +70,6 @@ def test_what_is_to_be_written_in_the_map_mends_the_log(fault: str) -> None:
             assert mended(planted.case, column, correction) < 10.0
 
 
-def test_a_delay_is_told_in_samples_and_seconds_and_for_all_that_share_it() -> None:
-    plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"), omega("crank"))
-    cause = only(later(plain, -0.5, "rocker_w", "coupler_w", "crank_w"))
-    assert cause.name == "delay"
-    assert cause.columns == ("rocker_w", "coupler_w")
-    assert "belong 0.50 samples (2.62 ms) earlier" in cause.text
-    assert cause.correction["delay_s"] == pytest.approx(-0.5 * plain.step_s, rel=1e-6)
-
-
 def test_a_delay_comes_on_top_of_the_one_that_the_map_says() -> None:
     plain = of(omega("rocker", delay_s=0.01), angle("coupler"))
     late = at(plain, plain.time_s + 0.004, "rocker_w")

@@ -80,8 +80,6 @@ BOTH: dict[str, tuple[str, str]] = {
         "line 1: a key of more than 10 parts; the deepest of scenes and studies has 4"),
     "headers of some parts": (many(f"[a#{'.b' * 9}]\n", 7700),
         "77000 keys, those of headers and the parts between dots counted; at most 20000 are read"),
-    "keys of some parts": (many(f"a#{'.b' * 9}=1\n", 7700), "77000 keys"),
-    "190 headers and keys": (many(f"[a#{'.b' * 8}]\nc=1\n", 190), MORE),
     "3900 values": ("scenes = [" + "1," * 3900 + "]", "scenes.* and 3|scenes: unknown key"),
     "45001 values": ("scenes = [" + "1," * 45_001 + "]",
         "more than 40000 values, such as scenes.5"),
@@ -89,7 +87,6 @@ BOTH: dict[str, tuple[str, str]] = {
     "900 tables": ("[[a]]\n" * 900, "a: unknown key"),
     "integer of 5000 digits": ("turns = " + "9" * 5000, "line 1: a number of more digits than"),
     "integer of 4000 digits": ("turns = " + "9" * 4000, "turns: a whole number of 13288 bits"),
-    "long text": ("turns = '" + "x" * 190_000 + "'", "turns: "),
 }  # fmt: skip
 YAML: dict[str, tuple[bytes, str]] = {
     "integer of 5000 digits": (b"turns: " + b"9" * 5000,
@@ -195,17 +192,15 @@ RUNS = (
 
 @pytest.mark.parametrize("command", RUNS)
 def test_a_table_shorter_than_the_motion_is_refused_before_anything_runs(command: str) -> None:
-    over = r"loads.work: over the displacement [m] the table goes from -0.05 to 0.0499, and 0.04993"
     short = PRESS.replace("0.0499, 0.055]", "0.0499]", 1).replace("1e5, 1e5]", "1e5]", 1)
-    check_refused(short, command, over)
     timed = 'link = "crank"\nlaw = "table"\nover = "time"\ninterpolation = "linear"\n'
     timed = f"[loads.pull]\n{timed}at_s = [0.0, 0.1]\ntorque_n_m = [1.0, 2.0]\n"
-    over = "loads.pull: over the time [s] the table goes from 0 to 0.1, and "
-    check_refused(PRESS[: PRESS.index("[loads.work]")] + timed, command, over)
-
-
-def check_refused(text: str, command: str, words: str) -> None:
-    ended = attempt(text.encode(), *command.split())
-    assert ended.faults == []
-    assert (ended.code, ended.output, ended.files) == (2, "", ())
-    assert words in " ".join(ended.errors.split())
+    goes = "the table goes from"
+    for text, over in (
+        (short, f"work: over the displacement [m] {goes} -0.05 to 0.0499, and 0.04993"),
+        (PRESS[: PRESS.index("[loads.work]")] + timed, f"pull: over the time [s] {goes} 0 to 0.1,"),
+    ):
+        ended = attempt(text.encode(), *command.split())
+        assert ended.faults == []
+        assert (ended.code, ended.output, ended.files) == (2, "", ())
+        assert f"loads.{over}" in " ".join(ended.errors.split())

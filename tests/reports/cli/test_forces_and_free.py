@@ -1,7 +1,6 @@
 """`--forces` and `--free` of verify, sweep, stability and selftest from the command line."""
 
 import json
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import pytest
 
 from models.files.reading import load_scene
 from reports.requests.verify import VerifyRequest, plan
-from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
 from reports.store.reader import read_store
 from sim import registry
 from tests.worlds.command_line import crank, crank_alone, flat, refused, told
@@ -74,23 +72,6 @@ def test_stability_tells_what_forces_are_off_by_and_grades_as_before() -> None:
     more = [line for line in asked.output.splitlines() if line not in plain.output.splitlines()]
     assert len(more) == 1
     assert "error of forces, over the largest: 4" in more[0]
-
-
-def test_a_matrix_keeps_forces_where_they_are_known(tmp_path: Path) -> None:
-    blank = Graded("case", "mujoco", "tuned", 1.0, "1", "ok", "")
-    plain = Matrix({}, (), (blank,), ())
-    known = Matrix({}, (), (replace(blank, force=1e-4), blank), ())
-    assert "force" not in to_json(plain)
-    (tmp_path / FILE).write_text(to_json(known))
-    first, second = read_matrix(tmp_path).runs
-    assert first.force == 1e-4
-    assert math.isnan(second.force)
-
-
-def test_selftest_plants_faults_of_forces_where_it_is_asked() -> None:
-    output = told("selftest --fault torque-off --engine mujoco --jobs 1")
-    assert "1 of 1 fault caught by the named rule" in output
-    assert "CC123" in output
 
 
 def test_what_is_let_go_is_within_and_has_a_table_of_its_own(tmp_path: Path) -> None:

@@ -28,17 +28,11 @@ FOURBAR = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
 
 
 def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
-    def scene(driver: float, rocker: float) -> Scene:
-        links = dict(fourbar.links)
-        for name, tip, length in (("crank", "B", driver), ("rocker", "C", rocker)):
-            bar = links[name]
-            (held,) = (point for point in bar.points if point != tip)
-            links[name] = replace(bar, points={held: (0.0, 0.0), tip: (length, 0.0)})
-        return replace(fourbar, links=links)
-
-    for lengths, said in (((0.2, 0.1), "crank-rocker driven at its rocker (s + l"),
-                          ((0.1, 0.2), "crank-rocker (s + l")):  # fmt: skip
-        assert facts(scene(*lengths), analyse(fourbar))[0].startswith(said)
+    links = dict(fourbar.links)
+    for name, held, tip, length in (("crank", "A", "B", 0.2), ("rocker", "D", "C", 0.1)):
+        links[name] = replace(links[name], points={held: (0.0, 0.0), tip: (length, 0.0)})
+    (said, *_) = facts(replace(fourbar, links=links), analyse(fourbar))
+    assert said.startswith("crank-rocker driven at its rocker (s + l")
 
 
 def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(tmp_path: Path) -> None:
@@ -73,14 +67,6 @@ def test_without_a_whole_cycle_there_is_no_stroke(tmp_path: Path) -> None:
     path.write_text(re.sub(r"law = (.+\n)+", "speed_rad_s = 10.0\n", text), encoding="utf-8")
     output = told("solve --at-deg 40 --along C:30", path)
     assert "\nC along 30 deg: no stroke: the driver goes through no whole cycle, or" in output
-
-
-def test_two_links_that_stand_still_are_solved_and_called_nothing(tmp_path: Path) -> None:
-    path = tmp_path / "still.toml"
-    path.write_text(FOURBAR.replace('bar = ["B", "C"]', 'bar = ["A", "C"]'), encoding="utf-8")
-    output = told("solve --at-deg 90", path)
-    assert "groups in solving order: RRR" in output
-    assert "rocker (s + l" not in output
 
 
 def test_positions_are_numbered_along_what_is_driven(tmp_path: Path) -> None:
@@ -187,9 +173,3 @@ def test_a_cycle_has_an_efficiency_where_it_has_friction(tmp_path: Path) -> None
     np.testing.assert_array_equal(frame["piston_slider_friction_n"], friction["piston"])
     np.testing.assert_array_equal(frame["B_friction_n_m"], friction["B"])
     assert crankcheck.solve("shaper").efficiency is None
-
-
-def test_parts_of_a_motion_are_shown_without_its_power() -> None:
-    few = str(crankcheck.solve(LOCKING, [0.01], links="rod", sliders=(), forces=True))
-    assert "power of" not in few
-    assert "piston block" in few

@@ -93,13 +93,6 @@ def test_a_fault_of_the_scene_is_told_before_anything_runs(tmp_path: Path) -> No
     refused(result, "cannot be assembled", "open by", "change a length")
 
 
-def test_ctrl_c_ends_with_130_and_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(command, "check_all", raising(KeyboardInterrupt()))
-    result = crank(*ONE.split())
-    assert result.exit_code == 130
-    assert result.stderr.splitlines() == ["crankcheck: interrupted"]
-
-
 Verify = Callable[..., tuple[int, str]]
 
 

@@ -51,10 +51,8 @@ REFUSED = {
     f"{DRIVEN} --speed nan": "--speed nan: give",
     f"{DRIVEN} --start inf": "--start inf: give an angle",
     f"{DRIVEN} --branch piston=2": "--branch 'piston=2': give NAME=1",
-    f"{DRIVEN} --key home": "--key 'home': no keyframe of that name",
     f"{DRIVEN} --dt 1e-3 --steps-per-turn 720": "both set the step",
     f"{DRIVEN} shaper": "--mjcf and SCENE: .* leave out one",
-    f"{DRIVEN} --limit-s 0": "--limit-s 0: give a number above 0",
     f"{DRIVEN} --json engine.xml": "engine.xml, which is read",
     f"{DRIVEN} --mjcf whole.xml --csv parts/option.xml":
         "--csv parts/option.xml: that is .*parts/option.xml, which is read",

@@ -35,11 +35,10 @@ from reports.drawing.moving import (
     singles,
     size_of,
 )
-from reports.drawing.svg import COLOURS, HEIGHT, WIDTH, svg
+from reports.drawing.svg import HEIGHT, WIDTH, svg
 from reports.output import numbers
 from reports.output.numbers import DIGITS, NONE, finite
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.reports.page.test_style import contrast
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "shaper", "scotch-yoke", "sixbar-stephenson")
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -259,11 +258,6 @@ def test_the_path_of_a_run_is_drawn_as_far_as_it_is_finite(fourbar: Scene) -> No
     text = svg(fourbar, solve(fourbar, np.linspace(0.0, 0.6, 400)).each_series(half))
     assert "nan" not in "".join(re.findall('points="(.*?)"', text))
     assert text.count("stroke-dasharray") == 2
-
-
-@pytest.mark.parametrize("paper", ["#ffffff", "#111111", "#1e1e1e"])
-def test_links_are_seen_on_white_and_on_black(paper: str) -> None:
-    assert [colour for colour in COLOURS if contrast(colour, paper) < 3.0] == []
 
 
 def test_an_arrow_goes_from_its_pin_along_its_force(fourbar: Scene) -> None:

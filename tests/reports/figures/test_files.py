@@ -6,7 +6,6 @@ import itertools
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,16 +19,13 @@ from matplotlib.transforms import Bbox
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files.reading import find_scene, load_scene, read_text
 from reports.figures.drawing import marks
 from reports.figures.free_figures import _over_one_turn
 from reports.figures.free_runs import free_runs
-from reports.figures.mechanism import draw
 from reports.figures.style import FORMATS, cut, styled, width_in
 from reports.requests.figures import FIGURES, FiguresRequest
 from reports.results.lines import lines
 from reports.results.overview import Report
-from reports.store.manifest import Manifest
 from reports.store.reader import read_store
 from tests.reports.results.made import cell, stored
 from tests.worlds.free_store import LASTS_S
@@ -197,7 +193,6 @@ SHOWN = [(name, scene) for name in DRIVEN for scene in (*SCENES, None)]
 EMPTY = {("split", None), ("mechanism", None), *(("profile", scene) for scene in SCENES)}
 QUICK = {(n, scene) for n in DRIVEN for scene in (SCENES[1], None)} - {("profile", SCENES[1])}
 OF_FREE = [name for name, drawing in FIGURES.items() if "let go" in drawing.drives]
-LETTERED = ("scotch-yoke", "sixbar-stephenson", "shaper", "tangent")
 OTHER = "what differs between figures is that one is of a scene, of all, or of what was let go"
 
 
@@ -263,19 +258,6 @@ def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: st
     if name == "energy":
         ends = [axes.get_xlim() for axes in figure_of(free, name, LET_GO).axes]
         assert ends == [(0.0, pytest.approx(LASTS_S))] * len(ends)
-
-
-@pytest.mark.parametrize("scene", few(LETTERED, {"shaper", "sixbar-stephenson"}, OTHER))
-def test_letters_and_names_of_a_drawing_find_room(scene: str) -> None:
-    made = stored([cell(scene, "tuned", 90, 1e-3, 1.0)])
-    made = replace(made, manifest=Manifest({scene: read_text(find_scene(scene))}))
-    with styled():
-        found = boxes(draw(Report(made), scene))
-    names = {text for text, _ in found}
-    for link in load_scene(scene).links.values():
-        assert {link.name, *link.points} <= names
-    for (a, first), (b, second) in itertools.combinations(found, 2):
-        assert Bbox.intersection(first, second) is None, f"{a!r} on {b!r}"
 
 
 def test_a_name_that_is_too_long_loses_its_middle() -> None:

@@ -129,41 +129,26 @@ def test_only_wheels_and_numpy_as_it_runs_get_into_the_new_one_and_no_path_of_ou
 
 
 PIP_NO_VERSION = """\
-WARNING: Location 'file:///srv/simple/mujoco/' is ignored: it is neither a file nor a directory.
 ERROR: Could not find a version that satisfies the requirement mujoco==3.65.0 (from versions: \
 2.3.7, 3.6.0, 3.7.0, 4.0.0)
-ERROR: No matching distribution found for mujoco==3.65.0
 """
 PIP_NO_NETWORK = """\
-WARNING: Retrying (Retry(total=0, connect=None, read=None, redirect=None, status=None)) after \
-connection broken by 'NewConnectionError('<pip._vendor.urllib3.connection.HTTPSConnection object \
-at 0x7f>: Failed to establish a new connection: [Errno 111] Connection refused')': /simple/mujoco/
+WARNING: Retrying after connection broken by 'NewConnectionError('Failed to establish a new \
+connection: [Errno 111] Connection refused')': /simple/mujoco/
 ERROR: Could not find a version that satisfies the requirement mujoco==3.6.0 (from versions: none)
-ERROR: No matching distribution found for mujoco==3.6.0
 """
 UV_NO_VERSION = """\
-  \u00d7 No solution found when resolving dependencies:
   \u2570\u2500\u25b6 Because there is no version of mujoco==9.9.9 and you require mujoco==9.9.9, \
 we can
       conclude that your requirements are unsatisfiable.
 """
-UV_NO_WHEEL = """\
-error: No solution found when resolving dependencies
-  cause: Because mujoco==2.3.0 has no usable wheels and you require mujoco==2.3.0, we can \
-conclude that your requirements are unsatisfiable.
-
-hint: Wheels are required for `mujoco`
-"""
+UV_NO_WHEEL = "  cause: Because mujoco==2.3.0 has no usable wheels and you require mujoco==2.3.0"
 UV_NO_NETWORK = """\
-error: Request failed after 3 retries in 7.7s
   cause: Failed to fetch: https://packages.example.com/simple/mujoco/
-  cause: error sending request for url (https://packages.example.com/simple/mujoco/)
-  cause: client error (Connect)
   cause: dns error
   cause: failed to lookup address information: Name or service not known
 """
 UV_CONFLICT = """\
-  \u00d7 No solution found when resolving dependencies:
   \u2570\u2500\u25b6 Because mujoco==3.6.0 depends on numpy<2 and numpy==2.4.6, we can conclude that
       mujoco==3.6.0 cannot be used.
 """

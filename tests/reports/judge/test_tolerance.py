@@ -203,15 +203,10 @@ def test_the_drive_of_a_long_run_is_within_what_rounding_explains(
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize(
-    ("turns", "least"), [(100, 1e-10), slowly(1000, 1e-8, reason="where rounding is over the rest")]
-)
-def test_a_thousand_turns_are_within_tolerance_as_one_turn_is(
-    turns: int, least: float, engine: str, fourbar: Scene
-) -> None:
-    found = check(of_turns(fourbar, engine, 90, turns))
+def test_a_hundred_turns_are_within_tolerance_as_one_turn_is(engine: str, fourbar: Scene) -> None:
+    found = check(of_turns(fourbar, engine, 90, 100))
     assert found.failures == ()
-    assert found.limits["drive"].number > least
+    assert found.limits["drive"].number > 1e-10
 
 
 def test_the_limit_grows_with_the_square_of_the_steps_and_again_for_a_law_that_is_no_line() -> None:

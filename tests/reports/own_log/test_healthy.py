@@ -1,31 +1,63 @@
 """A stranger's log of a linkage that is right is within 1e-3 rad, or of a length, in whatever dress
 it comes. The stranger's own solution is a second opinion: it shares no line with ours, and agrees.
-Of a log whose names say nothing, the map that is written is a form, and filled in it reads it."""
+Of a log whose names say nothing, the map that is written is a form, and filled in it reads it; and
+a fault is told with its channels."""
 
 import ast
 import json
 import math
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from typer.testing import Result
 
 import crankcheck
 from analytic.kinematics import solve
 from models.array import Array
 from models.files.reading import load_scene
 from reports.logs.map_file import read_map
-from tests.reports.own_log.conftest import Judge
 from tests.worlds import stranger
+from tests.worlds.command_line import crank
 from tests.worlds.fuzzing import ACTING
 from tests.worlds.stranger import FOURBAR, LINKAGES, Linkage, course
 from tests.worlds.stranger_guises import COLUMNS, GERMAN, GUISES, PER_TURN, SHORT, disguised
 from tests.worlds.stranger_log import DEG, Dress, even, logged, map_text, single, uneven
 
+Judge = Callable[..., Result]
 PLAIN = "fourbar-lecture-1"
 TURN = logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), SHORT)
+
+
+@pytest.fixture
+def judge(tmp_path: Path) -> Judge:
+    """Run ``crankcheck judge`` on these bytes, or a log that is there; it has to end with
+    ``code``."""
+
+    def run(
+        scene: str,
+        log: bytes | Path,
+        *options: object,
+        code: int = 0,
+        mapped: str = "",
+        name: str = "log.csv",
+        target: Sequence[str] = ("--target", "1e-3"),
+    ) -> Result:
+        path = log if isinstance(log, Path) else tmp_path / name
+        if isinstance(log, bytes):
+            path.write_bytes(log)
+        if mapped:
+            (tmp_path / "map.toml").write_text(mapped, encoding="utf-8")
+            options = (*options, "--map", tmp_path / "map.toml")
+        result = crank("judge", scene, path, *target, *options)
+        assert result.exit_code == code, result.output + mapped
+        return result
+
+    return run
 
 
 @pytest.mark.parametrize("name", GUISES)
@@ -119,6 +151,27 @@ def test_the_map_that_is_written_ignores_what_a_map_ignores(judge: Judge, tmp_pa
     mapped = '[[channel]]\ncolumn = "rocker.theta_rad"\nignore = true'
     judge(PLAIN, text, "--write-map", written, mapped=mapped)
     judge(PLAIN, text, "--map", written)
+
+
+def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
+    judge: Judge, tmp_path: Path
+) -> None:
+    """Every other fault is planted in tests/reports/causes."""
+    file, late_s = tmp_path / "judged.json", -FOURBAR.period_s / PER_TURN / 2.0
+    columns = [
+        replace(each, later_s=late_s) if each.what in ("omega", "vx", "vy") else each
+        for each in COLUMNS[PLAIN]
+    ]
+    log = Dress().text(logged(FOURBAR, even(FOURBAR, 2.0, PER_TURN), columns))
+    told = judge(PLAIN, log, "--json", file, code=1).stdout
+    (cause,) = json.loads(file.read_text(encoding="utf-8"))["causes"]
+    assert cause["text"][:40] in " ".join(told.split())
+    assert "none that is known" not in told
+    assert re.search(r"belong 0\.50 samples \(\S+ ms\) earlier", cause["text"])
+    late = {column.header for column in columns if column.later_s}
+    assert set(cause["columns"]) == late - {"crank_omega_rad_s"}  # which is constant
+    mends = [f'[[channel]]\ncolumn = "{column}"\ndelay_s = {late_s!r}' for column in late]
+    judge(PLAIN, log, mapped="\n".join(mends))
 
 
 RED = "rocker \x1b[31m [deg] \u202e"

@@ -76,12 +76,6 @@ def test_a_step_gives_the_budget_of_verify_and_differences_even_samples() -> Non
     assert {row.tolerance for row in again.errors.rows} == {"angle"}
 
 
-def test_a_step_that_can_not_be_is_refused() -> None:
-    for step_s in (-1.0, 0.1, float("nan")):
-        with pytest.raises(CrankcheckError, match="step_s"):
-            judged({"rocker": ROCKER.theta}, None, step_s=step_s)
-
-
 def test_two_copies_of_a_pin_that_part_are_an_open_joint() -> None:
     x, y = C.position.T
     apart = 1e-3 * np.sin(TIME_S)
@@ -197,13 +191,6 @@ def test_what_no_log_is_judged_for_is_not_to_be_required(name: str, why: str) ->
         judged({"rocker": ROCKER.theta}, require=[name])
 
 
-def test_another_assembly_is_named() -> None:
-    other = solve(replace(SCENE, branch=dict.fromkeys(MOTION.conditioning, -1)), TIME_S)
-    one = judged({name: other.links[name].theta for name in ("crank", "coupler", "rocker")})
-    assert one.verdict == "out"
-    assert "CC101" in rules(one)
-
-
 def test_the_reference_itself_is_within_and_says_so() -> None:
     one = judged({"rocker": ROCKER.theta})
     assert one.verdict == "within"
@@ -288,6 +275,7 @@ def test_a_log_of_another_assembly_of_a_triad_is_told_by_its_number() -> None:
     angles = log[[c for c in log if c == "time_s" or c.endswith("_theta_rad")]]
     one = crankcheck.judge(scene, angles, target=1e-6)
     assert one.verdict == "out"
+    assert "CC101" in rules(one)
     (cause,) = one.causes
     assert "the log is of another assembly at plate" in cause.text
     assert "plate = 2 under [branch]" in cause.text

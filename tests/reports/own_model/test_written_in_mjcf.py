@@ -246,11 +246,8 @@ REFUSED: list[tuple[str, str, Mapping[str, object], str]] = [
     ("open-four-bar", "j0", {}, "two assemblies equally well, coupler-tip.*--branch.*--key"),
     ("gripper", "right-driver", {}, "one driver needs mobility 1"),
     ("leg", "knee", {}, "joint rod of body rod: a ball joint leaves the plane"),
-    ("jansen-global", "top", {}, "global coordinates no longer supported"),
-    ("rhombus", "corner", {}, "turns against body lower.*drivable: drive"),
     ("rhombus", "driver", {}, "did you mean drive or corner[?]"),
     ("chebyshev", LEFT, {}, f"{TURNS} 0 to 360 deg, .* -95.66 to 5.663 deg.*--turns 0.015 at"),
-    ("chebyshev", LEFT, {"start_deg": 280.0}, "280 to 640 deg, and reaches 264.3 to 365.7 deg"),
     ("chebyshev", LEFT, {"speed_rad_s": -10.0}, "0 to -360 deg, and .*--turns 0.265 at most"),
     (
         "chebyshev", LEFT, {"start_deg": 50.0},

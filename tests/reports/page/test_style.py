@@ -57,12 +57,6 @@ def test_text_can_be_read_and_lines_be_seen(theme: dict[str, str]) -> None:
             assert contrast(colour, theme["paper"]) >= 3.0, name
 
 
-def mixed(hue: str, part: float, paper: str) -> str:
-    """What `color-mix` makes of a hue on paper."""
-    pairs = [(int(hue[i : i + 2], 16), int(paper[i : i + 2], 16)) for i in (1, 3, 5)]
-    return "#" + "".join(f"{round(part * a + (1.0 - part) * b):02x}" for a, b in pairs)
-
-
 PARTS = {name: int(part) / 100 for name, part in re.findall(r"\.(\w+) \{ --s: (\d+)%; \}", MAP)}
 """How much of its hue a cell of the map has, by the shade of its error."""
 RULES = re.findall(r"^([.][^{}]+) \{ --o: (#\w{6}); \}", MAP, re.MULTILINE)
@@ -76,10 +70,3 @@ def test_every_outcome_has_a_hue_and_every_shade_is_stronger_than_the_one_before
     assert set(PARTS) == {*names, "blank"}
     parts = [PARTS[name] for name in names]
     assert all(b - a >= 0.08 for a, b in itertools.pairwise(parts))
-
-
-@THEMES
-def test_the_signs_of_the_map_can_be_read_on_every_hue_and_shade(theme: dict[str, str]) -> None:
-    for (name, hue), part in itertools.product(HUES.items(), PARTS.values()):
-        ground = mixed(hue, part, theme["paper"])
-        assert contrast(theme["ink"], ground) >= 4.5, f"{name} at {part}"

@@ -15,8 +15,6 @@ import pytest
 import crankcheck
 from models.files.reading import parse_scene
 from reports.drawing.svg import svg
-from reports.own_model.account import read_here
-from reports.requests import verify_model as model_verdict
 from reports.requests.arguments import in_python
 from reports.requests.shown import Shown
 from reports.store.manifest import read_manifest
@@ -24,7 +22,6 @@ from tests.reports.page.hostile import Outline
 from tests.worlds.command_line import crank
 from tests.worlds.in_process import Here, in_this_process
 from tests.worlds.own_models import CROWDED, FACTS, SLIDER_CRANK, judged
-from tests.worlds.tiers import slow
 
 SCENE = "fourbar-lecture-1"
 
@@ -223,23 +220,12 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def checked(model: Path) -> crankcheck.ModelVerdict:
-    return crankcheck.check_model(model, "motor", -10.0, turns=0.5, converge=False)
-
-
 @pytest.fixture(scope="module")
 def verdict(model: Path) -> crankcheck.ModelVerdict:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.own_model.account.Isolated", Here)
         patch.setattr("reports.own_model.judged.Isolated", Here)
-        return checked(model)
-
-
-@slow("a second for the start of processes, as a user has it")
-def test_processes_apart_give_the_same(model: Path, verdict: crankcheck.ModelVerdict) -> None:
-    apart = checked(model)
-    pd.testing.assert_frame_equal(apart.frame(), verdict.frame())
-    assert apart.patch == verdict.patch
+        return crankcheck.check_model(model, "motor", -10.0, turns=0.5, converge=False)
 
 
 def test_a_model_gives_a_verdict_lines_a_scene_a_diff_a_frame_of_every_error_and_a_drawing(
@@ -273,28 +259,3 @@ def test_a_linkage_that_goes_through_no_whole_turn_is_drawn_as_far_as_it_went() 
     assert "<svg" in swung._repr_html_()
     with pytest.raises(crankcheck.ReachError):
         svg(one.scene)
-
-
-REFUSED = {
-    "model: found 3; give a path": {"model": 3},
-    "drive: found None; give a name": {"drive": None},
-    "speed_rad_s: found 'x'; give a number": {"speed_rad_s": "x"},
-    "speed_rad_s 0: give that of the crank": {"speed_rad_s": 0},
-    "branch C: found 2; it is 1 or -1": {"branch": {"C": 2}},
-    "branch: found 3; give a dict": {"branch": 3},
-    "dt_s: found 'x'; give a number above 0": {"dt_s": "x"},
-    "tolerance 'angel': it is no quantity": {"tolerance": {"angel": 1.0}},
-    "converge: found 1; give True or False": {"converge": 1},
-}
-
-
-@pytest.mark.parametrize("message", REFUSED)
-def test_an_argument_that_is_none_is_refused_in_the_words_of_the_call(
-    message: str, model: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(model_verdict, "read", lambda request, _: read_here(request))
-    given = {"model": model, "drive": "motor", "speed_rad_s": 10.0, **REFUSED[message]}
-    with pytest.raises(crankcheck.CrankcheckError) as caught:
-        crankcheck.check_model(**given)
-    assert message in str(caught.value)
-    assert "--" not in str(caught.value)

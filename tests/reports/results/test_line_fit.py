@@ -11,7 +11,6 @@ import pytest
 from reports.judge.three_steps import AT_ROUNDING
 from reports.results.floor_fit import ALIGNMENTS, added, opposed, reach, within
 from reports.results.line_fit import FitKind, fit_line
-from tests.worlds.tiers import slowly
 
 STEPS = 1e-2 / 2.0 ** np.arange(6)
 
@@ -135,25 +134,6 @@ def test_the_stated_uncertainty_of_an_order_holds_two_times_in_three() -> None:
     assert seen > 0.99 * count
     # Three standard deviations of a count.
     assert held / count == pytest.approx(0.683, abs=3.0 * math.sqrt(0.683 * 0.317 / count))
-
-
-@pytest.mark.parametrize(
-    ("alignment", "order"),
-    [(-0.6, 2.0), *(slowly(a, 1.0, reason="they lie between") for a in (0.0, 0.3, 0.6, 1.0))],
-)
-def test_it_holds_two_times_in_three_however_floor_and_step_are_aligned(
-    alignment: float, order: float
-) -> None:
-    """Up to an alignment of 0.6 the floor is read low, since full alignment is what is fitted."""
-    rng = np.random.default_rng(23)
-    step = (STEPS / STEPS[-1]) ** order
-    exact = np.sqrt(9.0 + 2.0 * alignment * 3.0 * step + step**2)
-    fits = [fit_line(STEPS, scattered(exact, 0.02, rng)) for _ in range(30)]
-    assert all(fit.kind == "floor" for fit in fits)
-    assert sum(abs(fit.floor - 3.0) <= fit.floor_error for fit in fits) >= 20
-    assert sum(abs(fit.order - order) <= fit.order_error for fit in fits) >= 20
-    assert sum(fit.floor_below >= 3.0 for fit in fits) >= 28
-    assert np.mean([fit.floor_error for fit in fits]) < 0.4 * 3.0
 
 
 def test_no_floor_is_claimed_on_first_order_lines_with_scatter() -> None:

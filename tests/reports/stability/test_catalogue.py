@@ -125,17 +125,11 @@ def test_an_engine_that_has_no_such_drive_is_a_row_with_a_reason(engine: str, sc
     assert graded(case, "mujoco", "tuned", 1.0, draw=False)[0].outcome == "ok"
 
 
-@pytest.mark.parametrize(
-    ("case", "value", "sine"),
-    [
-        ("swinging-lever", 1e-6, pytest.approx(0.005, abs=0.005)),
-        ("swinging-lever", 1.0, pytest.approx(1.0 / 3.0, abs=1e-4)),
-    ],
-)
-def test_how_near_a_block_is_to_its_pivot_is_said(case: str, value: float, sine: object) -> None:
-    trial = CATALOGUE[case].trial(value)
-    motion = solve(trial.scene, np.arange(1441) * trial.dt_s, bound=False)
-    assert nearest(trial.scene, motion) == sine
+def test_how_near_a_block_is_to_its_pivot_is_said() -> None:
+    for value, sine in ((1e-6, pytest.approx(0.005, abs=0.005)), (1.0, pytest.approx(1 / 3, 3e-4))):
+        trial = CATALOGUE["swinging-lever"].trial(value)
+        motion = solve(trial.scene, np.arange(1441) * trial.dt_s, bound=False)
+        assert nearest(trial.scene, motion) == sine
 
 
 def test_an_error_falls_with_the_step_squared_and_what_diverges_says_which_would_do() -> None:

@@ -125,15 +125,11 @@ def test_several_scenes_are_tuned_together_and_measured_cost_is_told() -> None:
         ({"budget": 0}, "--budget 0: give a number of trials"),
         ({"seed": -1}, "--seed -1: give a whole number"),
         ({"turns": 1e9}, r"--turns 1e\+09: .* take 12500 turns or less"),
-        ({"limit_s": 0.0}, "--limit-s 0"),
         ({"scenes": ()}, "name a scene"),
-        ({"engine": "mujocko"}, "engine 'mujocko': unknown; did you mean mujoco"),
         ({"output": Path("nowhere/kept.db")}, "there is no folder"),
         ({"target": 1e-4}, "holds a search with target 1e-05; asked was target 0.0001"),
-        ({"seed": 9}, "holds a search with seed 3; asked was seed 9"),
         ({"engine": "pymunk"}, "with engine mujoco; asked was engine pymunk"),
         ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; asked was'),
-        ({"turns": 3.0}, "with turns 2.0; asked was turns 3.0"),
     ],
 )
 def test_bad_requests_and_the_file_of_another_search_are_refused_before_anything_runs(

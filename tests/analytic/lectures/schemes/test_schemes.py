@@ -2,7 +2,6 @@
 and classes of joints from contacts: the problem book's examples, lower pairs, any frame."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -92,11 +91,6 @@ def test_the_derivative_of_the_closure_is_that_of_differences_and_of_each_joint(
     for joint in loops.scheme.joints:
         opened = effect_of(loops, joint) @ own[joint.name][rows]
         assert np.allclose(opened, slope[:, loops.columns[joint.name]], atol=1e-9)
-
-
-def renamed(scheme: Scheme, links: Mapping[str, str]) -> tuple[SchemeJoint, ...]:
-    ends = [tuple(links.get(end, end) for end in each.between) for each in scheme.joints]
-    return tuple(replace(j, between=own) for j, own in zip(scheme.joints, ends, strict=True))
 
 
 @pytest.mark.parametrize("name", COUNTS)
@@ -245,7 +239,9 @@ def test_a_spatial_scheme_is_refused() -> None:
 
 def test_the_new_link_has_a_name_of_its_own() -> None:
     scheme = load_scheme("cam-flat-follower")
-    joints = renamed(scheme, {"cam": "B-link"})
+    renamed = [tuple({"cam": "B-link"}.get(end, end) for end in j.between) for j in scheme.joints]
+    pairs = zip(scheme.joints, renamed, strict=True)
+    joints = tuple(replace(joint, between=own) for joint, own in pairs)
     taken = replace(scheme, links=("B-link", "follower"), joints=joints)
     assert replaced(taken).links == ("B-link", "follower", "B-link-2")
 

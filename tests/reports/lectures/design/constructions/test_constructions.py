@@ -1,13 +1,11 @@
 """The sheet of a construction, measured, and what its page holds, which `tests.reports.page` opens;
 and lines cut to a box, against what of them is in it by looking."""
 
-import json
 import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -37,6 +35,7 @@ from reports.lectures.drawing.sheets.paper import (
 )
 from tests.reports.lectures.design.constructions import constructed as made
 from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines, overlaps
+from tests.reports.page.hostile import embedded_in
 from tests.worlds.tiers import few
 
 A4, A5, UPRIGHT = Paper.of("A4"), Paper.of("A5"), Paper.of("210x297")
@@ -192,18 +191,13 @@ def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
     assert laid_out(long, Paper.of("A3")).scale > 0.0
 
 
-def embedded(page: str) -> dict[str, Any]:
-    match = re.search(r'id="embedded-construction">(.*?)</script>', page)
-    return json.loads(match[1])  # type: ignore[no-any-return]  # an object, as it was written
-
-
 @pytest.mark.parametrize("make", [made.rocker_by_angle, made.burmester_curves])
 def test_the_page_holds_every_step_and_its_words(make: Callable[[], design.Proposal]) -> None:
     proposal = make()
     page = construction_page(proposal)
     words = re.findall(r"<li><button type=\"button\">(.*?)</button></li>", page)
     assert words == [*(step.words for step in proposal.steps), MOVES]
-    for step, drawn in zip(proposal.steps, embedded(page)["steps"], strict=True):
+    for step, drawn in zip(proposal.steps, embedded_in(page, "construction")["steps"], strict=True):
         for element, own in zip(step.elements, drawn, strict=True):
             if isinstance(element, design.Dot):
                 assert own["at"] == pytest.approx(xy(element.place), rel=1e-5, abs=1e-12)
@@ -233,7 +227,7 @@ def test_the_motion_meets_each_position_where_the_page_stops() -> None:
 
 def test_a_position_that_the_driver_can_not_lead_to_is_no_stop_and_what_is_chosen_is_told() -> None:
     page = construction_page(made.burmester_curves())
-    own = embedded(page)
+    own = embedded_in(page, "construction")
     assert None in own["at"]
     assert own["at"][0] is not None
     assert len(own["poses"]) == 4

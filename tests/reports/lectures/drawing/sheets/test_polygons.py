@@ -2,9 +2,7 @@
 `tests.reports.page` opens it. Polygons at an instant: at a time of a motion, beside how that moves;
 of a log, beside the reference: planted errors come out as they went in."""
 
-import base64
 import io
-import json
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -47,7 +45,9 @@ from reports.lectures.drawing.sheets.polygon_sheet import (
 )
 from reports.logs.map_file import Map
 from reports.requests.any_log import log_of_motion
+from tests.reports.drawing.test_moving import unpacked
 from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines
+from tests.reports.page.hostile import embedded_in
 from tests.worlds.tiers import slow
 
 
@@ -142,20 +142,9 @@ def test_paper_that_can_not_be_drawn_on_is_refused(paper: str) -> None:
         Paper.of(paper)
 
 
-def embedded(page: str) -> dict:
-    match = re.search(r'id="embedded-polygons">(.*?)</script>', page)
-    return json.loads(match[1])  # type: ignore[no-any-return]  # an object, as it was written
-
-
-def unpacked(packed: dict) -> Array:
-    whole = np.frombuffer(base64.b64decode(packed["base64"]), "<i2").astype(float)
-    whole[whole == -32768] = np.nan
-    return whole.reshape(-1, packed["samples"]) * np.array(packed["scales"])[:, None]
-
-
 def test_the_page_holds_the_polygons_of_each_instant() -> None:
     placed = placed_at_angle(load_scene("slotted-lever"), 50.0)
-    own = embedded(polygon_page(placed))
+    own = embedded_in(polygon_page(placed), "polygons")
     at = own["home"]
     assert own["drawing"]["told"]["at"][at] == pytest.approx(50.0)
     drawn = draw_polygons(placed.scene, placed.driver)
@@ -167,7 +156,7 @@ def test_the_page_holds_the_polygons_of_each_instant() -> None:
 
 
 def test_of_a_link_that_does_not_turn_the_page_has_rates_of_exactly_0() -> None:
-    own = embedded(polygon_page(placed_at_angle(load_scene("scotch-yoke"), 50.0)))
+    own = embedded_in(polygon_page(placed_at_angle(load_scene("scotch-yoke"), 50.0)), "polygons")
     rows = unpacked(own["links"]["rows"])
     number = own["links"]["names"].index("yoke")
     assert np.all(rows[2 * number : 2 * number + 2] == 0.0)
@@ -175,7 +164,7 @@ def test_of_a_link_that_does_not_turn_the_page_has_rates_of_exactly_0() -> None:
 
 def test_a_speed_of_ones_own_is_that_of_a_whole_turn_if_the_driver_goes_through_one() -> None:
     placed = placed_at_angle(load_scene("fourbar-swing"), 90.0, 3.0)
-    at = embedded(polygon_page(placed, steady=True))["drawing"]["told"]["at"]
+    at = embedded_in(polygon_page(placed, steady=True), "polygons")["drawing"]["told"]["at"]
     assert at[-1] - at[0] == pytest.approx(360.0)
     assert len(at) == INSTANTS
     scene = load_scene("fourbar-double-rocker")  # whose driver goes through no turn
