@@ -80,7 +80,7 @@ class ReadModel:
     def drawn(self) -> Poses:
         """Return the pose of the file: as drawn, or of the keyframe."""
         limbs = self.planar.limbs
-        q = np.array(limbs.senses) * self.planar.qpos[list(limbs.positions)]
+        q = self.planar.pose()
         still = np.zeros((1, len(q)))
         poses = body_poses(limbs.limbs, q[None], still, still)
         return Poses(np.zeros(1), {name: poses[limb] for name, limb in limbs.shown.items()})

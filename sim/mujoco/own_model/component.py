@@ -19,6 +19,7 @@ from sim.mujoco.own_model.driven_loop import (
     speeds,
 )
 from sim.mujoco.own_model.file import ModelClosure, ModelError, body_name
+from sim.mujoco.own_model.held_rods import HeldRod, matrix_of
 
 UP, ACROSS = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
 
@@ -70,7 +71,8 @@ lengths by 2e-8 of themselves."""
 @dataclass(frozen=True, eq=False)
 class PlanarJoint:
     """A hinge or a slide of the model as drawn: its anchor, and the direction of a slide, in the
-    plane; ``sense`` is -1 for a hinge whose positive angles are clockwise."""
+    plane; ``sense`` is -1 for a hinge whose positive angles are clockwise. ``columns`` are those of
+    its coordinate and its rate, after all of the model for a rod's."""
 
     index: int
     name: str
@@ -78,6 +80,7 @@ class PlanarJoint:
     anchor: complex
     direction: complex
     sense: float
+    columns: tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +102,7 @@ class Component:
     data: Any
     plane: Plane
     bodies: tuple[RigidBody, ...]
+    rods: tuple[HeldRod, ...]
 
     @property
     def model(self) -> Any:
@@ -131,15 +135,50 @@ def component(model: Any, joint: str, qpos: Array) -> Component:
     loop = driven_loop(model, joint, qpos)
     data = loop.data
     plane = Plane.across(data.xaxis[loop.driven])
-    bodies = tuple(_body(loop.model, data, plane, body) for body in loop.bodies)
-    return Component(loop, data, plane, bodies)
+    rods: list[HeldRod] = []
+    bodies = tuple(_body(loop, plane, body, rods) for body in loop.bodies)
+    return Component(loop, data, plane, bodies, tuple(rods))
 
 
-def _body(model: Any, data: Any, plane: Plane, root: int) -> RigidBody:
+def _body(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> RigidBody:
+    model, data = loop.model, loop.data
     first, count = int(model.body_jntadr[root]), int(model.body_jntnum[root])
-    joints = tuple(_joint(model, data, plane, joint) for joint in range(first, first + count))
     parent = rigid(model, int(model.body_parentid[root]))
+    joints = _rod(loop, plane, root, rods)
+    joints = joints or tuple(_joint(model, data, plane, first + n) for n in range(count))
     return RigidBody(root, body_name(model, root), parent, joints)
+
+
+def _rod(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> tuple[PlanarJoint, ...]:
+    """Return the joints in the plane of a body on a free or ball joint that pins to bodies of the
+    plane hold there at two places, and add it to the rods; none for any other body."""
+    model, data, index = loop.model, loop.data, int(loop.model.body_jntadr[root])
+    kind = JOINTS[int(model.jnt_type[index])]
+    carries = any(rigid(model, int(model.body_parentid[body])) == root for body in loop.bodies)
+    if kind not in ("free", "ball") or carries:
+        return ()
+    places = [data.xanchor[index]] if kind == "ball" else []
+    for each in (each for each in loop.closures if each.kind == "connect"):
+        for end, other in ((0, 1), (1, 0)):
+            beside = model.jnt_type[model.jnt_bodyid == rigid(model, each.bodies[other])]
+            planar = all(JOINTS[int(joint)] in ("hinge", "slide") for joint in beside)
+            if rigid(model, each.bodies[end]) == root and planar:
+                places.append(each.anchors[end])
+    line = max((place - places[0] for place in places), key=np.linalg.norm, default=np.zeros(3))
+    if not np.any(line):
+        return ()
+    free = 3 if kind == "free" else 0
+    at, dof = int(model.jnt_qposadr[index]) + free, int(model.jnt_dofadr[index]) + free
+    own, turned = data.xmat[root].reshape(3, 3), np.array(data.qpos[at : at + 4])
+    axes = np.array([plane.x, plane.y, plane.normal]) @ own @ matrix_of(turned).T
+    arm, line = own.T @ (places[0] - data.xpos[root]), own.T @ line
+    before = sum(rod.count for rod in rods)
+    rods.append(HeldRod(at, dof, axes, turned, arm, line, np.array(places[0]) if free else None))
+    columns = [(model.nq + before + n, model.nv + before + n) for n in range(rods[-1].count)]
+    name, anchor = joint_name(model, index), plane.flat(places[0])
+    hinge = PlanarJoint(index, name, "hinge", anchor, 0j, 1.0, columns[-1])
+    ways = zip((1.0 + 0j, 1j), columns[:-1], strict=False)
+    return (*(PlanarJoint(index, name, "slide", 0j, way, 1.0, at) for way, at in ways), hinge)
 
 
 def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
@@ -148,10 +187,12 @@ def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
     of = f"joint {name} of body {body_name(model, int(model.jnt_bodyid[index]))}"
     if kind not in ("hinge", "slide"):
         raise ModelError(
-            f"{of}: a {kind} joint leaves the plane of the driven hinge; use hinges across the "
-            "plane and slides within it"
+            f"{of}: a {kind} joint leaves the plane of the driven hinge, but where two pins to "
+            "bodies of the plane hold a body that carries none; use hinges across the plane and "
+            "slides within it"
         )
     axis, anchor = data.xaxis[index], plane.flat(data.xanchor[index])
+    columns = int(model.jnt_qposadr[index]), int(model.jnt_dofadr[index])
     off = plane.off_normal_deg(axis)
     if kind == "hinge":
         if off > PARALLEL_DEG:
@@ -159,16 +200,15 @@ def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
                 f"{of}: its axis is {off:.3g} deg off that of the driven hinge; in a planar "
                 f"mechanism they are parallel, to {PARALLEL_DEG:g} deg"
             )
-        return PlanarJoint(
-            index, name, "hinge", anchor, 0j, 1.0 if plane.height(axis) > 0 else -1.0
-        )
+        sense = 1.0 if plane.height(axis) > 0 else -1.0
+        return PlanarJoint(index, name, "hinge", anchor, 0j, sense, columns)
     if 90.0 - off > PARALLEL_DEG:
         raise ModelError(
             f"{of}: it slides {90.0 - off:.3g} deg off the plane across the driven hinge; in a "
             f"planar mechanism it slides within it, to {PARALLEL_DEG:g} deg"
         )
     direction = plane.flat(axis)
-    return PlanarJoint(index, name, "slide", anchor, direction / abs(direction), 1.0)
+    return PlanarJoint(index, name, "slide", anchor, direction / abs(direction), 1.0, columns)
 
 
 def loose_joints(component: Component) -> list[str]:
@@ -179,7 +219,7 @@ def loose_joints(component: Component) -> list[str]:
         joint.index
         for body in component.bodies
         for joint in body.joints
-        if joint.index != component.driven
+        if joint.index != component.driven and joint.columns[1] < model.nv
     ]
     columns = [int(model.jnt_dofadr[joint]) for joint in joints]
     rows = [_rows(component, each)[:, columns] for each in component.closures]

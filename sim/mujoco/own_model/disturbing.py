@@ -15,6 +15,7 @@ from sim.mujoco.own_model.linkage import Linkage, size
 from sim.mujoco.own_model.pins import far_pins, misses
 from sim.registry.own_models import FAR_PIN, Disturbance
 
+SLIDE = mujoco.mjtJoint.mjJNT_SLIDE.value
 SHOWN = 6
 OPEN = 1e-4
 """Gap of a loop in a keyframe, over the size of the linkage, that is more than rounding."""
@@ -98,7 +99,7 @@ def _readings(model: Any, ids: set[int]) -> Iterator[Kind]:
     readings = [
         f"{name} {reading(ref, is_hinge(model, joint))}"
         for joint, _, name in _own(model, ids)
-        if (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
+        if model.jnt_type[joint] >= SLIDE and (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
     ]
     if readings:
         text = f"ref makes joints read as they are drawn: {few(readings, SHOWN)}"

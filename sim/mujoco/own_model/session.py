@@ -67,7 +67,6 @@ class OwnModelSession(SteppedModel):
         model.eq_active0[list(loop.idle)] = 0
         self._hold(model, own.keyframe)
         self._limbs: tuple[Limb, ...] = own.limbs.limbs
-        self._senses = np.array(own.limbs.senses)
         self._place(scene, state)
         self._forward()
 
@@ -75,14 +74,14 @@ class OwnModelSession(SteppedModel):
         """Set all joints from the closed form, with velocities at the integrator's instant."""
         q, rate, push = self._own.start(scene, state)
         rate = rate + self._shift * self._dt * push
-        self._data.qpos[list(self._own.limbs.positions)] = self._senses * q
-        self._data.qvel[list(self._own.limbs.rates)] = self._senses * rate
+        self._own.put(self._data, q, rate)
         crank = int(self._model.jnt_dofadr[self._own.driven])
         self._data.qvel[crank] = float(scene.driver.law.at(np.array([state.time_s]))[1][0])
         loop = self._own.linkage.component.loop
         self._data.qvel[list(loop.held)] = 0.0
         if loop.follows:
-            _let_follow(self._model, self._data, {*self._own.limbs.rates, *loop.held})
+            own = np.isin(self._model.dof_bodyid, loop.bodies)
+            _let_follow(self._model, self._data, {*np.flatnonzero(own), *loop.held})
 
     def record(self, steps: int, every: int) -> Log:
         """Advance and log. Raises EngineError where the driven joint has left its course."""
@@ -118,18 +117,9 @@ class OwnModelSession(SteppedModel):
         )
 
     def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        q, rate = self._joints(states)
-        limbs = self._own.limbs
-        positions, rates = list(limbs.positions), list(limbs.rates)
         lag = self._shift * self._dt
-        poses = body_poses(
-            self._limbs,
-            q[:, positions] * self._senses,
-            rate[:, rates] * self._senses,
-            push[:, rates] * self._senses,
-            lag,
-        )
-        shown = {name: poses[limb] for name, limb in limbs.shown.items()}
+        poses = body_poses(self._limbs, *self._own.seen(*self._joints(states), push), lag)
+        shown = {name: poses[limb] for name, limb in self._own.limbs.shown.items()}
         return Poses(self._start_s + self._dt * at, shown, lag)
 
     def _controls(self, steps: int) -> Array | None:
@@ -191,12 +181,11 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
         data.qpos[:] = own.qpos
     touching: dict[tuple[str, str], int] = {}
     low, high = np.full(model.nq, np.inf), np.full(model.nq, -np.inf)
-    positions, senses = list(own.limbs.positions), np.array(own.limbs.senses)
     q = own.start(scene, states[0])[0]
     with heard(lambda _: None):
         for state in states:
             q = coordinates(own.limbs, scene, state, near=q)[0]
-            data.qpos[positions] = senses * q
+            own.put(data, q, np.zeros(len(q)))
             mujoco.mj_fwdPosition(model, data)
             _refuse_misread(own, data, state)
             low, high = np.fmin(low, data.qpos), np.fmax(high, data.qpos)

@@ -152,6 +152,13 @@ def foot(joint: str) -> tuple[str, str]:
     return '<site name="coupler-tip"', body + '<site name="coupler-tip"'
 
 
+COUPLER = '<body name="coupler" pos="0 0 0.1">\n        <joint name="B"/>'
+ROD = '</body><body name="coupler" pos="0 0 0.1"><freejoint name="B"/>'
+ENDS = '</body>\n    </body>\n    <body name="rocker"'
+FREE_ROD = (
+    *(COUPLER, ROD, ENDS, '</body>\n    <body name="rocker"'),
+    *("<equality>", '<equality><connect name="B" body1="crank" body2="coupler" anchor="0 0 0.1"/>'),
+)
 SLIDE = '<joint name="go" type="slide" axis="1 0 0"/>'
 WAIST = f'<body name="hull"><joint name="waist" type="ball"/>{HULL}'
 FLOATING = f'<body name="foot" pos="0.2 0 0.2"><freejoint name="toe"/>{HULL}</body></worldbody>'
@@ -172,6 +179,8 @@ CARRIED = {
     "on a slide that follows it": (
         (*on(SLIDE), *tied(GEARS.format("go", "D"))), "left out: gears, by which base follows"
     ),
+    "with a rod on a free joint": (FREE_ROD, "assembly: C +1"),
+    "with a rod on a ball joint": (('<joint name="B"/>', '<joint name="B" type="ball"/>'), "C +1"),
     "with a foot": (foot('<joint name="ankle"/>'), "left out: foot (hinge ankle), hanging on the"),
     "with a foot that leaves the plane": (foot('<joint type="ball"/>'), "left out: foot (a ball)"),
     "with a foot on a pin": (
@@ -245,7 +254,7 @@ REFUSED: list[tuple[str, str, Mapping[str, object], str]] = [
     ("four-bar-never-closed", "crank-pivot", {}, "no loop: the model has no <equality>"),
     ("open-four-bar", "j0", {}, "two assemblies equally well, coupler-tip.*--branch.*--key"),
     ("gripper", "right-driver", {}, "one driver needs mobility 1"),
-    ("leg", "knee", {}, "joint rod of body rod: a ball joint leaves the plane"),
+    ("leg", "knee", {}, "joint heel of body heel: its axis is 4.48 deg off that of"),
     ("rhombus", "driver", {}, "did you mean drive or corner[?]"),
     ("chebyshev", LEFT, {}, f"{TURNS} 0 to 360 deg, .* -95.66 to 5.663 deg.*--turns 0.015 at"),
     ("chebyshev", LEFT, {"speed_rad_s": -10.0}, "0 to -360 deg, and .*--turns 0.265 at most"),
