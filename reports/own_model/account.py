@@ -19,7 +19,7 @@ from reports.compare.last_turn import Trace, trace
 from reports.compare.tracks import length
 from reports.judge.cell import Cell, Checked, examined
 from reports.judge.tolerance import check_names
-from reports.own_model.assembly import ModelRequest, assembled, out_of_reach
+from reports.own_model.assembly import ModelRequest, assembled, far_pins, out_of_reach
 from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
@@ -121,11 +121,12 @@ def read_here(request: ModelRequest) -> ModelAccount:
         motion = solve(scene, times, bound=False)
         refuse_singular(scene, dt_s * steps)
     except ReachError as error:
-        words = out_of_reach(scene, request, str(error))
+        words = f"{out_of_reach(scene, request, str(error))}{far_pins(own)}"
         raise CrankcheckError(f"{request.path}: {words}") from None
     except CrankcheckError as error:
         raise CrankcheckError(
             f"{request.path}: {error}; --start and --turns set the range of joint {request.joint}"
+            f"{far_pins(own)}"
         ) from None
     seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
     proposals = [
@@ -145,7 +146,7 @@ def read_here(request: ModelRequest) -> ModelAccount:
         dt_s=dt_s,
         steps=steps,
         open_m=own.open_m(),
-        notes=[*found.notes, *passed],
+        notes=[*own.notes, *found.notes, *passed],
         disturbances=[*met, *own.disturbances],
         profiles=list(own.engine(proposals[0].advised).profiles),
         proposals=proposals,

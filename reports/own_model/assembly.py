@@ -5,8 +5,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,10 +21,12 @@ from models.scene import Driver, Scene
 from models.scene.joints import Frame, frames
 from models.scene.laws import ConstantSpeed
 from sim.engine import BodyPose
-from sim.registry.own_models import MOST_TURNS, OwnModel
+from sim.registry.own_models import FAR_PIN, MOST_TURNS, OwnModel
 
 MOST_CHOICES = 8
 """Most choices that are tried, two to this power; beyond it the user chooses."""
+SHUT = 1e-3
+"""Largest distance of a pose from the assembly in which it is drawn shut."""
 ALIKE = 0.1
 """A pose fits two assemblies if it is nearer to the best than the next by less than this share."""
 TURN = math.tau
@@ -71,21 +76,58 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
             f"are found by trying; choose {len(left) - MOST_CHOICES} or more with --branch NAME=1 "
             f"or NAME=-1, of {', '.join(left)}"
         )
-    ranked = sorted(_fits(own, bare, numbered, request.branch), key=lambda fit: fit[0])
+    every = partial(_fits, own, bare, numbered, request=request)
+    ranked = sorted(every(request.branch), key=lambda fit: fit.far)
     if not ranked:
-        raise CrankcheckError(f"{request.path}: {_why_not_assembled(own, bare, request)}")
-    far, scene = ranked[0]
-    if len(ranked) > 1 and ranked[1][0] - far < ALIKE * ranked[1][0]:
-        choices = " or ".join(_words(fit[1].branch) for fit in ranked[:2])
+        why = f"{_why_not_assembled(own, bare, request)}{far_pins(own)}"
+        raise CrankcheckError(f"{request.path}: {why}")
+    # A pose that is shut says the assembly by itself, within the ranges or not.
+    able = [fit for fit in ranked if not fit.outside or fit.far <= SHUT] or ranked
+    best, scene = able[0], able[0].scene
+    if _alike(able):
+        choices = " or ".join(_words(fit.scene.branch) for fit in able[:2])
         raise CrankcheckError(
             f"{request.path}: the pose fits two assemblies equally well, {choices}; choose with "
             "--branch NAME=1 or NAME=-1, or start from another pose with --key"
         )
-    notes = [f"assembly: {_words(scene.branch)}, nearest to the pose"] if keys else []
-    if request.start_deg is not None:
-        law = replace(law, start_rad=math.radians(request.start_deg))
-        scene = _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
-    return AssembledModel(scene, tuple(notes))
+    how = "beside what --branch names " * bool(request.branch) + "nearest to the pose"
+    how = how if left else "as --branch names it"
+    notes = [f"assembly: {_words(scene.branch)}, {how}"] if keys else []
+    if keys and (best is not ranked[0] or _alike(ranked)):
+        notes[0] += " of those within all ranges"
+        notes[0] += f"; nearer is {_broken(ranked[0])}" if best is not ranked[0] else ""
+    if best.outside:
+        others = every({}) if len(keys) <= MOST_CHOICES else []
+        within = [_words(fit.scene.branch) for fit in others if not fit.outside]
+        cure = f"{within[0]} stays within all ranges" if within else "no assembly found is within"
+        notes.append(f"start: {_broken(best)}; {cure}")
+    return AssembledModel(_started(scene, request), tuple(notes))
+
+
+class _Fit(NamedTuple):
+    """An assembly: the largest distance of a body's drawn frame from it, over the longest link, or
+    angle [rad]; and the joints that break their ranges where the run starts."""
+
+    far: float
+    scene: Scene
+    outside: Sequence[str]
+
+
+def _alike(fits: Sequence[_Fit]) -> bool:
+    """True if a pose fits the first two assemblies as well."""
+    return len(fits) > 1 and fits[1].far - fits[0].far < ALIKE * fits[1].far
+
+
+def _broken(fit: _Fit) -> str:
+    return f"{_words(fit.scene.branch) or 'the assembly'}, where {few(fit.outside, SHOWN)}"
+
+
+def _started(scene: Scene, request: ModelRequest) -> Scene:
+    """Return a scene at the start that the request names. Raises CrankcheckError as `_led_to`."""
+    if request.start_deg is None:
+        return scene
+    law = ConstantSpeed(math.radians(request.start_deg), request.speed_rad_s)
+    return _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
 
 
 def _words(branch: Mapping[str, int]) -> str:
@@ -118,10 +160,13 @@ def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
 
 
 def _fits(
-    own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
-) -> Iterator[tuple[float, Scene]]:
-    """Yield every assembly, with the distance of the drawn pose from it: the largest distance of a
-    body's frame over the longest link, or angle [rad]."""
+    own: OwnModel,
+    bare: Scene,
+    choices: Mapping[str, Sequence[int]],
+    chosen: Mapping[str, int],
+    request: ModelRequest,
+) -> Iterator[_Fit]:
+    """Yield every assembly with the ``chosen`` signs."""
     left = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
     for signs in itertools.product(*(choices[key] for key in left)):
@@ -132,10 +177,15 @@ def _fits(
         except CrankcheckError:
             continue
         placed = frames(scene, state)
-        yield (
-            max(_distance(placed[name], drawn[name], scene.longest_m) for name in drawn),
-            scene,
-        )
+        far = max(_distance(placed[name], drawn[name], scene.longest_m) for name in drawn)
+        outside: Sequence[str] = ()
+        # A start that can not be assembled is refused later, with what it reaches.
+        with suppress(CrankcheckError):
+            begun = _started(scene, request)
+            if begun is not scene:
+                state = solve(begun, np.zeros(1), bound=False).state()
+            outside = own.outside(begun, state)
+        yield _Fit(far, scene, outside)
 
 
 def _distance(frame: Frame, pose: BodyPose, longest_m: float) -> float:
@@ -151,6 +201,12 @@ def _why_not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str
     except CrankcheckError as error:
         return f"{error}{_why_mobile(own, request)}"
     return "it can not be assembled in this pose"
+
+
+def far_pins(own: OwnModel) -> str:
+    """Return the pins far outside their bodies as the likely reason of a refusal; "" without."""
+    far = [each.text for each in own.disturbances if each.kind == FAR_PIN]
+    return f"; is it the linkage that you mean? {few(far, SHOWN)}" if far else ""
 
 
 def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:

@@ -20,6 +20,7 @@ from reports.output.numbers import count, error_text, listed, short
 from reports.own_model.account import CheckedLine, ModelAccount, told
 from reports.own_model.judged import PARTS, JudgedModel, errors_of
 from reports.verify.table import HALVED, MARKS, halved, mark
+from sim.registry.own_models import FAR_PIN
 
 OPEN = 1e-9
 """Least opening of a joint that is reported, over the longest link."""
@@ -63,10 +64,12 @@ def _drive_text(account: ModelAccount) -> str:
     start = "the pose as drawn" if request.key is None else f"keyframe {request.key}"
     if request.start_deg is not None:
         start = f"{request.start_deg:g} deg"
+    based = any(note.startswith("base:") for note in account.notes)
+    on = f"that hinge{', and at rest on the joints of the base' * based}"
     return (
         f"{request.joint} at {request.speed_rad_s:g} rad/s, {turns} from {start}, by a "
-        "flywheel on that hinge, set at run time, by whose ratio the solver's tolerance is "
-        "divided; nothing else is changed"
+        f"flywheel on {on}, set at run time, by whose ratio the solver's tolerance is divided; "
+        "nothing else is changed"
     )
 
 
@@ -80,12 +83,18 @@ def _pose_text(account: ModelAccount) -> str:
         ((gap, name) for name, gap in account.open_m.items() if gap > most), reverse=True
     )
     if not gaping:
-        return "shut as the file has it; the run starts from the closed form"
+        meant = "; is it the linkage that you mean? See far pin below" * bool(_far(account))
+        return f"shut as the file has it{meant}; the run starts from the closed form"
     each = few([f"{name} by {short(gap, 3)} m" for gap, name in gaping], SHOWN)
     return (
         f"the file's own is open at {each}; the run starts from the closed form, where every joint "
         "is shut"
     )
+
+
+def _far(account: ModelAccount) -> list[str]:
+    """Return the pins far outside their bodies, in words."""
+    return [each.text for each in account.disturbances if each.kind == FAR_PIN]
 
 
 def groups(judged: JudgedModel) -> list[SentenceGroup]:
@@ -174,6 +183,8 @@ def verdict_text(judged: JudgedModel) -> str:
         head = f"NOT RUN as written: {own.reason}"
     else:
         head = f"OUT OF TOLERANCE as written{_why_out(judged)}"
+    if far := _far(judged.account):
+        head += f", of a linkage that may not be the one you mean ({far[0].partition(';')[0]})"
     if not judged.account.helps:
         return f"{head}; {NO_HELP}"
     better = "within" if last.verdict == "within" else last.verdict

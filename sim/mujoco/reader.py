@@ -80,7 +80,7 @@ class ReadModel:
     def drawn(self) -> Poses:
         """Return the pose of the file: as drawn, or of the keyframe."""
         limbs = self.planar.limbs
-        q = np.array(limbs.senses) * self.planar.qpos[list(limbs.positions)]
+        q = self.planar.pose()
         still = np.zeros((1, len(q)))
         poses = body_poses(limbs.limbs, q[None], still, still)
         return Poses(np.zeros(1), {name: poses[limb] for name, limb in limbs.shown.items()})
@@ -98,6 +98,11 @@ class ReadModel:
         """List the joints that can still move while the driven joint is fixed."""
         return loose_joints(self.planar.linkage.component)
 
+    @property
+    def notes(self) -> Sequence[str]:
+        """What was held, and left out."""
+        return self.planar.linkage.component.loop.notes
+
     def welds(self) -> list[str]:
         """List the welds that unite bodies of the linkage."""
         component = self.planar.linkage.component
@@ -106,6 +111,10 @@ class ReadModel:
             for each in component.closures
             if each.kind == "weld"
         ]
+
+    def outside(self, scene: Scene, state: State) -> list[str]:
+        """Describe the joints that a state puts outside their declared ranges."""
+        return self.planar.outside(scene, state)
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
         """Put the model into states of its closed form."""
@@ -168,7 +177,8 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         _refuse_not_finite(path, model, keyframe)
         model = _moved(model, keyframe)
     try:
-        joined = linkage(component(model, joint))
+        qpos = model.qpos0 if keyframe is None else model.key_qpos[keyframe]
+        joined = linkage(component(model, joint, qpos))
         scene = scene_of(joined, scene_name(path.stem, "model", ()), f"read off {path.name}")
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None

@@ -25,6 +25,10 @@ class Tour:
     passed: Sequence[str]
 
 
+FAR_PIN = "far pin"
+"""Kind of a disturbance: a pin far outside its body, so that another linkage was meant."""
+
+
 @dataclass(frozen=True)
 class Disturbance:
     """Something in a model that can move a run off its closed form: ``text`` names it, with its
@@ -58,6 +62,11 @@ class OwnModel(Protocol):
     def dt_s(self) -> float: ...
 
     @property
+    def notes(self) -> Sequence[str]:
+        """Parts of the model that are held or left out, with the reason."""
+        ...
+
+    @property
     def disturbances(self) -> Sequence[Disturbance]:
         """Disturbances of a run against its closed form, except those of its tour."""
         ...
@@ -85,6 +94,11 @@ class OwnModel(Protocol):
 
     def welds(self) -> Sequence[str]:
         """List the welds that unite bodies of the linkage, with these bodies, in words."""
+        ...
+
+    def outside(self, scene: Scene, state: State) -> Sequence[str]:
+        """Describe the joints that a state puts outside their declared ranges, with the readings;
+        the driven joint is none of them."""
         ...
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:

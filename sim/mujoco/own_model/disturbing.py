@@ -8,73 +8,14 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import few
-from sim.mujoco.own_model.component import (
-    PARALLEL_DEG,
-    WORLD,
-    Component,
-    is_hinge,
-    joint_name,
-    rigid,
-)
+from sim.mujoco.own_model.component import PARALLEL_DEG
+from sim.mujoco.own_model.driven_loop import WORLD, is_hinge, joint_name, reading, rigid
 from sim.mujoco.own_model.file import body_name, equalities, name_of, tendon_bodies
-from sim.mujoco.own_model.linkage import NEAR, Linkage, size
-from sim.registry.own_models import Disturbance
+from sim.mujoco.own_model.linkage import Linkage, size
+from sim.mujoco.own_model.pins import far_pins, misses
+from sim.registry.own_models import FAR_PIN, Disturbance
 
-ROUNDED = 1e-5
-"""Distance, over the size of the linkage, below which a difference is rounding of the file."""
-BARS = (mujoco.mjtGeom.mjGEOM_CAPSULE.value, mujoco.mjtGeom.mjGEOM_CYLINDER.value)
-BALL = mujoco.mjtGeom.mjGEOM_SPHERE.value
-
-
-def misses(linkage: Linkage) -> Iterator[str]:
-    """Yield the pins that are near to a mark of their body, and in none."""
-    extent = size(linkage)
-    for name, body, place in _pins(linkage.component):
-        near = [(abs(mark - place), what) for what, mark in _marks(linkage.component, body)]
-        distance, what = min(near, default=(0.0, ""))
-        if ROUNDED * extent < distance < NEAR * extent:
-            of = body_name(linkage.component.model, body)
-            yield f"{name}: its pin is {distance:.3g} m off {what} on body {of}"
-
-
-def _pins(component: Component) -> Iterator[tuple[str, int, complex]]:
-    """Yield name, rigid body and place of each copy of a pin, in the model as drawn."""
-    for body in component.bodies:
-        for joint in body.joints:
-            if joint.kind == "hinge":
-                yield from (
-                    (f"joint {joint.name}", b, joint.anchor) for b in (body.parent, body.id)
-                )
-    for each in component.closures:
-        for end, anchor in zip(each.bodies, each.anchors, strict=True):
-            if each.kind == "connect":
-                yield f"loop {each.name}", component.rigid(end), component.plane.flat(anchor)
-
-
-def _marks(component: Component, body: int) -> Iterator[tuple[str, complex]]:
-    """Yield the sites, the ends of bars and the centres of balls on a moving rigid body."""
-    model, data, plane = component.model, component.data, component.plane
-    if body == WORLD:
-        return
-    for site in range(model.nsite):
-        if rigid(model, int(model.site_bodyid[site])) == body:
-            name = name_of(model, "site", site) or "without a name"
-            yield f"site {name}", plane.flat(data.site_xpos[site])
-    for geom in range(model.ngeom):
-        if rigid(model, int(model.geom_bodyid[geom])) != body:
-            continue
-        name = name_of(model, "geom", geom)
-        of = f"geom {name}" if name else "a geom"
-        kind, middle = int(model.geom_type[geom]), plane.flat(data.geom_xpos[geom])
-        if kind == BALL:
-            yield f"the centre of {of}", middle
-        elif kind in BARS:
-            axis = np.array(data.geom_xmat[geom]).reshape(3, 3)[:, 2]
-            half = plane.flat(axis) * float(model.geom_size[geom, 1])
-            yield f"an end of {of}", middle + half
-            yield f"an end of {of}", middle - half
-
-
+SLIDE = mujoco.mjtJoint.mjJNT_SLIDE.value
 SHOWN = 6
 OPEN = 1e-4
 """Gap of a loop in a keyframe, over the size of the linkage, that is more than rounding."""
@@ -95,6 +36,7 @@ def disturbances(linkage: Linkage) -> list[Disturbance]:
         *_passive(model, ids, linkage.component.driven),
         *_readings(model, ids),
         *_keyframes(linkage),
+        *((FAR_PIN, text) for text in far_pins(linkage)),
         *(("missed", text) for text in misses(linkage)),
         *_tendons(model, ids),
         *_actuators(model, ids),
@@ -137,7 +79,7 @@ def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Kind]:
             inertia = f"{rotor:.3g} {'kg m^2' if hinge else 'kg'}"
             yield "armature", f"{at}: an armature of {inertia}, which is hard to move"
         if model.jnt_limited[joint]:
-            span = " to ".join(_reading(float(end), hinge) for end in model.jnt_range[joint])
+            span = " to ".join(reading(float(end), hinge) for end in model.jnt_range[joint])
             more = ", and it is the driven one" if joint == driven else ""
             yield "limits", f"{at}: limited to {span}{more}"
             yield from _out_of_range(model, joint, at, hinge)
@@ -148,16 +90,16 @@ def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Kind
     drawn = float(model.qpos0[model.jnt_qposadr[joint]])
     low, high = (float(end) for end in model.jnt_range[joint])
     if not low <= drawn <= high:
-        text = f"{at}: it reads {_reading(drawn, hinge)} as it is drawn, outside its limits"
+        text = f"{at}: it reads {reading(drawn, hinge)} as it is drawn, outside its limits"
         yield "reading", f"{text}; is its ref right?"
 
 
 def _readings(model: Any, ids: set[int]) -> Iterator[Kind]:
     """Yield the joints that have a coordinate other than 0 as drawn, by their ref."""
     readings = [
-        f"{name} {_reading(ref, is_hinge(model, joint))}"
+        f"{name} {reading(ref, is_hinge(model, joint))}"
         for joint, _, name in _own(model, ids)
-        if (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
+        if model.jnt_type[joint] >= SLIDE and (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
     ]
     if readings:
         text = f"ref makes joints read as they are drawn: {few(readings, SHOWN)}"
@@ -180,10 +122,6 @@ def _keyframes(linkage: Linkage) -> Iterator[Kind]:
         if gap > OPEN * extent:
             called = name_of(model, "key", key) or str(key)
             yield "reading", f"keyframe {called}: loop {name} is open by {gap:.3g} m"
-
-
-def _reading(coordinate: float, hinge: bool) -> str:
-    return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
 
 
 def _tendons(model: Any, ids: set[int]) -> Iterator[Kind]:

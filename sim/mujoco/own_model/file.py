@@ -78,11 +78,13 @@ class ModelClosure:
 
 @dataclass(frozen=True)
 class Coupling:
-    """Any other equality, with its bodies; it couples coordinates, and closes no loop."""
+    """Any other equality, with the bodies of its one or two sides; it couples coordinates, and
+    closes no loop."""
 
+    index: int
     name: str
     kind: str
-    bodies: tuple[int, ...]
+    sides: tuple[tuple[int, ...], ...]
 
 
 def name_of(model: Any, kind: str, index: int) -> str:
@@ -108,7 +110,7 @@ def equalities(model: Any, data: Any) -> tuple[list[ModelClosure], list[Coupling
             closures.append(_closure(model, data, index, name, kind))
         else:
             couplings.append(
-                Coupling(name or f"equality {index}", kind, _coupled(model, index, kind))
+                Coupling(index, name or f"equality {index}", kind, _coupled(model, index, kind))
             )
     return closures, couplings
 
@@ -153,15 +155,13 @@ def _rotation(data: Any, body: int) -> Array:
     return np.array(data.xmat[body]).reshape(3, 3)
 
 
-def _coupled(model: Any, index: int, kind: str) -> tuple[int, ...]:
-    """Return the bodies whose coordinates an equality couples."""
+def _coupled(model: Any, index: int, kind: str) -> tuple[tuple[int, ...], ...]:
+    """Return the bodies whose coordinates an equality couples, on each of its sides."""
     ends = [int(model.eq_obj1id[index]), int(model.eq_obj2id[index])]
     if kind == "joint":
-        return tuple(int(model.jnt_bodyid[joint]) for joint in ends if joint >= 0)
+        return tuple((int(model.jnt_bodyid[joint]),) for joint in ends if joint >= 0)
     if kind == "tendon":
-        return tuple(
-            body for tendon in ends if tendon >= 0 for body in tendon_bodies(model, tendon)
-        )
+        return tuple(tendon_bodies(model, tendon) for tendon in ends if tendon >= 0)
     return ()
 
 

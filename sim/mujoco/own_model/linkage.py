@@ -18,7 +18,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from models.scene import Point
-from sim.mujoco.own_model.component import PARALLEL_DEG, WORLD, Component, RigidBody
+from sim.mujoco.own_model.component import PARALLEL_DEG, Component, RigidBody
+from sim.mujoco.own_model.driven_loop import WORLD
 from sim.mujoco.own_model.file import ModelClosure, ModelError, body_name, point_of, scene_name
 
 PAIRS = {

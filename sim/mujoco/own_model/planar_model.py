@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,9 @@ from models.mjcf.tree import Freedom, Limb
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene.joints import blocks, sliding_angle
-from sim.mujoco.own_model.component import WORLD
+from sim.mujoco.own_model.component import PlanarJoint
+from sim.mujoco.own_model.driven_loop import WORLD, reading
+from sim.mujoco.own_model.held_rods import seen
 from sim.mujoco.own_model.linkage import Linkage, Placement, pair, size
 from sim.mujoco.own_model.scene import Matter, SceneRead
 
@@ -52,13 +54,14 @@ def limbs_of(linkage: Linkage, read: SceneRead) -> Limbs:
         mine, base = own[body.id], own[body.parent]
         freedoms = []
         for joint in body.joints:
-            ref = joint.sense * float(model.qpos0[model.jnt_qposadr[joint.index]])
+            at, dof = joint.columns
+            ref = joint.sense * float(model.qpos0[at]) if at < model.nq else 0.0
             axis = 0.0 if joint.kind == "hinge" else cmath.phase(mine.turn * joint.direction)
             freedoms.append(
                 Freedom(joint.name, joint.kind, pair(mine(joint.anchor)), axis, ref, 0.0)
             )
-            positions.append(int(model.jnt_qposadr[joint.index]))
-            rates.append(int(model.jnt_dofadr[joint.index]))
+            positions.append(at)
+            rates.append(dof)
             senses.append(joint.sense)
         drawn = -mine.shift / mine.turn
         angle = cmath.phase(base.turn / mine.turn)
@@ -189,6 +192,12 @@ def _split(axes: Sequence[complex], vector: complex) -> list[float]:
     return [float(each) for each in solution]
 
 
+APART_RAD = 1e-3
+"""Distance from the file's own pose beyond which a hinge does not keep its whole turns."""
+PAST = 1e-3
+"""Distance beyond a range [rad], or over the size of the linkage, that is more than rounding."""
+
+
 @dataclass(frozen=True, eq=False)
 class PlanarModel:
     """A model with its linkage and scene, from ``keyframe`` on, None for the pose as drawn."""
@@ -220,6 +229,69 @@ class PlanarModel:
             for body in self.linkage.component.bodies
             for joint in body.joints
         )
+
+    def seen(self, q: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
+        """Return coordinates, rates and accelerations of the freedoms in the senses of the scene,
+        (T, n) each, from those of the model, (T, nq) and (T, nv)."""
+        q, rate, push = seen(self.linkage.component.rods, q, rate, push)
+        at, dofs = list(self.limbs.positions), list(self.limbs.rates)
+        senses = np.array(self.limbs.senses)
+        return q[:, at] * senses, rate[:, dofs] * senses, push[:, dofs] * senses
+
+    def put(self, data: Any, q: Array, rate: Array) -> None:
+        """Set the freedoms of ``data`` to coordinates and rates in the senses of the scene."""
+        model = self.model
+        every, rates = (
+            np.append(data.qpos, np.zeros(len(q))),
+            np.append(data.qvel, np.zeros(len(q))),
+        )
+        every[list(self.limbs.positions)] = np.array(self.limbs.senses) * q
+        rates[list(self.limbs.rates)] = np.array(self.limbs.senses) * rate
+        data.qpos[:], data.qvel[:] = every[: model.nq], rates[: model.nv]
+        first = 0
+        for rod in self.linkage.component.rods:
+            own = slice(first, first + rod.count)
+            rod.put(data, every[model.nq :][own], rates[model.nv :][own])
+            first += rod.count
+
+    def pose(self) -> Array:
+        """Return the coordinates of the freedoms in the model's own pose."""
+        still = np.zeros((1, self.model.nv))
+        return np.asarray(self.seen(self.qpos[None], still, still)[0][0])
+
+    def start(self, scene: Scene, state: State) -> tuple[Array, Array, Array]:
+        """Return `coordinates` nearest to the model's own pose. A hinge that the assembly leads
+        away from that pose gets the whole turns that bring it within its range, if any do."""
+        near = self.pose()
+        q, rate, push = coordinates(self.limbs, scene, state, near)
+        for at, (joint, low, high) in enumerate(self._ranges()):
+            moved = joint.kind == "hinge" and abs(q[at] - near[at]) > APART_RAD
+            if moved and joint.index != self.driven and not low <= q[at] <= high:
+                first = q[at] + math.tau * math.ceil((low - q[at]) / math.tau)
+                last = q[at] + math.tau * math.floor((high - q[at]) / math.tau)
+                q[at] = (first if q[at] < low else last) if first <= high else q[at]
+        return q, rate, push
+
+    def _ranges(self) -> Iterator[tuple[PlanarJoint, float, float]]:
+        """Yield the joint of each freedom with its range, in the sense of the scene."""
+        for joint in (each for body in self.linkage.component.bodies for each in body.joints):
+            limited = self.model.jnt_limited[joint.index] and joint.columns[0] < self.model.nq
+            ends = self.model.jnt_range[joint.index] if limited else (-math.inf, math.inf)
+            low, high = sorted(joint.sense * float(end) for end in ends)
+            yield joint, low, high
+
+    def outside(self, scene: Scene, state: State) -> list[str]:
+        """Describe the joints beside the driven one that a state puts outside their ranges."""
+        told = []
+        for x, (joint, low, high) in zip(self.start(scene, state)[0], self._ranges(), strict=True):
+            hinge = joint.kind == "hinge"
+            least = PAST * (1.0 if hinge else size(self.linkage))
+            if joint.index != self.driven and not low - least <= x <= high + least:
+                span = sorted(joint.sense * each for each in (low, high))
+                ends = " to ".join(reading(end, hinge) for end in span)
+                read = reading(joint.sense * x, hinge)
+                told.append(f"joint {joint.name} reads {read}, outside its range of {ends}")
+        return told
 
     @property
     def qpos(self) -> Array:

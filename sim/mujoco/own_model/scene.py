@@ -9,7 +9,7 @@ import numpy as np
 from models.scene import GROUND, Driver, Link, Scene, Slider
 from models.scene.joints import block_name
 from models.scene.laws import ConstantSpeed
-from sim.mujoco.own_model.component import WORLD, joint_name, rigid
+from sim.mujoco.own_model.driven_loop import WORLD, joint_name, rigid
 from sim.mujoco.own_model.file import ModelError, body_name, scene_name
 from sim.mujoco.own_model.linkage import (
     Linkage,
@@ -84,8 +84,7 @@ def parts_of(linkage: Linkage) -> SceneParts:
     Raises
     ------
     ModelError
-        A link with no pair besides its own joint, named with the joint; a driven body welded to the
-        ground.
+        A driven body welded to the ground.
     """
     model, joint = linkage.component.model, linkage.component.driven
     called: dict[int, str] = {WORLD: GROUND}
@@ -98,35 +97,12 @@ def parts_of(linkage: Linkage) -> SceneParts:
             f"joint {joint_name(model, joint)} can not turn: a weld ties its body to the ground"
         )
     found = points(linkage, bodies)
-    _refuse_loose(linkage, driver, called)
     matter = {link: matter_of(linkage, link) for link in linkage.links}
     reads = float(model.qpos0[model.jnt_qposadr[joint]])
     bare = SceneParts(linkage, called, found, matter, (), driver, reads)
     blocks = [link for link in linkage.links if link != driver and _is_block(bare, link)]
     parts = replace(bare, blocks=blocks)
     return replace(parts, points=[*found, *_centres(parts)])
-
-
-def _refuse_loose(linkage: Linkage, driver: int, called: Mapping[int, str]) -> None:
-    """Refuse a link with only one pair: it moves freely."""
-    held = dict.fromkeys(linkage.links, 0)
-    for pivot in linkage.pivots:
-        for mark in pivot.marks:
-            held[mark.link] = held.get(mark.link, 0) + 1
-    for guide in linkage.guides:
-        for link in (guide.on, guide.rider):
-            held[link] = held.get(link, 0) + 1
-    loose = [link for link in linkage.links if held[link] < 2 and link != driver]
-    if loose:
-        bodies = {body.id: body for body in linkage.component.bodies}
-        words = [
-            f"{called[link]} ({', '.join(j.name for j in bodies[link].joints) or 'no joint'})"
-            for link in loose
-        ]
-        raise ModelError(
-            f"more than one freedom: one driver needs mobility 1; loose: {', '.join(words)}; close "
-            "its loop with <connect>, fix it, or take it out"
-        )
 
 
 def _is_block(parts: SceneParts, link: int) -> bool:

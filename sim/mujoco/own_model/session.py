@@ -22,7 +22,7 @@ from models.scene import Scene
 from models.scene.joints import bodies
 from sim.engine import Drive, Facts, Log, Poses, Settings
 from sim.engine.tree_poses import body_poses
-from sim.mujoco.own_model.component import is_hinge, joint_name, rigid
+from sim.mujoco.own_model.driven_loop import is_hinge, joint_name, rigid
 from sim.mujoco.own_model.file import ModelError, body_name, name_of
 from sim.mujoco.own_model.linkage import size
 from sim.mujoco.own_model.planar_model import PlanarModel, coordinates
@@ -62,22 +62,26 @@ class OwnModelSession(SteppedModel):
         )
         self._own, self._scene = own, scene
         self._settings = held(model, own.loops, settings)
-        _give_flywheel(model, int(model.jnt_dofadr[own.driven]), own.inertia_kg_m2)
+        loop = own.linkage.component.loop
+        _give_flywheel(model, [int(model.jnt_dofadr[own.driven]), *loop.held], own.inertia_kg_m2)
+        model.eq_active0[list(loop.idle)] = 0
         self._hold(model, own.keyframe)
         self._limbs: tuple[Limb, ...] = own.limbs.limbs
-        self._senses = np.array(own.limbs.senses)
         self._place(scene, state)
         self._forward()
 
     def _place(self, scene: Scene, state: State) -> None:
         """Set all joints from the closed form, with velocities at the integrator's instant."""
-        near = self._senses * self._own.qpos[list(self._own.limbs.positions)]
-        q, rate, push = coordinates(self._own.limbs, scene, state, near)
+        q, rate, push = self._own.start(scene, state)
         rate = rate + self._shift * self._dt * push
-        self._data.qpos[list(self._own.limbs.positions)] = self._senses * q
-        self._data.qvel[list(self._own.limbs.rates)] = self._senses * rate
+        self._own.put(self._data, q, rate)
         crank = int(self._model.jnt_dofadr[self._own.driven])
         self._data.qvel[crank] = float(scene.driver.law.at(np.array([state.time_s]))[1][0])
+        loop = self._own.linkage.component.loop
+        self._data.qvel[list(loop.held)] = 0.0
+        if loop.follows:
+            own = np.isin(self._model.dof_bodyid, loop.bodies)
+            _let_follow(self._model, self._data, {*np.flatnonzero(own), *loop.held})
 
     def record(self, steps: int, every: int) -> Log:
         """Advance and log. Raises EngineError where the driven joint has left its course."""
@@ -113,18 +117,9 @@ class OwnModelSession(SteppedModel):
         )
 
     def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        q, rate = self._joints(states)
-        limbs = self._own.limbs
-        positions, rates = list(limbs.positions), list(limbs.rates)
         lag = self._shift * self._dt
-        poses = body_poses(
-            self._limbs,
-            q[:, positions] * self._senses,
-            rate[:, rates] * self._senses,
-            push[:, rates] * self._senses,
-            lag,
-        )
-        shown = {name: poses[limb] for name, limb in limbs.shown.items()}
+        poses = body_poses(self._limbs, *self._own.seen(*self._joints(states), push), lag)
+        shown = {name: poses[limb] for name, limb in self._own.limbs.shown.items()}
         return Poses(self._start_s + self._dt * at, shown, lag)
 
     def _controls(self, steps: int) -> Array | None:
@@ -135,12 +130,36 @@ class OwnModelSession(SteppedModel):
         return np.tile(self._data.ctrl, (len(at), 1)) if self._model.nu else None
 
 
-def _give_flywheel(model: Any, crank: int, inertia_kg_m2: float) -> None:
-    """Let a freedom keep its rate, in a linkage of at most this inertia."""
+FOLLOWING = 20
+"""Steps of Newton's method within which what hangs on a loop follows it."""
+
+
+def _let_follow(model: Any, data: Any, loop: set[int]) -> None:
+    """Set the freedoms beside those of the loop so that every equality holds, in place and speed,
+    as near as they can."""
+    dense = copy.copy(model)
+    dense.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE.value
+    others = [dof for dof in range(model.nv) if dof not in loop]
+    for last in (*[False] * FOLLOWING, True):
+        mujoco.mj_fwdPosition(dense, data)
+        mine = np.array(data.efc_type) == EQUALITY
+        rows = np.reshape(data.efc_J, (-1, model.nv))[mine]
+        free = [dof for dof in others if np.any(rows[:, dof])]
+        off = rows @ data.qvel if last else np.array(data.efc_pos)[mine]
+        step = np.zeros(model.nv)
+        step[free] = -np.linalg.lstsq(rows[:, free], off, rcond=None)[0]
+        if last:
+            data.qvel += step
+        else:
+            mujoco.mj_integratePos(dense, data.qpos, step, 1.0)
+
+
+def _give_flywheel(model: Any, freedoms: Sequence[int], inertia_kg_m2: float) -> None:
+    """Let freedoms keep their rates, in a linkage of at most this inertia."""
     flywheel = FLYWHEEL_RATIO * inertia_kg_m2
-    model.dof_armature[crank] += flywheel
+    model.dof_armature[freedoms] += flywheel
     # Of a leaf body whose centre of mass is on its hinge MuJoCo takes the inertia from here.
-    model.dof_M0[crank] += flywheel
+    model.dof_M0[freedoms] += flywheel
     model.opt.tolerance /= FLYWHEEL_RATIO
 
 
@@ -158,14 +177,15 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
         MuJoCo sees a loop open that is closed in the closed form: the model was misread.
     """
     model, data = own.model, mujoco.MjData(own.model)
+    if own.linkage.component.loop.held:
+        data.qpos[:] = own.qpos
     touching: dict[tuple[str, str], int] = {}
     low, high = np.full(model.nq, np.inf), np.full(model.nq, -np.inf)
-    positions, senses = list(own.limbs.positions), np.array(own.limbs.senses)
-    q = senses * own.qpos[positions]
+    q = own.start(scene, states[0])[0]
     with heard(lambda _: None):
         for state in states:
             q = coordinates(own.limbs, scene, state, near=q)[0]
-            data.qpos[positions] = senses * q
+            own.put(data, q, np.zeros(len(q)))
             mujoco.mj_fwdPosition(model, data)
             _refuse_misread(own, data, state)
             low, high = np.fmin(low, data.qpos), np.fmax(high, data.qpos)

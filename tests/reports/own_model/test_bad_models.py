@@ -53,6 +53,10 @@ TILTING = '<weld body1="coupler" body2="rocker" relpose="0 0 0 0.9 0.1 0 0"/>'
 AGAIN = '<connect body1="coupler" body2="rocker" anchor="0.1 0 0"/>'
 OFF = ('tolerance="1e-16"/>', 'tolerance="1e-16"><flag equality="disable"/></option>')
 MESH = '<asset><mesh file="no.stl"/></asset><worldbody>'
+WHEEL = '<body name="wheel"><joint name="spin"/><geom size="0.02 0.01" type="cylinder"/></body>'
+TWICE = '<joint joint1="spin" joint2="A"/><joint name="E2" joint1="spin" joint2="D"/>'
+SLIDE = '<joint name="sled" type="slide" axis="1 0 0"/>'
+SLED = f'<worldbody><body name="sled">{SLIDE}<geom fromto="0 0 0 1 0 0"/>'
 LOOSE = PLATES.replace("<!-- more -->", THIRD.format(off=0.001)).replace("<!-- ties -->", TIED)
 REFUSED: dict[str, tuple[str | bytes, str]] = {
     "empty": ("", "no XML: no element found"),
@@ -98,6 +102,24 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "tendon": (
         planted("<equality>", f'{BELT}<equality><tendon tendon1="t"/>'),
         "a <tendon> equality couples coordinates",
+    ),
+    "an equality within the loop": (
+        planted(*tied('<joint name="E" joint1="D" joint2="B"/>')),
+        "E: a <joint> equality couples coordinates of rocker (hinge D), coupler (hinge B) in the "
+        "loop, of which no closed form is known; take it out",
+    ),
+    "a joint of the loop that an equality holds": (
+        planted(*tied('<joint name="E" joint1="D"/>')), "couples coordinates of rocker (hinge D) in"
+    ),
+    "a body that follows twice": (
+        planted("</worldbody>", f"{WHEEL}</worldbody>", *tied(TWICE)),
+        "E2: a <joint> equality couples coordinates of wheel (hinge spin) twice with the loop",
+    ),
+    "a base that its loop moves": (
+        planted("<worldbody>", SLED, '<body name="rocker" pos="0.3 0 0"',
+                '</body><body name="rocker" pos="0.3 0 0"', "</worldbody>", "</worldbody>"),
+        "it turns against body sled, and not against the ground, which its loop meets too; hold "
+        "that body: take out slide sled; drivable: D",
     ),
     "a hinge far round": (
         planted(*rocker('ref="1e12"')),

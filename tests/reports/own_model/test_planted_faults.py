@@ -38,6 +38,9 @@ def read(folder: Path, *edits: str) -> ModelAccount:
 OFF, SOLREF = 'anchor="0.23373437', 'solref="0.005 0.6"'
 HOME = '<keyframe><key name="home" qpos="0 0 0"/></keyframe>'
 BELT = '<tendon><fixed name="belt" armature="1"><joint joint="D" coef="1"/></fixed></tendon>'
+TIP = "0 0 0 -0.06626563 0 0.18870312"
+NO_TORQUE = 'torquescale="0"'
+INERTIAL = '<inertial pos="-0.033 0 0.094" mass="0.2" diaginertia="7e-4 7e-4 7e-4"/>'
 LIFTED = ('<body name="rocker"', '<body name="rocker" gravcomp="-5"')
 NAMED = {
     "anchor 1 mm off": ((OFF, 'anchor="0.23473437'), "loop C: its pin is 0.001 m off"),
@@ -95,10 +98,17 @@ def test_it_is_named_with_its_joint(fault: str, tmp_path: Path) -> None:
     [
         (),
         ('<body name="rocker"', '<body name="rocker" gravcomp="1"'),
+        # A pin without a mark, as long as a bar of another body, on one that has only a ball.
+        (
+            f'fromto="{TIP}"',
+            'type="sphere" size="0.01"',
+            f'<site name="rocker-tip" pos="{TIP[6:]}"/>',
+            "",
+        ),
         # MuJoCo replaces what is half of each kind, and says so of its own accord.
         (SOLREF, 'solref="0.05 -1"'),
     ],
-    ids=["plain", "no gravity to lift", "neither kind of solref"],
+    ids=["plain", "no gravity to lift", "a ball for a bar", "neither kind of solref"],
 )
 def test_what_disturbs_nothing_is_not_named(edits: tuple[str, ...], tmp_path: Path) -> None:
     account = read(tmp_path, *edits)
@@ -136,6 +146,75 @@ def test_a_model_whose_axis_is_rounded_is_within_and_one_whose_axis_is_off_is_re
     told = r"joint D of body rocker: its axis is 0\.02\d* deg off that of the driven hinge"
     with pytest.raises(CrankcheckError, match=told):
         read(tmp_path, *rocker('axis="0 -1 3.5e-4"'))
+
+
+FAR = {
+    "a body far from the pin that it gets": (
+        ('pos="0.3 0 0"', 'pos="3 0 0"'),
+        "m off the middle of body rocker, whose geoms and other joints reach 0.1",
+    ),
+    "an anchor in the frame of the world": (
+        (OFF, 'anchor="1.3'), "loop C: its pin is 1.18 m off the middle of body coupler"
+    ),
+    "a pin of a weld": (
+        (CLOSED, f'<weld name="C" body1="coupler" body2="rocker" anchor="1 0 0" {NO_TORQUE}/>'),
+        "loop C: its pin is 1",
+    ),
+    "a hinge in the frame of the world": (
+        ('<joint name="B"/>', '<joint name="B" pos="1 0 0"/>'),
+        "m off the middle of body coupler, whose geoms and other joints reach 0.129 m; its pos",
+    ),
+    "a pin far off a body that has no geom": (
+        (f'<geom name="rocker-bar" fromto="{TIP}"/>', INERTIAL, 'pos="0.3 0 0"', 'pos="3 0 0"'),
+        "loop C: its pin is 2.7",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", FAR)
+def test_a_pin_far_off_its_body_is_named_with_its_cure(fault: str, tmp_path: Path) -> None:
+    """Whether the linkage that nobody meant can turn or not."""
+    edits, words = FAR[fault]
+    try:
+        told = "; ".join(texts(read_text(tmp_path, planted(*edits), converge=False, turns=0.2)))
+    except CrankcheckError as refused:
+        told = str(refused)
+    assert words in told
+    assert "; give it there" in told or "; connect two sites, one on each body" in told
+
+
+LAID = (
+    *(CLOSED, BY_SITES, 'fromto="0 0 0 -0.06626563 0 0.18870312"', 'fromto="0 0 0 -0.2 0 0"'),
+    *('name="rocker-tip" pos="-0.06626563 0 0.18870312"', 'name="rocker-tip" pos="-0.2 0 0"'),
+)
+"""The rocker is drawn flat: its joint reads -71 deg in one assembly, 34 deg in the other."""
+WITHIN = {
+    "the nearer is within": ("-2 0", {}, 1, "C +1, nearest to the pose of those within all ranges"),
+    "the other is within": (
+        "0 2", {}, -1,
+        "nearer is C +1, where joint D reads -70.65 deg, outside its range of 0 deg to 114.6 deg",
+    ),
+    "a whole turn further": ("-6.2 -4.5", {}, -1, "nearer is C +1, where joint D reads -70.65 deg"),
+    "from another start": ("0 2", {"start_deg": 30.0}, -1, "where joint D reads -55.71 deg"),
+    "the one that is named": ("0 2", {"branch": {"C": -1}}, -1, "C -1, as --branch names it"),
+    "named and without": (
+        "0 2", {"branch": {"C": 1}}, 1,
+        "start: C +1, where joint D reads -70.65 deg, outside its range of 0 deg to 114.6 deg; "
+        "C -1 stays within all ranges",
+    ),
+    "none is within": ("-0.1 0.1", {"branch": {"C": 1}}, 1, "no assembly found is within"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WITHIN)
+def test_an_assembly_that_breaks_a_range_is_left_out_or_told(case: str, tmp_path: Path) -> None:
+    ends, more, sign, words = WITHIN[case]
+    text = planted(*LAID, *rocker(f'range="{ends}"'))
+    account = read_text(tmp_path, text, converge=False, turns=0.5, **more)
+    assert account.scene.branch == {"C": sign}
+    told = "; ".join(account.notes)
+    assert words in told
+    assert ("led past" not in "".join(texts(account))) == ("start: " not in told)
 
 
 STIFF = 'solref="0.005 0.6" solimp="0.9999 0.9999 0.001 0.5 2"/>'
