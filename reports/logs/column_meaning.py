@@ -1,7 +1,7 @@
 """Meaning of a column: by its name, corrected by the map; and its numbers in SI."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,9 +12,10 @@ from models.scene import Scene
 from models.scene.laws import MOST_TURNS
 from reports.logs.channel import Channel, Gap, Reading
 from reports.logs.columns import Columns
-from reports.logs.kinds import DIMENSION, KINDS, UNITS, Meaning, si
+from reports.logs.kinds import DIMENSION, KINDS, TYPICAL, UNITS, Meaning, si
 from reports.logs.map_file import LEFT_OUT, ChannelTable
 from reports.logs.names import SceneNames, meaning
+from reports.logs.text_lines import is_number
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def _corrected_channel(
     if DIMENSION[unit] != kind.dimension:
         raise CrankcheckError(
             f"{where}, unit: {unit} is a unit of {DIMENSION[unit]}, and {kind.name} is "
-            f"{kind.dimension}; use one of {', '.join(UNITS[kind.dimension])}"
+            f"{kind.dimension}; use one of {', '.join(TYPICAL[kind.dimension])}"
         )
     relative_to = found.relative_to if told.relative_to is None else told.relative_to
     relative_to = "" if relative_to == "ground" else relative_to
@@ -116,6 +117,25 @@ def _check_roles(
         raise CrankcheckError(
             f"{where}, on: {on!r} does not carry {of}; {of} is on {', '.join(bodies) or 'no link'}"
         )
+
+
+LOOKED_AT = 10_000
+"""Rows in which the numbers of a column are looked for."""
+
+
+def has_numbers(cells: Sequence[object]) -> bool:
+    """True if some cell is a finite number; truths are none."""
+    values = np.asarray(cells[:LOOKED_AT])
+    if values.dtype.kind in "iuf":
+        return bool(np.isfinite(values).any())
+    return any(
+        is_number(cell.strip()) if isinstance(cell, str) else _is_finite(cell)
+        for cell in values.tolist()
+    )
+
+
+def _is_finite(cell: object) -> bool:
+    return isinstance(cell, int | float) and not isinstance(cell, bool) and math.isfinite(cell)
 
 
 MOST = 1e15

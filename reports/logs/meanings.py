@@ -10,17 +10,24 @@ from models.array import Array
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from models.scene.laws import MOST_TURNS
-from reports.logs import map_file
+from reports.logs import force_columns, map_file
 from reports.logs.channel import Channel, OwnLog, Reading
-from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, reading
+from reports.logs.column_meaning import (
+    GapColumn,
+    column_meaning,
+    gaps_told,
+    has_numbers,
+    reading,
+)
 from reports.logs.columns import Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
-from reports.logs.kinds import DIMENSION, LENGTH, UNITS, one_unit, si, spelled_unit, without_unit
+from reports.logs.kinds import DIMENSION, KINDS, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
-from reports.logs.names import SceneNames, meaning
+from reports.logs.names import OUT_OF_PLANE, SceneNames, is_named, meaning
 
 TIME_NAMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime",
-              "simulation time", "elapsed", "elapsed time"}  # fmt: skip
+              "simulation time", "elapsed", "elapsed time", "time steps",
+              "timesteps"}  # fmt: skip
 
 
 def time_of(column: str, told: str = "") -> tuple[str, str] | None:
@@ -145,9 +152,6 @@ def _refuse_holes(columns: Columns, column: str, time_s: Array, steps: Array) ->
     )
 
 
-A_FORCE = "a force, which is judged with --forces"
-
-
 def understood(
     columns: Columns, scene: Scene, map_: map_file.Map | None = None, *, forces: bool = False
 ) -> OwnLog:
@@ -171,10 +175,11 @@ def understood(
     borne = {name for name in columns.raw if forces and names_force(name, scene)}
     moving = replace(columns, raw={n: x for n, x in columns.raw.items() if n not in borne})
     channels, gaps, unused = _by_meaning(moving, scene, told, times)
-    channels, lengths = without_lengths(channels, told)
-    unused += lengths
-    channels, copies, spare = judged_channels(channels, scene)
-    unused += spare
+    channels, copies, still = judged_channels(
+        sized_channels(channels, columns, told, scene.sliders), scene
+    )
+    unjudged = _unjudged(columns, unused, SceneNames(scene))
+    unused += [(each.column, STILL) for each in still]
     if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
         raise CrankcheckError(f"{_nothing_found_text(columns, scene, unused)} {in_python}")
@@ -202,13 +207,51 @@ def understood(
         zero_s=zero_s,
         copies=readings(copies),
         gaps=gaps_told(columns, gaps),
+        still=readings(still),
         unused=tuple(unused),
+        unjudged=unjudged,
+        besides=_besides(columns, unjudged) if forces else {},
         forces=log_forces(columns, scene, base, acts, ignored) if forces else None,
     )
 
 
+STILL = "it is of a point of the ground, which does not move"
+
+
+def _unjudged(
+    columns: Columns, unused: Iterable[tuple[str, str]], named: SceneNames
+) -> tuple[tuple[str, str], ...]:
+    """Return the unused columns with numbers that name a body or a known quantity; none that the
+    map ignores, or that stays the same where it is out of the plane."""
+    return tuple(
+        (column, why)
+        for column, why in unused
+        if why != map_file.LEFT_OUT
+        and is_named(column, named)
+        and has_numbers(columns.raw[column])
+        and not (why == OUT_OF_PLANE and np.ptp(columns.numbers(column)) <= FLAT)
+    )
+
+
+def _besides(columns: Columns, unjudged: Iterable[tuple[str, str]]) -> dict[str, Array]:
+    """Return the lengths of forces and the friction of a log, by column."""
+    own = (force_columns.FORCE_LENGTH, force_columns.FRICTION)
+    return {c: force_columns.force_numbers(columns, c) for c, why in unjudged if why in own}
+
+
+FLAT = 1e-9
+"""Change by rounding of a component out of the plane, in its own unit."""
+
+
 def wanted(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
     """Return a test of the names of columns that are worth reading: others are only named."""
+    is_meant, named = _meant(scene, map_, forces=forces), SceneNames(scene)
+    ignored = {one.column for one in map_.channel if one.ignore}
+    return lambda column: is_meant(column) or (column not in ignored and is_named(column, named))
+
+
+def _meant(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
+    """Return a test of the names of columns with a meaning, but of points of the ground."""
     named = SceneNames(scene)
     told = {one.column: one for one in map_.channel}
 
@@ -244,7 +287,11 @@ def _by_meaning(
             continue
         found = column_meaning(column, told.get(column), named, times)
         if isinstance(found, str):
-            told_so = A_FORCE if names_force(column, scene) else why_not_judged(column, scene)
+            told_so = (
+                force_columns.A_FORCE
+                if names_force(column, scene)
+                else why_not_judged(column, scene)
+            )
             unused.append((column, found if found == map_file.LEFT_OUT else told_so or found))
         elif isinstance(found, GapColumn):
             gaps.append(found)
@@ -263,35 +310,41 @@ def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[s
     )
 
 
-def without_lengths(
-    channels: Sequence[Channel], told: Container[str]
-) -> tuple[list[Channel], list[tuple[str, str]]]:
-    """Return the channels without lengths of vectors: channels, absent from the map, of a slider's
-    point whose components are logged beside the slider's own."""
-    parts = {(each.of, each.kind.order) for each in channels if each.kind.body_kind == "point"}
+def sized_channels(
+    channels: Sequence[Channel], columns: Columns, told: Container[str], sliding: Container[str]
+) -> list[Channel]:
+    """Return the channels, those of a slider and its point by their numbers: a rate of the slider
+    that is logged besides as one is the size of the point's, and a size is never negative."""
+    parts = {(each.of, each.kind.order) for each in channels if each.kind.axis is not None}
     sliders = [each for each in channels if each.kind.body_kind == "slider"]
     own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
-    lengths = [
-        each
-        for each in sliders
-        if "slider" not in each.column.lower()
-        and each.column not in told
-        and (each.of, each.kind.order) in parts & own
-    ]
-    kept = [each for each in channels if each not in lengths]
-    return kept, [(each.column, LENGTH) for each in lengths]
+
+    def corrected(each: Channel) -> Channel:
+        place = (each.of, each.kind.order)
+        if each.column in told or not each.kind.order:
+            return each
+        if each in sliders and "slider" not in each.column.lower() and place in parts & own:
+            return replace(each, kind=KINDS["point", "va"[each.kind.order - 1]])
+        slides = each.kind.is_size and each.of in sliding
+        if slides and np.min(columns.numbers(each.column)) < 0.0:
+            return replace(
+                each, kind=KINDS["slider", ("speed", "acceleration")[each.kind.order - 1]]
+            )
+        return each
+
+    return [corrected(each) for each in channels]
 
 
 def judged_channels(
     channels: Sequence[Channel], scene: Scene
-) -> tuple[list[Channel], list[Channel], list[tuple[str, str]]]:
+) -> tuple[list[Channel], list[Channel], list[Channel]]:
     """Return the channels to be judged, those of further copies of a point's position, for a gap,
-    and the other columns with the reason. Raises CrankcheckError for two columns of one
+    and those of points of the ground. Raises CrankcheckError for two columns of one
     quantity."""
     first: dict[tuple[object, ...], Channel] = {}
     main: list[Channel] = []
     copies: list[Channel] = []
-    spare: list[tuple[str, str]] = []
+    still: list[Channel] = []
     order = {body: n for n, body in enumerate([*scene.links])}
     for each in sorted(channels, key=lambda one: (bool(one.relative_to), order.get(one.on, -1))):
         key = (each.kind, each.of, each.on, each.relative_to)
@@ -302,7 +355,7 @@ def judged_channels(
             )
         first[key] = each
         if each.kind.body_kind == "point" and each.of in scene.ground:
-            spare.append((each.column, "it is of a point of the ground, which does not move"))
+            still.append(each)
             continue
         before = next((o for o in main if (o.kind, o.of) == (each.kind, each.of)), None)
         if before is not None and each.kind.body_kind == "point" and each.kind.order == 0:
@@ -310,7 +363,7 @@ def judged_channels(
         else:
             main.append(each)
     place = {each.column: n for n, each in enumerate(channels)}
-    return sorted(main, key=lambda one: place[one.column]), copies, spare
+    return sorted(main, key=lambda one: place[one.column]), copies, still
 
 
 def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, str] | None:
@@ -323,8 +376,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     left_out = {one.column for one in map_.channel if one.ignore}
     times = {map_.time.column} if map_.time.column else _times(columns.raw, left_out)
     others = [name for name in columns.raw if name not in times]
-    is_wanted = wanted(scene, map_)
-    bodies = [name for name in others if is_wanted(name)]
+    bodies = list(filter(_meant(scene, map_), others))
     if times and bodies:
         return None
     lacks = [
