@@ -131,7 +131,8 @@ VAGUE = {"a", "b", "s", "p", "v", "w", "rate", "place", "location", "total", "si
 QUANTITY_WORDS = {"torque", "force", "moment", "reaction", "deflection", "extension", "angular",
                   *(VOCABULARY - FILLERS - RELATIVE - DRIVERS - VAGUE)}  # fmt: skip
 FOREIGN = {"temperature", "temp", "current", "amps", "voltage", "volts", "volt", "power", "energy",
-           "battery", "pressure", "humidity", "cpu", "memory", "count", "counter"}  # fmt: skip
+           "battery", "pressure", "humidity", "cpu", "memory", "count", "counter",
+           "i", "u", "t"}  # fmt: skip
 """Words of quantities of no mechanism: the C of temperature_C is a unit."""
 _JOINABLE = "|".join(sorted({*OF_PLACES, *SPEEDS, *ACCELERATIONS} - VAGUE, key=len, reverse=True))
 JOINED = re.compile(rf"^(ang|angular|lin|linear|rot|rotational|trans)(?=(?:{_JOINABLE})\d*$)")
@@ -147,6 +148,8 @@ def kind_of_words(
     if "elastic" in body_kinds and ("elastic", " ".join(words)) in kinds.KINDS:
         return kinds.KINDS["elastic", " ".join(words)]
     if "link" in body_kinds:
+        if "orientation" in words and not {*"xyzw"}.isdisjoint(words):
+            return "a component of a quaternion is no angle"
         kind = _kind_of_order("link", [word for word in words if word != "z"] or words, unit)
         if isinstance(kind, str) and len(words) > 1:
             upright = _kind_of_order("link", [word for word in words if word not in TILTS], "")

@@ -7,7 +7,7 @@ from random import Random
 
 WORDS = {
     "theta": ("theta", "angle", "Angular Displacement", "Rz.q", "ROTATION", "Pos_RZ", "position",
-              "θ", "pose/orientation/z", "transform.eulerAngles.z", "qpos", "phi [2]"),
+              "θ", "rotation/z", "transform.eulerAngles.z", "qpos", "phi [2]"),
     "omega": ("omega", "Angular Velocity", "CM_Angular_Velocity.Z", "Vel_RZ", "Rz.w", "theta_dot",
               "velocity", "twist/angular/z", "angularVelocity.z", "qvel", "angVel", "ω"),
     "alpha": ("alpha", "Rz.b", "Angular Acceleration", "Acc_RZ", "acceleration", "thetaDDot",

@@ -73,6 +73,7 @@ OTHER: list[tuple[dict[str, Array], str]] = [
     ({"Angular Velocity (deg/sec)": ROCKER.omega}, "it names no link, point or slider"),
     ({"rocker_deg_filtered": ROCKER.omega}, "is no kind of reading of a link"),
     ({"rocker_temperature": TIME_S}, "rocker_temperature"),
+    ({"rocker/pose/orientation/z": np.sin(ROCKER.theta / 2.0)}, "a component of a quaternion"),
     ({"torque_n_m": TIME_S}, "a force, which is judged with --?forces"),
     ({"rocker_gap_m": TIME_S}, "a gap is of a pin or a slider"),
     ({"A_x_m": 0.0 * TIME_S, "A_vx_m_s": 0.0 * TIME_S, "D_x_m": 0.3 + 0.0 * TIME_S}, "within"),
