@@ -12,13 +12,7 @@ from models.scene import Scene
 from models.scene.laws import MOST_TURNS
 from reports.logs import force_columns, map_file
 from reports.logs.channel import Channel, OwnLog, Reading
-from reports.logs.column_meaning import (
-    GapColumn,
-    column_meaning,
-    gaps_told,
-    has_numbers,
-    reading,
-)
+from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, has_numbers, reading
 from reports.logs.columns import Columns
 from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
 from reports.logs.kinds import DIMENSION, KINDS, UNITS, one_unit, si, spelled_unit, without_unit
@@ -287,11 +281,8 @@ def _by_meaning(
             continue
         found = column_meaning(column, told.get(column), named, times)
         if isinstance(found, str):
-            told_so = (
-                force_columns.A_FORCE
-                if names_force(column, scene)
-                else why_not_judged(column, scene)
-            )
+            is_force = names_force(column, scene)
+            told_so = force_columns.A_FORCE if is_force else why_not_judged(column, scene)
             unused.append((column, found if found == map_file.LEFT_OUT else told_so or found))
         elif isinstance(found, GapColumn):
             gaps.append(found)
@@ -320,16 +311,14 @@ def sized_channels(
     own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
 
     def corrected(each: Channel) -> Channel:
-        place = (each.of, each.kind.order)
-        if each.column in told or not each.kind.order:
+        place, rate = (each.of, each.kind.order), each.kind.order - 1
+        if each.column in told or rate < 0:
             return each
         if each in sliders and "slider" not in each.column.lower() and place in parts & own:
-            return replace(each, kind=KINDS["point", "va"[each.kind.order - 1]])
+            return replace(each, kind=KINDS["point", "va"[rate]])
         slides = each.kind.is_size and each.of in sliding
         if slides and np.min(columns.numbers(each.column)) < 0.0:
-            return replace(
-                each, kind=KINDS["slider", ("speed", "acceleration")[each.kind.order - 1]]
-            )
+            return replace(each, kind=KINDS["slider", ("speed", "acceleration")[rate]])
         return each
 
     return [corrected(each) for each in channels]

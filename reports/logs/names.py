@@ -167,9 +167,7 @@ def kind_of_words(
         (set(), SPEEDS, ACCELERATIONS),
     )
     if sized and set(words) <= SIZES:  # the unit says of what
-        order = next(
-            (k.order for k in every if k.is_size and k.dimension == kinds.DIMENSION.get(unit)), None
-        )
+        order = {"velocity": 1, "acceleration": 2}.get(kinds.DIMENSION.get(unit, ""))
     if "point" in body_kinds and order:
         return next(k for k in every if k.is_size and k.order == order)
     if _axis([ASIDE.get(word, word) for word in words]):
@@ -322,4 +320,8 @@ def is_named(column: str, named: SceneNames) -> bool:
         unit, words = kinds.trailing_unit(words)
         unit = "" if unit in kinds.LAST_ALONE else unit
     has_unit = kinds.DIMENSION.get(unit, "time") != "time"
-    return not foreign and (has_unit or not QUANTITY_WORDS.isdisjoint(plain_words(words)))
+    words = [word for word in plain_words(words) if not word.isdigit()]
+    told = QUANTITY_WORDS.intersection(words)
+    # A letter is a quantity among words of a mechanism alone: x of marker 2.
+    is_known = any(len(word) > 1 for word in told) or bool(told and VOCABULARY.issuperset(words))
+    return not foreign and (has_unit or is_known)
