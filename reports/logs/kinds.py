@@ -113,9 +113,13 @@ def _key(text: str) -> str:
     return re.sub(r"\s+", " ", text).strip(" .")
 
 
+LONGEST = 40
+"""Characters of a unit."""
+
+
 def spelled_unit(text: str) -> str:
     """Return the unit that a text spells, "" for none."""
-    key = _key(text)
+    key = _key(text) if len(text) <= LONGEST else ""
     if joined := _JOINED.fullmatch(key):
         key = f"{joined[1]}/s{joined[2].lstrip('-')}"
     if key in _WHOLE:
