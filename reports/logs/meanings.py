@@ -1,7 +1,7 @@
 """Conversion of columns to readings, by their names and the map; and the columns of times."""
 
 import re
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,14 +10,22 @@ from models.array import Array
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from models.scene.laws import MOST_TURNS
-from reports.logs import force_columns, map_file
+from reports.logs import map_file
 from reports.logs.channel import Channel, OwnLog, Reading
-from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, has_numbers, reading
+from reports.logs.column_meaning import (
+    GapColumn,
+    beside_forces,
+    column_meaning,
+    gaps_told,
+    reading,
+    sized_channels,
+    unjudged_columns,
+)
 from reports.logs.columns import Columns
-from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
-from reports.logs.kinds import DIMENSION, KINDS, UNITS, one_unit, si, spelled_unit, without_unit
+from reports.logs.force_columns import A_FORCE, TIMES, log_forces, names_force, why_not_judged
+from reports.logs.kinds import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
-from reports.logs.names import OUT_OF_PLANE, SceneNames, is_named, meaning
+from reports.logs.names import SceneNames, is_named, meaning
 
 TIME_NAMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime",
               "simulation time", "elapsed", "elapsed time", "time steps",
@@ -172,7 +180,7 @@ def understood(
     channels, copies, still = judged_channels(
         sized_channels(channels, columns, told, scene.sliders), scene
     )
-    unjudged = _unjudged(columns, unused, SceneNames(scene))
+    unjudged = unjudged_columns(columns, unused, SceneNames(scene))
     unused += [(each.column, STILL) for each in still]
     if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
@@ -204,37 +212,12 @@ def understood(
         still=readings(still),
         unused=tuple(unused),
         unjudged=unjudged,
-        besides=_besides(columns, unjudged) if forces else {},
+        besides=beside_forces(columns, unjudged) if forces else {},
         forces=log_forces(columns, scene, base, acts, ignored) if forces else None,
     )
 
 
 STILL = "it is of a point of the ground, which does not move"
-
-
-def _unjudged(
-    columns: Columns, unused: Iterable[tuple[str, str]], named: SceneNames
-) -> tuple[tuple[str, str], ...]:
-    """Return the unused columns with numbers that name a body or a known quantity; none that the
-    map ignores, or that stays the same where it is out of the plane."""
-    return tuple(
-        (column, why)
-        for column, why in unused
-        if why != map_file.LEFT_OUT
-        and is_named(column, named)
-        and has_numbers(columns.raw[column])
-        and not (why == OUT_OF_PLANE and np.ptp(columns.numbers(column)) <= FLAT)
-    )
-
-
-def _besides(columns: Columns, unjudged: Iterable[tuple[str, str]]) -> dict[str, Array]:
-    """Return the lengths of forces and the friction of a log, by column."""
-    own = (force_columns.FORCE_LENGTH, force_columns.FRICTION)
-    return {c: force_columns.force_numbers(columns, c) for c, why in unjudged if why in own}
-
-
-FLAT = 1e-9
-"""Change by rounding of a component out of the plane, in its own unit."""
 
 
 def wanted(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
@@ -282,7 +265,7 @@ def _by_meaning(
         found = column_meaning(column, told.get(column), named, times)
         if isinstance(found, str):
             is_force = names_force(column, scene)
-            told_so = force_columns.A_FORCE if is_force else why_not_judged(column, scene)
+            told_so = A_FORCE if is_force else why_not_judged(column, scene)
             unused.append((column, found if found == map_file.LEFT_OUT else told_so or found))
         elif isinstance(found, GapColumn):
             gaps.append(found)
@@ -299,29 +282,6 @@ def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[s
         f"{few(map(cut, columns.raw), 8)}{why}; name columns such as "
         f"{next(iter(scene.links))}_deg, or write a map: --write-map map.toml"
     )
-
-
-def sized_channels(
-    channels: Sequence[Channel], columns: Columns, told: Container[str], sliding: Container[str]
-) -> list[Channel]:
-    """Return the channels, those of a slider and its point by their numbers: a rate of the slider
-    that is logged besides as one is the size of the point's, and a size is never negative."""
-    parts = {(each.of, each.kind.order) for each in channels if each.kind.axis is not None}
-    sliders = [each for each in channels if each.kind.body_kind == "slider"]
-    own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
-
-    def corrected(each: Channel) -> Channel:
-        place, rate = (each.of, each.kind.order), each.kind.order - 1
-        if each.column in told or rate < 0:
-            return each
-        if each in sliders and "slider" not in each.column.lower() and place in parts & own:
-            return replace(each, kind=KINDS["point", "va"[rate]])
-        slides = each.kind.is_size and each.of in sliding
-        if slides and np.min(columns.numbers(each.column)) < 0.0:
-            return replace(each, kind=KINDS["slider", ("speed", "acceleration")[rate]])
-        return each
-
-    return [corrected(each) for each in channels]
 
 
 def judged_channels(
