@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -117,6 +118,7 @@ LONGEST = 40
 """Characters of a unit."""
 
 
+@lru_cache(20_000)
 def spelled_unit(text: str) -> str:
     """Return the unit that a text spells, "" for none."""
     key = _key(text) if len(text) <= LONGEST else ""
