@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -111,8 +111,11 @@ class OwnLog:
 
     Several ``readings`` may be of one rate of a point, or of one link, each relative to another.
     ``copies`` are readings of a point's position on further bodies, for the gap; ``gaps`` are
-    logged ones. ``unused`` names columns without a meaning, with the reason. ``forces`` are read on
-    request. ``left_out`` rows after the last were cut off, as their reference is not known.
+    logged ones; ``still`` are readings of points of the ground. ``unused`` names columns without a
+    meaning, with the reason; ``unjudged`` those of them with numbers that name a body or a known
+    quantity, and are not to be passed over; ``besides``, (T,), are lengths of forces and friction.
+    ``forces`` are read on request. ``left_out`` rows after the last were cut off, as their
+    reference is not known.
     """
 
     source: str
@@ -123,7 +126,10 @@ class OwnLog:
     zero_s: float = 0.0
     copies: tuple[Reading, ...] = ()
     gaps: tuple[Gap, ...] = ()
+    still: tuple[Reading, ...] = ()
     unused: tuple[tuple[str, str], ...] = ()
+    unjudged: tuple[tuple[str, str], ...] = ()
+    besides: Mapping[str, Array] = field(default_factory=dict)
     forces: LogForces | None = None
     left_out: int = 0
     timed: bool = True
@@ -151,18 +157,29 @@ def logged_motion(
     reading: a coordinate of a point that the log lacks equals the reference."""
     bodies: dict[str, dict[str, dict[str, Array]]]
     bodies = {"links": {}, "points": {}, "sliders": {}, "elastic": {}}
-    for (kind, body), several in _slots(log).items():
+    for (kind, body), several in sorted(_slots(log).items(), key=lambda slot: slot[0][0].is_size):
         right = kind.of(truth_of(kind.order), body)
         wrong = _largest([error_of(reading) for reading in several], kind.order)
         fields = bodies[kind.bodies].setdefault(body, {})
-        if kind.axis is None:
+        if kind.body_kind != "point":
             fields[kind.field] = right + wrong
             continue
-        if kind.field not in fields:
-            motion = truth_of(kind.order).points[body]
-            fields[kind.field] = getattr(motion, kind.field).copy()
-        fields[kind.field][:, kind.axis] += wrong
+        vectors = getattr(truth_of(kind.order).points[body], kind.field)
+        fields.setdefault(kind.field, vectors.copy())
+        if kind.is_size:
+            fields[kind.field] = _of_size(fields[kind.field], vectors, right, wrong)
+        else:
+            fields[kind.field][:, kind.axis] += wrong
     return _as_motion(log.time_s, bodies)
+
+
+def _of_size(logged: Array, vectors: Array, size: Array, error: Array) -> Array:
+    """Return the logged rate of a point (T, 2), off by the error of its size where that is more
+    than the error of its components; along the reference, or x where that is 0."""
+    along = np.divide(vectors, size[:, None], out=np.zeros_like(vectors), where=size[:, None] > 0.0)
+    along[size == 0.0, 0] = 1.0
+    more = np.abs(error) > np.hypot(*(logged - vectors).T)
+    return np.where(more[:, None], vectors + error[:, None] * along, logged)
 
 
 def _slots(log: OwnLog) -> dict[tuple[Kind, str], list[Reading]]:

@@ -1,7 +1,7 @@
 """Meaning of a column: by its name, corrected by the map; and its numbers in SI."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,11 +10,13 @@ from models.array import Array
 from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from models.scene.laws import MOST_TURNS
+from reports.logs import force_columns
 from reports.logs.channel import Channel, Gap, Reading
 from reports.logs.columns import Columns
-from reports.logs.kinds import DIMENSION, KINDS, UNITS, Meaning, si
+from reports.logs.kinds import DIMENSION, KINDS, TYPICAL, UNITS, Meaning, si
 from reports.logs.map_file import LEFT_OUT, ChannelTable
-from reports.logs.names import SceneNames, meaning
+from reports.logs.names import OUT_OF_PLANE, SceneNames, is_named, meaning
+from reports.logs.text_lines import is_number
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def _corrected_channel(
     if DIMENSION[unit] != kind.dimension:
         raise CrankcheckError(
             f"{where}, unit: {unit} is a unit of {DIMENSION[unit]}, and {kind.name} is "
-            f"{kind.dimension}; use one of {', '.join(UNITS[kind.dimension])}"
+            f"{kind.dimension}; use one of {', '.join(TYPICAL[kind.dimension])}"
         )
     relative_to = found.relative_to if told.relative_to is None else told.relative_to
     relative_to = "" if relative_to == "ground" else relative_to
@@ -116,6 +118,73 @@ def _check_roles(
         raise CrankcheckError(
             f"{where}, on: {on!r} does not carry {of}; {of} is on {', '.join(bodies) or 'no link'}"
         )
+
+
+def sized_channels(
+    channels: Sequence[Channel], columns: Columns, told: Container[str], sliding: Container[str]
+) -> list[Channel]:
+    """Return the channels, those of a slider and its point by their numbers: a rate of the slider
+    that is logged besides as one is the size of the point's, and a size is never negative."""
+    parts = {(each.of, each.kind.order) for each in channels if each.kind.axis is not None}
+    sliders = [each for each in channels if each.kind.body_kind == "slider"]
+    own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
+
+    def corrected(each: Channel) -> Channel:
+        place, rate = (each.of, each.kind.order), each.kind.order - 1
+        if each.column in told or rate < 0:
+            return each
+        if each in sliders and "slider" not in each.column.lower() and place in parts & own:
+            return replace(each, kind=KINDS["point", "va"[rate]])
+        slides = each.kind.is_size and each.of in sliding
+        if slides and np.min(columns.numbers(each.column)) < 0.0:
+            return replace(each, kind=KINDS["slider", ("speed", "acceleration")[rate]])
+        return each
+
+    return [corrected(each) for each in channels]
+
+
+FLAT = 1e-9
+"""Change by rounding of a component out of the plane, in its own unit."""
+
+
+LOOKED_AT = 10_000
+"""Rows in which the numbers of a column are looked for."""
+
+
+def has_numbers(cells: Sequence[object]) -> bool:
+    """True if some cell is a finite number; truths are none."""
+    values = np.asarray(cells[:LOOKED_AT])
+    if values.dtype.kind in "iuf":
+        return bool(np.isfinite(values).any())
+    return any(
+        is_number(cell.strip()) if isinstance(cell, str) else _is_finite(cell)
+        for cell in values.tolist()
+    )
+
+
+def _is_finite(cell: object) -> bool:
+    return isinstance(cell, int | float) and not isinstance(cell, bool) and math.isfinite(cell)
+
+
+def unjudged_columns(
+    columns: Columns, unused: Iterable[tuple[str, str]], named: SceneNames
+) -> tuple[tuple[str, str], ...]:
+    """Return the unused columns with numbers that name a body or a known quantity; none that the
+    map ignores, or that stays the same where it is out of the plane."""
+    return tuple(
+        (column, why)
+        for column, why in unused
+        if why != LEFT_OUT
+        and is_named(column, named)
+        and has_numbers(columns.raw[column])
+        and not (why == OUT_OF_PLANE and np.ptp(columns.numbers(column)) <= FLAT)
+    )
+
+
+def beside_forces(columns: Columns, unjudged: Iterable[tuple[str, str]]) -> dict[str, Array]:
+    """Return the lengths of forces and the friction of a log, by column."""
+    own = (force_columns.FORCE_LENGTH, force_columns.FRICTION)
+    return {c: force_columns.force_numbers(columns, c) for c, why in unjudged if why in own}
 
 
 MOST = 1e15

@@ -104,7 +104,7 @@ def _found(columns: Columns, scene: Scene, ignored: set[str]) -> dict[Place, tup
                 f"two columns for one force: {cut(found[place][0])!r} and {cut(column)!r}; rename "
                 "one, or ignore = true"
             )
-        found[place] = column, factor * _numbers(columns, column)
+        found[place] = column, factor * force_numbers(columns, column)
     lacking = [column for column, values in found.values() if np.isnan(values[0])]
     if lacking and len(lacking) < len(found):  # where forces are those of steps, all lack it
         columns.numbers(lacking[0])  # which refuses the cell
@@ -126,7 +126,7 @@ def _pin(
     return {body: np.stack([component(body, axis) for axis in (0, 1)], axis=-1) for body in bodies}
 
 
-def _numbers(columns: Columns, name: str) -> Array:
+def force_numbers(columns: Columns, name: str) -> Array:
     """Return a column as numbers; the first cell may be empty."""
     cell = columns.raw[name][0]
     empty = cell is None or (isinstance(cell, float | np.floating) and math.isnan(cell))
@@ -154,7 +154,8 @@ TIMES = "force_time_s"
 Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
 """Content of a column: kind, point or slider, body, and axis; a push drives a slider."""
 MOMENTS = ("torque", "moment")
-LENGTH = "it is the length of a force, whose components are judged with --forces"
+A_FORCE = "a force, which is judged with --forces"
+FORCE_LENGTH = "it is the length of a force, whose components are judged with --forces"
 FRICTION = "it is friction, which is not judged"
 
 
@@ -242,11 +243,11 @@ def _others(scene: Scene) -> dict[str, str]:
     for point, meet in met.items():
         where = f"in {point} meet {listed(meet)}" if meet else f"{point} is no pin"
         for body in dict.fromkeys(bodies):
-            why = LENGTH if body in meet else f"{where}, not {body}" if meet else where
+            why = FORCE_LENGTH if body in meet else f"{where}, not {body}" if meet else where
             for stem in (f"{point}_{body}", f"{point}_on_{body}"):
                 found |= dict.fromkeys(_vector(stem.replace(" ", "_")), why)
         which = f"{where}: name the body, as in {point}_{meet[0]}_fx_n" if meet else where
-        found |= dict.fromkeys(_vector(point), LENGTH if len(meet) == 2 else which)
+        found |= dict.fromkeys(_vector(point), FORCE_LENGTH if len(meet) == 2 else which)
         found[f"{point}_friction"] = FRICTION
     for name in scene.sliders:
         found |= dict.fromkeys((f"{name}_slider_friction", f"{name}_friction"), FRICTION)

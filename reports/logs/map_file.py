@@ -42,7 +42,8 @@ LEFT_OUT = "the map leaves it out"
 HEAD = (
     "# What the columns of the log mean: `crankcheck judge SCENE LOG --map` and this file.",
     "# kinds: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax, ay of",
-    "# a point; displacement, speed, acceleration of a slider; gap of a pin or slider.",
+    "# a point, v and a the sizes of its rates; displacement, speed, acceleration of a slider; gap",
+    "# of a pin or slider.",
     "# A reading is sign * (number + offset); ignore = true leaves a column out.",
 )
 """Head of a written map."""

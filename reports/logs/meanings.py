@@ -1,7 +1,7 @@
 """Conversion of columns to readings, by their names and the map; and the columns of times."""
 
 import re
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 
@@ -12,15 +12,24 @@ from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from reports.logs import instants, map_file
 from reports.logs.channel import Channel, OwnLog, Reading
-from reports.logs.column_meaning import GapColumn, column_meaning, gaps_told, reading
+from reports.logs.column_meaning import (
+    GapColumn,
+    beside_forces,
+    column_meaning,
+    gaps_told,
+    reading,
+    sized_channels,
+    unjudged_columns,
+)
 from reports.logs.columns import ONE_FILE, Columns
-from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
-from reports.logs.kinds import DIMENSION, LENGTH, UNITS, one_unit, si, spelled_unit, without_unit
+from reports.logs.force_columns import A_FORCE, TIMES, log_forces, names_force, why_not_judged
+from reports.logs.kinds import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
-from reports.logs.names import SceneNames, meaning
+from reports.logs.names import SceneNames, is_named, meaning
 
 TIME_NAMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime",
-              "simulation time", "elapsed", "elapsed time"}  # fmt: skip
+              "simulation time", "elapsed", "elapsed time", "time steps",
+              "timesteps"}  # fmt: skip
 
 
 def time_of(column: str, told: str = "") -> tuple[str, str] | None:
@@ -82,9 +91,6 @@ def further_instants(columns: Columns, column: str, zero_s: Decimal, scene: Scen
     return time_s
 
 
-A_FORCE = "a force, which is judged with --forces"
-
-
 def understood(
     columns: Columns, scene: Scene, map_: map_file.Map | None = None, *, forces: bool = False
 ) -> OwnLog:
@@ -108,10 +114,11 @@ def understood(
     borne = {name for name in columns.raw if forces and names_force(name, scene)}
     moving = replace(columns, raw={n: x for n, x in columns.raw.items() if n not in borne})
     channels, gaps, unused = _by_meaning(moving, scene, told, times)
-    channels, lengths = without_lengths(channels, told)
-    unused += lengths
-    channels, copies, spare = judged_channels(channels, scene)
-    unused += spare
+    channels, copies, still = judged_channels(
+        sized_channels(channels, columns, told, scene.sliders), scene
+    )
+    unjudged = unjudged_columns(columns, unused, SceneNames(scene))
+    unused += [(each.column, STILL) for each in still]
     if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
         raise CrankcheckError(f"{_nothing_found_text(columns, scene, unused)} {in_python}")
@@ -149,13 +156,26 @@ def understood(
         timed=bool(main),
         copies=readings(copies),
         gaps=gaps_told(columns, gaps),
+        still=readings(still),
         unused=tuple(unused),
+        unjudged=unjudged,
+        besides=beside_forces(columns, unjudged) if forces else {},
         forces=log_forces(columns, scene, base, acts, ignored) if forces else None,
     )
 
 
+STILL = "it is of a point of the ground, which does not move"
+
+
 def wanted(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
     """Return a test of the names of columns that are worth reading: others are only named."""
+    is_meant, named = _meant(scene, map_, forces=forces), SceneNames(scene)
+    ignored = {one.column for one in map_.channel if one.ignore}
+    return lambda column: is_meant(column) or (column not in ignored and is_named(column, named))
+
+
+def _meant(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
+    """Return a test of the names of columns with a meaning, but of points of the ground."""
     named = SceneNames(scene)
     told = {one.column: one for one in map_.channel}
 
@@ -191,7 +211,8 @@ def _by_meaning(
             continue
         found = column_meaning(column, told.get(column), named, times)
         if isinstance(found, str):
-            told_so = A_FORCE if names_force(column, scene) else why_not_judged(column, scene)
+            is_force = names_force(column, scene)
+            told_so = A_FORCE if is_force else why_not_judged(column, scene)
             unused.append((column, found if found == map_file.LEFT_OUT else told_so or found))
         elif isinstance(found, GapColumn):
             gaps.append(found)
@@ -210,35 +231,16 @@ def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[s
     )
 
 
-def without_lengths(
-    channels: Sequence[Channel], told: Container[str]
-) -> tuple[list[Channel], list[tuple[str, str]]]:
-    """Return the channels without lengths of vectors: channels, absent from the map, of a slider's
-    point whose components are logged beside the slider's own."""
-    parts = {(each.of, each.kind.order) for each in channels if each.kind.body_kind == "point"}
-    sliders = [each for each in channels if each.kind.body_kind == "slider"]
-    own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
-    lengths = [
-        each
-        for each in sliders
-        if "slider" not in each.column.lower()
-        and each.column not in told
-        and (each.of, each.kind.order) in parts & own
-    ]
-    kept = [each for each in channels if each not in lengths]
-    return kept, [(each.column, LENGTH) for each in lengths]
-
-
 def judged_channels(
     channels: Sequence[Channel], scene: Scene
-) -> tuple[list[Channel], list[Channel], list[tuple[str, str]]]:
+) -> tuple[list[Channel], list[Channel], list[Channel]]:
     """Return the channels to be judged, those of further copies of a point's position, for a gap,
-    and the other columns with the reason. Raises CrankcheckError for two columns of one
+    and those of points of the ground. Raises CrankcheckError for two columns of one
     quantity."""
     first: dict[tuple[object, ...], Channel] = {}
     main: list[Channel] = []
     copies: list[Channel] = []
-    spare: list[tuple[str, str]] = []
+    still: list[Channel] = []
     order = {body: n for n, body in enumerate([*scene.links])}
     for each in sorted(channels, key=lambda one: (bool(one.relative_to), order.get(one.on, -1))):
         key = (each.kind, each.of, each.on, each.relative_to)
@@ -249,7 +251,7 @@ def judged_channels(
             )
         first[key] = each
         if each.kind.body_kind == "point" and each.of in scene.ground:
-            spare.append((each.column, "it is of a point of the ground, which does not move"))
+            still.append(each)
             continue
         before = next((o for o in main if (o.kind, o.of) == (each.kind, each.of)), None)
         if before is not None and each.kind.body_kind == "point" and each.kind.order == 0:
@@ -257,7 +259,7 @@ def judged_channels(
         else:
             main.append(each)
     place = {each.column: n for n, each in enumerate(channels)}
-    return sorted(main, key=lambda one: place[one.column]), copies, spare
+    return sorted(main, key=lambda one: place[one.column]), copies, still
 
 
 def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, str] | None:
@@ -270,8 +272,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     left_out = {one.column for one in map_.channel if one.ignore}
     times = {map_.time.column} if map_.time.column else _times(columns.raw, left_out)
     others = [name for name in columns.raw if name not in times]
-    is_wanted = wanted(scene, map_)
-    bodies = [name for name in others if is_wanted(name)]
+    bodies = list(filter(_meant(scene, map_), others))
     if times and bodies:
         return None
     lacks = [

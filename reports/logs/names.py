@@ -15,12 +15,22 @@ from models.errors import cut
 from models.scene import GROUND, Scene
 from reports.logs import kinds
 
-FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "pin", "slider",
-           "block", "log", "sensor", "at", "on", "in", "signal", "value"}  # fmt: skip
+FILLERS = {"angular", "rotational", "linear", "lin", "translational", "of", "the", "link", "body",
+           "point", "joint", "joints", "revolute", "hinge", "pin", "slider", "block", "log", "get",
+           "at", "on", "in", "signal", "value", "state", "states", "field", "cm", "mea", "measure",
+           "marker", "xform", "transform", "rigidbody", "global", "world", "sensor"}  # fmt: skip
 AFTER = {"on", "of", "at"}
 """Words that follow a body's name."""
+INDEX = re.compile(r"\[([012])\]")
+"""Place of a component in a vector: xpos[0]."""
+ABSOLUTE = re.compile(r"\|([vaVA])\|")
+BELOW = re.compile(r"(?:(?<=[^A-Za-z]s)|(?<=sec)|(?<=\^))-(?=[12](?!\w))")
+"""Sign of a power: s-1, mm*s^-2."""
+GREEK = {ord(letter): f" {word} " for letter, word in zip("θϑφϕωα\u0307\u0308", (
+    "theta", "theta", "phi", "phi", "omega", "alpha", "dot", "ddot"), strict=True)}  # fmt: skip
 MODEL = re.compile(r"^[./]?model_?\d*(?=[./])", re.IGNORECASE)
 """Beginning of all names in Adams, and in Gazebo."""
+DRIVERS = {"driver", "input", "motor"}
 RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 
 
@@ -29,7 +39,7 @@ def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | s
     replaces that in the name. Raises CrankcheckError for units that contradict each other, or their
     kind."""
     if own := named.own.get(column):
-        if isinstance(own, str) or not told:
+        if not told:
             return own
         kinds.refuse_other_dimension(column, told, own.kind.dimension if own.kind else "length")
         return replace(own, unit=told)
@@ -41,8 +51,9 @@ def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | s
     if not bodies:
         return "it names no link, point or slider of the scene"
     relative = not RELATIVE.isdisjoint(words)
-    if "angular" in words:
-        words = ["angle" if word == "displacement" else word for word in words]
+    words = plain_words(words)
+    if not {"angular", "rotational", "ang"}.isdisjoint(words):
+        words = ["angle" if word in ("displacement", "disp") else word for word in words]
     words = [word for word in words if word not in FILLERS | RELATIVE]
     of, relative_to, on = _roles(bodies, named, relative=relative)
     if not of:
@@ -53,9 +64,28 @@ def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | s
     slider = "slider" in re.split(r"[^a-z]+", column.lower())
     kind = kind_of_words(named.kinds_of(of), words, unit, slider=slider)
     if isinstance(kind, str):
-        return kind
+        odd = "" if told else _odd_unit(column, named)
+        return f"{cut(odd)!r} is no unit that is known, such as deg/s or mm/s^2" if odd else kind
+    if kind.dimension == "angle" and re.search(r"rads\W*$", column, re.IGNORECASE):
+        unit = told or "rad"  # more often radians than radians per second
     kinds.refuse_other_dimension(column, unit, kind.dimension)
     return kinds.Meaning(of, kind, False, unit or kinds.si(kind.dimension), relative_to, on)
+
+
+def _odd_unit(column: str, named: SceneNames) -> str:
+    """Return the text of the last bracket if it is no unit, no body and no known word, else ""."""
+    *_, last = ("", *(hit[1] for hit in kinds.BRACKETS.finditer(column)))
+    bodies, words = named.found(last)
+    is_word = bodies or kinds.spelled_unit(last) or VOCABULARY.issuperset(plain_words(words))
+    return "" if is_word else last
+
+
+def plain_words(words: Iterable[str]) -> list[str]:
+    """Return words one by one, without the number of an instance: angaccel, twist/linear, vel2."""
+    text = " ".join(words).replace("/", " ")
+    parts = (JOINED.sub(r"\1 ", DOTTED.sub(r"\1 \2", part)).split() for part in text.split())
+    every = [(part, part.rstrip("0123456789")) for each in parts for part in each]
+    return [stem if stem in VOCABULARY else part for part, stem in every]
 
 
 def _roles(bodies: Sequence[str], named: SceneNames, *, relative: bool) -> tuple[str, str, str]:
@@ -74,24 +104,41 @@ def _roles(bodies: Sequence[str], named: SceneNames, *, relative: bool) -> tuple
     return "", "", ""
 
 
-PLACES = {"pos", "position", "place", "coordinate", "coord"}
-SPEEDS = {"v", "vel", "velocity", "speed", "rate"}
-ACCELERATIONS = {"a", "acc", "accel", "acceleration"}
+PLACES = {"pos", "position", "place", "coordinate", "coord", "pose", "location", "qpos", "xpos"}
+SPEEDS = {"v", "vel", "velocity", "speed", "rate", "twist", "qvel", "dot"}
+ACCELERATIONS = {"a", "acc", "accel", "acceleration", "qacc", "ddot"}
 DERIVATIVES: Mapping[str, Sequence[set[str]]] = {
     "link": (
-        {"theta", "angle", "ang", "phi", "rot", "rotation", "orientation", "q", *PLACES},
-        {"omega", "w", "angvel", "thetadot", "dtheta", "qd", *SPEEDS},
-        {"alpha", "angacc", "thetaddot", "qdd", *ACCELERATIONS},
+        {"theta", "angle", "angles", "ang", "phi", "rot", "rotation", "orientation", "q", "rz",
+         "euler", "yaw", "heading", *PLACES},
+        {"omega", "w", "dtheta", "qd", *SPEEDS},
+        {"alpha", "b", "qdd", *ACCELERATIONS},
     ),
     "slider": (
-        {"displacement", "disp", "s", "stroke", "travel", *PLACES},
-        {"sdot", *SPEEDS},
-        {"sddot", *ACCELERATIONS},
-    ),
-}
+        {"displacement", "disp", "s", "stroke", "travel", *PLACES}, SPEEDS, ACCELERATIONS),
+}  # fmt: skip
 """Words for a position and its two rates, by kind of body."""
-AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order, prefix in
-        enumerate(("", "v", "a"))} | {"px": (0, 0), "py": (0, 1)}  # fmt: skip
+AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for prefix, order in
+        {"": 0, "p": 0, "t": 0, "v": 1, "a": 2}.items()}  # fmt: skip
+SIZES = {"size", "mag", "magnitude", "norm", "resultant", "total", "tm"}
+OF_PLACES = PLACES | {"p", "displacement", "disp"}
+ASIDE = {"z": "x", "vz": "vx", "az": "ax", "pz": "x", "tz": "x"}
+"""Components of points across the plane, and those along x."""
+TILTS = {"x", "y", "rx", "ry"}
+VOCABULARY = {*FILLERS, *RELATIVE, *AXES, *SIZES, *OF_PLACES, *ASIDE, *TILTS, *DRIVERS, "gap",
+              *(word for sets in DERIVATIVES.values() for one in sets for word in one)}  # fmt: skip
+VAGUE = {"a", "b", "s", "p", "v", "w", "rate", "place", "location", "total", "size"}
+QUANTITY_WORDS = {"torque", "force", "moment", "reaction", "deflection", "extension", "angular",
+                  *(VOCABULARY - FILLERS - RELATIVE - DRIVERS - VAGUE)}  # fmt: skip
+FOREIGN = {"temperature", "temp", "current", "amps", "voltage", "volts", "volt", "power", "energy",
+           "battery", "pressure", "humidity", "cpu", "memory", "count", "counter",
+           "i", "u", "t"}  # fmt: skip
+"""Words of quantities of no mechanism: the C of temperature_C is a unit."""
+_JOINABLE = "|".join(sorted({*OF_PLACES, *SPEEDS, *ACCELERATIONS} - VAGUE, key=len, reverse=True))
+JOINED = re.compile(rf"^(ang|angular|lin|linear|rot|rotational|trans)(?=(?:{_JOINABLE})\d*$)")
+DOTTED = re.compile(r"^(theta|phi|q|x|y|s|omega)(d?dot)\d*$")
+_QUANTITIES = "|".join(sorted((word for word in QUANTITY_WORDS if len(word) > 1), key=len)[::-1])
+OUT_OF_PLANE = "it is a component out of the plane, which is the same throughout in a plane motion"
 
 
 def kind_of_words(
@@ -101,17 +148,30 @@ def kind_of_words(
     if "elastic" in body_kinds and ("elastic", " ".join(words)) in kinds.KINDS:
         return kinds.KINDS["elastic", " ".join(words)]
     if "link" in body_kinds:
-        if len(words) > 1 and words[-1] == "z":  # the axis that all turn about
-            words = words[:-1]
-        return _kind_of_order("link", words, unit)
-    axis = None if slider else _axis(words)
+        if "orientation" in words and not {*"xyzw"}.isdisjoint(words):
+            return "a component of a quaternion is no angle"
+        kind = _kind_of_order("link", [word for word in words if word != "z"] or words, unit)
+        if isinstance(kind, str) and len(words) > 1:
+            upright = _kind_of_order("link", [word for word in words if word not in TILTS], "")
+            return kind if isinstance(upright, str) else OUT_OF_PLANE
+        return kind
+    sized = not SIZES.isdisjoint(words)
+    axis = None if slider or sized else _axis(words)
+    every = [kind for kind in kinds.KINDS.values() if kind.body_kind == "point"]
     if "point" in body_kinds and axis:
-        every = kinds.KINDS.values()
-        return next(k for k in every if (k.body_kind, k.order, k.axis) == ("point", *axis))
-    if "slider" in body_kinds:
+        return next(k for k in every if (k.order, k.axis) == axis)
+    if "slider" in body_kinds and not sized:
         return _kind_of_order("slider", words, unit)
-    if list(words) in (["v"], ["a"]):
-        return kinds.LENGTH
+    order = _order(
+        [word for word in words if not ((sized and word.isdigit()) or word in SIZES)],
+        (set(), SPEEDS, ACCELERATIONS),
+    )
+    if sized and set(words) <= SIZES:  # the unit says of what
+        order = {"velocity": 1, "acceleration": 2}.get(kinds.DIMENSION.get(unit, ""))
+    if "point" in body_kinds and order:
+        return next(k for k in every if k.is_size and k.order == order)
+    if _axis([ASIDE.get(word, word) for word in words]):
+        return OUT_OF_PLANE
     return _why_no_kind(words, "point", unit)
 
 
@@ -120,6 +180,7 @@ def _kind_of_order(
 ) -> kinds.Kind | str:
     """Return the kind by a derivative that words name, or by the unit; or why there is none."""
     of_body = [kind for kind in kinds.KINDS.values() if kind.body_kind == body_kind]
+    words = [word for word in words if not word.isdigit()]  # of an instance: rocker-1
     if words:
         order = _order(words, DERIVATIVES[body_kind])
         chosen = [kind for kind in of_body if kind.order == order]
@@ -131,11 +192,13 @@ def _kind_of_order(
 
 def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
     """Return the derivative that some words name; None where they name none, or several."""
-    orders = {n for word in words for n, known in enumerate(names) if word in known}
+    more = words.count("dot") + 2 * words.count("ddot")
+    plain = [word for word in words if word not in ("dot", "ddot")]
+    orders = {n for word in plain for n, known in enumerate(names) if word in known}
     known = set().union(*names)
     if len(orders) == 2 and 0 in orders and not PLACES.isdisjoint(names[0]):
         orders -= {0}  # angle velocity
-    return orders.pop() if len(orders) == 1 and known.issuperset(words) else None
+    return orders.pop() + more if len(orders) == 1 and known.issuperset(plain) else None
 
 
 def _axis(words: Sequence[str]) -> tuple[int, int] | None:
@@ -145,21 +208,19 @@ def _axis(words: Sequence[str]) -> tuple[int, int] | None:
         return None
     order, axis = AXES[axes[0]]
     for word in words:
-        if word == axes[0] or word in PLACES | {"p"}:
+        if word == axes[0] or word in OF_PLACES or word.isdigit():
             continue
-        if word in SPEEDS and order == 0:
-            order = 1
-        elif word in ACCELERATIONS and order == 0:
-            order = 2
-        else:
+        rate = 1 if word in SPEEDS else 2 if word in ACCELERATIONS else None
+        if rate is None or order not in (0, rate):
             return None
+        order = rate
     return order, axis
 
 
 def _why_no_kind(words: Sequence[str], kind: str, unit: str) -> str:
     told: Mapping[str, str] = {
         "link": "angle, angular velocity or angular acceleration",
-        "point": "x, y, vx, vy, ax or ay",
+        "point": "x, y, vx, vy, ax, ay, or v or a in size",
         "slider": "displacement, speed or acceleration",
     }
     if words:
@@ -168,7 +229,6 @@ def _why_no_kind(words: Sequence[str], kind: str, unit: str) -> str:
     return f"{of} a {kind} has {told[kind]}"
 
 
-DRIVERS = {"driver", "input", "motor"}
 SHORT = 2
 """Names of bodies up to this length depend on case: `a` is an acceleration, `A` a point."""
 
@@ -190,7 +250,7 @@ class SceneNames:
         return sorted(every, key=lambda name: (-len(name), name))
 
     @cached_property
-    def own(self) -> Mapping[str, kinds.Meaning | str]:
+    def own(self) -> Mapping[str, kinds.Meaning]:
         """The meanings of the columns that we write ourselves, by name."""
         return kinds.own_meanings({body: self.kinds_of(body) for body in self.bodies})
 
@@ -204,13 +264,15 @@ class SceneNames:
         )
         return tuple(kind for kind, holds in there if holds)
 
-    def found(self, text: str) -> tuple[list[str], list[str]]:
-        """Return the bodies that a text names, in its order, and the other words, in lower case:
-        `xC` and `rockerAngle` too."""
+    def found(self, text: str, *, drivers: bool = True) -> tuple[list[str], list[str]]:
+        """Return the bodies that a text names, in its order, the driven one also as a motor with
+        ``drivers``, and the other words, in lower case: `xC` and `rockerAngle` too."""
+        text = INDEX.sub(lambda hit: f" {'xyz'[int(hit[1])]} ", text)
+        text = ABSOLUTE.sub(lambda hit: f" {hit[1].lower()} size ", text)
         bodies, words = self._apart(text)
         if not bodies:
             bodies, words = self._apart(self._parted(text))
-        if not bodies and not DRIVERS.isdisjoint(words):
+        if drivers and not bodies and not DRIVERS.isdisjoint(words):
             bodies = [self.scene.driver.name]
             words = [word for word in words if word not in DRIVERS]
         return bodies, words
@@ -224,19 +286,42 @@ class SceneNames:
         """Return a text with spaces before capitals in words, and between a point and its axis."""
         text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
         points = "|".join(re.escape(name) for name in self.bodies if name in self.points)
-        text = re.sub(rf"(?<![A-Za-z0-9])({points})([va]?[xy])(?![A-Za-z0-9])", r"\1 \2", text)
-        return re.sub(rf"(?<![A-Za-z0-9])([va]?[xy])({points})(?![A-Za-z0-9])", r"\1 \2", text)
+        links = "|".join(re.escape(name) for name in self.bodies if len(name) > SHORT)
+        quantities = f"(?i:(?:ang|angular|linear)?(?:{_QUANTITIES}))"
+        for names, others in ((points, "[vaVA]?[xyXY]"), (f"(?i:{links})", quantities)):
+            for pair in (f"({names})({others})", f"({others})({names})"):
+                text = re.sub(rf"(?<![A-Za-z0-9]){pair}(?![A-Za-z0-9])", r"\1 \2", text)
+        return text
 
     def _apart(self, text: str) -> tuple[list[str], list[str]]:
         places: list[tuple[int, str]] = []
         for name in self.bodies:
             flags = 0 if len(name) <= SHORT else re.IGNORECASE
-            pattern = rf"(?<![A-Za-z0-9]){re.escape(name)}(?![A-Za-z0-9])"
+            pattern = rf"(?<![A-Za-z0-9])({re.escape(name)})(?:-\d+)?(?![A-Za-z0-9])"
             while hit := re.search(pattern, text, flags):
-                body = self._in_its_case(hit[0])
+                body = self._in_its_case(hit[1])
                 if not body:
                     break
                 places.append((hit.start(), body))
-                text = text[: hit.start()] + " " * len(name) + text[hit.end() :]
-        words = [word.strip("/").lower() for word in re.split(r"[^A-Za-z0-9°µμ²/^*']+", text)]
+                text = text[: hit.start()] + " " * len(hit[0]) + text[hit.end() :]
+        text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", BELOW.sub("⁻", text.translate(GREEK)))
+        words = [word.strip("/·").lower() for word in re.split(r"[^A-Za-z0-9°µμ·⁻¹²/^*']+", text)]
         return [name for _, name in sorted(places)], [word for word in words if word]
+
+
+def is_named(column: str, named: SceneNames) -> bool:
+    """Return whether a column names a link, point or slider, or a quantity that is known."""
+    text, unit = kinds.without_unit(column)
+    bodies, words = named.found(re.sub(MODEL, " ", text), drivers=False)
+    foreign = not FOREIGN.isdisjoint(words)
+    if bodies and bodies != [GROUND]:
+        return not (foreign and max(map(len, bodies)) == 1)
+    if not unit:
+        unit, words = kinds.trailing_unit(words)
+        unit = "" if unit in kinds.LAST_ALONE else unit
+    has_unit = kinds.DIMENSION.get(unit, "time") != "time"
+    words = [word for word in plain_words(words) if not word.isdigit()]
+    told = QUANTITY_WORDS.intersection(words)
+    # A letter is a quantity among words of a mechanism alone: x of marker 2.
+    is_known = any(len(word) > 1 for word in told) or bool(told and VOCABULARY.issuperset(words))
+    return not foreign and (has_unit or is_known)

@@ -47,8 +47,6 @@ def is_remark(line: str) -> bool:
 
 def beginning(raw: bytes) -> Beginning:
     """Return the first lines of a text. Raises UnreadableError for no text."""
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        raise UnreadableError("UTF-16 text; save the file as UTF-8")
     mark = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
     look = raw[mark : mark + LOOK]
     if b"\0" in look:

@@ -163,12 +163,24 @@ class Layout:
     sheet: str = ""
 
 
+def _as_utf_8(raw: bytes) -> bytes:
+    """Return a text in UTF-16, with a mark or of ASCII, as UTF-8; another as it is."""
+    marks = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
+    halves = {raw[1:4:2]: "utf-16-le", raw[:4:2]: "utf-16-be"}
+    name = marks.get(raw[:2]) or (halves.get(b"\0\0", "") if any(raw[:4]) else "")
+    try:
+        return raw.decode(name).lstrip("\ufeff").encode() if name else raw
+    except UnicodeDecodeError:
+        raise UnreadableError("UTF-16 text that is cut; save the file as UTF-8") from None
+
+
 def text_columns(
     raw: bytes, layout: Layout, wanted: Callable[[str], bool]
 ) -> tuple[pa.Table, Sequence[str], int, Array]:
     """Read the ``wanted`` columns of a text with a header: all its names, the line of the first
     row, and the lines from there on that are no rows; those that are blank or remarks are skipped
     anywhere. Raises UnreadableError for other texts."""
+    raw = _as_utf_8(raw)
     start = text_lines.beginning(raw)
     header = header_of(start, layout.separator, wanted)
     names = header.names

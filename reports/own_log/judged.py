@@ -29,9 +29,11 @@ from reports.own_log.log_limits import (
     HeldLog,
     LogRequest,
     absent_names,
+    findings_of_ground,
     limit_of,
     log_kind,
     log_limits,
+    refuse_unjudged,
     required_name,
 )
 from sim.engine import Placing
@@ -108,6 +110,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     _refuse_aside(aside(log, not_judged), required, why, errors)
     absent = absent_names(log.scene, required, not_judged, errors)
     chosen = log_limits(beside.scene, errors, request.target, request.step_s)
+    refuse_unjudged(log, beside, errors, chosen)
     departure = errors.departure
     evidence = Evidence(
         status="branch-changed" if departure else "ok",
@@ -126,7 +129,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         drive=request.drive,
         step_s=request.step_s,
         fit=fit,
-        findings=_findings(evidence, request),
+        findings=(*_findings(evidence, request), *findings_of_ground(log, chosen)),
         causes=found,
         not_judged=not_judged,
         notes=(*errors.notes, *notes),

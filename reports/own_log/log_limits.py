@@ -5,16 +5,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol, cast
 
-from models.errors import CrankcheckError, few, shown, suggestion
+import numpy as np
+
+from models.errors import CrankcheckError, cut, few, listed, shown, suggestion
 from models.scene import Scene
 from reports.causes.cause import Cause
 from reports.compare.compare import Truth
 from reports.compare.errors import Error, Errors
-from reports.judge.rules.limits import start_limit
-from reports.judge.rules.rule import Evidence
+from reports.judge.rules.limits import LIMITS, start_limit
+from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import Limit, in_passage, limits
 from reports.logs.channel import OwnLog
-from reports.logs.log_beside import readings_of
+from reports.logs.force_columns import A_FORCE
+from reports.logs.kinds import si
+from reports.logs.log_beside import LogBeside, readings_of
 from reports.own_log.drives import DriveFit, LogDrive
 from reports.protocol.length import SEGMENTS, Springs
 from reports.protocol.way import way_of
@@ -124,6 +128,77 @@ def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[st
             side.setdefault(reading.channel.column, []).append(limit * row.scale / both)
     return {column: max(each) for column, each in under.items()} | {
         column: min(each) for column, each in over.items()
+    }
+
+
+def refuse_unjudged(
+    log: OwnLog, beside: LogBeside, errors: Errors, limits: Mapping[str, Limit]
+) -> None:
+    """Refuse columns that name a body or a known quantity, and are not judged; forces may stand
+    beside geometry alone. Raises CrankcheckError with every one of them."""
+    alone = beside.geometry_alone
+    right = _forces_within(log, beside.truth, _limit_or_least(limits, "reaction"))
+    faults = {
+        column: why
+        for column, why in log.unjudged
+        if column not in right and not (alone and why == A_FORCE)
+    }
+    read = {each.channel.column for row in errors.rows for each in readings_of(log, row)}
+    lost = [each.channel for each in log.readings if each.channel.column not in read and not alone]
+    faults |= {channel.column: f"{channel.name} is not compared" for channel in lost}
+    shut = {row.body for row in errors.rows if row.quantity == "gap"}
+    faults |= {g.column: "a gap is of a pin or a slider" for g in log.gaps if g.of not in shut}
+    if faults:
+        place = (
+            f"{log.source}: columns that name a body or a known quantity can not be judged; say "
+            "of, kind and unit in a [[channel]] of the map, which --write-map map.toml begins, or "
+            "ignore = true"
+        )
+        raise CrankcheckError(listed(place, [f"{cut(c)!r}: {why}" for c, why in faults.items()]))
+
+
+def _limit_or_least(limits: Mapping[str, Limit], quantity: str) -> float:
+    """Return the limit of a quantity; the least of all where it has none."""
+    told = {name: each.number for name, each in limits.items() if math.isfinite(each.number)}
+    return told.get(quantity, min(told.values(), default=math.inf))
+
+
+def findings_of_ground(log: OwnLog, limits: Mapping[str, Limit]) -> list[Finding]:
+    """Return a finding for each column of a point of the ground that is out of tolerance."""
+    found = []
+    for each in log.still:
+        channel, kind, scene = each.channel, each.channel.kind, log.scene
+        at = 0.0 if kind.order else scene.ground[channel.of][kind.axis or 0]
+        off = float(np.max(np.abs(each.values - at)))
+        pure = off / (scene.longest_m * scene.pace_rad_s**kind.order)
+        limit = _limit_or_least(limits, kind.quantity)
+        if pure > limit:
+            stands = f"{kind.name} is {at:.6g} {si(kind.dimension)}"
+            text = (
+                f"{cut(channel.column)!r}: {channel.of} is a point of the ground, where {stands}, "
+                f"and the column is off by up to {off:.4g}"
+            )
+            rule = next(rule.id for rule in LIMITS if rule.quantity == kind.quantity)
+            found.append(Finding(rule, "fail", text, pure, limit))
+    return found
+
+
+def _forces_within(log: OwnLog, truth: Truth, limit: float) -> set[str]:
+    """Return the columns of lengths of forces and of friction that are as in the reference."""
+    if log.forces is None or not log.besides:
+        return set()
+    from reports.describe.free_motion import force_columns  # which few logs need
+
+    forces = truth.with_forces_at(log.forces.forces.time_s).forces
+    right = {} if forces is None else force_columns(forces)
+    sizes = [np.nanmax(np.abs(each), initial=0.0) for name, each in right.items() if "_f" in name]
+    most = limit * max(sizes, default=0.0)
+    return {
+        name
+        for name, values in log.besides.items()
+        if name in right
+        and np.nanmax(np.abs(values[: right[name].size] - right[name]), initial=0.0)
+        <= most * (log.scene.longest_m if name.endswith("_n_m") else 1.0)
     }
 
 

@@ -200,6 +200,13 @@ def verdict_line(judged: JudgedLog) -> Text:
     rows = log_rows(judged)
     samples = judged.log.time_s.size
     what = f"{count(len(rows), 'error')} over {samples} samples of {judged.scene.name}"
+    seen = {*judged.log.besides, *(each.channel.column for each in judged.log.still)}  # and right
+    names = [column_text(each) for each, _ in judged.log.unused if each not in seen]
+    if judged.beside.geometry_alone:
+        rates = (each.channel for each in judged.log.readings if each.channel.kind.order)
+        names += [column_text(each.column) for each in rates]
+    if names:
+        what += f"; not judged: {few(names, 6)}"
     if judged.failures:
         out = sum(row.verdict == "out" for row in rows)
         return Text(f"OUT OF TOLERANCE: {out} of {what}", "bold red")

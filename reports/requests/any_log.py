@@ -200,7 +200,7 @@ def _series(scene: Scene, motion: Motion, source: str) -> Iterator[tuple[Kind, s
             if body_kind == "point" and body in scene.ground:
                 continue
             for kind in KINDS.values():
-                if kind.body_kind == body_kind:
+                if kind.body_kind == body_kind and not kind.is_size:
                     yield kind, body, getattr(moved, kind.field)
 
 

@@ -226,7 +226,8 @@ def judge(
     Raises
     ------
     CrankcheckError
-        A log that can not be read, or has nothing of the scene; no target and no step.
+        A log that can not be read, has nothing of the scene, or a column that names a body or a
+        known quantity and is neither understood nor ignored; no target and no step.
     """
     with_forces, is_free = arguments.is_true(forces, "forces"), arguments.is_true(free, "free")
     asked = any_log.LogOptions(step_s, drive, map, require, with_forces, is_free, segments, springs)

@@ -114,7 +114,7 @@ TEXTS: dict[str, tuple[bytes, str]] = {
         "no column is of scene fourbar-lecture-1, which has crank.*found .*write-map"),
     "binary": (bytes(range(256)) * 99, "no text|not UTF-8 text|null bytes"),
     "a workbook called .csv": (b"PK\x03\x04" + bytes(999), "null bytes"),
-    "UTF-16": (text(*ROWS).decode().encode("utf-16"), "UTF-16 text; save the file as UTF-8"),
+    "UTF-16": (text(*ROWS).decode().encode("utf-16")[:-1], "UTF-16 text that is cut; save the"),
     "Latin 1": (header("rocker_deg", "rocker [°]").decode().encode("latin-1"), "not UTF-8 text; s"),
     "lines that end in \\r": (text(*ROWS).replace(b"\n", b"\r"), "lines end in|save the file with"),
     "100,000 columns": (

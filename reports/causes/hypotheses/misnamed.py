@@ -65,7 +65,7 @@ def _meanings(inquiry: Inquiry, channel: Channel) -> Iterator[OtherMeaning]:
     bodies = _bodies_by_kind(inquiry)
     if channel.kind.body_kind == "link":
         yield from _relative(channel, bodies["link"])
-    for kind in KINDS.values():
+    for kind in (each for each in KINDS.values() if each == channel.kind or not each.is_size):
         same = kind == channel.kind
         for body in bodies[kind.body_kind]:
             if same and body == channel.of:

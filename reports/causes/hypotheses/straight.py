@@ -12,7 +12,7 @@ from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later
 from reports.causes.cause import BROUGHT_WITHIN, CauseSize, Excerpt, Rows, levelled
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
-from reports.logs.kinds import UNITS, si
+from reports.logs.kinds import TYPICAL, UNITS, si
 from reports.output.numbers import listed
 
 TURNS = (0, 1, -1, 2, -2)
@@ -69,7 +69,7 @@ def _known(channel: Channel) -> Iterator[StraightLineFault]:
     yield StraightLineFault("offset", CAUSE + NUMBER, 1.0, shifted=True)
     yield StraightLineFault("sign", CAUSE + CHOICE + NUMBER, -1.0, shifted=True)
     units = UNITS[channel.kind.dimension]
-    for unit, size in units.items():
+    for unit, size in TYPICAL[channel.kind.dimension].items():
         gain = units[channel.unit] / size
         if gain != 1.0:
             yield StraightLineFault("unit", CAUSE + CHOICE, gain, unit=unit)

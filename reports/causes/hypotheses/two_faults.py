@@ -21,7 +21,7 @@ from reports.causes.hypotheses.samples import places_text, runs, samples
 from reports.causes.hypotheses.straight import straight, turns
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel, Reading
-from reports.logs.kinds import UNITS
+from reports.logs.kinds import TYPICAL, UNITS
 
 MOST = 4
 """Channels that are examined twice."""
@@ -101,7 +101,7 @@ def _read_otherwise(inquiry: Inquiry, column: str) -> Iterator[First]:
     excerpt = inquiry.excerpts[column]
     channel = excerpt.channel
     units = UNITS[channel.kind.dimension]
-    for unit, size in units.items():
+    for unit, size in TYPICAL[channel.kind.dimension].items():
         for sign in (1, -1):
             gain = sign * units[channel.unit] / size
             if gain == 1.0:

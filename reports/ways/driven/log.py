@@ -43,8 +43,9 @@ class DrivenLog:
         return LogBeside(truth, run, run.motion, step_s=run.dt_s, geometry_alone=alone)
 
     def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
-        of_driver = (channel.kind.name, channel.of) == ("angle", scene.driver.link)
-        return ("drive",) if scene.driver.is_crank and of_driver else (channel.kind.quantity,)
+        driver, of = scene.driver, (channel.kind.name, channel.of)
+        drives = [("displacement", driver.slider), *[("angle", driver.link)] * driver.is_crank]
+        return ("drive",) if of in drives else (channel.kind.quantity,)
 
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         if held.fit is not None and not held.fit.explains:

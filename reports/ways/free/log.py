@@ -267,8 +267,12 @@ class FreeLogBeside(LogBeside, FreeBeside):
         scene = self.scene
         points = {*scene.pins, *(slider.point for slider in scene.sliders.values())}
         names = {
-            kind: [name for of, name in KINDS if of == kind and KINDS[of, name].order in orders]
-            for kind in ("link", "point")
+            body: [
+                k.name
+                for k in KINDS.values()
+                if k.body_kind == body and k.order in orders and not k.is_size
+            ]
+            for body in ("link", "point")
         }
         return all(self._says("link", link, *names["link"]) for link in scene.links) and all(
             self._says("point", point, *names["point"]) for point in points - {*scene.ground}

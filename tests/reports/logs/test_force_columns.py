@@ -143,7 +143,7 @@ def test_lengths_and_friction_that_we_write_are_left_alone() -> None:
     assert any("friction_n_m" in name for name in named)
     unused = dict(understood(columns_of(columns, "log"), SCENE, forces=True).unused)
     for name in named:
-        why = force_columns.FRICTION if "friction" in name else force_columns.LENGTH
+        why = force_columns.FRICTION if "friction" in name else force_columns.FORCE_LENGTH
         assert unused[name] == why, name
 
 
