@@ -24,8 +24,8 @@ from models.scene.loads import Load
 NODES = 5
 CELLS = 120
 """Cells of a turn, before it is cut at kinks."""
-APART = 1e-9
-"""Distance of borders, over the cycle, below which they are one."""
+APART = 1e-14
+"""Distance of borders, over the cycle, below which they are one by rounding."""
 
 
 def _lagrange() -> tuple[Array, Array]:
