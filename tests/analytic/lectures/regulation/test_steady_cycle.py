@@ -1,6 +1,7 @@
 """The cycle that a machine repeats: by hand, beside an integration, and where there is none; and
 the flywheel for a coefficient of fluctuation, exact beside approximate."""
 
+import itertools
 import math
 from dataclasses import replace
 from functools import cache
@@ -96,7 +97,7 @@ def test_surplus_and_flywheel_of_torque_lines_are_exact(name: str) -> None:
     torque = y - np.sum(np.diff(x) * (y[1:] + y[:-1])) / 2.0 / math.tau
     rises = np.diff(x) * (torque[1:] + torque[:-1]) / 2.0
     work = [0.0, *np.cumsum(rises)]
-    for k, (first, last) in enumerate(zip(torque, torque[1:], strict=False)):
+    for k, (first, last) in enumerate(itertools.pairwise(torque)):
         if first * last < 0.0:
             work.append(work[k] + 0.5 * first * np.diff(x)[k] * first / (first - last))
     delta = 0.02
