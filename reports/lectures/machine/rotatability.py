@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -17,7 +17,13 @@ from analytic.lectures.circuits.circuits import (
     circuits_of,
     transmissions,
 )
-from analytic.lectures.circuits.rotatability import Rotation, at_limit, dead_points, rotations
+from analytic.lectures.circuits.rotatability import (
+    Rotation,
+    at_limit,
+    circuit_rotations,
+    dead_points,
+    rotations,
+)
 from analytic.mechanism.fourbar import grashof_of
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError, harmless, shown
@@ -87,7 +93,10 @@ def _position(circuits: Circuits, text: str) -> Position:
 
 def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
     """The whole answer, angles in degrees, as JSON has it."""
-    turning = rotations(scene, circuits.own[1])
+    turning, free = rotations(scene, circuits.own[1]), dict[str, object]()
+    if scene.is_free:
+        turning = circuit_rotations(circuits, circuits.own[1])
+        free = {"other_circuits": list(_of_other_circuits(circuits))}
     dyads, merit = transmissions(circuits)
     grashof, (number, own) = grashof_of(scene), circuits.own
     return {
@@ -95,6 +104,7 @@ def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
         "type": None if grashof is None else grashof.name,
         "margin_m": None if grashof is None else grashof.margin_m,
         "rotations": [rotation_row(one, is_limited=own.low is not None) for one in turning],
+        **free,
         "dyads": list(circuits.signed.dyads),
         "change_points": circuits.change_points,
         "circuit": number + 1,
@@ -131,6 +141,15 @@ def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
         "merit": merit.value,
         "merit_at_deg": math.degrees(merit.driver_rad),
     }
+
+
+def _of_other_circuits(circuits: Circuits) -> Iterator[Row]:
+    """The rotations of a scene in free motion, had it been assembled in its other circuits."""
+    for number, circuit in enumerate(circuits.circuits):
+        if number != circuits.own[0]:
+            for one in circuit_rotations(circuits, circuit[0]):
+                row = rotation_row(one, is_limited=circuit[0].low is not None)
+                yield {"circuit": number + 1, **row}
 
 
 def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
@@ -191,6 +210,7 @@ def _extreme(name: str, extreme: AngleExtreme | None) -> Row:
 
 TABLES = {
     "rotations": "link against does turns from_deg to_deg swing_deg",
+    "other_circuits": "circuit link against does turns from_deg to_deg swing_deg",
     "branches": "circuit signs driver_from_deg driver_to_deg limits scene",
     "dead_points": "input driver_deg where",
     "transmission": "dyad kind smallest_deg smallest_at_deg largest_deg largest_at_deg "
@@ -204,7 +224,11 @@ def _show(console: Console, document: Mapping[str, Any]) -> None:
     if document["type"] is not None:
         kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
     say(console, f"{document['scene']}: {kind}")
+    if "other_circuits" in document:
+        say(console, f"free: rotations are over its whole circuit, {document['circuit']}")
     for name, columns in TABLES.items():
+        if name == "other_circuits" and not document.get(name):
+            continue
         if name == "branches":
             meet = ", those that meet in change points as one" if document["change_points"] else ""
             say(console, f"\ncircuits{meet}; signs of {', '.join(document['dyads']) or 'no dyad'}")
