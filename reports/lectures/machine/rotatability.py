@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -96,7 +96,12 @@ def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
     turning, free = rotations(scene, circuits.own[1]), dict[str, object]()
     if scene.is_free:
         turning = circuit_rotations(circuits, circuits.own[1])
-        free = {"other_circuits": list(_of_other_circuits(circuits))}
+        free["other_circuits"] = [
+            {"circuit": number + 1, **rotation_row(one, is_limited=first.low is not None)}
+            for number, (first, *_) in enumerate(circuits.circuits)
+            if number != circuits.own[0]
+            for one in circuit_rotations(circuits, first)
+        ]
     dyads, merit = transmissions(circuits)
     grashof, (number, own) = grashof_of(scene), circuits.own
     return {
@@ -141,15 +146,6 @@ def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
         "merit": merit.value,
         "merit_at_deg": math.degrees(merit.driver_rad),
     }
-
-
-def _of_other_circuits(circuits: Circuits) -> Iterator[Row]:
-    """The rotations of a scene in free motion, had it been assembled in its other circuits."""
-    for number, circuit in enumerate(circuits.circuits):
-        if number != circuits.own[0]:
-            for one in circuit_rotations(circuits, circuit[0]):
-                row = rotation_row(one, is_limited=circuit[0].low is not None)
-                yield {"circuit": number + 1, **row}
 
 
 def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
@@ -254,6 +250,8 @@ def _cell(value: object) -> str:
         return "yes" if value else ""
     if isinstance(value, list):
         return ", ".join(dict.fromkeys(value))
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {_cell(each)}" for name, each in value.items())
     if isinstance(value, float):
         return f"{0.0 if abs(value) < 1e-6 else value:.6g}"
     return "" if value is None else str(value)
