@@ -126,7 +126,7 @@ class _Follower:
     ) -> _Follower:
         scene, angles = legs[0][0], {GROUND: np.zeros_like(theta)}
         parts = zip(legs, np.split(theta, len(legs)), strict=True)
-        plain = [_plain(own, some) for (own, _), some in parts]
+        plain = [plain_angles(own, some) for (own, _), some in parts]
         for name in scene.links:
             angles[name] = np.unwrap(np.concatenate([each[name] for each in plain]))
             if np.max(np.abs(np.diff(angles[name])), initial=0.0) > 0.5 * math.pi:
@@ -174,7 +174,7 @@ class _Follower:
         high = float(self.theta[min(best + 1, first + count - 1)])
         for _ in range(ZOOMS):
             looks = np.linspace(low, high, FINER)
-            plain = _plain(scene, looks)
+            plain = plain_angles(scene, looks)
             angle = plain[link] - plain.get(against, np.zeros(FINER))
             angle = angle + math.tau * np.round((value - angle) / math.tau)
             k = int(np.argmax(sense * angle))
@@ -184,7 +184,7 @@ class _Follower:
         return value, math.remainder(at, math.tau), signs
 
 
-def _plain(scene: Scene, theta: Array) -> dict[str, Array]:
+def plain_angles(scene: Scene, theta: Array) -> dict[str, Array]:
     """Return the angles of all links but for whole turns, by the motion with its change points."""
     chunk = prepared(scene).stretched(theta)
     found = {}

@@ -163,6 +163,9 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     },
     "rotatability triad-platform --position 30": "they are found of class II mechanisms",
     "mobility four-bar -o x.toml": "add --replace",
+    "equilibria fourbar-lecture-1": "rests anywhere",
+    "equilibria fourbar-elastic": "coupler is elastic",
+    "equilibria fourbar-pulse": "follows time, and under it nothing rests",
     "mobility --replace": "name a scheme",
     "mobility sarrus --replace": "sarrus: a spatial scheme",
 }  # fmt: skip

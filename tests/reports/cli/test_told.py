@@ -106,6 +106,8 @@ TOLD = {
     " | rocker ground swings 0 -307.169 -52.8311 254.338"
     " | rocker -20.7419 driver and coupler in line",
     "rotatability slider-crank-spring": "other circuits | 2 rod ground swings 0 -195.466 -156.422",
+    "equilibria fourbar-swing": "1 yes stable crank -111.653, coupler 49.557, rocker 0.0552469"
+    " 2.18636 150.883 1 yes unstable",
     "joint crossed-cylinders": "touches point: a higher pair"
     " | alone class 1, leaves Qx, Qy, Qz, Ty, Tz; a force must keep the two together"
     " | guided class 4, leaves Qz, Tz, where its neighbours leave Qz, Tz",
