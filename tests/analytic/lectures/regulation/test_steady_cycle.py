@@ -29,7 +29,14 @@ from models.scene import GROUND, Driver, Scene
 from models.scene.characteristics import Constant, Polynomial, Sine
 from models.scene.driver import Released
 from models.scene.laws import Accelerating, ConstantSpeed
-from models.scene.loads import ConstantFriction, CoulombFriction, LineSpring, PinSpring, SlideSpring
+from models.scene.loads import (
+    ConstantFriction,
+    CoulombFriction,
+    LineSpring,
+    Load,
+    PinSpring,
+    SlideSpring,
+)
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
 from tests.analytic.lectures.regulation.worked import shaft, yoke
@@ -108,6 +115,21 @@ def test_surplus_and_flywheel_of_torque_lines_are_exact(name: str) -> None:
     assert near.by_surplus == pytest.approx(exact, rel=1e-9)  # of a flywheel 10^4 times as heavy
     assert near.by_own_energy == pytest.approx(exact, rel=1e-9)
     assert found.inertia_kg_m2 == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_push_that_begins_next_to_a_dead_centre_by_hand() -> None:
+    """F on the last 1e-6 m towards s = r cos u = r, between two samples: F r sin turns against D
+    from a before the dead centre on, where s = c, until b before it, where they are alike."""
+    push_n, radius, begin = 1e7, 0.2, 0.2 - 1e-6
+    table = Tabulated((-0.3, begin, begin + 1e-15, 0.3), (0.0, 0.0, push_n, push_n))
+    scene = yoke(mass_kg=1e-30, radius_m=radius)
+    load = Load("push", "yoke", "Y", table, "displacement", slider="Y", stroke="forward")
+    driver = Driver("crank", ConstantSpeed(0.3017, 8.0))
+    found = cycle(replace(scene, loads={"push": load}, driver=driver))
+    drive = push_n * (radius - begin) / math.tau
+    a, b = math.acos(begin / radius), math.asin(drive / (push_n * radius))
+    surplus = push_n * (radius * math.cos(b) - begin) - drive * (a - b)
+    assert found.surplus_j == pytest.approx(surplus, rel=1e-8)
 
 
 def test_a_motor_and_a_fan_by_hand() -> None:
