@@ -90,6 +90,7 @@ class BodiesMotion(MultibodyMotion):
         without any."""
         del bound
         acting = super().at(motion.time_s).forces
+        assert acting is not None
         if self.dynamics.redundant:
             acting = replace(acting, pins={}, sliders={}, undetermined=OPEN)
         return replace(motion, forces=acting)

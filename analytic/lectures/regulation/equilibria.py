@@ -71,7 +71,7 @@ def equilibria(scene: Scene) -> Equilibria:
     free = loosened(scene)
     circuits, start = circuits_of(free), free.driver.law.at(np.zeros(1))[0]
     wound = {name: float(q[0]) for name, q in Machine(free).lengths(start).items()}
-    found, beyond = [], []
+    found, beyond = list[Equilibrium](), list[int]()
     for number, circuit in enumerate(circuits.circuits):
         left = list(circuit)
         try:
@@ -100,7 +100,8 @@ class _Course:
         sizes, scene = np.abs(self._acting(looks)[0]), self.machines[0].scene
         if not np.isfinite(sizes).any():
             return  # folded flat: pins that coincide leave a link free
-        masses = sum(body.mass_kg for body in [*scene.links.values(), *scene.sliders.values()])
+        masses = sum(link.mass_kg for link in scene.links.values())
+        masses += sum(slider.mass_kg for slider in scene.sliders.values())
         largest = float(np.nanmax(sizes))
         if largest <= NOTHING * masses * math.hypot(*scene.gravity_m_s2) * scene.longest_m:
             raise CrankcheckError(

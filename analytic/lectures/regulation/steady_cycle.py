@@ -132,7 +132,8 @@ class SteadyCycle:
         solution, machine = self.solution, self.machine
 
         def height(u: Array) -> Array:
-            return solution.energy_at(u) - solution.at_borders[0] - slope * machine.inertia(u)[0]
+            work = solution.energy_at(u) - solution.at_borders[0]
+            return np.asarray(work - slope * machine.inertia(u)[0])
 
         def rise(u: Array) -> Array:
             torque = machine.torque(u, solution.speed_at(u)) + solution.drive
