@@ -79,7 +79,9 @@ def equilibria(scene: Scene) -> Equilibria:
                 legs = circuits.loop(left[0])
                 left = [arc for arc in left if all(arc is not each for each, _ in legs)]
                 scenes = (circuits.signed.with_signs(arc.signs) for arc, _ in legs)
-                found += _Course(legs, [Machine(each) for each in scenes], wound).rests(number)
+                found += _CircuitMachine(legs, [Machine(each) for each in scenes], wound).rests(
+                    number
+                )
         except CrankcheckError:
             if number == circuits.own[0]:
                 raise
@@ -88,7 +90,7 @@ def equilibria(scene: Scene) -> Equilibria:
 
 
 @dataclass(frozen=True, eq=False)
-class _Course:
+class _CircuitMachine:
     """Branches that follow each other, one over each unit of s, with a machine each."""
 
     legs: Sequence[tuple[Arc, bool]]
