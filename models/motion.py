@@ -59,12 +59,12 @@ class Forces:
     frame. Bodies are in the order of the pin, the ground first, then links, then slider blocks:
     where two meet, the force on the second is exerted by the first. All forces of a pin add up to
     0. ``torque``, (T,), is the drive's action on the driver, in ``drive_unit``: N m, or N along the
-    line of a slider. ``undetermined`` says why there are no reactions where the equations of
-    statics leave them open. Values that a producer does not give are NaN. ``friction`` holds the
-    friction by joint: in a pin the couple [N m] of its first body on its second, in a slider the
-    force [N] of the guide on the sliding body, along the line; ``friction_solution`` is the
-    solution of Coulomb's friction. ``contradictions`` are conflicts between an engine's forces and
-    its other numbers.
+    line of a slider; "" in free motion, where nothing drives. ``undetermined`` says why there are
+    no reactions where the equations of statics leave them open. Values that a producer does not
+    give are NaN. ``friction`` holds the friction by joint: in a pin the couple [N m] of its first
+    body on its second, in a slider the force [N] of the guide on the sliding body, along the line;
+    ``friction_solution`` is the solution of Coulomb's friction. ``contradictions`` are conflicts
+    between an engine's forces and its other numbers.
     """
 
     time_s: Array

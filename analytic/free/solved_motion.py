@@ -32,6 +32,11 @@ SAFETY = 4.0
 LOOKS = 801
 """Number of instants at which both are compared."""
 
+OPEN = (
+    "how redundant joints share the load depends on the stiffness and fit of links: the equations "
+    "of motion leave the reactions open"
+)
+
 BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
 
 
@@ -81,9 +86,14 @@ class BodiesMotion(MultibodyMotion):
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
-        """Return the motion with reactions without bounds of their own."""
+        """Return the motion with reactions without bounds of their own; with redundant joints
+        without any."""
         del bound
-        return replace(motion, forces=super().at(motion.time_s).forces)
+        acting = super().at(motion.time_s).forces
+        assert acting is not None
+        if self.dynamics.redundant:
+            acting = replace(acting, pins={}, sliders={}, undetermined=OPEN)
+        return replace(motion, forces=acting)
 
     def beside(self, logged: Motion) -> Motion:
         assembly = self.dynamics.assembly

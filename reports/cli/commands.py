@@ -70,6 +70,9 @@ loads alone."""),
     "flywheel": ("lectures.machine.regulation:FlywheelRequest", """
 Work out the flywheel on the driver for a coefficient of fluctuation, exact and as the
 textbooks approximate it, and the speed over the cycle with it and without."""),
+    "equilibria": ("lectures.machine.equilibria:EquilibriaRequest", """
+Show where a scene rests under its weights, springs and loads, stable or not, in each of its
+circuits, with the frequency of small oscillations; a driven one as if it were let go."""),
     "chains": ("lectures.drawing.sheet_requests:ChainsRequest", """
 List and draw the distinct kinematic chains of so many links: number synthesis, their
 inversions with the class of each, and their types with sliders."""),

@@ -142,9 +142,8 @@ def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[
 
 def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int) -> list[Table]:
     """Return torque, pins and sliders over time, as many to a table as the terminal can hold."""
-    bodies: list[tuple[str, Columns]] = [
-        ("drive", [(_effort(scene).replace(" ", "\n", 1), acting.torque)])
-    ]
+    drive = ("drive", [(_effort(scene).replace(" ", "\n", 1), acting.torque)])
+    bodies: list[tuple[str, Columns]] = [drive] * bool(acting.drive_unit)
     for point, body, _, force in acted_on(acting):
         x, y = force.T
         columns = [("x\nN", x), ("y\nN", y), ("size\nN", np.hypot(x, y))]
@@ -178,7 +177,7 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
     places = driver_shown(scene, turn)
     places = places % 360.0 if driver_unit(scene) == "deg" else places
     drive = (f"driving {scene.driver.effort}", acting.torque, scene.driver.effort_unit)
-    series: list[tuple[str, Array, str]] = [drive]
+    series: list[tuple[str, Array, str]] = [drive] * bool(acting.drive_unit)
     for point, body, _, force in acted_on(acting):
         series.append((f"{point} on {body}", np.hypot(force[:, 0], force[:, 1]), "N"))
     for name, slider in acting.sliders.items():
@@ -205,10 +204,10 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
     return rows
 
 
-def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
+def largest_table(scene: Scene, turn: Motion, acting: Forces, over: str = "over a turn") -> Table:
     """Return a table of `largest_of`."""
     table = plain_table(gap=2)
-    for k, head in enumerate(("over a turn", "largest", "", f"{scene.driver.joint} at", "mean")):
+    for k, head in enumerate((over, "largest", "", f"{scene.driver.joint} at", "mean")):
         table.add_column(head, justify="right" if k and head else "left", no_wrap=True)
     for row in largest_of(scene, turn, acting):
         at = "-" if math.isnan(row.at) else f"{row.at:.4g} {driver_unit(scene)}"

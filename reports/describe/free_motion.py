@@ -235,7 +235,8 @@ def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:
 def force_columns(acting: Forces, *, lengths: bool = True) -> dict[str, Array]:
     """Return columns by name: the driving torque or force, pins by point and body, sliders, and
     friction; vectors also by length."""
-    columns = {"torque_n_m" if acting.drive_unit == "N m" else "drive_force_n": acting.torque}
+    drive = {"N m": "torque_n_m", "N": "drive_force_n"}
+    columns = {drive[acting.drive_unit]: acting.torque} if acting.drive_unit else {}
     for point, body, _, force in acted_on(acting):
         stem = f"{point}_{body.replace(' ', '_')}"
         columns[f"{stem}_fx_n"], columns[f"{stem}_fy_n"] = force[:, 0], force[:, 1]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.forces.kinetostatics import forces
+from analytic.free.free_motion import FreeMotion
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
@@ -16,11 +17,14 @@ from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.driver import driver_place, driver_shown, driver_unit
+from reports.describe.free_motion import instants
 from reports.output.numbers import count, listed
 
 UNCERTAIN = 1e-6
 """Limit for a number smaller than its own bound: it is 0 where the bound is less than this part of
 the largest of its kind, and unknown where it is more."""
+ROUNDING = 1e-12
+"""Part of the largest reaction below which one without a bound is 0."""
 TURN = 721
 """Samples of a turn for drawings and largest forces."""
 NAMED = 4
@@ -43,6 +47,47 @@ def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: boo
     if acting.torque.size and np.all(np.isnan(acting.torque)):
         acting = forces(scene, when, bound=bound)  # tells why
     return replace(motion, forces=acting)
+
+
+def with_reactions(free: FreeMotion, motion: Motion, *, bound: bool = True) -> Motion:
+    """Return a motion of all bodies in free motion with its reactions. Raises CrankcheckError as
+    `undriven`."""
+    acting = free.with_forces(motion, bound=bound).forces
+    assert acting is not None
+    return replace(motion, forces=undriven(free.scene, acting))
+
+
+def finely_loaded(free: FreeMotion) -> Motion:
+    """Return a free motion closely sampled, with its reactions, without bounds."""
+    time_s = np.linspace(0.0, free.until_s, instants(free))
+    return with_reactions(free, free.at(time_s, bound=False), bound=False)
+
+
+def undriven(scene: Scene, acting: Forces) -> Forces:
+    """Return the forces of free motion, without the torque of a drive, which is rounding there.
+    Where it is more, in a dead point of the driver, the reactions are no better, and left out
+    (NaN). Raises CrankcheckError where redundant joints leave the reactions open."""
+    if acting.undetermined:
+        raise CrankcheckError(
+            f"forces: {scene.name} is free and has reactions alone, and {acting.undetermined}; "
+            "solve it without forces"
+        )
+    off = np.abs(acting.torque) > UNCERTAIN * scene.longest_m * _largest(acting)
+    free = acting.each_series(lambda series: np.where(off, np.nan, series.T).T)
+    return replace(free, torque=0.0 * free.torque, bound=acting.bound, drive_unit="")
+
+
+def _largest(acting: Forces) -> float:
+    """Return the largest component of a reaction in pins and guides [N]."""
+    series = [force for bodies in acting.pins.values() for force in bodies.values()]
+    series += [slider.normal for slider in acting.sliders.values()]
+    return max((float(np.nanmax(np.abs(each), initial=0.0)) for each in series), default=0.0)
+
+
+def undriven_shown(acting: Forces) -> Forces:
+    """Return the forces of free motion for readers, with 0 for rounding."""
+    least = ROUNDING * _largest(acting)
+    return cleaned_forces(acting).each_series(lambda x: np.where(np.abs(x) <= least, 0.0, x))
 
 
 def turn_with_forces(scene: Scene, samples: int = TURN) -> Motion:
@@ -77,10 +122,13 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
     dead = np.flatnonzero(np.isnan(motion.forces.torque) & ~is_locked)
     notes = []
     if dead.size:
-        notes.append(
-            f"Dead point, {_where(scene, motion, dead)}: the driving {scene.driver.effort} and the "
-            "reactions are not determined there, and left out; beside it they may be of any size."
+        why = (
+            f"the driving {scene.driver.effort} and the reactions are not determined there, and "
+            "left out; beside it they may be of any size"
         )
+        if not motion.forces.drive_unit:
+            why = "the reactions are left out there; beside it they are right"
+        notes.append(f"Dead point, {_where(scene, motion, dead)}: {why}.")
     if locked.size:
         notes.append(
             f"Locked, {_where(scene, motion, locked)}: friction grows there by more than what "
@@ -112,7 +160,8 @@ def force_certainty(scene: Scene, acting: Forces) -> str:
     if bound is None:
         return ""
     kinds: dict[str, list[tuple[Array, Array]]] = {"N": [], "N m": []}
-    kinds[acting.drive_unit].append((acting.torque, bound.torque))
+    if acting.drive_unit:
+        kinds[acting.drive_unit].append((acting.torque, bound.torque))
     for point, bodies in acting.pins.items():
         kinds["N"] += [(f, bound.pins[point][body]) for body, f in bodies.items()]
     for name, slider in acting.sliders.items():

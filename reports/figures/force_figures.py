@@ -30,7 +30,7 @@ from reports.drawing.shape import PATH_SAMPLES, Label, clear_of_locking, colours
 from reports.figures import style
 from reports.figures.drawing import DASHES
 from reports.figures.mechanism import mechanism_at
-from reports.figures.sheet import Curve, LinePanel, Panels, line_figure, sheet
+from reports.figures.sheet import Abscissa, Curve, LinePanel, Panels, line_figure, sheet
 from reports.figures.style import FRONT, INK, QUIET, TINY, FigureSet, Look
 from reports.output.numbers import readable
 
@@ -300,14 +300,16 @@ def mean_torque(turn: ForceTurn) -> float:
 
 
 def _reactions(turn: ForceTurn) -> Figure | None:
+    return reactions(turn, turn.acting, turn.notes) if turn.has_forces else None
+
+
+def reactions(axis: Abscissa, acting: Forces, notes: Sequence[str]) -> Figure | None:
     """Draw the sizes of the reactions: lengths of pin forces and signed normal forces of guides in
     one panel, moments of guides in one below where there are any; None without reactions."""
-    if not turn.has_forces:
-        return None
-    colours, guides = colours_of(turn.scene), turn.acting.sliders
+    colours, guides = colours_of(axis.scene), acting.sliders
     forces = [
         (f"{point} on {body}", np.hypot(*force.T), colours.get(body, INK))
-        for point, body, _, force in acted_on(turn.acting)
+        for point, body, _, force in acted_on(acting)
     ]
     forces += [(f"slider {name}, normal (signed)", one.normal, INK) for name, one in guides.items()]
     moments = [
@@ -319,7 +321,7 @@ def _reactions(turn: ForceTurn) -> Figure | None:
         return None
     panels = [LinePanel("force [N]", _dashed(forces))]
     panels += [LinePanel("moment [N m]", _dashed(moments))] * bool(moments)
-    return _stacked(turn, "Reactions", panels, turn.notes, top=0.2)[0]
+    return _stacked(axis, "Reactions", panels, notes, top=0.2)[0]
 
 
 def _dashed(rows: Sequence[tuple[str, Array, str]]) -> list[Curve]:
@@ -332,10 +334,10 @@ def _dashed(rows: Sequence[tuple[str, Array, str]]) -> list[Curve]:
 
 
 def _stacked(
-    turn: ForceTurn, title: str, panels: Sequence[LinePanel], notes: Sequence[str], top: float
+    axis: Abscissa, title: str, panels: Sequence[LinePanel], notes: Sequence[str], top: float
 ) -> tuple[Figure, list[Axes]]:
     height = 2.1 if len(panels) == 1 else 1.6
-    return line_figure(turn, title, panels, notes, height=height, top=top, down=0.22)
+    return line_figure(axis, title, panels, notes, height=height, top=top, down=0.22)
 
 
 def _efficiency(turn: ForceTurn) -> Figure | None:

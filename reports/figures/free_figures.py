@@ -11,9 +11,11 @@ from matplotlib.ticker import MultipleLocator
 
 from analytic.free.free_motion import FreeMotion
 from models.array import Array
-from models.motion import LinkMotion
+from models.motion import Forces, LinkMotion
 from models.scene import Scene
+from reports.describe.with_forces import with_reactions
 from reports.figures import style
+from reports.figures.force_figures import reactions
 from reports.figures.sheet import ONE, LinePanel, line_figure, sheet
 from reports.output.numbers import error_text
 
@@ -31,7 +33,7 @@ ROUNDING = 1e-9
 @dataclass(frozen=True)
 class FreeCourse:
     """A free motion at instants, closely sampled: its driver and the energies [J], kinetic,
-    potential, and the work of external forces on both."""
+    potential, and the work of external forces on both; and its reactions, if requested."""
 
     free: FreeMotion
     time_s: Array
@@ -39,6 +41,7 @@ class FreeCourse:
     kinetic: Array
     potential: Array
     work: Array
+    acting: Forces | None = None
 
     @property
     def scene(self) -> Scene:
@@ -72,14 +75,16 @@ class FreeCourse:
         return [*self.notes, *([dotted] * bool(self.free.passages))]
 
 
-def free_course(free: FreeMotion) -> FreeCourse:
-    """Return the motion from its start to its end. Raises CrankcheckError as `FreeMotion.at`."""
+def free_course(free: FreeMotion, *, with_forces: bool = False) -> FreeCourse:
+    """Return the motion from its start to its end. Raises CrankcheckError as `FreeMotion.at`, and
+    for reactions that are open."""
     turns = free.peak_speed_rad_s * free.until_s / math.tau
     count = int(np.clip(IN_A_TURN * turns, LEAST, MOST))
     time_s = np.linspace(0.0, free.until_s, count)
-    driver = free.at(time_s, bound=False).links[free.scene.driver.link]
-    energy = free.energy(time_s)
-    return FreeCourse(free, time_s, driver, energy.kinetic, energy.potential, energy.work)
+    motion, energy = free.at(time_s, bound=False), free.energy(time_s)
+    acting = with_reactions(free, motion, bound=False).forces if with_forces else None
+    driver = motion.links[free.scene.driver.link]
+    return FreeCourse(free, time_s, driver, energy.kinetic, energy.potential, energy.work, acting)
 
 
 def _over_time(course: FreeCourse) -> Figure:
@@ -151,6 +156,14 @@ def _over_one_turn(degrees: Array, omega: Array) -> tuple[Array, Array]:
     )
 
 
+def _reactions(course: FreeCourse) -> Figure | None:
+    """Draw the reactions over time, if they were requested."""
+    if course.acting is None:
+        return None
+    return reactions(course, course.acting, course.notes_over_time)
+
+
 FREE_FIGURES: style.FigureSet[FreeCourse] = style.FigureSet(
-    "a free motion", {"over-time": _over_time, "energy": _energy, "phase": _phase}
+    "a free motion",
+    {"over-time": _over_time, "energy": _energy, "phase": _phase, "reactions": _reactions},
 )

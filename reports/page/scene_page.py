@@ -48,10 +48,19 @@ def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
     return assembled(_head(scene, "the closed form"), sections)
 
 
-def free_page(free: FreeMotion, figures: Mapping[str, bytes]) -> str:
-    """Return the page of a free motion; ``figures`` are SVG files by name."""
+def free_page(free: FreeMotion, figures: Mapping[str, bytes], *, acting: bool = False) -> str:
+    """Return the page of a free motion, with its reactions if requested; ``figures`` are SVG files
+    by name. Raises CrankcheckError for reactions that are open."""
     words = f"free motion over {free.until_s:g} s"
-    return assembled(_head(free.scene, words), [_free(free, figures)])
+    shown = {name: svg for name, svg in figures.items() if name in FREE_CAPTIONS}
+    sections = [_free(free, shown)]
+    if acting:
+        fine, others = (
+            with_forces.finely_loaded(free),
+            {n: figures[n] for n in figures.keys() - shown},
+        )
+        sections.append(_force_section(free.scene, fine, others, over="the motion"))
+    return assembled(_head(free.scene, words), sections)
 
 
 def elastic_page(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, bytes]) -> str:
@@ -136,19 +145,26 @@ FORCE_CAPTIONS: Mapping[str, str] = {
 
 
 def _forces(scene: Scene, figures: Mapping[str, bytes]) -> Section:
-    turn = with_forces.turn_with_forces(scene)
+    return _force_section(scene, with_forces.turn_with_forces(scene), figures, over="a turn")
+
+
+def _force_section(
+    scene: Scene, turn: Motion, figures: Mapping[str, bytes], *, over: str
+) -> Section:
     assert turn.forces is not None
+    driven = bool(turn.forces.drive_unit)
     return Section(
         anchor="forces",
         title="Forces",
         template="scene_forces.html",
         words={
             "driver": scene.driver.joint,
-            "effort": scene.driver.effort,
+            "effort": scene.driver.effort if driven else "",
+            "over": over,
             "degrees": "\N{DEGREE SIGN}" if driver_unit(scene) == "deg" else " m",
             "rows": largest_of(scene, turn, with_forces.cleaned_forces(turn.forces)),
             "notes": [
-                *friction_words(scene),
+                *(friction_words(scene) if driven else ()),
                 *with_forces.force_notes(scene, turn),
                 with_forces.force_certainty(scene, turn.forces),
             ],

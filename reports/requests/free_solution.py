@@ -12,8 +12,10 @@ import numpy as np
 from rich.console import Console
 
 from analytic.elastic.elastic_motion import ElasticHistory, sampled
+from analytic.elastic.released import ReleasedElasticMotion
 from analytic.free.free_motion import FreeMotion
 from analytic.free.release import release
+from analytic.free.solved_motion import OPEN
 from analytic.result import Selection
 from analytic.structure.mobility import analyse
 from models.array import Array, samples
@@ -28,13 +30,21 @@ from reports.describe.elastic_words import (
     start_words,
 )
 from reports.describe.facts import describe_law
-from reports.describe.force_tables import motion_force_tables
+from reports.describe.force_tables import largest_table, motion_force_tables
 from reports.describe.free_motion import (
     cleaned,
     free_columns,
     free_notes,
     free_tables,
     motion_tables,
+)
+from reports.describe.with_forces import (
+    finely_loaded,
+    force_certainty,
+    left_out_notes,
+    undriven,
+    undriven_shown,
+    with_reactions,
 )
 from reports.output.console import say
 from reports.plan.singular import continued_note
@@ -86,19 +96,27 @@ class FreeSolution(Solution):
         """Table of `Solution`, with the energies, the sensitivity and the error beside."""
         return super().frame().assign(**free_columns(self.free, self.time_s))
 
+    def _drawn(self) -> str:
+        return drawn(self.scene)
+
     def show(self, console: Console) -> None:
-        few = thinned(self, ROWS)
+        acting = self.forces and undriven_shown(self.forces)
+        few = thinned(replace(self, forces=acting), ROWS)
         show_free(console, self.free, few)
         if left := self._left_out(few):
             say(console, left, "dim")
 
 
-def free_solution(scene: Scene, time_s: Array, wanted: Selection, *, bound: bool) -> FreeSolution:
-    """The free motion of a scene at times [s] from 0 on; the bodies of ``wanted`` alone. Raises
-    CrankcheckError for times before the start, and as `analytic.free.release.release`."""
+def free_solution(
+    scene: Scene, time_s: Array, wanted: Selection, *, bound: bool, forces: bool = False
+) -> FreeSolution:
+    """The free motion of a scene at times [s] from 0 on; the bodies of ``wanted`` alone, with all
+    reactions if requested. Raises CrankcheckError for times before the start, reactions that are
+    open, and as `analytic.free.release.release`."""
     law = scene.driver.law
     free = release(scene, float(np.max(time_s)) if np.max(time_s) > 0.0 else law.period_s)
-    motion = of_bodies(free.at(time_s, bound=bound), wanted)
+    motion = free.at(time_s, bound=bound)
+    motion = of_bodies(with_reactions(free, motion, bound=bound) if forces else motion, wanted)
     if motion.bound is not None:
         motion = replace(motion, bound=of_bodies(motion.bound, wanted))
     return FreeSolution(**vars(motion), scene=scene, free=free)
@@ -132,6 +150,14 @@ def show_free(console: Console, whole: FreeMotion, motion: Motion) -> None:
     for table in tables:
         console.print(table, "")
     notes = [*free_notes(whole, float(np.max(motion.time_s))), continued_note(scene, motion)]
+    if motion.forces is not None:
+        acting = undriven_shown(motion.forces)
+        for table in motion_force_tables(scene, shown, acting, console.width):
+            console.print(table, "")
+        fine = finely_loaded(whole)
+        assert fine.forces is not None
+        console.print(largest_table(scene, fine, fine.forces, "over the motion"), "")
+        notes += [force_certainty(scene, motion.forces), *left_out_notes(scene, motion)]
     for note in filter(None, notes):
         say(console, note, "yellow")
 
@@ -140,7 +166,7 @@ class LetGo(Solving):
     """Solving of free motion, with rigid links or elastic ones."""
 
     def refuse(self, scene: Scene, request: SolveOptions) -> None:
-        of_driver = "at_deg at_m turns steps_per_turn clockwise along forces"
+        of_driver = "at_deg at_m turns steps_per_turn clockwise along"
         for option in given(request, *of_driver.split()):
             raise CrankcheckError(
                 f"{option}: {scene.name} is let go, and moves over time as masses and forces have "
@@ -163,21 +189,16 @@ class LetGo(Solving):
             raise CrankcheckError(f"--steps {steps}: {steps + 1:.7g} samples; at most {most}")
         return np.linspace(0.0, until_s, steps + 1)
 
-    def refuse_forces(self, scene: Scene, asked: Asked) -> None:
-        """Refuse forces, which need a driving torque. Raises CrankcheckError."""
-        if is_true(asked.forces, "forces"):
-            raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")
-
 
 class FreeSolving(LetGo):
     """Solving of free motion, with rigid links."""
 
     def solution(self, scene: Scene, asked: Asked) -> FreeSolution:
         asked.choice.refuse_of_rigid(scene)
-        self.refuse_forces(scene, asked)
         chosen = Selection.of(scene, *asked.wanted)
+        bound, forces = is_true(asked.bound, "bound"), is_true(asked.forces, "forces")
         instants = samples(asked.time_s, "time_s")
-        return free_solution(scene, instants, chosen, bound=is_true(asked.bound, "bound"))
+        return free_solution(scene, instants, chosen, bound=bound, forces=forces)
 
     def show(self, console: Console, solution: FreeSolution, request: SolveOptions) -> None:
         show_free(console, solution.free, solution)
@@ -192,14 +213,14 @@ class FreeSolving(LetGo):
     def course(self, solution: FreeSolution) -> FreeCourse:
         from reports.figures.free_figures import free_course
 
-        return free_course(solution.free)
+        return free_course(solution.free, with_forces=solution.forces is not None)
 
     def page(self, solution: FreeSolution) -> tuple[str, str]:
         from reports.page.scene_page import free_page
 
         words = f"the free motion of {solution.scene.name} over {solution.time_s[-1]:g} s"
         pictures = self.figures().pictures(self.course(solution))
-        return free_page(solution.free, pictures), words
+        return free_page(solution.free, pictures, acting=solution.forces is not None), words
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -265,10 +286,15 @@ def elastic_solution(
             f"{elastic_course.start_of(vibration)}; give times from there on, or --shape periodic"
         )
     whole = sampled(vibration, time_s)
+    acting = whole.forces
+    if forces and acting is not None and isinstance(vibration, ReleasedElasticMotion):
+        redundant = vibration.dynamics.redundant
+        acting = replace(acting, undetermined=OPEN) if redundant else acting
+        acting = undriven(scene, acting) if scene.is_free else acting
     motion = replace(
         of_bodies(whole, wanted),
         elastic={name: x for name, x in whole.elastic.items() if name in wanted.links},
-        forces=whole.forces if forces else None,
+        forces=acting if forces else None,
     )
     return ElasticSolution(**vars(motion), scene=scene, vibration=vibration)
 
@@ -291,6 +317,7 @@ def _show(
         console.print(table, "")
     if forces and shown.motion.forces is not None:
         acting = shown.motion.forces
+        acting = undriven_shown(undriven(scene, acting)) if scene.is_free else acting
         for table in motion_force_tables(scene, cleaned(shown.motion), acting, console.width):
             console.print(table, "")
     console.print(elastic_course.extremes_table(scene, elastic_course.extremes(fine)), "")
@@ -354,7 +381,3 @@ class ElasticSolving(Solving):
 
 class ReleasedElasticSolving(LetGo, ElasticSolving):
     """Solving of free motion, with links that bend."""
-
-    def solution(self, scene: Scene, asked: Asked) -> ElasticSolution:
-        self.refuse_forces(scene, asked)
-        return super().solution(scene, asked)

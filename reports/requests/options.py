@@ -133,12 +133,12 @@ class SolveOptions:
     along: Annotated[
         Sequence[str], option("Stroke of a point along a direction; repeatable.", "POINT:DEG")
     ] = ()
-    forces: Annotated[bool, "The reactions and the driving torque as well."] = False
+    forces: Annotated[bool, "The reactions and, of a driver, its torque as well."] = False
     figures: Annotated[
         Path | None,
         option(
-            "With --forces: draw them over a turn; or a free motion, or elastic links; as SVG "
-            "and PDF.",
+            "With --forces: draw them over a turn; or a free motion (with --forces its reactions "
+            "too), or elastic links; as SVG and PDF.",
             "DIR",
         ),
     ] = None

@@ -66,7 +66,8 @@ def solve(
     bound : bool
         Carry error bounds (about three times the work).
     forces : bool
-        Solve the reactions and the driving torque as well; NaN in dead points of the driver.
+        Solve the reactions and the driving torque as well; NaN in dead points of the driver. Free
+        motion has no driving torque: it is 0, and in no table.
     modes, axial_modes, elements : int or None
         Of elastic links: sines across and along each, or beam elements.
     shape : str or None
@@ -80,7 +81,7 @@ def solve(
     CrankcheckError
         An invalid scene, time or name; a StructureError for a mechanism without a closed form, a
         ReachError for a driver angle that it can not be assembled in. Of forces: a scene without
-        mass and load, or no instant outside of dead points.
+        mass and load, no instant outside of dead points, or free motion with redundant links.
     """
     scene = scene_of(scene)
     choice = solving.ElasticChoice(modes, axial_modes, elements, shape, linear)

@@ -120,6 +120,8 @@ class SignedScene:
 
     def with_signs(self, signs: Signs) -> Scene:
         """Return the scene on other branches."""
+        if signs == self.signs:
+            return self.scene
         return replace(self.scene, branch=dict(zip(self.dyads, signs, strict=True)))
 
     def chunk(self, signs: Signs, theta: Array) -> Chunk:

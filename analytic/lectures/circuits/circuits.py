@@ -59,6 +59,28 @@ class Circuits:
         """Circuit, from 0 on, and branch of the scene at time 0."""
         return self.place(Position(self.signed.start_rad, self.signed.signs))
 
+    @property
+    def course(self) -> list[tuple[Arc, bool]]:
+        """Branches that the scene goes through, as `loop`: its own alone if it is driven."""
+        own = self.own[1]
+        return self.loop(own) if self.signed.scene.is_free else [(own, True)]
+
+    def loop(self, arc: Arc) -> list[tuple[Arc, bool]]:
+        """Return the branches that follow each other from ``arc`` until it is back, through the
+        limit positions of the driver, each with True if its angle rises. It is the arc alone where
+        that has no ends, or where branches also meet in change points."""
+        every = [each for circuit in self.circuits for each in circuit]
+        path, end = [(arc, True)], arc.high
+        while end is not None and not self.change_points:
+            here, rises = path[-1]
+            end = here.high if rises else here.low
+            assert end is not None  # the branch beyond a limit position ends there as well
+            here = every[_beyond(self.signed, every, here, end, upper=rises)]
+            if here is arc:
+                break
+            path.append((here, not rises))
+        return path
+
     def place(self, position: Position) -> tuple[int, Arc]:
         """Return the circuit, from 0 on, and the branch of a position. Raises CrankcheckError where
         the mechanism can not be assembled so."""
@@ -193,8 +215,8 @@ class Transmission:
 
 
 def transmissions(circuits: Circuits) -> tuple[list[Transmission], AngleExtreme]:
-    """Return the transmissions of the dyads in solving order, over the scene's branch, and the
-    least index of merit of the whole.
+    """Return the transmissions of the dyads in solving order, over the scene's branch (over its
+    circuit if it is free), and the least index of merit of the whole.
 
     The sine of a dyad is its conditioning: for two links (RRR) that of the transmission angle, for
     a rod and a slider (RRP) the cosine of the pressure angle. The determinant of the constraint
@@ -240,14 +262,14 @@ def _angle(chunk: Chunk, group: Group) -> Array:
 def _extreme(
     circuits: Circuits, group: Group, of: Callable[[Chunk, Group], Array], sense: float
 ) -> AngleExtreme:
-    """Return the largest (``sense`` 1) or smallest value over the branch."""
-    ready, (_, arc) = prepared(circuits.signed.scene), circuits.own
-    looks = arc.angles(LOOKS + 1)
+    """Return the largest (``sense`` 1) or smallest value over the scene's course."""
     best = AngleExtreme(-sense * math.inf, 0.0)
-    for _ in range(ZOOMS):
-        value = of(ready.stretched(looks), group)
-        k = int(np.nanargmax(sense * value))
-        if sense * (float(value[k]) - best.value) > 0.0:
-            best = AngleExtreme(float(value[k]), math.remainder(float(looks[k]), math.tau))
-        looks = np.linspace(looks[max(k - 1, 0)], looks[min(k + 1, len(looks) - 1)], FINER)
+    for arc, _ in circuits.course:
+        ready, looks = prepared(circuits.signed.with_signs(arc.signs)), arc.angles(LOOKS + 1)
+        for _ in range(ZOOMS):
+            value = of(ready.stretched(looks), group)
+            k = int(np.nanargmax(sense * value))
+            if sense * (float(value[k]) - best.value) > 0.0:
+                best = AngleExtreme(float(value[k]), math.remainder(float(looks[k]), math.tau))
+            looks = np.linspace(looks[max(k - 1, 0)], looks[min(k + 1, len(looks) - 1)], FINER)
     return best

@@ -1,8 +1,9 @@
 """Rotatability of links against the ground and their neighbours, and swing of the others.
 
-All is over the mechanism's own branch. Where the driver turns fully, whole turns are counted with
-certainty (`analytic.change_points.turns`); else a link goes to and fro with the driver, between its
-extremes over the branch, each followed to rounding.
+All is over the mechanism's own branch, or over a whole circuit, which a mechanism in free motion
+goes through. Where the driver turns fully, whole turns are counted with certainty
+(`analytic.change_points.turns`); else a link goes to and fro with the driver, between its extremes
+over the branch, each followed to rounding, or it turns as the circuit closes.
 
 Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions,
 toggle).
@@ -16,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.circuits.arcs import Arc
+from analytic.lectures.circuits.arcs import Arc, SignedScene, Signs
 from analytic.lectures.circuits.circuits import Circuits
 from analytic.prepared import prepared
 from analytic.structure.mobility import analyse
@@ -36,7 +37,7 @@ class Rotation:
     """Rotation of ``link`` against ``against`` over a cycle of ``period_rad`` of the driver.
     ``turns`` are the whole turns that it gains, counter-clockwise; without any it swings from
     ``low_rad`` to ``high_rad``, of which ``low_at_rad`` and ``high_at_rad`` are driver angles: its
-    limit positions."""
+    limit positions, on branches of the signs ``low_on`` and ``high_on`` if several are passed."""
 
     link: str
     against: str
@@ -46,6 +47,8 @@ class Rotation:
     low_at_rad: float
     high_at_rad: float
     period_rad: float
+    low_on: Signs | None = None
+    high_on: Signs | None = None
 
     @property
     def swing_rad(self) -> float:
@@ -82,15 +85,32 @@ def rotations(scene: Scene, arc: Arc) -> list[Rotation]:
     return [follow.rotation(link, against) for link, against in neighbours(scene)]
 
 
+def circuit_rotations(circuits: Circuits, arc: Arc) -> list[Rotation]:
+    """Return the rotations as `rotations`, over the circuit of a branch: through the limit
+    positions of the driver, as without a drive. Raises CrankcheckError."""
+    signed, course = circuits.signed, circuits.loop(arc)
+    if len(course) == 1:
+        return rotations(signed.with_signs(arc.signs), arc)
+    legs = [(signed.with_signs(each.signs), each.signs) for each, _ in course]
+    theta = [each.angles(LOOKS + 1)[:: 1 if rises else -1] for each, rises in course]
+    follow = _Follower.along(legs, arc, np.concatenate(theta), math.tau)
+    return [follow.rotation(link, against) for link, against in neighbours(signed.scene)]
+
+
 @dataclass(frozen=True)
 class _Follower:
-    """Angles of links over a branch at driver angles ``theta``, continuous along it."""
+    """Angles of links at driver angles ``theta``, continuous along a branch, or along those of a
+    circuit: ``legs`` with as many angles each, that are a scene, and the signs of a circuit's."""
 
-    scene: Scene
+    legs: Sequence[tuple[Scene, Signs | None]]
     arc: Arc
     theta: Array
     angles: Mapping[str, Array]
     period: float
+
+    @property
+    def scene(self) -> Scene:
+        return self.legs[0][0]
 
     @staticmethod
     def of(scene: Scene, arc: Arc) -> _Follower:
@@ -98,59 +118,73 @@ class _Follower:
         theta = arc.angles(LOOKS + 1)
         if arc.low is None:
             theta = np.linspace(-math.pi, period - math.pi, LOOKS * round(period / math.tau) + 1)
-        angles = {GROUND: np.zeros_like(theta)}
-        for name, angle in _plain(scene, theta).items():
-            angles[name] = np.unwrap(angle)
+        return _Follower.along([(scene, None)], arc, theta, period)
+
+    @staticmethod
+    def along(
+        legs: Sequence[tuple[Scene, Signs | None]], arc: Arc, theta: Array, period: float
+    ) -> _Follower:
+        scene, angles = legs[0][0], {GROUND: np.zeros_like(theta)}
+        parts = zip(legs, np.split(theta, len(legs)), strict=True)
+        plain = [plain_angles(own, some) for (own, _), some in parts]
+        for name in scene.links:
+            angles[name] = np.unwrap(np.concatenate([each[name] for each in plain]))
             if np.max(np.abs(np.diff(angles[name])), initial=0.0) > 0.5 * math.pi:
                 raise CrankcheckError(
                     f"{scene.name}: {name} turns too fast to be followed, by more than a right "
                     "angle within an eighth of a degree of the driver: it passes a singular "
                     "position as good as; change a length"
                 )
-        return _Follower(scene, arc, theta, angles, period)
+        return _Follower(legs, arc, theta, angles, period)
 
     def rotation(self, link: str, against: str) -> Rotation:
         relative = self.angles[link] - self.angles[against]
-        turns = 0 if self.arc.low is not None else self._turns(link, against)
-        low = self._extreme(link, against, relative, -1.0)
-        high = self._extreme(link, against, relative, 1.0)
-        shift = math.tau * math.floor((0.5 * (low[0] + high[0]) + math.pi) / math.tau)
+        turns = self._turns(link, against)
+        low, low_at, low_on = self._extreme(link, against, relative, -1.0)
+        high, high_at, high_on = self._extreme(link, against, relative, 1.0)
+        shift = math.tau * math.floor((0.5 * (low + high) + math.pi) / math.tau)
         return Rotation(
-            link, against, turns, low[0] - shift, high[0] - shift, low[1], high[1], self.period
-        )
+            link, against, turns, low - shift, high - shift, low_at, high_at, self.period,
+            low_on, high_on,
+        )  # fmt: skip
 
     def _turns(self, link: str, against: str) -> int:
         """Return the turns counted with certainty, or else the followed ones; links that keep an
-        angle to the driver or to the ground follow these."""
+        angle to the driver or to the ground follow these. A branch with ends has none."""
+        relative = self.angles[link] - self.angles[against]
+        followed = round(float(relative[-1] - relative[0]) / math.tau)
+        if self.arc.low is not None:
+            return followed if len(self.legs) > 1 else 0
         own = {GROUND: 0.0, **prepared(self.scene).turns.gains}
         if self.scene.driver.is_crank:
             own[self.scene.driver.link] = self.period / math.tau
         if link in own and against in own:
             return round(own[link] - own[against])
-        relative = self.angles[link] - self.angles[against]
-        return round(float(relative[-1] - relative[0]) / math.tau)
+        return followed
 
     def _extreme(
         self, link: str, against: str, relative: Array, sense: float
-    ) -> tuple[float, float]:
-        """Return the largest (``sense`` 1) or smallest angle [rad], and its driver angle."""
-        best = int(np.argmax(sense * relative))
+    ) -> tuple[float, float, Signs | None]:
+        """Return the largest (``sense`` 1) or smallest angle [rad], its driver angle, and the signs
+        of a circuit's branch."""
+        best, count = int(np.argmax(sense * relative)), len(self.theta) // len(self.legs)
+        (scene, signs), first = self.legs[best // count], best // count * count
         value, at = float(relative[best]), float(self.theta[best])
-        low = float(self.theta[max(best - 1, 0)])
-        high = float(self.theta[min(best + 1, len(self.theta) - 1)])
+        low = float(self.theta[max(best - 1, first)])
+        high = float(self.theta[min(best + 1, first + count - 1)])
         for _ in range(ZOOMS):
             looks = np.linspace(low, high, FINER)
-            plain = _plain(self.scene, looks)
+            plain = plain_angles(scene, looks)
             angle = plain[link] - plain.get(against, np.zeros(FINER))
             angle = angle + math.tau * np.round((value - angle) / math.tau)
             k = int(np.argmax(sense * angle))
             if sense * (float(angle[k]) - value) >= 0.0:
                 value, at = float(angle[k]), float(looks[k])
             low, high = float(looks[max(k - 1, 0)]), float(looks[min(k + 1, FINER - 1)])
-        return value, math.remainder(at, math.tau)
+        return value, math.remainder(at, math.tau), signs
 
 
-def _plain(scene: Scene, theta: Array) -> dict[str, Array]:
+def plain_angles(scene: Scene, theta: Array) -> dict[str, Array]:
     """Return the angles of all links but for whole turns, by the motion with its change points."""
     chunk = prepared(scene).stretched(theta)
     found = {}
@@ -175,18 +209,23 @@ class DeadPoint:
 
 
 def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadPoint]:
-    """Return the dead points of the driver, at the ends of the scene's branch, and of the links
-    pinned to the ground, at the ends of their swing.
+    """Return the dead points of the driver, at the ends of the scene's branch (of all those of its
+    circuit if it is free), and of the links pinned to the ground, at the ends of their swing.
 
     Where the driver stops, the two assemblies of a dyad meet: two links in line (RRR), a rod square
     to its slider's line (RRP), or a guide square to the line to its pin (RPR). A link pinned to the
     ground could not drive the mechanism where it turns back: the dead points of that input.
     """
-    scene, (_, arc) = circuits.signed.scene, circuits.own
-    found = [
-        DeadPoint(scene.driver.link, end.angle_rad, at_limit(scene, end.dyad))
+    scene = circuits.signed.scene
+    ends = {
+        (round(end.angle_rad, 6), end.dyad): end
+        for arc, _ in reversed(circuits.course)
         for end in (arc.low, arc.high)
         if end is not None
+    }
+    found = [
+        DeadPoint(scene.driver.link, end.angle_rad, at_limit(scene, end.dyad))
+        for end in sorted(ends.values(), key=lambda end: end.angle_rad)
     ]
     limits = {point.driver_rad for point in found}
     for one in rotations:
@@ -194,9 +233,10 @@ def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadP
             continue
         if scene.links[one.link].points.keys() & scene.ground.keys():
             found += [
-                DeadPoint(one.link, at, _in_line(circuits, at))
-                for at in (one.low_at_rad, one.high_at_rad)
-                if all(abs(math.remainder(at - limit, math.tau)) > IN_LINE for limit in limits)
+                DeadPoint(one.link, at, _in_line(circuits.signed, at, signs))
+                for at, signs in ((one.low_at_rad, one.low_on), (one.high_at_rad, one.high_on))
+                if signs is not None  # not at a mere end of a branch
+                or all(abs(math.remainder(at - limit, math.tau)) > IN_LINE for limit in limits)
             ]
     return found
 
@@ -218,9 +258,9 @@ def at_limit(scene: Scene, key: str) -> str:
     raise StructureError(f"{scene.name}: {group.kind} has no limit position")
 
 
-def _in_line(circuits: Circuits, theta: float) -> str:
+def _in_line(signed: SignedScene, theta: float, signs: Signs | None) -> str:
     """Return the text of links in line at a shared pin: by lines from each to the next pin."""
-    scene = circuits.signed.scene
+    scene = signed.scene if signs is None else signed.with_signs(signs)
     chunk = prepared(scene).stretched(np.array([theta]))
     found = []
     for group in analyse(scene).groups:

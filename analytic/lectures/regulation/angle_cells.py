@@ -24,8 +24,8 @@ from models.scene.loads import Load
 NODES = 5
 CELLS = 120
 """Cells of a turn, before it is cut at kinks."""
-APART = 1e-9
-"""Distance of borders, over the cycle, below which they are one."""
+APART = 1e-14
+"""Distance of borders, over the cycle, below which they are one by rounding."""
 
 
 def _lagrange() -> tuple[Array, Array]:
@@ -120,8 +120,9 @@ def breaks(machine: TurningMachine) -> Array:
         if isinstance(load.characteristic, Constant):
             continue
         if load.over == "displacement":
-            at = _slider(machine, load, "s")
-            found.append(crossings(at, u, load.characteristic.kinks))
+            at, ends = _slider(machine, load, "s"), _slider(machine, load, "speed")
+            fine = np.sort(np.append(u, crossings(ends, u, [0.0])))  # rows close to a dead centre
+            found.append(crossings(at, fine, load.characteristic.kinks))
         elif load.over == "angle":
             found += [_rows(machine, load), _short_waves(machine, load)]
     found += [_turnings(machine, joint, u) for joint in machine.scene.friction]

@@ -59,11 +59,6 @@ class EnergyMass:
         at = int(np.argmax(height) if above else np.argmin(height))
         return float(height[at]), at
 
-    def flywheel(self, steep: float, flat: float) -> float:
-        """Return the distance of the crossing of two tangents to the left of J = 0 [kg m^2]."""
-        above, below = self.tangent(steep, above=True)[0], self.tangent(flat, above=False)[0]
-        return (above - below) / (steep - flat)
-
 
 @dataclass(frozen=True)
 class Approximations:
@@ -169,14 +164,15 @@ def energy_mass(cycle: SteadyCycle) -> EnergyMass:
 
 def _classical(heavy: SteadyCycle, delta: float) -> Approximations:
     """Return the approximations, from torques at constant speed."""
-    diagram, square = energy_mass(heavy), heavy.mean_rad_s**2
-    own = diagram.inertia
+    square = heavy.mean_rad_s**2
     mean = float(np.mean(heavy.machine.inertia(heavy.fine[:-1])[0]))
-    free = diagram.work - 0.5 * square * own
+    above, below = heavy.heights(0.5 * square)
+    steep = heavy.heights(0.5 * square * (1.0 + delta))[0]
+    flat = heavy.heights(0.5 * square * (1.0 - delta))[1]
     return Approximations(
-        by_surplus=float(np.ptp(diagram.work)) / (delta * square) - mean,
-        by_own_energy=float(np.ptp(free)) / (delta * square) - float(own.min()),
-        by_tangents=diagram.flywheel(0.5 * square * (1.0 + delta), 0.5 * square * (1.0 - delta)),
+        by_surplus=heavy.surplus_j / (delta * square) - mean,
+        by_own_energy=(above - below) / (delta * square) - heavy.own_inertia_range[0],
+        by_tangents=(steep - flat) / (delta * square),
     )
 
 
@@ -210,7 +206,7 @@ def _exact(machine: TurningMachine, delta: float, first: float) -> SteadyCycle:
 def _next(tried: list[tuple[float, SteadyCycle]], delta: float) -> float:
     inertia, cycle = tried[-1]
     off = 1.0 / cycle.delta - 1.0 / delta
-    own = cycle.inertia_range[0] - inertia
+    own = cycle.own_inertia_range[0]
     if len(tried) < 2:
         found = (inertia + own) * cycle.delta / delta - own
     else:

@@ -9,7 +9,7 @@ follow the speed settle it, else they have to balance, and the speed of its star
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -122,16 +122,39 @@ class SteadyCycle:
     @cached_property
     def surplus_j(self) -> float:
         """Surplus of work: the largest work since the start less the smallest."""
-        work = self.energy(
-            self.solution.cells.borders, self.solution.cells.nodes.ravel(), self.fine
-        )
-        return float(np.ptp(work))
+        high, low = self.heights(0.0)
+        return high - low
+
+    def heights(self, slope: float) -> tuple[float, float]:
+        """Return the largest and the smallest W - slope J [J]: work since the start, less ``slope``
+        [J/(kg m^2)] times the moment of inertia without the added flywheel. They are where its
+        derivative is 0, or jumps through it."""
+        solution, machine = self.solution, self.machine
+
+        def height(u: Array) -> Array:
+            work = solution.energy_at(u) - solution.at_borders[0]
+            return np.asarray(work - slope * machine.inertia(u)[0])
+
+        def rise(u: Array) -> Array:
+            torque = machine.torque(u, solution.speed_at(u)) + solution.drive
+            return np.asarray(torque - slope * machine.inertia(u)[1])
+
+        high, low = height(np.array(_extremes(solution, height, rise)))
+        return float(high), float(low)
 
     @cached_property
+    def own_inertia_range(self) -> tuple[float, float]:
+        """Smallest and largest reduced moment of inertia without the added flywheel [kg m^2]."""
+        inertia = self.machine.inertia
+        places = _extremes(self.solution, lambda u: inertia(u)[0], lambda u: inertia(u)[1])
+        most, least = inertia(np.array(places))[0]
+        return float(least), float(most)
+
+    @property
     def inertia_range(self) -> tuple[float, float]:
         """Smallest and largest reduced moment of inertia, with flywheels [kg m^2]."""
-        own = self.solution.inertia_at(self.fine)
-        return float(own.min()), float(own.max())
+        least, most = self.own_inertia_range
+        return least + self.solution.flywheel, most + self.solution.flywheel
 
     @cached_property
     def fine(self) -> Array:
@@ -271,8 +294,9 @@ CLOSED = 1e-6
 constant torque makes it up."""
 ROUNDS = 6
 """Most searches for the places of the extremes."""
-ROUGHLY, CLOSELY = 18, 40
-"""Halvings of an interval of nodes for them: speeds do not change there to first order."""
+ZOOMS, PARTS = 10, 16
+"""Divisions of an interval of nodes for them, and parts of each: to rounding, as a speed has a
+corner where a torque jumps."""
 STILL = 1e-11
 """Fluctuation below which it is rounding."""
 
@@ -313,29 +337,46 @@ def _with_extremes(solution: PeriodicSolution, wanted: WantedSpeed) -> SteadyCyc
     for _ in range(ROUNDS):
         if mean is None:
             break
-        rough = SteadyCycle(solution, *_extremes(solution, ROUGHLY))
-        if abs(rough.mean_rad_s / mean - 1.0) <= 1e-14:
-            break
-        wanted = WantedSpeed(mean, (rough.fastest, rough.slowest))
+        now = SteadyCycle(solution, *_extreme_speeds(solution))
+        if abs(now.mean_rad_s / mean - 1.0) <= 1e-14:
+            return now
+        wanted = WantedSpeed(mean, (now.fastest, now.slowest))
         solution = repeated(solution.machine, solution.cells, solution.flywheel, solution, wanted)
-    return SteadyCycle(solution, *_extremes(solution, CLOSELY))
+    return SteadyCycle(solution, *_extreme_speeds(solution))
 
 
-def _extremes(solution: PeriodicSolution, halvings: int) -> tuple[float, float]:
-    """Return the angles u at which the speed is largest and smallest, where its slope is 0."""
+def _extreme_speeds(solution: PeriodicSolution) -> tuple[float, float]:
+    """Return the angles u at which the speed is largest and smallest."""
+    return _extremes(solution, solution.speed_at, lambda u: _pull(solution, u))
+
+
+def _extremes(
+    solution: PeriodicSolution, of: Callable[[Array], Array], rise: Callable[[Array], Array]
+) -> tuple[float, float]:
+    """Return the angles u at which a quantity of the cycle is largest and smallest; ``rise`` has
+    the sign of its derivative. All peaks between nodes are followed, as samples of two that are
+    nearly alike do not tell the higher one."""
     u = np.sort(np.concatenate([solution.cells.borders, solution.cells.nodes.ravel()]))
-    speed = solution.speed_at(u)
-    if np.ptp(speed) <= STILL * speed.max():
+    sizes = of(u)
+    if np.ptp(sizes) <= STILL * np.abs(sizes).max():
         return 0.0, 0.0
-    at = np.array([np.argmax(speed), np.argmin(speed)])
-    low, high = u[np.maximum(at - 1, 0)], u[np.minimum(at + 1, len(u) - 1)]
-    signs = np.array([1.0, -1.0])
-    for _ in range(halvings):
-        middle = 0.5 * (low + high)
-        rising = _pull(solution, middle) * signs > 0.0
-        low, high = np.where(rising, middle, low), np.where(rising, high, middle)
-    best = 0.5 * (low + high)
-    return float(best[0]), float(best[1])
+    found = []
+    for sign in (1.0, -1.0):
+        own = sign * sizes
+        beside = np.concatenate([[-np.inf], own, [-np.inf]])
+        peaks = np.flatnonzero((own >= beside[:-2]) & (own >= beside[2:]))
+        low, high = u[np.maximum(peaks - 1, 0)], u[np.minimum(peaks + 1, len(u) - 1)]
+        for _ in range(ZOOMS):
+            parts = np.linspace(low, high, PARTS + 1, axis=1)
+            rising = rise(parts[:, 1:-1].ravel()).reshape(len(peaks), -1) * sign > 0.0
+            k = np.cumprod(rising, axis=1).sum(axis=1)[:, None]  # the first part that ends falling
+            low, high = (np.take_along_axis(parts, k + end, axis=1)[:, 0] for end in (0, 1))
+        places = np.concatenate([0.5 * (low + high), u[peaks]])
+        heights = sign * of(places)
+        first, best = int(np.argmax(own[peaks])), int(np.argmax(heights))
+        even = heights[first] >= heights[best] - STILL * np.ptp(sizes)  # twins keep their order
+        found.append(float(places[first if even else best]))
+    return found[0], found[1]
 
 
 def _pull(solution: PeriodicSolution, u: Array) -> Array:

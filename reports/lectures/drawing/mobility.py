@@ -37,7 +37,8 @@ class MobilityRequest:
     )
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show a scheme, or list the shipped ones. Raises CrankcheckError for a faulty request."""
+        """Show a scheme, or list the shipped ones; 1 where its file states another mobility. Raises
+        CrankcheckError for a faulty request."""
         if self.output is not None and not self.replace:
             raise CrankcheckError("-o writes the scheme that --replace makes; add --replace")
         if self.scheme is None:
@@ -50,10 +51,11 @@ class MobilityRequest:
         scheme = load_scheme(self.scheme)
         if self.output is not None:
             check_file(self.output, "-o", (".toml",), inputs=[find_scheme(self.scheme)])
-        show_mobility(console, scheme_mobility(scheme))
+        mobility = scheme_mobility(scheme)
+        show_mobility(console, mobility)
         if self.replace:
             _show_replaced(console, scheme, self)
-        return 0
+        return int(_is_contradicted(mobility))
 
 
 def show_mobility(console: Console, mobility: SchemeMobility) -> None:
@@ -88,6 +90,10 @@ def _paragraphs(mobility: SchemeMobility) -> list[tuple[str, str]]:
     return told
 
 
+def _is_contradicted(mobility: SchemeMobility) -> bool:
+    return mobility.scheme.mobility not in (None, mobility.real)
+
+
 def _mobility(mobility: SchemeMobility) -> str:
     """The real mobility, its idle part, and the particulars of the drawn position."""
     words = f"W = {mobility.real}"
@@ -106,9 +112,8 @@ def _mobility(mobility: SchemeMobility) -> str:
     if mobility.near.others:
         others = ", ".join(map(str, mobility.near.others))
         words += f"; {others} on another branch that begins here"
-    stated = mobility.scheme.mobility
-    if stated is not None and stated != mobility.real:
-        words += f"; the file says {stated}"
+    if _is_contradicted(mobility):
+        words += f"; the file says {mobility.scheme.mobility}"
     return words
 
 

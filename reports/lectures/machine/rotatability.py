@@ -17,7 +17,13 @@ from analytic.lectures.circuits.circuits import (
     circuits_of,
     transmissions,
 )
-from analytic.lectures.circuits.rotatability import Rotation, at_limit, dead_points, rotations
+from analytic.lectures.circuits.rotatability import (
+    Rotation,
+    at_limit,
+    circuit_rotations,
+    dead_points,
+    rotations,
+)
 from analytic.mechanism.fourbar import grashof_of
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError, harmless, shown
@@ -87,7 +93,15 @@ def _position(circuits: Circuits, text: str) -> Position:
 
 def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
     """The whole answer, angles in degrees, as JSON has it."""
-    turning = rotations(scene, circuits.own[1])
+    turning, free = rotations(scene, circuits.own[1]), dict[str, object]()
+    if scene.is_free:
+        turning = circuit_rotations(circuits, circuits.own[1])
+        free["other_circuits"] = [
+            {"circuit": number + 1, **rotation_row(one, is_limited=first.low is not None)}
+            for number, (first, *_) in enumerate(circuits.circuits)
+            if number != circuits.own[0]
+            for one in circuit_rotations(circuits, first)
+        ]
     dyads, merit = transmissions(circuits)
     grashof, (number, own) = grashof_of(scene), circuits.own
     return {
@@ -95,6 +109,7 @@ def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
         "type": None if grashof is None else grashof.name,
         "margin_m": None if grashof is None else grashof.margin_m,
         "rotations": [rotation_row(one, is_limited=own.low is not None) for one in turning],
+        **free,
         "dyads": list(circuits.signed.dyads),
         "change_points": circuits.change_points,
         "circuit": number + 1,
@@ -191,6 +206,7 @@ def _extreme(name: str, extreme: AngleExtreme | None) -> Row:
 
 TABLES = {
     "rotations": "link against does turns from_deg to_deg swing_deg",
+    "other_circuits": "circuit link against does turns from_deg to_deg swing_deg",
     "branches": "circuit signs driver_from_deg driver_to_deg limits scene",
     "dead_points": "input driver_deg where",
     "transmission": "dyad kind smallest_deg smallest_at_deg largest_deg largest_at_deg "
@@ -204,7 +220,11 @@ def _show(console: Console, document: Mapping[str, Any]) -> None:
     if document["type"] is not None:
         kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
     say(console, f"{document['scene']}: {kind}")
+    if "other_circuits" in document:
+        say(console, f"free: rotations are over its whole circuit, {document['circuit']}")
     for name, columns in TABLES.items():
+        if name == "other_circuits" and not document.get(name):
+            continue
         if name == "branches":
             meet = ", those that meet in change points as one" if document["change_points"] else ""
             say(console, f"\ncircuits{meet}; signs of {', '.join(document['dyads']) or 'no dyad'}")
@@ -230,6 +250,8 @@ def _cell(value: object) -> str:
         return "yes" if value else ""
     if isinstance(value, list):
         return ", ".join(dict.fromkeys(value))
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {_cell(each)}" for name, each in value.items())
     if isinstance(value, float):
         return f"{0.0 if abs(value) < 1e-6 else value:.6g}"
     return "" if value is None else str(value)

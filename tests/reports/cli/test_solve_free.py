@@ -43,12 +43,14 @@ def test_a_file_has_the_motion_the_energies_and_the_sensitivity(tmp_path: Path) 
 def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     page, folder = tmp_path / "page.html", tmp_path / "figures"
     with without_pdf():
-        told(SWING, "--figures", folder, "-o", page)
-    names = {each.name for each in folder.iterdir()}
-    assert names == {f"{n}.{k}" for n in ("over-time", "energy", "phase") for k in ("svg", "pdf")}
+        told(f"{SWING} --forces", "--figures", folder, "-o", page)
+    names, drawn = {each.name for each in folder.iterdir()}, "over-time energy phase reactions"
+    assert names == {f"{n}.{k}" for n in drawn.split() for k in ("svg", "pdf")}
     text = page.read_text(encoding="utf-8")
     assert "free motion over 0.5 s" in text
-    assert text.count("data:image/svg+xml;base64,") == 3
+    assert text.count("data:image/svg+xml;base64,") == 4
+    assert "Over the motion, closely sampled" in text
+    assert "driving torque" not in text
     assert "Sensitivity" in text
 
 

@@ -2,6 +2,7 @@
 tables, sheets, JSON, and what is refused. More of what they tell is in `test_told.py`."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -65,9 +66,12 @@ LINE = (CONTACTS / "line-contact.toml").read_text(encoding="utf-8")
 
 
 def test_what_the_file_says_of_the_mobility_is_held_against_it(tmp_path: Path) -> None:
-    path = tmp_path / "wrong.toml"
-    path.write_text(FOURBAR.replace("mobility = 1", "mobility = 2"), encoding="utf-8")
-    assert "mobility W = 1; the file says 2" in flat(told("mobility", path))
+    path, stated = tmp_path / "wrong.toml", re.compile("^mobility = 1$", re.M)
+    for line, of in (("mobility", FOURBAR), ("mobility --replace", CAM)):
+        path.write_text(stated.sub("mobility = 2", of), encoding="utf-8")
+        assert "mobility W = 1; the file says 2" in flat(told(line, path, code=1))
+        path.write_text(stated.sub("", of), encoding="utf-8")
+        told(line, path)
 
 
 OF_SCHEMES = [

@@ -92,6 +92,12 @@ TOLD = {
     " 5 binary, 2 ternary, 1 quaternary 5 6 binary, 2 quaternary 2",
     "rotatability fourbar-lecture-1": "Grashof crank-rocker, margin 0.05 m | 60.0323",
     "rotatability fourbar-lecture-1 --position 30 --position 90": "led through",
+    "rotatability fourbar-double-rocker-swing": "free: rotations are over its whole circuit, 1"
+    " | rocker ground swings 0 -307.169 -52.8311 254.338"
+    " | rocker -20.7419 driver and coupler in line",
+    "rotatability slider-crank-spring": "other circuits | 2 rod ground swings 0 -195.466 -156.422",
+    "equilibria fourbar-swing": "1 yes stable crank -111.653, coupler 49.557, rocker 0.0552469"
+    " 2.18636 150.883 1 yes unstable",
     "joint crossed-cylinders": "touches point: a higher pair"
     " | alone class 1, leaves Qx, Qy, Qz, Ty, Tz; a force must keep the two together"
     " | guided class 4, leaves Qz, Tz, where its neighbours leave Qz, Tz",

@@ -11,11 +11,17 @@ from analytic.dyads.chunk import driver_scale
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.lectures.circuits.arcs import own_arc
 from analytic.lectures.circuits.circuits import Position, circuits_of, transmissions
-from analytic.lectures.circuits.rotatability import Rotation, dead_points, rotations
+from analytic.lectures.circuits.rotatability import (
+    Rotation,
+    circuit_rotations,
+    dead_points,
+    rotations,
+)
 from analytic.mechanism.fourbar import FourBar
 from models.errors import CrankcheckError, ReachError
 from models.files.reading import load_scene
-from models.scene import Scene
+from models.scene import Driver, Scene
+from models.scene.driver import Released
 from tests.analytic.four_bars import fourbar, random_bars
 from tests.worlds.tiers import slowly
 
@@ -224,6 +230,29 @@ def test_a_crank_rocker_swings_and_transmits_as_its_closed_form_says() -> None:
     dead = dead_points(circuits, list(told.values()))
     assert [point.where for point in dead] == ["crank and coupler in line"] * 2
     assert {point.input for point in dead} == {"rocker"}
+
+
+def test_without_a_drive_links_move_over_the_whole_circuit() -> None:
+    """Led by the rocker, which turns back at its limits, the crank of a crank-rocker goes on round:
+    all links do what they do behind the crank, though a branch of the rocker's has half of it."""
+    led = turning("fourbar-lecture-1")
+    scene = fourbar(0.2, 0.25, 0.1, 0.3)
+    free = replace(scene, driver=Driver("crank", Released(1.0, 0.0, 1.0)))
+    circuits = circuits_of(free)
+    for circuit in circuits.circuits:
+        found = {(one.link, one.against): one for one in circuit_rotations(circuits, circuit[0])}
+        assert [len(circuit), abs(found["rocker", "ground"].turns)] == [2, 1]
+        for own, other in (("crank", "rocker"), ("coupler", "coupler")):
+            swing = led[other, "ground"].swing_rad
+            assert found[own, "ground"].swing_rad == pytest.approx(swing, rel=1e-9)
+        assert found["crank", "ground"].turns == found["coupler", "ground"].turns == 0
+        assert found["coupler", "crank"].swing_rad == pytest.approx(
+            led["rocker", "coupler"].swing_rad, rel=1e-9
+        )
+    dead = dead_points(circuits, circuit_rotations(circuits, circuits.own[1]))
+    assert {(p.input, p.where) for p in dead} == {("crank", "coupler and rocker in line")}
+    assert len(dead) == 2
+    assert rotations(free, circuits.own[1])[2].turns == 0
 
 
 def test_a_driver_that_swings_is_dead_where_its_dyad_is_in_line() -> None:

@@ -1,6 +1,7 @@
 """The cycle that a machine repeats: by hand, beside an integration, and where there is none; and
 the flywheel for a coefficient of fluctuation, exact beside approximate."""
 
+import itertools
 import math
 from dataclasses import replace
 from functools import cache
@@ -28,7 +29,14 @@ from models.scene import GROUND, Driver, Scene
 from models.scene.characteristics import Constant, Polynomial, Sine
 from models.scene.driver import Released
 from models.scene.laws import Accelerating, ConstantSpeed
-from models.scene.loads import ConstantFriction, CoulombFriction, LineSpring, PinSpring, SlideSpring
+from models.scene.loads import (
+    ConstantFriction,
+    CoulombFriction,
+    LineSpring,
+    Load,
+    PinSpring,
+    SlideSpring,
+)
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
 from tests.analytic.lectures.regulation.worked import shaft, yoke
@@ -73,6 +81,57 @@ def test_a_press_by_hand() -> None:
     assert found.power_w == pytest.approx(20.0 * math.tau / found.period_s, rel=1e-6)
 
 
+def lines(degrees: tuple[float, ...], values: tuple[float, ...]) -> Tabulated:
+    return Tabulated(tuple(map(math.radians, degrees)), values, period=math.tau)
+
+
+JUMP_DEG = 1e-8
+OF_LINES = {
+    "extremes within a line": lines((0.0, 80.0, 180.0, 260.0), (0.0, 2000.0, 0.0, 1500.0)),
+    "peaks nearly alike": lines((0.0, 61.3, 123.4, 180.0, 241.3, 303.4, 308.0),
+                                (0.0, 90.0, -90.0, 0.0, 90.0, -90.001, 0.0)),
+    "jumps": lines((0.0, 120.3, 120.3 + JUMP_DEG, 240.1, 240.1 + JUMP_DEG),
+                   (0.0, 0.0, -60.0, -60.0, 0.0)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OF_LINES)
+def test_surplus_and_flywheel_of_torque_lines_are_exact(name: str) -> None:
+    """Work is a parabola in each line: its extremes are in rows, and where M + D = 0. At 10 rad/s
+    J = surplus / (delta 10^2), on a shaft of 2 kg m^2."""
+    table = OF_LINES[name]
+    x, y = np.append(table.places, math.tau), np.append(table.values, 0.0)
+    torque = y - np.sum(np.diff(x) * (y[1:] + y[:-1])) / 2.0 / math.tau
+    rises = np.diff(x) * (torque[1:] + torque[:-1]) / 2.0
+    work = [0.0, *np.cumsum(rises)]
+    for k, (first, last) in enumerate(itertools.pairwise(torque)):
+        if first * last < 0.0:
+            work.append(work[k] + 0.5 * first * np.diff(x)[k] * first / (first - last))
+    delta = 0.02
+    found = wanted(shaft({"lines": (table, "angle")}), delta)
+    assert found.cycle.surplus_j == pytest.approx(np.ptp(work), rel=1e-12)
+    exact = np.ptp(work) / (delta * 10.0**2) - 2.0
+    near = found.approximations
+    assert near.by_surplus == pytest.approx(exact, rel=1e-9)  # of a flywheel 10^4 times as heavy
+    assert near.by_own_energy == pytest.approx(exact, rel=1e-9)
+    assert found.inertia_kg_m2 == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_push_that_begins_next_to_a_dead_centre_by_hand() -> None:
+    """F on the last 1e-6 m towards s = r cos u = r, between two samples: F r sin turns against D
+    from a before the dead centre on, where s = c, until b before it, where they are alike."""
+    push_n, radius, begin = 1e7, 0.2, 0.2 - 1e-6
+    table = Tabulated((-0.3, begin, begin + 1e-15, 0.3), (0.0, 0.0, push_n, push_n))
+    scene = yoke(mass_kg=1e-30, radius_m=radius)
+    load = Load("push", "yoke", "Y", table, "displacement", slider="Y", stroke="forward")
+    driver = Driver("crank", ConstantSpeed(0.3017, 8.0))
+    found = cycle(replace(scene, loads={"push": load}, driver=driver))
+    drive = push_n * (radius - begin) / math.tau
+    a, b = math.acos(begin / radius), math.asin(drive / (push_n * radius))
+    surplus = push_n * (radius * math.cos(b) - begin) - drive * (a - b)
+    assert found.surplus_j == pytest.approx(surplus, rel=1e-8)
+
+
 def test_a_motor_and_a_fan_by_hand() -> None:
     """Motor 30 - w, fan -0.1 w^2: 0.1 w^2 + w - 30 = 0, w = 5 (sqrt(13) - 1), without any
     fluctuation; a change of the speed dies as exp(-(1 + 0.2 w) 2 pi / (J w)), one of the energy
@@ -90,13 +149,15 @@ def test_a_motor_and_a_fan_by_hand() -> None:
 def test_a_pushed_yoke_by_hand() -> None:
     """F = 40 N, r = 0.2 m: T = T0 + 8 (cos u - 1), J = 0.5 + 0.12 sin^2 u. w^2 = 2 T / J has
     its largest value at 0 and its smallest beyond 90 deg, where T' J = T J'."""
-    found = cycle(yoke(40.0))
+    scene = yoke(40.0)
+    turned = cycle(replace(scene, driver=Driver("crank", ConstantSpeed(0.321, 8.0))))
+    assert turned.inertia_range == pytest.approx((0.5, 0.62), rel=1e-13)
+    found = cycle(scene)
     start = found.solution.at_borders[0]
     u = np.linspace(0.0, math.tau, 50001)
     square = 2.0 * (start + 8.0 * (np.cos(u) - 1.0)) / (0.5 + 0.12 * np.sin(u) ** 2)
     assert found.extreme_speeds_rad_s[0] ** 2 == pytest.approx(square.max(), rel=1e-8)
     assert found.extreme_speeds_rad_s[1] ** 2 == pytest.approx(square.min(), rel=1e-8)
-    assert found.inertia_range == pytest.approx((0.5, 0.62))
     s = found.slowest
     energy, inertia = start + 8.0 * (math.cos(s) - 1.0), 0.5 + 0.12 * math.sin(s) ** 2
     assert -8.0 * math.sin(s) * inertia == pytest.approx(energy * 0.12 * math.sin(2.0 * s))
@@ -307,7 +368,9 @@ def test_the_scene_with_the_flywheel_has_the_coefficient() -> None:
     found = evened_compressor()
     again = cycle(with_flywheel(load_scene("compressor"), found.inertia_kg_m2))
     assert again.delta == pytest.approx(0.02, rel=1e-11)
-    assert found.diagram.flywheel(*found.slopes) == pytest.approx(found.inertia_kg_m2, rel=1e-9)
+    (above, _), (_, below) = map(found.cycle.heights, found.slopes)
+    steep, flat = found.slopes
+    assert (above - below) / (steep - flat) == pytest.approx(found.inertia_kg_m2, rel=1e-11)
     near = found.approximations
     for other in (near.by_surplus, near.by_own_energy):
         assert other == pytest.approx(found.inertia_kg_m2, rel=0.2)
