@@ -350,6 +350,20 @@ def turned_axes(sheet: Sheet, rng: Generator) -> Planted:
     return _seen(sheet, cmath.rect(1.0, float(rng.choice(turns))))
 
 
+@planting("turned")
+def points_of_a_tilted_camera(sheet: Sheet, rng: Generator) -> Planted:
+    """Points in axes of their own, among them one that does not go round the origin."""
+    crank = sheet.scene.links[sheet.scene.driver.link].points
+    points = sheet.moving(lambda channel: channel.kind.body_kind == "point")
+    if len(points) < 2 or all(sheet.channels[column].of in crank for column in points):
+        return None
+    turn, frame = either(rng) * decades(rng, -2.3, -0.3), int(rng.integers(3))
+    shift = complex(*rng.uniform(0.02, 0.3, 2)) if frame else 0.0
+    seen = _seen(sheet, cmath.rect(1.0, turn), shift, mirrored=frame == 2)
+    found = sheet.columns(lambda channel: channel.kind.body_kind == "point")
+    return seen and (sheet.put({column: seen[0].values[column] for column in found}), found)
+
+
 @planting("moved", "offset")
 def another_origin(sheet: Sheet, rng: Generator) -> Planted:
     return _seen(sheet, 1.0, complex(*rng.uniform(0.02, 0.3, 2)))

@@ -18,7 +18,16 @@ Hypothesis = Callable[[Inquiry], Iterator[Account | None]]
 Hypotheses = Sequence[Hypothesis]
 OF_SAMPLES: Hypotheses = (turns, samples)
 """Faults of some samples, besides any fault of all samples."""
-OF_CHANNELS: Hypotheses = (straight, swapped, misnamed, *OF_SAMPLES, late, filtered, rounded)
+OF_CHANNELS: Hypotheses = (
+    straight,
+    swapped,
+    misnamed,
+    *OF_SAMPLES,
+    other_world.turned_points,
+    late,
+    filtered,
+    rounded,
+)
 """Faults of some channels."""
 OF_LOGS: Hypotheses = (
     other_world.backwards,
