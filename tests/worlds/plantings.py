@@ -494,6 +494,41 @@ def few_decimals(sheet: Sheet, rng: Generator) -> Planted:
     return sheet.put({column: read(sheet, column, written)}), [column]
 
 
+@planting("quantised")
+def few_steps_a_turn(sheet: Sheet, rng: Generator) -> Planted:
+    """An angle by an encoder, or another place by a converter, of so many bits."""
+    column = one(rng, sheet.moving(places))
+    whole = math.tau if sheet.channels[column].kind.turns else np.ptp(sheet.values[column])
+    step = whole / 2.0 ** math.floor(math.log2(whole / (8.0 * sheet.limits[column])))
+    zero, to = float(rng.choice([0.0, rng.uniform(-1.0, 1.0)])), one(rng, (np.floor, np.round))
+    return changed(sheet, column, lambda values: zero + step * to((values - zero) / step))
+
+
+@planting("quantised", even=True)
+def rate_of_counts(sheet: Sheet, rng: Generator) -> Planted:
+    """A rate by differences of the counts of an encoder."""
+    column = one(rng, sheet.moving(lambda c: c.kind.body_kind == "link" and c.kind.order == 1))
+    step = 8.0 * sheet.limits[column] * sheet.step_s
+    step = math.tau / 2.0 ** math.floor(math.log2(math.tau / step))
+    angle = replace(sheet.channels[column], kind=KINDS["link", "angle"], wrapped=False)
+    instants = np.append(sheet.time_s, sheet.time_s[-1] + sheet.step_s) - 0.5 * sheet.step_s
+    counts = np.floor(angle.expected(truth(sheet, instants)) / step)
+    return changed(sheet, column, lambda _: np.diff(counts) * (step / sheet.step_s))
+
+
+@planting("float16")
+def half_precision(sheet: Sheet, rng: Generator) -> Planted:
+    halves = {
+        column: read(sheet, column, numbers(sheet, column).astype(np.float16).astype(float))
+        for column in sheet.moving(unwrapped)
+    }
+    off = {
+        c: np.max(np.abs(half - sheet.values[c])) / sheet.limits[c] for c, half in halves.items()
+    }
+    column = one(rng, [column for column, share in off.items() if share > 3.5])
+    return changed(sheet, column, lambda _: halves[column])
+
+
 @planting()
 def healthy(sheet: Sheet, rng: Generator) -> Planted:
     return sheet, []
