@@ -464,6 +464,17 @@ def low_passed(sheet: Sheet, rng: Generator) -> Planted:
     return sheet.put({column: values}), [column]
 
 
+@planting("zero phase")
+def low_passed_forth_and_back(sheet: Sheet, rng: Generator) -> Planted:
+    from scipy.signal import butter, filtfilt  # type: ignore[import-untyped]  # ships no stubs
+
+    cutoff = 2.0 * sheet.step_s / sheet.scene.driver.law.period_s * decades(rng, 0.3, 1.0)
+    if cutoff > 0.8:
+        return None
+    filter_ = butter(int(rng.integers(1, 5)), cutoff)
+    return changed(sheet, one(rng, sheet.uneven()), lambda values: filtfilt(*filter_, values))
+
+
 @planting("mean", even=True)
 def mean_of_both_sides(sheet: Sheet, rng: Generator) -> Planted:
     half = int(rng.integers(3, max(4, sheet.time_s.size // 20)))
@@ -527,6 +538,16 @@ def half_precision(sheet: Sheet, rng: Generator) -> Planted:
     }
     column = one(rng, [column for column, share in off.items() if share > 3.5])
     return changed(sheet, column, lambda _: halves[column])
+
+
+@planting("lost rows", even=True)
+def rows_lost(sheet: Sheet, rng: Generator) -> Planted:
+    """Rows lost at up to three places, and the times of the others closed up."""
+    rows = sheet.time_s.size
+    lost = np.zeros(rows)
+    for place in rng.choice(np.arange(10, rows - 10, 30), int(rng.integers(1, 4)), replace=False):
+        lost[place:] += rng.integers(1, 20)
+    return sheet.of(truth(sheet, sheet.time_s + sheet.step_s * lost)), []
 
 
 @planting()

@@ -8,6 +8,7 @@ from reports.causes.hypotheses.clock import drift, stamps, time_unit
 from reports.causes.hypotheses.dimension import dimension
 from reports.causes.hypotheses.filtered import filtered, smoothed
 from reports.causes.hypotheses.late import late
+from reports.causes.hypotheses.lost_rows import lost_rows
 from reports.causes.hypotheses.misnamed import misnamed, swapped
 from reports.causes.hypotheses.samples import rounded, samples
 from reports.causes.hypotheses.straight import straight, turns
@@ -35,6 +36,7 @@ OF_LOGS: Hypotheses = (
     other_world.mirrored,
     time_unit,
     stamps,
+    lost_rows,
     other_world.moved,
     other_world.turned,
     other_world.sized,

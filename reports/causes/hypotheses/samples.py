@@ -276,7 +276,7 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, grid: RoundingGrid) -> Account | N
     for verb, zero in tried:
         error = excerpt.error + zero
         off = np.abs(error) > HALF * grid.width * grid.step + excerpt.limit
-        rms = float(np.sqrt(np.mean((error / grid.step)[~off] ** 2 / grid.width)))
+        rms = float(np.sqrt(np.sum((error / grid.step)[~off] ** 2) / error.size / grid.width))
         likely = 0.5 * EVEN_RMS < rms < 1.25 * EVEN_RMS or _predicted(excerpt, grid)
         if likely and np.sum(off) <= 2.0 * (grid.width >= 2.0):  # differences are others at ends
             phrase = f"{{who}} {{is}} {verb} to {grid.words}"
