@@ -6,7 +6,7 @@ from reports.causes.account import Account
 from reports.causes.hypotheses import other_world
 from reports.causes.hypotheses.clock import drift, stamps, time_unit
 from reports.causes.hypotheses.dimension import dimension
-from reports.causes.hypotheses.filtered import filtered, smoothed
+from reports.causes.hypotheses.filtered import filtered, forth_and_back, smoothed
 from reports.causes.hypotheses.late import late
 from reports.causes.hypotheses.lost_rows import lost_rows
 from reports.causes.hypotheses.misnamed import misnamed, swapped
@@ -27,6 +27,7 @@ OF_CHANNELS: Hypotheses = (
     other_world.turned_points,
     late,
     filtered,
+    forth_and_back,
     rounded,
 )
 """Faults of some channels."""
