@@ -15,7 +15,7 @@ from reports.output.numbers import listed
 
 FARTHEST, TWICE = 1000, 25
 """Rows that may be lost altogether, up to a period; and the ratio of them to those there twice."""
-EVEN = 1e-3
+EVEN = 0.1
 """Largest offset of a time from the even grid, in intervals."""
 OFF, JUMP = 100.0, 200.0
 """Largest cost of a reading, as the square of its error over the noise, and cost of one place."""
@@ -23,35 +23,24 @@ FINE = 0.01
 """Least noise, over the limit."""
 FEW, FEWEST = 0.03, 3
 """Part of the rows before which some may be lost, and their number in any log."""
-STREAMS = 3
-"""Groups of channels that may have lost rows of their own."""
 SHOWN = 3
 
 
 def lost_rows(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of channels that belong to later rows from some rows on."""
     columns, times = list(inquiry.open), inquiry.case.log.time_s
-    intervals = np.diff(times)
-    if (
-        not inquiry.unexplained
-        or inquiry.world.drive is not None
-        or np.ptp(intervals) > EVEN * inquiry.step_s
-    ):
+    even = np.ptp(np.diff(times)) < EVEN * inquiry.step_s
+    if not inquiry.unexplained or inquiry.world.drive is not None or not even:
         return
-    out = [np.abs(e.error) > e.limit for e in (inquiry.excerpts[column] for column in columns)]
+    out = [np.abs(each.error) > each.limit for each in map(inquiry.excerpts.get, columns) if each]
     rows = inquiry.excerpts[columns[0]].rows
     first = max(0, int(rows[np.argmax(np.any(out, axis=0))]) - MOST // 2)
-    there = _stretch(inquiry, columns, np.arange(first, min(first + MOST, times.size)))
-    for _ in range(STREAMS):
-        told = _told(there, columns, first) if columns else None
+    some = np.arange(first, min(first + MOST, times.size))
+    found = {column: inquiry.into(column, some).excerpts[column] for column in columns}
+    while columns:  # those of another stream may have lost others
+        told = _told(replace(inquiry, excerpts=found, open=tuple(columns)), columns, first)
         yield told
         columns = [column for column in columns if told and column not in told.columns]
-
-
-def _stretch(inquiry: Inquiry, columns: Sequence[str], rows: Rows) -> Inquiry:
-    """Return the inquiry into some columns at these rows. Raises CrankcheckError."""
-    found = {column: inquiry.into(column, rows).excerpts[column] for column in columns}
-    return replace(inquiry, excerpts=found, open=tuple(columns))
 
 
 def _told(there: Inquiry, columns: Sequence[str], first: int) -> Account | None:

@@ -215,32 +215,27 @@ def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | N
 def turned_points(inquiry: Inquiry) -> Iterator[Account]:
     """Yield accounts of axes of the points that are rotated while those of angles are not; these
     may be moved, seen from behind, and of another size as well, as of a camera beside encoders."""
-    columns = _of(inquiry, "point")
-    angles = any(each.channel.kind.body_kind == "link" for each in inquiry.excerpts.values())
-    for count in (1, 3, 4) if len(columns) > 1 and angles else ():
-        for mirrored in (False, True):
-            frame = _frame_of_points(inquiry, columns, count, mirrored=mirrored)
-            expected = inquiry.expected(inquiry.world.framed(frame), _points(inquiry))
-            errors = {c: inquiry.excerpts[c].beside(each) for c, each in expected.items()}
-            angle = number(math.degrees(frame.turn_rad * (1.0 if mirrored else -1.0)))
-            phrase = (
-                f"the axes of the points are turned: their x-axis lies at {angle} deg of the scene"
-            )
-            phrase += ", their y-axis to the other side" if mirrored else ""
-            phrase += f", and {_origin_text(frame)}" if count > 1 else ""
-            phrase += (
-                f"; lengths are {number(frame.size, 6)} times the scene's" if count > 3 else ""
-            )
-            cost = CAUSE + NUMBER * count + CHOICE * mirrored
-            told = inquiry.account("turned", cost, errors, phrase, expected=expected)
-            if told is None or len(told.columns) < 2 or inquiry.spoilt(errors):
-                continue
-            if count == 1 or all(inquiry.excerpts[c].told_apart(errors[c]) for c in told.columns):
-                yield told if count > 1 or mirrored else _or_late(inquiry, told, frame.turn_rad)
-
-
-def _points(inquiry: Inquiry) -> list[str]:
-    return [c for c in inquiry.excerpts if inquiry.channel(c).kind.body_kind == "point"]
+    columns, kinds = _of(inquiry, "point"), {c: inquiry.channel(c).kind for c in inquiry.excerpts}
+    every = [column for column, kind in kinds.items() if kind.body_kind == "point"]
+    if len(columns) < 2 or all(kind.body_kind != "link" for kind in kinds.values()):
+        return
+    for count, mirrored in itertools.product((1, 3, 4), (False, True)):
+        frame = _frame_of_points(inquiry, columns, count, mirrored=mirrored)
+        expected = inquiry.expected(inquiry.world.framed(frame), every)
+        errors = {c: inquiry.excerpts[c].beside(each) for c, each in expected.items()}
+        angle = number(math.degrees(frame.turn_rad * (1.0 if mirrored else -1.0)))
+        phrase = (
+            f"the x-axis of the points lies at {angle} deg of the scene, not that of the angles"
+        )
+        phrase += ", their y-axis to the other side" * mirrored
+        phrase += f", and {_origin_text(frame)}" * (count > 1)
+        phrase += f", and lengths are {number(frame.size, 6)} times the scene's" * (count > 3)
+        cost = CAUSE + NUMBER * count + CHOICE * mirrored
+        told = inquiry.account("turned", cost, errors, phrase, expected=expected)
+        if told is None or len(told.columns) < 2 or inquiry.spoilt(errors):
+            continue
+        if count == 1 or all(inquiry.excerpts[c].told_apart(errors[c]) for c in told.columns):
+            yield told if count > 1 or mirrored else _or_late(inquiry, told, frame.turn_rad)
 
 
 def _frame_of_points(

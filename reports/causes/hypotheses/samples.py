@@ -189,7 +189,7 @@ def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
             if width:
                 step = np.spacing(np.abs(numbers * ratio).astype(kind)).astype(float) * other
                 yield RoundingGrid(name, step, words + f" of {unit}" * (ratio != 1.0), width)
-    for off in (DIFFERENCED * float(np.max(np.abs(numbers))), 0.5 * written):
+    for off in (0.0, 0.5 * written):
         common = common_step(np.append(numbers, numbers[0] * (channel.kind.order == 0)), off)
         if common > 1.5 * written:
             yield _counts(excerpt, common, 1.0 + written / common)
@@ -227,7 +227,7 @@ def _binary(numbers: Array, kind: type[np.floating[Any]], lost: Array, written: 
 def common_step(numbers: Array, doubt: float) -> float:
     """Return the largest step of which all numbers, each known to within ``doubt``, differ by whole
     multiples, by Euclid's algorithm; 0 where there is none well above the doubt."""
-    levels = np.unique(numbers)
+    levels, doubt = np.unique(numbers), max(doubt, DIFFERENCED * float(np.max(np.abs(numbers))))
     left, step = (gaps := np.diff(levels)), 0.0
     while np.any(left > 2.0 * doubt):
         step = float(left[left > 2.0 * doubt].min())
