@@ -20,16 +20,9 @@ Hypotheses = Sequence[Hypothesis]
 OF_SAMPLES: Hypotheses = (turns, samples)
 """Faults of some samples, besides any fault of all samples."""
 OF_CHANNELS: Hypotheses = (
-    straight,
-    swapped,
-    misnamed,
-    *OF_SAMPLES,
-    other_world.turned_points,
-    late,
-    filtered,
-    forth_and_back,
-    rounded,
-)
+    straight, swapped, misnamed, *OF_SAMPLES, other_world.turned_points, late, filtered,
+    forth_and_back, rounded,
+)  # fmt: skip
 """Faults of some channels."""
 OF_LOGS: Hypotheses = (
     other_world.backwards,

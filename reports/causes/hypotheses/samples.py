@@ -191,6 +191,8 @@ def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
                 yield RoundingGrid(name, step, words + f" of {unit}" * (ratio != 1.0), width)
     for off in (0.0, 0.5 * written):
         common = common_step(np.append(numbers, numbers[0] * (channel.kind.order == 0)), off)
+        if common <= 1.5 * written and off and channel.kind.turns:  # too few digits for Euclid
+            common = _part_of_turn(numbers, math.tau / size, off)
         if common > 1.5 * written:
             yield _counts(excerpt, common, 1.0 + written / common)
             break
@@ -240,6 +242,15 @@ def common_step(numbers: Array, doubt: float) -> float:
         return 0.0
     step, zero = np.polyfit(counts, levels, 1).tolist()
     return step if np.all(np.abs(levels - zero - step * counts) <= 2.0 * doubt) else 0.0
+
+
+def _part_of_turn(numbers: Array, turn: float, doubt: float) -> float:
+    """Return the largest step, of so many bits a turn, on whose grid numbers lie; 0 for none."""
+    for step in turn * 0.5 ** np.arange(4.0, 24.0):
+        off = np.remainder(numbers - numbers[0] + 0.5 * step, step)
+        if step > COARSE * doubt and np.ptp(off) <= 2.1 * doubt:
+            return float(step)
+    return 0.0
 
 
 def _counts(excerpt: Excerpt, step: float, width: float) -> RoundingGrid:
