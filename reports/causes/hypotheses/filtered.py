@@ -189,7 +189,9 @@ def _fit(excerpt: Excerpt, order: int) -> tuple[float, int, float] | None:
     def left(cutoff: Array) -> Array:
         return _left_forth_and_back(excerpt, order, near(cutoff))[ends:-ends]
 
-    found = fitted(left, min(CUTOFFS, key=lambda each: float(np.sum(left(each) ** 2))), [1e-6])
+    found = fitted(
+        left, min(CUTOFFS, key=lambda each: float(np.sum(left(np.array(each)) ** 2))), [1e-6]
+    )
     return None if found is None else (float(np.sum(left(found) ** 2)), order, near(found))
 
 

@@ -280,7 +280,7 @@ def _on(numbers: Array, step: Array, lost: Array) -> bool:
 def _told(inquiry: Inquiry, excerpt: Excerpt, grid: RoundingGrid) -> Account | None:
     """Return the account of rounding to a grid, or truncation at it, for an error of that size."""
     half, sign = 0.5 * grid.step, np.sign(excerpt.values)
-    tried = [("rounded", 0.0), ("cut", half), ("cut", sign * half)]
+    tried: list[tuple[str, Array | float]] = [("rounded", 0.0), ("cut", half), ("cut", sign * half)]
     if grid.name == "quantised":  # from a zero within half a step of any
         middle = 0.5 * (np.max(excerpt.error) + np.min(excerpt.error)) * (grid.width < 2.0)
         tried = [("quantised", -np.clip(middle, -half, half))]
