@@ -350,6 +350,20 @@ def turned_axes(sheet: Sheet, rng: Generator) -> Planted:
     return _seen(sheet, cmath.rect(1.0, float(rng.choice(turns))))
 
 
+@planting("turned")
+def points_of_a_tilted_camera(sheet: Sheet, rng: Generator) -> Planted:
+    """Points in axes of their own, among them one that does not go round the origin."""
+    crank = sheet.scene.links[sheet.scene.driver.link].points
+    points = sheet.moving(lambda channel: channel.kind.body_kind == "point")
+    if len(points) < 2 or all(sheet.channels[column].of in crank for column in points):
+        return None
+    turn, frame = either(rng) * decades(rng, -2.3, -0.3), int(rng.integers(3))
+    shift = complex(*rng.uniform(0.02, 0.3, 2)) if frame else 0.0
+    seen = _seen(sheet, cmath.rect(1.0, turn), shift, mirrored=frame == 2)
+    found = sheet.columns(lambda channel: channel.kind.body_kind == "point")
+    return seen and (sheet.put({column: seen[0].values[column] for column in found}), found)
+
+
 @planting("moved", "offset")
 def another_origin(sheet: Sheet, rng: Generator) -> Planted:
     return _seen(sheet, 1.0, complex(*rng.uniform(0.02, 0.3, 2)))
@@ -450,6 +464,17 @@ def low_passed(sheet: Sheet, rng: Generator) -> Planted:
     return sheet.put({column: values}), [column]
 
 
+@planting("zero phase")
+def low_passed_forth_and_back(sheet: Sheet, rng: Generator) -> Planted:
+    from scipy.signal import butter, filtfilt  # type: ignore[import-untyped]  # ships no stubs
+
+    cutoff = 2.0 * sheet.step_s / sheet.scene.driver.law.period_s * decades(rng, 0.3, 1.0)
+    if cutoff > 0.8:
+        return None
+    filter_ = butter(int(rng.integers(1, 5)), cutoff)
+    return changed(sheet, one(rng, sheet.uneven()), lambda values: filtfilt(*filter_, values))
+
+
 @planting("mean", even=True)
 def mean_of_both_sides(sheet: Sheet, rng: Generator) -> Planted:
     half = int(rng.integers(3, max(4, sheet.time_s.size // 20)))
@@ -478,6 +503,51 @@ def few_decimals(sheet: Sheet, rng: Generator) -> Planted:
     decimals = math.floor(-math.log10(8.0 * sheet.limits[column] / size))
     written = np.round(numbers(sheet, column), decimals)
     return sheet.put({column: read(sheet, column, written)}), [column]
+
+
+@planting("quantised")
+def few_steps_a_turn(sheet: Sheet, rng: Generator) -> Planted:
+    """An angle by an encoder, or another place by a converter, of so many bits."""
+    column = one(rng, sheet.moving(places))
+    whole = math.tau if sheet.channels[column].kind.turns else np.ptp(sheet.values[column])
+    step = whole / 2.0 ** math.floor(math.log2(whole / (8.0 * sheet.limits[column])))
+    zero, to = float(rng.choice([0.0, rng.uniform(-1.0, 1.0)])), one(rng, (np.floor, np.round))
+    return changed(sheet, column, lambda values: zero + step * to((values - zero) / step))
+
+
+@planting("quantised", even=True)
+def rate_of_counts(sheet: Sheet, rng: Generator) -> Planted:
+    """A rate by differences of the counts of an encoder."""
+    column = one(rng, sheet.moving(lambda c: c.kind.body_kind == "link" and c.kind.order == 1))
+    step = 8.0 * sheet.limits[column] * sheet.step_s
+    step = math.tau / 2.0 ** math.floor(math.log2(math.tau / step))
+    angle = replace(sheet.channels[column], kind=KINDS["link", "angle"], wrapped=False)
+    instants = np.append(sheet.time_s, sheet.time_s[-1] + sheet.step_s) - 0.5 * sheet.step_s
+    counts = np.floor(angle.expected(truth(sheet, instants)) / step)
+    return changed(sheet, column, lambda _: np.diff(counts) * (step / sheet.step_s))
+
+
+@planting("float16")
+def half_precision(sheet: Sheet, rng: Generator) -> Planted:
+    halves = {
+        column: read(sheet, column, numbers(sheet, column).astype(np.float16).astype(float))
+        for column in sheet.moving(unwrapped)
+    }
+    off = {
+        c: np.max(np.abs(half - sheet.values[c])) / sheet.limits[c] for c, half in halves.items()
+    }
+    column = one(rng, [column for column, share in off.items() if share > 3.5])
+    return changed(sheet, column, lambda _: halves[column])
+
+
+@planting("lost rows", even=True)
+def rows_lost(sheet: Sheet, rng: Generator) -> Planted:
+    """Rows lost at up to three places, and the times of the others closed up."""
+    rows = sheet.time_s.size
+    lost = np.zeros(rows)
+    for place in rng.choice(np.arange(10, rows - 10, 30), int(rng.integers(1, 4)), replace=False):
+        lost[place:] += rng.integers(1, 20)
+    return sheet.of(truth(sheet, sheet.time_s + sheet.step_s * lost)), []
 
 
 @planting()

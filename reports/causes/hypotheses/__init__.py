@@ -6,8 +6,9 @@ from reports.causes.account import Account
 from reports.causes.hypotheses import other_world
 from reports.causes.hypotheses.clock import drift, stamps, time_unit
 from reports.causes.hypotheses.dimension import dimension
-from reports.causes.hypotheses.filtered import filtered, smoothed
+from reports.causes.hypotheses.filtered import filtered, forth_and_back, smoothed
 from reports.causes.hypotheses.late import late
+from reports.causes.hypotheses.lost_rows import lost_rows
 from reports.causes.hypotheses.misnamed import misnamed, swapped
 from reports.causes.hypotheses.samples import rounded, samples
 from reports.causes.hypotheses.straight import straight, turns
@@ -18,7 +19,10 @@ Hypothesis = Callable[[Inquiry], Iterator[Account | None]]
 Hypotheses = Sequence[Hypothesis]
 OF_SAMPLES: Hypotheses = (turns, samples)
 """Faults of some samples, besides any fault of all samples."""
-OF_CHANNELS: Hypotheses = (straight, swapped, misnamed, *OF_SAMPLES, late, filtered, rounded)
+OF_CHANNELS: Hypotheses = (
+    straight, swapped, misnamed, *OF_SAMPLES, other_world.turned_points, late, filtered,
+    forth_and_back, rounded,
+)  # fmt: skip
 """Faults of some channels."""
 OF_LOGS: Hypotheses = (
     other_world.backwards,
@@ -26,6 +30,7 @@ OF_LOGS: Hypotheses = (
     other_world.mirrored,
     time_unit,
     stamps,
+    lost_rows,
     other_world.moved,
     other_world.turned,
     other_world.sized,

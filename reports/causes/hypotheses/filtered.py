@@ -6,12 +6,13 @@ besides, a delay explains the readings too, and the residual shows which it is.
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.causes.account import CAUSE, NUMBER, Account, fitted, later
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, fitted, later
 from reports.causes.cause import CauseSize, Excerpt
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import duration
@@ -141,6 +142,67 @@ def _widths(rows: int) -> list[int]:
     widest = int(WIDEST * rows)
     wide = {int(each) | 1 for each in np.geomspace(NEAR, max(widest, NEAR), 60)}
     return [*range(2, min(NEAR, widest)), *(each for each in sorted(wide) if each <= widest)]
+
+
+ORDERS = (1, 2, 3, 4, 0)
+"""Orders of Butterworth's low-pass; 0 for the mean with weights that fade from row to row."""
+ENDS = 8
+"""Part of the rows at each end, as 1 over it, that may depend on how a filter began there."""
+CUTOFFS = np.geomspace(2e-3, 0.9, 24)[:, None]
+"""Cutoffs, over half the sampling rate, from which a fit starts."""
+MOST_FITS = 3
+"""Channels whose filter is tried on all channels."""
+
+
+def forth_and_back(inquiry: Inquiry) -> Iterator[Account | None]:
+    """Yield low-pass filters that ran forth and back, and so have no delay, each fitted to one
+    channel and tried on all."""
+    few = [column for column in inquiry.unexplained if inquiry.rows >= LEAST_ROWS]
+    parts = {column: inquiry.stretch(column).excerpts[column] for column in inquiry.open if few}
+    fits = (_fit(parts[column], order) for column in few for order in ORDERS)
+    for _, order, cutoff in sorted(filter(None, fits))[:MOST_FITS]:
+        kind = f"order {order}" if order else "one pole"
+        phrase = (
+            f"{{who}} {{is}} smoothed without delay, as by a low-pass of {kind} forth and back, "
+        )
+        phrase += f"cutoff {0.5 * cutoff / inquiry.step_s:.3g} Hz"
+        errors, there = {}, {}
+        for column, excerpt in parts.items():
+            left = _left_forth_and_back(excerpt, order, cutoff)
+            ends = 0 if excerpt.told_apart(left) else left.size // ENDS
+            kept = np.arange(ends, left.size - ends)
+            part = excerpt.part(kept)
+            passed = CauseSize.of_signal((excerpt.expected + excerpt.error - left)[kept]).rms
+            if part.told_apart(left[kept]) and passed > PASSED * part.size.rms:
+                there[column], errors[column] = part, left[kept]
+        middle = replace(inquiry, excerpts=there, open=tuple(there))
+        yield middle.account("zero phase", CAUSE + NUMBER + CHOICE, errors, phrase)
+
+
+def _fit(excerpt: Excerpt, order: int) -> tuple[float, int, float] | None:
+    """Return what a filter with the best cutoff leaves of the middle, its order and its cutoff."""
+    ends = excerpt.rows.size // ENDS
+
+    def near(cutoff: Array) -> float:
+        return float(np.clip(cutoff[0], CUTOFFS[0, 0], CUTOFFS[-1, 0]))
+
+    def left(cutoff: Array) -> Array:
+        return _left_forth_and_back(excerpt, order, near(cutoff))[ends:-ends]
+
+    found = fitted(
+        left, min(CUTOFFS, key=lambda each: float(np.sum(left(np.array(each)) ** 2))), [1e-6]
+    )
+    return None if found is None else (float(np.sum(left(found) ** 2)), order, near(found))
+
+
+def _left_forth_and_back(excerpt: Excerpt, order: int, cutoff: float) -> Array:
+    """Return the readings (n,) less the reference after a filter with that cutoff over half the
+    sampling rate, forth and back (Gustafsson, IEEE Trans. Signal Process. 44, 1996)."""
+    from scipy.signal import butter, filtfilt  # type: ignore[import-untyped]  # ships no stubs
+
+    fade = math.exp(-math.pi * cutoff)
+    low_pass_ = butter(order, cutoff) if order else ([1.0 - fade], [1.0, -fade])
+    return np.asarray(excerpt.expected + excerpt.error - filtfilt(*low_pass_, excerpt.expected))
 
 
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(7)

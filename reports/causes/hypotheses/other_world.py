@@ -1,5 +1,6 @@
 """A log of another assembly or driver, or with another frame of the whole plane."""
 
+import cmath
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +14,16 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed, Law
-from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted_from, number
+from reports.causes.account import (
+    CAUSE,
+    CHOICE,
+    NUMBER,
+    Account,
+    change,
+    fitted_from,
+    later,
+    number,
+)
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
@@ -202,6 +212,67 @@ def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | N
     return None if best is None else frame(best)
 
 
+def turned_points(inquiry: Inquiry) -> Iterator[Account]:
+    """Yield accounts of axes of the points that are rotated while those of angles are not; these
+    may be moved, seen from behind, and of another size as well, as of a camera beside encoders."""
+    columns, kinds = _of(inquiry, "point"), {c: inquiry.channel(c).kind for c in inquiry.excerpts}
+    every = [column for column, kind in kinds.items() if kind.body_kind == "point"]
+    if len(columns) < 2 or all(kind.body_kind != "link" for kind in kinds.values()):
+        return
+    for count, mirrored in itertools.product((1, 3, 4), (False, True)):
+        frame = _frame_of_points(inquiry, columns, count, mirrored=mirrored)
+        expected = inquiry.expected(inquiry.world.framed(frame), every)
+        errors = {c: inquiry.excerpts[c].beside(each) for c, each in expected.items()}
+        angle = number(math.degrees(frame.turn_rad * (1.0 if mirrored else -1.0)))
+        phrase = (
+            f"the x-axis of the points lies at {angle} deg of the scene, not that of the angles"
+        )
+        phrase += ", their y-axis to the other side" * mirrored
+        phrase += f", and {_origin_text(frame)}" * (count > 1)
+        phrase += f", and lengths are {number(frame.size, 6)} times the scene's" * (count > 3)
+        cost = CAUSE + NUMBER * count + CHOICE * mirrored
+        told = inquiry.account("turned", cost, errors, phrase, expected=expected)
+        if told is None or len(told.columns) < 2 or inquiry.spoilt(errors):
+            continue
+        if count == 1 or all(inquiry.excerpts[c].told_apart(errors[c]) for c in told.columns):
+            yield told if count > 1 or mirrored else _or_late(inquiry, told, frame.turn_rad)
+
+
+def _frame_of_points(
+    inquiry: Inquiry, columns: Sequence[str], count: int, *, mirrored: bool
+) -> LogFrame:
+    """Return the frame of least squares: rotated, from 3 numbers on moved, with 4 of any size.
+    Raises CrankcheckError where there is no mechanism."""
+    rows, readings, sign = [], [], -1.0 if mirrored else 1.0
+    for column in columns:
+        excerpt = inquiry.thin.excerpts[column]
+        kind, rms = excerpt.channel.kind, excerpt.size.rms
+        motion = inquiry.world.at(excerpt.instants, [excerpt.channel])
+        x, y = getattr(motion.points[excerpt.channel.of], kind.field).T
+        shift = np.full((2, x.size), 0.0)
+        shift[kind.axis] = float(kind.order == 0 and count > 1)
+        rows.append(np.stack([*((sign * y, x) if kind.axis else (x, -sign * y)), *shift]) / rms)
+        readings.append((excerpt.expected + excerpt.error) / rms)
+    cos, sin, *moved = np.linalg.lstsq(np.hstack(rows).T, np.concatenate(readings))[0].tolist()
+    size = math.hypot(cos, sin) if count > 3 else 1.0
+    return LogFrame(mirrored, math.atan2(sin, cos), (moved[0], moved[1]), size, of_points=True)
+
+
+def _or_late(inquiry: Inquiry, told: Account, turn_rad: float) -> Account:
+    """Return the account of rotated points, with the delay that is the same where all of them go
+    round the origin evenly: the crank's pin."""
+    law = inquiry.world.scene.driver.law
+    if inquiry.world.drive is not None or not isinstance(law, ConstantSpeed):
+        return told
+    by_s = turn_rad / law.speed_rad_s
+    late = inquiry.errors(inquiry.world.stamped(lambda stamps: stamps + by_s), told.columns)
+    if not all(inquiry.excerpts[column].explained(error) for column, error in late.items()):
+        return told
+    delays = {c: {"delay_s": inquiry.channel(c).delay_s + by_s} for c in told.columns}
+    words = f"{told.phrase}, or {{who}} {{belongs}} {later(by_s, inquiry.step_s)}"
+    return replace(told, phrase=words, corrections=delays)
+
+
 def moved(inquiry: Inquiry) -> Iterator[Account]:
     """Yield accounts of an origin of the log at another point than the scene's."""
     shifts = [_shift(inquiry, axis) for axis in (0, 1)]
@@ -228,9 +299,9 @@ def _shift(inquiry: Inquiry, axis: int) -> float:
 
 
 def _origin_text(frame: LogFrame) -> str:
-    cos, sin = math.cos(frame.turn_rad), math.sin(frame.turn_rad)
-    x, y = frame.shift_m
-    place = ", ".join(number(each) for each in (-x * cos - y * sin, x * sin - y * cos))
+    origin = -complex(*frame.shift_m) * cmath.rect(1.0 / frame.size, -frame.turn_rad)
+    y = -origin.imag if frame.mirrored else origin.imag
+    place = ", ".join(map(number, (origin.real, y)))
     return f"the origin of the log lies at ({place}) m of the scene"
 
 

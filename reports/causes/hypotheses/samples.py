@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -137,11 +138,12 @@ EVEN_RMS = 12.0**-0.5
 
 @dataclass(frozen=True)
 class RoundingGrid:
-    """Grid of rounded readings: steps (n,) [SI], and its words."""
+    """Grid of rounded readings: steps (n,) [SI], its words, and the width of errors in steps."""
 
     name: str
     step: Array
     words: str
+    width: float = 1.0
 
 
 def rounded(inquiry: Inquiry) -> Iterator[Account | None]:
@@ -164,11 +166,12 @@ def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
     numbers = channel.sign * excerpt.values / size - channel.offset
     if not np.all(np.isfinite(numbers)) or np.ptp(numbers) == 0.0:
         return
-    lost = DOUBLE * (np.abs(numbers) + abs(channel.offset))
+    lost, written = DOUBLE * (np.abs(numbers) + abs(channel.offset)), 0.0
     for decimals in DECIMALS:
         step = np.full(numbers.shape, 10.0**-decimals)
         if _on(numbers, step, lost):
             words = f"{decimals} decimals" if decimals > 0 else f"{10**-decimals:.0f}"
+            written = 10.0**-decimals
             yield RoundingGrid("rounded", step * size, f"{words} ({channel.unit})")
             break
     exponent = np.floor(np.log10(np.maximum(np.abs(numbers), 1e-300)))
@@ -179,9 +182,92 @@ def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
                 "rounded", step * size, f"{digits} significant digits ({channel.unit})"
             )
             break
-    step = np.spacing(np.abs(numbers).astype(np.float32)).astype(float)
-    if np.all(np.abs(numbers - numbers.astype(np.float32)) <= lost):
-        yield RoundingGrid("float32", step * size, "single precision (float32)")
+    for name, kind, words in BINARY:
+        for unit, other in UNITS[channel.kind.dimension].items() if not channel.offset else ():
+            ratio = size / other  # not 1 where the readings were converted since
+            width = _binary(numbers * ratio, kind, 4.0 * lost * ratio, written * ratio)
+            if width:
+                step = np.spacing(np.abs(numbers * ratio).astype(kind)).astype(float) * other
+                yield RoundingGrid(name, step, words + f" of {unit}" * (ratio != 1.0), width)
+    for off in (0.0, 0.5 * written):
+        common = common_step(np.append(numbers, numbers[0] * (channel.kind.order == 0)), off)
+        if common <= 1.5 * written and off and channel.kind.turns:  # too few digits for Euclid
+            common = _part_of_turn(numbers, math.tau / size, off)
+        if common > 1.5 * written:
+            yield _counts(excerpt, common, 1.0 + written / common)
+            break
+
+
+BINARY = (
+    ("float16", np.float16, "half precision (float16)"),
+    ("float32", np.float32, "single precision (float32)"),
+)
+COARSE, LEVELS = 8.0, 3
+"""Least ratio of a step to the doubt of the numbers; and the fewest levels that show a step."""
+DIFFERENCED = 1e-9
+"""Part of the largest number that differences of counts may have lost."""
+SURE = 1e-3
+"""Part of an error that counts as left by a common step: repeated readings may look held."""
+WHOLE, MOST_STEPS = 0.02, 1e6
+"""Largest distance of a number of steps a turn from a whole number, and the most that are told."""
+
+
+def _binary(numbers: Array, kind: type[np.floating[Any]], lost: Array, written: float) -> float:
+    """Return the width of errors, in steps, of numbers of few binary digits, known but for the last
+    decimal ``written`` if any: 1; of the shortest decimals that say such numbers: 2; of others: 0.
+    """
+    near = numbers.astype(kind)
+    coarse = np.spacing(np.abs(near)).astype(float) > COARSE * written
+    if np.mean(coarse) > 0.5 and np.all((abs(numbers - near) <= lost + 0.5 * written)[coarse]):
+        return 1.0
+    for few in (8, None):  # texts take their time
+        if np.any(np.abs(numbers[:few] - near[:few].astype(str).astype(float)) > lost[:few]):
+            return 0.0
+    return 2.0
+
+
+def common_step(numbers: Array, doubt: float) -> float:
+    """Return the largest step of which all numbers, each known to within ``doubt``, differ by whole
+    multiples, by Euclid's algorithm; 0 where there is none well above the doubt."""
+    levels, doubt = np.unique(numbers), max(doubt, DIFFERENCED * float(np.max(np.abs(numbers))))
+    left, step = (gaps := np.diff(levels)), 0.0
+    while np.any(left > 2.0 * doubt):
+        step = float(left[left > 2.0 * doubt].min())
+        if step <= COARSE * doubt:
+            return 0.0
+        left = np.abs(gaps - np.round(gaps / step) * step)
+        left = left[left > 2.0 * doubt * (1.0 + np.round(gaps / step))]
+    counts = np.concatenate([[0.0], np.cumsum(np.round(gaps / (step or np.inf)))])
+    if np.unique(counts).size < LEVELS:
+        return 0.0
+    step, zero = np.polyfit(counts, levels, 1).tolist()
+    return step if np.all(np.abs(levels - zero - step * counts) <= 2.0 * doubt) else 0.0
+
+
+def _part_of_turn(numbers: Array, turn: float, doubt: float) -> float:
+    """Return the largest step, of so many bits a turn, on whose grid numbers lie; 0 for none."""
+    for step in turn * 0.5 ** np.arange(4.0, 24.0):
+        off = np.remainder(numbers - numbers[0] + 0.5 * step, step)
+        if step > COARSE * doubt and np.ptp(off) <= 2.1 * doubt:
+            return float(step)
+    return 0.0
+
+
+def _counts(excerpt: Excerpt, step: float, width: float) -> RoundingGrid:
+    """Return the grid of the counts of an encoder or converter; of angular velocities that are
+    differences of an encoder's counts, two of which each are off by a step."""
+    channel = excerpt.channel
+    size = UNITS[channel.kind.dimension][channel.unit]
+    words = f"steps of {step:.4g} {channel.unit}"
+    spans = {"angle": 1.0, "angular velocity": float(np.median(np.diff(excerpt.reading.instants)))}
+    turn = math.tau / (step * size * spans.get(channel.kind.dimension, math.inf))
+    count = round(turn)
+    if 1 < count < MOST_STEPS and abs(turn - count) < WHOLE:
+        bits = f" ({count.bit_length() - 1} bits)" if count & (count - 1) == 0 else ""
+        words += f", {count} a turn{bits}"
+        words += " counted over one interval or half as many over two" * channel.kind.order
+        width += channel.kind.order
+    return RoundingGrid("quantised", np.full(excerpt.values.shape, step * size), words, width)
 
 
 def _on(numbers: Array, step: Array, lost: Array) -> bool:
@@ -193,17 +279,20 @@ def _on(numbers: Array, step: Array, lost: Array) -> bool:
 
 def _told(inquiry: Inquiry, excerpt: Excerpt, grid: RoundingGrid) -> Account | None:
     """Return the account of rounding to a grid, or truncation at it, for an error of that size."""
-    sign = np.sign(excerpt.values)
-    for verb, error in (
-        ("rounded", excerpt.error),
-        ("cut", excerpt.error + 0.5 * grid.step),
-        ("cut", excerpt.error + 0.5 * sign * grid.step),
-    ):
-        rms = float(np.sqrt(np.mean((error / grid.step) ** 2)))
-        likely = 0.5 * EVEN_RMS < rms < 1.2 * EVEN_RMS or _predicted(excerpt, grid)
-        if likely and np.all(np.abs(error) <= HALF * grid.step + excerpt.limit):
+    half, sign = 0.5 * grid.step, np.sign(excerpt.values)
+    tried: list[tuple[str, Array | float]] = [("rounded", 0.0), ("cut", half), ("cut", sign * half)]
+    if grid.name == "quantised":  # from a zero within half a step of any
+        middle = 0.5 * (np.max(excerpt.error) + np.min(excerpt.error)) * (grid.width < 2.0)
+        tried = [("quantised", -np.clip(middle, -half, half))]
+    for verb, zero in tried:
+        error = excerpt.error + zero
+        off = np.abs(error) > HALF * grid.width * grid.step + excerpt.limit
+        rms = float(np.sqrt(np.sum((error / grid.step)[~off] ** 2) / error.size / grid.width))
+        likely = 0.5 * EVEN_RMS < rms < 1.25 * EVEN_RMS or _predicted(excerpt, grid)
+        if likely and np.sum(off) <= 2.0 * (grid.width >= 2.0):  # differences are others at ends
             phrase = f"{{who}} {{is}} {verb} to {grid.words}"
-            errors = {excerpt.channel.column: BOUNDED * excerpt.error}
+            share = SURE if grid.name == "quantised" else BOUNDED
+            errors = {excerpt.channel.column: share * excerpt.error}
             return inquiry.account(grid.name, CAUSE, errors, phrase)
     return None
 

@@ -123,11 +123,24 @@ SPEED = of(omega("crank", "rpm"), angle("rocker"))
 CRANK = SPEED.values["crank_w"]
 PIN = later(of(point("B", "x"), omega("crank"), omega("rocker")), -2.5, "B_x")
 END = 1e-13 * (np.arange(PIN.time_s.size) < 2)
+SHORTEST = ANGLE.astype(np.float16).astype(str).astype(float)
+STEP = math.tau / 2**12
 TOLD: Mapping[str, tuple[Sheet, str, tuple[str, ...]]] = {
     "a gain, where a bend is none": (with_angle(HIGHER), "scaled", (COLUMN,)),
     "a gain, where noise is none": (with_angle(ANGLE * 1.01, FOUR), "scaled", (COLUMN,)),
     "a delay that no digit has made": (DELAYED, "delay", (COLUMN,)),
     "half a turn, which is not folded": (with_angle(ANGLE + math.pi), "offset", (COLUMN,)),
+    "points of the crank that are turned, or late": (
+        later(of(point("B", "x"), point("B", "y"), angle("rocker")), 0.5, "B_x", "B_y"), "turned",
+        ("B_x", "B_y"),
+    ),
+    "twelve bits, of which four decimals were written": (
+        replace(with_angle(np.round(STEP * np.floor(ANGLE / STEP), 4)), limits={COLUMN: 1e-5}),
+        "quantised", (COLUMN,),
+    ),
+    "half precision, in the shortest decimals that say it": (
+        replace(with_angle(SHORTEST), limits={COLUMN: 1e-4}), "float16", (COLUMN,)
+    ),
     "shaken times, whose line is not quite that of the samples": (
         replace(SHORT, time_s=SHAKEN, limits=dict.fromkeys(SHORT.limits, 1e-6)), "time stamps",
         ("rocker_a", "rocker_w"),
