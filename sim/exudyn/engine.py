@@ -137,7 +137,8 @@ class ExudynSession:
     def _initialized(self) -> Any:
         """Make the solver. Raises EngineError for a load that has no size at the start."""
         try:
-            return initialized(self._system, self._asked, self._settings)
+            inertia_n = system.inertia_rounding_n(self._scene)
+            return initialized(self._system, self._asked, self._settings, inertia_n)
         except ValueError:  # as exudyn has it
             if self._applied.fault:
                 raise EngineError(self._applied.fault) from None

@@ -238,6 +238,13 @@ def rounding_n(scene: Scene, state: State) -> float:
     )
 
 
+def inertia_rounding_n(scene: Scene) -> float:
+    """Return the rounding of the inertia of the heaviest body [N, N m]: m L w^2 and m L^2 w^2."""
+    heaviest = max((pairs.mass_of(scene, body)[0] for body in pairs.bodies(scene)), default=0.0)
+    push = heaviest * scene.longest_m * scene.pace_rad_s**2
+    return EPSILON * push * max(1.0, scene.longest_m)
+
+
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     """Build the system of ``scene`` at ``state``, without a drive.
 
