@@ -129,15 +129,15 @@ class ExudynSession:
                 of_rates=follows_rates(scene, drive),
                 rounding_n=system.rounding_n(scene, state),
             )
-            self._solver = self._initialized()
+            self._solver = self._initialized(system.inertia_rounding_n(scene, state))
             course = self._crank.course
             first = None if course is None else self._set_off(course)
             self._multipliers = Multipliers(self._system, first)
 
-    def _initialized(self) -> Any:
+    def _initialized(self, inertia_n: float) -> Any:
         """Make the solver. Raises EngineError for a load that has no size at the start."""
         try:
-            return initialized(self._system, self._asked, self._settings)
+            return initialized(self._system, self._asked, self._settings, inertia_n)
         except ValueError:  # as exudyn has it
             if self._applied.fault:
                 raise EngineError(self._applied.fault) from None

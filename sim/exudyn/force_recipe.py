@@ -200,6 +200,8 @@ def _settings(settings: Settings) -> list[str]:
     return [
         *lines,
         *(f"stepping.newton.{own} = {settings[name]!r}" for name, own in NEWTON.items()),
+        # Joints and drive determine all coordinates of these scenes.
+        f"stepping.newton.residualMode = {int(settings['residual'] != 'forces')}",
         f"stepping.newton.useModifiedNewton = {jacobian != 'each-iteration'}",
         f"stepping.newton.modifiedNewtonJacUpdatePerStep = {jacobian == 'each-step'}",
         f"simulationSettings.linearSolver.solverType = exu.LinearSolverType.{solver}",

@@ -7,10 +7,14 @@ INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
 """Implicit integrators; explicit ones take no joints."""
 JACOBIANS = ("as-needed", "each-step", "each-iteration")
 """Updates of the matrix of Newton's method: where it converges slowly, at each step, or always."""
+RESIDUALS = ("forces", "increments")
+"""Residuals of Newton's method: forces and gaps, in N and m alike, or changes of the coordinates
+in an iteration."""
 LINEAR_SOLVERS = ("EXUdense", "EigenDense", "EigenSparse")
 BY_NEED = "by-need"
-"""A choice of crankcheck: EXUdense, or EigenDense where joints are redundant at the start, or
-EigenSparse for more than `MOST_DENSE` coordinates and constraints."""
+"""Choices of crankcheck: EXUdense, or EigenDense where joints are redundant at the start, or
+EigenSparse for more than `MOST_DENSE` coordinates and constraints; and increments where joints and
+drive determine all coordinates at the start, or forces."""
 MOST_DENSE = 60
 NEWTON = {
     "relative_tolerance": "relativeTolerance",
@@ -24,6 +28,7 @@ CHOICES = {
     "integrator": INTEGRATORS,
     "jacobian": JACOBIANS,
     "adaptive_step": SWITCH,
+    "residual": (*RESIDUALS, BY_NEED),
     "linear_solver": (*LINEAR_SOLVERS, BY_NEED),
     "ignore_singular": SWITCH,
 }
@@ -52,6 +57,7 @@ AS_SHIPPED = Profile(
         "free_spectral_radius": Setting(
             0.9, "of the drive `free`, in place of the other: default, as of the other"
         ),
+        "residual": Setting("forces", "default: residualMode 0, forces and gaps alike"),
         "relative_tolerance": Setting(1e-8, "default: of Newton's method, over the first residual"),
         "absolute_tolerance": Setting(1e-10, "default: of the residual"),
         "beam_rounding": Setting(
@@ -90,6 +96,15 @@ TUNED = Profile(
             "and what is damped is the motion itself: in 10 s of fourbar-swing, steps of 1 ms, "
             "0.4 loses 20 times the energy that 0.9 loses, and is off by 1.8 times as much over "
             "what its start can tell; 1 diverges",
+        ),
+        "residual": Setting(
+            BY_NEED,
+            "increments of the coordinates where joints and drive determine them all: they mean "
+            "the same for all masses, speeds and loads. Forces and gaps end the iterations too "
+            "soon in light and slow mechanisms, whose forces are below the tolerance, or beside a "
+            "heavy load, and never in heavy and fast ones, whose forces are rounded by more than "
+            "it. Where inertia determines some coordinates increments would leave their "
+            "accelerations open: forces, with a tolerance above the rounding of inertia",
         ),
         "beam_rounding": Setting(
             16.0,

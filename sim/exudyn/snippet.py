@@ -83,6 +83,8 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
         lines.append(f"#   stepping.newton.maxIterations = {int(complete['iterations'])}")
     if complete["adaptive_step"] == "disable":
         lines.append("#   stepping.adaptiveStep = False")
+    if complete["residual"] == "increments":
+        lines.append("#   stepping.newton.residualMode = 1")
     linear = "simulationSettings.linearSolver"
     by_need = complete["linear_solver"] == BY_NEED
     if complete["linear_solver"] != defaults["linear_solver"] and not by_need:
@@ -98,10 +100,16 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
         "ignoreSingularJacobian = True; elsewhere a singular matrix is a fault to be told of. "
         f"Of more than {MOST_DENSE} coordinates and constraints EigenSparse is faster."
     )
+    determined = (
+        "Where joints and drive determine all coordinates: stepping.newton.residualMode = 1, which "
+        "counts what changes in these; forces are too small for the tolerance in light and slow "
+        "systems, and rounded by more than it in heavy and fast ones."
+    )
     return [
         *(comment(ALONE.format("system")) if lines else []),
         *lines,
         *(comment(redundant) if by_need else []),
+        *(comment(determined) if complete["residual"] == BY_NEED else []),
     ]
 
 

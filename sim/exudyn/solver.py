@@ -8,7 +8,7 @@ import numpy as np
 
 from models.array import Array
 from sim.engine import Settings, SettingValue
-from sim.exudyn.settings import BY_NEED, MOST_DENSE, NEWTON
+from sim.exudyn.settings import BY_NEED, MOST_DENSE, NEWTON, RESIDUALS
 from sim.exudyn.system import Index, exu, quiet
 
 FREE = 1e-9
@@ -42,6 +42,7 @@ def simulation(
     least = float(settings["beam_rounding"]) * rounding_n
     newton.absoluteTolerance = max(float(settings["absolute_tolerance"]), least)
     newton.maxIterations = int(settings["iterations"])
+    newton.residualMode = int(settings["residual"] == "increments")
     newton.useModifiedNewton = settings["jacobian"] != "each-iteration"
     newton.modifiedNewtonJacUpdatePerStep = settings["jacobian"] == "each-step"
     linear = str(settings["linear_solver"])
@@ -51,14 +52,29 @@ def simulation(
     return asked
 
 
-def initialized(system: Any, asked: Any, settings: Settings) -> Any:
-    """Make a solver of the system, at its start, with the linear solver that it needs if that is
-    ``by-need``."""
+ROUNDINGS = 4096.0
+"""Least absolute tolerance of forces, over the rounding of inertia: the residual keeps 8 roundings
+of the largest reaction, which was up to 20 times the inertia of random mechanisms."""
+
+
+def initialized(system: Any, asked: Any, settings: Settings, inertia_n: float = 0.0) -> Any:
+    """Make a solver of the system, at its start, with the linear solver and the residual that it
+    needs if these are ``by-need``. A residual of forces stays above the rounding ``inertia_n`` of
+    inertia: one below it is never reached."""
     solver = exu.MainSolverImplicitSecondOrder()
-    if settings["linear_solver"] == BY_NEED:
+    if BY_NEED in (settings["linear_solver"], settings["residual"]):
         with quiet([]):  # it warns of the redundancy that is looked for here
             solver.InitializeSolver(system, asked)
-        asked.linearSolver.solverType = _needed(solver, constraints(solver, system))
+        if settings["linear_solver"] == BY_NEED:
+            asked.linearSolver.solverType = _needed(solver, constraints(solver, system))
+        if settings["residual"] == BY_NEED:
+            newton, size = asked.timeIntegration.newton, solver.GetODE2size()
+            enough = solver.GetAEsize() >= size
+            if enough and _rank(constraints(solver, system, of_rates=1.0)) == size:
+                newton.residualMode = 1
+            else:
+                least = ROUNDINGS * inertia_n
+                newton.absoluteTolerance = max(newton.absoluteTolerance, least)
     solver.InitializeSolver(system, asked)
     return solver
 
@@ -67,20 +83,25 @@ def _needed(solver: Any, held_by: Array) -> Any:
     """Choose the linear solver by the system's size and by redundancy of its constraints."""
     if solver.GetODE2size() + solver.GetAEsize() > MOST_DENSE:
         return exu.LinearSolverType.EigenSparse
-    real = held_by[np.any(held_by != 0.0, axis=1)]  # a point on a line has an empty one
-    scale = np.abs(real).max(axis=1, keepdims=True)
-    if np.linalg.matrix_rank(real / scale, tol=1e-9) < len(real):
+    if _rank(held_by) < np.count_nonzero(np.any(held_by != 0.0, axis=1)):
         return exu.LinearSolverType.EigenDense
     return exu.LinearSolverType.EXUdense
 
 
-def constraints(solver: Any, system: Any) -> Array:
-    """Return the present derivatives of the constraints with respect to the coordinates, a row
-    each; afterwards the solver has to be initialized again."""
+def _rank(held_by: Array) -> int:
+    """Return the rank of constraints; a point on a line has an empty one."""
+    real = held_by[np.any(held_by != 0.0, axis=1)]
+    return int(np.linalg.matrix_rank(real / np.abs(real).max(axis=1, keepdims=True), tol=1e-9))
+
+
+def constraints(solver: Any, system: Any, of_rates: float = 0.0) -> Array:
+    """Return the present derivatives of the constraints with respect to the coordinates, and those
+    with respect to their rates times ``of_rates`` (a constant speed has no others), a row each;
+    afterwards the solver has to be initialized again."""
     count = solver.GetODE2size()
     size = count + solver.GetAEsize()
     solver.SetSystemJacobian(np.zeros((size, size)))
-    solver.ComputeJacobianAE(system)
+    solver.ComputeJacobianAE(system, 1.0, of_rates)
     return np.array(solver.GetSystemJacobian())[count:, :count]
 
 
@@ -117,8 +138,9 @@ def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
 def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]:
     """Return the settings by crankcheck's names, as the solver and its input hold them.
 
-    The chosen ``linear_solver`` is ``linear_solver_used``; ``loads_jacobian_used`` is there where
-    loads depend on speeds, ``absolute_tolerance_used`` where beams set it.
+    The chosen ``residual`` is ``residual_used``, and so for ``linear_solver``;
+    ``loads_jacobian_used`` is there where loads depend on speeds, ``absolute_tolerance_used`` where
+    rounding sets it.
     """
     newton, linear = solver.newton, asked.linearSolver
     trapezoidal = asked.timeIntegration.generalizedAlpha.useIndex2Constraints
@@ -130,10 +152,12 @@ def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]
         **{name: getattr(newton, own) for name, own in NEWTON.items()},
         "jacobian": per_step if newton.useModifiedNewton else "each-iteration",
         "adaptive_step": "enable" if solver.it.adaptiveStep else "disable",
+        "residual_used": RESIDUALS[newton.residualMode],
         "linear_solver_used": str(linear.solverType.name),
         "ignore_singular": "enable" if linear.ignoreSingularJacobian else "disable",
     }
-    if settings["beam_rounding"] and newton.absoluteTolerance > settings["absolute_tolerance"]:
+    rounded = settings["beam_rounding"] or settings["residual"] == BY_NEED
+    if rounded and newton.absoluteTolerance > settings["absolute_tolerance"]:
         told["absolute_tolerance_used"] = told.pop("absolute_tolerance")
     if asked.timeIntegration.computeLoadsJacobian:
         told["loads_jacobian_used"] = "enable"

@@ -238,6 +238,16 @@ def rounding_n(scene: Scene, state: State) -> float:
     )
 
 
+def inertia_rounding_n(scene: Scene, state: State) -> float:
+    """Return the rounding of the inertia of the heaviest body [N, N m]: m L w^2 and m L^2 w^2, at
+    the largest rate of the start."""
+    heaviest = max((pairs.mass_of(scene, body)[0] for body in pairs.bodies(scene)), default=0.0)
+    size = scene.longest_m
+    paces = [math.hypot(*velocity) / size for velocity in state.velocity.values()]
+    pace = max([*paces, *map(abs, state.omega.values())])
+    return EPSILON * heaviest * pace**2 * max(size, size**2)
+
+
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     """Build the system of ``scene`` at ``state``, without a drive.
 

@@ -80,17 +80,22 @@ TRACED = "traced"
 @dataclass(frozen=True)
 class Range:
     """What may be drawn: sines from ``margin``, densities 1 : ``density``, points on arms of up to
-    ``arm`` lengths of their link (0: no such points), and what pymunk's iterations leave."""
+    ``arm`` lengths of their link (0: no such points), what pymunk's iterations leave (infinite: not
+    looked at), and powers of ten of speed [rad/s] and scale."""
 
     margin: float = MARGIN
     density: float = DENSITY
     arm: float = 0.0
     least_left: float = 0.0
     most_left: float = LEFT
+    speed: tuple[float, float] = (-1.0, 3.0)
+    scale: tuple[float, float] = (-2.0, 2.0)
 
 
 TUNED_RANGE = Range()
 HARD = Range(margin=0.15, density=1000.0, arm=10.0, most_left=1.0)
+WIDE = Range(density=1000.0, most_left=math.inf, speed=(-0.52, 2.85), scale=(-2.6, 0.4))
+"""For exudyn: lengths of 5 mm to 5 m, 0.3 to 700 rad/s, masses from a gram to tons."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +125,7 @@ def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven
     is."""
     chance = random.Random(f"{seed}: {'; '.join(forms)}")
     name = f"random-{chance.getrandbits(64):x}"
-    speed = chance.choice((1, -1)) * 10 ** chance.uniform(-1.0, 3.0)
+    speed = chance.choice((1, -1)) * 10 ** chance.uniform(*within.speed)
     stuck = 0
     for _ in range(MOST_TRIES):
         designed = _laid_out(chance, forms, speed)
@@ -131,14 +136,14 @@ def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven
             stuck += 1
             continue
         scene = _weighed(chance, _with_arms(chance, designed.scene, within.arm), within.density)
-        left = contraction(scene) ** ITERATIONS
+        left = contraction(scene) ** ITERATIONS if math.isfinite(within.most_left) else 0.0
         fewest = _fewest_steps(scene)
         if within.least_left <= left <= within.most_left and fewest <= MOST_STEPS:
             break
     else:
         raise LookupError(f"{forms}: none of {MOST_TRIES} layouts is within the range")
     shift = (chance.uniform(-3.0, 3.0), chance.uniform(-3.0, 3.0))
-    scene = scaled(moved(scene, shift), 10 ** chance.uniform(-2.0, 2.0))
+    scene = scaled(moved(scene, shift), 10 ** chance.uniform(*within.scale))
     text = scene_text(replace(scene, name=name))
     steps = round(fewest * (MOST_STEPS / fewest) ** chance.random())
     return Driven(parse_scene(text, name), text, designed.forms, steps, turns_round, left)

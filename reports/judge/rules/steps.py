@@ -86,8 +86,8 @@ class ErrorSmooth:
         "two samples is rounding or noise in the log, whatever is below it."
     )
     cure = (
-        "Log every digit; look for what is added to the numbers, and for joints that the solver "
-        "does not come to an end with."
+        "Log every digit; look for what is added to the numbers, and for joints whose solver stops "
+        "too soon (exudyn as shipped does where lengths and forces are small: take profile tuned)."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

@@ -15,12 +15,14 @@ from models.scene import Scene
 from models.scene.characteristics import Constant
 from models.scene.driver import let_go
 from models.scene.loads import ConstantFriction, Load
+from models.scene.moved import scaled
 from reports.compare import free_facts
 from reports.compare.errors import DRIVEN, Errors
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.judge.rules import FORCES
 from reports.judge.rules.reference import too_good
+from reports.judge.three_steps import AT_ROUNDING
 from reports.judge.tolerance import default, in_passage
 from reports.quantities.limits import DEFAULTS, FREE
 from reports.quantities.places import WITHIN_A_STEP
@@ -100,6 +102,46 @@ def test_of_where_a_slider_is_no_more_is_felt_than_its_limit() -> None:
         found = default(tolerance, replace(errors, rows=rows))
         assert found == pytest.approx(min(plain + slope * most, tolerance.cap), rel=1e-3)
         assert found > default(tolerance, errors)
+
+
+@pytest.mark.parametrize(
+    ("size_m", "times", "crank", "speed", "steps_per_turn", "changes"),
+    [
+        pytest.param(0.05, 1.0, 1.0, 0.5, 360, {}, id="small and slow"),
+        pytest.param(0.01, 0.1, 1.0, 1.0, 240, {}, id="light"),
+        pytest.param(0.25, 1e-2, 1e3, 0.3, 360, {"gravity_m_s2": (0.0, -9.81)}, id="heavy crank"),
+        pytest.param(5.0, 1e3, 1.0, 300.0, 2880, {}, id="long, heavy and fast"),
+        pytest.param(3.0, 1e2, 1.0, 300.0, 1440, {"drive": "free"}, id="fast, let go"),
+    ],
+)
+def test_newtons_method_ends_by_one_measure_for_all_sizes_masses_and_speeds(
+    size_m: float,
+    times: float,
+    crank: float,
+    speed: float,
+    steps_per_turn: int,
+    changes: dict[str, Any],
+) -> None:
+    """Forces and gaps below 1e-10 N and m end it too soon where forces are small, and never where
+    they are rounded by more than that."""
+    plain = load_scene(FOURBAR)
+    scene = scaled(plain, size_m / plain.longest_m)
+    links = {
+        name: replace(link, mass_kg=link.mass_kg * by, inertia_kg_m2=link.inertia_kg_m2 * by)
+        for name, link in scene.links.items()
+        for by in [times * (crank if name == "crank" else 1.0)]
+    }
+    law = replace(scene.driver.law, speed_rad_s=speed)
+    scene = replace(scene, links=links, driver=replace(scene.driver, law=law))
+    drive = changes.pop("drive", "prescribed")
+    scene = let_go(replace(scene, **changes)) if drive == "free" else replace(scene, **changes)
+    asked = Cell(scene, "exudyn", "tuned", math.tau / speed / steps_per_turn, 240, drive=drive)
+    found = check(asked)
+    assert (found.verdict, found.convergence.faults) == ("within", ()), found.failures
+    if drive == "prescribed":
+        assert max(found.convergence.error) < AT_ROUNDING
+    used = "increments" if drive == "prescribed" else "forces"
+    assert found.settings["residual_used"] == used
 
 
 @pytest.mark.parametrize(

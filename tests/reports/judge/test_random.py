@@ -10,6 +10,7 @@ no tolerance grants."""
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import product
@@ -25,13 +26,24 @@ from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import PLACES, RATES
 from reports.verify.advised import HELPS, advised
 from sim.engine import SettingValue
-from tests.worlds.driven import HARD, ITERATIONS, LEFT, TUNED_RANGE, Driven, Range, made, recipes
+from tests.worlds.driven import (
+    HARD,
+    ITERATIONS,
+    LEFT,
+    TUNED_RANGE,
+    WIDE,
+    Driven,
+    Range,
+    made,
+    recipes,
+)
 from tests.worlds.tiers import at_length, slow, slowly
 from tests.worlds.turns import of_turns
 
 SEED = 20_261_121
 PARTS, EACH = 20, 50
 HARD_PARTS, MOST_OUT = 10, 4
+WIDE_PARTS, WIDE_EACH = 6, 40
 ENGINES = ("mujoco", "pymunk")
 
 
@@ -73,10 +85,10 @@ def checked(one: Driven, engine: str, **settings: SettingValue) -> Checked:
     return check(cell(one, engine, **settings))
 
 
-def alarms(found: list[Driven]) -> list[str]:
+def alarms(found: list[Driven], engines: Sequence[str] = ENGINES) -> list[str]:
     """What fails, with the scene file and the command that show it."""
     texts = []
-    for one, engine in product(found, ENGINES):
+    for one, engine in product(found, engines):
         seen = checked(one, engine)
         if seen.verdict != "within":
             told = "\n".join(f"{finding.rule} {finding.text}" for finding in seen.failures)
@@ -104,6 +116,12 @@ def test_a_thousand_random_mechanisms_raise_no_alarm(part: int) -> None:
     found = drawn(SEED + part, EACH)
     assert sum(one.turns_round for one in found) >= 0.9 * EACH
     raised = alarms(found)
+    assert not raised, "\n\n".join(raised)
+
+
+@pytest.mark.parametrize("part", in_parts(WIDE_PARTS, 1))
+def test_mechanisms_of_all_sizes_speeds_and_masses_raise_no_alarm_in_exudyn(part: int) -> None:
+    raised = alarms(drawn(SEED + 2000 + part, WIDE_EACH, WIDE), ("exudyn",))
     assert not raised, "\n\n".join(raised)
 
 

@@ -7,57 +7,27 @@ import ast
 import json
 import math
 import re
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from typer.testing import Result
 
 import crankcheck
 from analytic.kinematics import solve
 from models.array import Array
 from models.files.reading import load_scene
 from reports.logs.map_file import read_map
+from tests.reports.own_log.conftest import Judge
 from tests.worlds import stranger
-from tests.worlds.command_line import crank
 from tests.worlds.fuzzing import ACTING
 from tests.worlds.stranger import FOURBAR, LINKAGES, Linkage, course
 from tests.worlds.stranger_guises import COLUMNS, GERMAN, GUISES, PER_TURN, SHORT, disguised
 from tests.worlds.stranger_log import DEG, Dress, even, logged, map_text, single, uneven
 
-Judge = Callable[..., Result]
 PLAIN = "fourbar-lecture-1"
 TURN = logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), SHORT)
-
-
-@pytest.fixture
-def judge(tmp_path: Path) -> Judge:
-    """Run ``crankcheck judge`` on these bytes, or a log that is there; it has to end with
-    ``code``."""
-
-    def run(
-        scene: str,
-        log: bytes | Path,
-        *options: object,
-        code: int = 0,
-        mapped: str = "",
-        name: str = "log.csv",
-        target: Sequence[str] = ("--target", "1e-3"),
-    ) -> Result:
-        path = log if isinstance(log, Path) else tmp_path / name
-        if isinstance(log, bytes):
-            path.write_bytes(log)
-        if mapped:
-            (tmp_path / "map.toml").write_text(mapped, encoding="utf-8")
-            options = (*options, "--map", tmp_path / "map.toml")
-        result = crank("judge", scene, path, *target, *options)
-        assert result.exit_code == code, result.output + mapped
-        return result
-
-    return run
 
 
 @pytest.mark.parametrize("name", GUISES)

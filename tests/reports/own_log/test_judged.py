@@ -220,7 +220,7 @@ def test_a_table_over_the_angle_of_the_crank_needs_no_times(case: str) -> None:
     columns = TABLES[case] | {
         "rocker_deg": np.degrees(ROCKER.theta), "C_x": C.position[:, 0],
         "rocker_rad_s": ROCKER.omega,
-        "coupler_rad_s2": COUPLER.alpha, "mu_deg": np.degrees(ROCKER.theta - COUPLER.theta),
+        "coupler_rad_s2": COUPLER.alpha, "quality": np.sin(ROCKER.theta - COUPLER.theta),
     }  # fmt: skip
     rows = {"falling": slice(None, None, -7), "to and fro": np.r_[0:300:5, 300:0:-5]}.get(
         case, slice(0, None, 5)

@@ -97,7 +97,7 @@ TAKEN: dict[str, dict[str, SettingValue]] = {
     "pymunk": {"iterations": 7, "damping": 0.75, "error_bias": 0.25},
     "exudyn": {
         "integrator": "TrapezoidalIndex2", "spectral_radius": 0.75, "relative_tolerance": 1e-6,
-        "absolute_tolerance": 1e-7, "iterations": 17, "jacobian": "as-needed",
+        "absolute_tolerance": 1e-7, "iterations": 17, "jacobian": "as-needed", "residual": "forces",
         "adaptive_step": "disable", "ignore_singular": "disable", "linear_solver": "EigenSparse"},
 }  # fmt: skip
 REFUSED: dict[str, list[tuple[str, SettingValue]]] = {
@@ -115,6 +115,7 @@ def test_settings_reach_the_engine(name: str) -> None:
     for setting, value in TAKEN[name].items():
         assert held[setting] == value != usual[setting], setting
     assert held.get("linear_solver_used", "EigenSparse") == "EigenSparse"
+    assert held.get("residual_used", "forces") == "forces"
 
 
 @pytest.mark.parametrize("name", REFUSED)

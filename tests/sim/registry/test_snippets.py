@@ -29,7 +29,7 @@ OTHER: dict[str, SettingValue] = {
     "integrator": "RK4", "solver": "CG", "islands": "disable", "contact": "disable", "close": "C",
     "servo_integrator": "implicit", "lines": "exact", "springs": "forces", "free_paths": "arcs",
     "jacobian": "each-step", "adaptive_step": "disable", "linear_solver": "EigenDense",
-    "ignore_singular": "enable",
+    "ignore_singular": "enable", "residual": "increments",
 }  # fmt: skip
 """Other words than the engines' defaults; for numbers half of them and one more."""
 
