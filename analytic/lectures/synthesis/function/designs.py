@@ -145,6 +145,8 @@ def _degrees(angle: float) -> str:
 COARSE, FINE = 12, 24
 """Starts over half a turn that are tried if two are open, and if one is: the other half has the
 same mechanisms, as a negative length turns a start by 180 degrees."""
+ROUNDING = 1e-13
+"""Discriminant, over the largest of the range, that is zero: links in line at an end of a range."""
 MIDDLES = np.linspace(-3.0, 3.0, 13)
 """Tried middles of a slider's range, in ranges from the foot of the input's pivot."""
 
@@ -269,7 +271,8 @@ def _turned(task: FunctionTask, generator: Generator) -> list[str]:
 def _gap(task: FunctionTask, generator: Generator) -> list[str]:
     """Return the text on a mechanism that does not close over the whole range."""
     x = np.linspace(task.x_low, task.x_high, 1001)
-    opened = generator.discriminant(generator.input_start + task.input_turn(x)) < 0.0
+    room = generator.discriminant(generator.input_start + task.input_turn(x))
+    opened = room < -ROUNDING * np.max(np.abs(room))
     if not opened.any():
         return []
     return [f"it can not be assembled over the whole range: not at x = {x[np.argmax(opened)]:.6g}"]

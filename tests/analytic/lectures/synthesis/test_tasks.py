@@ -1,5 +1,6 @@
 """Random tasks are met at every position; tolerances by closed forms and a Monte Carlo."""
 
+import cmath
 import functools
 import math
 from collections.abc import Callable, Mapping
@@ -11,7 +12,7 @@ import pytest
 from analytic.kinematics import solve
 from analytic.lectures.synthesis import coupler
 from analytic.lectures.synthesis.design import AskedSlide
-from analytic.lectures.synthesis.examine import Examined, examine, passing_times
+from analytic.lectures.synthesis.examine import IN_LINE, Examined, examine, passing_times
 from analytic.lectures.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
 from analytic.lectures.synthesis.slider_crank_strokes import stroke_proposals
 from analytic.lectures.synthesis.solutions import Solutions, followed, solutions_of
@@ -19,6 +20,7 @@ from analytic.mechanism.cycle import travel
 from models.errors import CrankcheckError, ReachError
 from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks import load_task
+from models.lectures.tasks.curves import FunctionTable
 from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
 from models.scene.laws import Oscillating
 from tests.worlds.tiers import at_length, slowly
@@ -181,7 +183,9 @@ def hold(kind: str, number: int) -> tuple[int, int]:
         return 0, 0
     for one in found:
         off, sine = passed(one)
-        if one.defects:
+        if "change point" in one.fault:
+            assert sine < IN_LINE, (kind, number, one.text)
+        elif one.defects:
             assert off > 1e-6, (kind, number, one.defects, one.text)
         else:
             assert off < MET / sine**2, (kind, number, off, one.off, one.text)
@@ -204,6 +208,52 @@ RARE = {"three_positions", "given_pivots", "four_positions"}
 def test_solutions_do_what_is_said_of_them(kind: str, numbers: range) -> None:
     sound = [hold(kind, number) for number in numbers]
     assert sum(some for some, _ in sound) > 0.05 * sum(every for _, every in sound)
+
+
+LINE = [0.0, 70.0, 140.0]
+LINEAR = {**HEAD, "x": LINE, "y": [0.0, 40.0, 80.0], "range_of_x": (0.0, 140.0), "ground_m": 4.0}
+FORTH = {"input_range_deg": 140.0, "output_range_deg": 80.0} | {
+    "input_start_deg": 40.0, "output_start_deg": 100.0
+}  # fmt: skip
+BACK = {"input_range_deg": -140.0, "output_range_deg": -80.0} | {
+    "input_start_deg": 180.0, "output_start_deg": 180.0
+}  # fmt: skip
+
+
+def carried(lengths: tuple[float, ...], angles: tuple[float, ...]) -> CouplerTask:
+    """A coupler AB in its positions at angles of the crank [rad]."""
+    a, b, c, d = lengths
+    positions = []
+    for theta in angles:
+        pin = cmath.rect(a, theta)
+        arm = d - pin
+        cosine = (abs(arm) ** 2 + b**2 - c**2) / (2.0 * abs(arm) * b)
+        turn = cmath.phase(arm) + math.acos(max(-1.0, min(1.0, cosine)))
+        ends = {"A": pin, "B": pin + cmath.rect(b, turn)}
+        positions.append({"points": {key: [z.real, z.imag] for key, z in ends.items()}})
+    return CouplerTask(**HEAD, positions=positions, driver="first")
+
+
+CHANGING, LIMITED = (0.1, 0.25, 0.15, 0.3), (0.3, 0.2, 0.25, 0.4)
+LIMIT = math.acos((0.3**2 + 0.4**2 - 0.45**2) / (2.0 * 0.3 * 0.4))
+
+
+@pytest.mark.parametrize(
+    ("task", "where"),
+    [
+        (FunctionTable(**LINEAR, **FORTH, points=LINE), "position 3"),
+        (FunctionTable(**LINEAR, **BACK, points=LINE), "position 1"),
+        (FunctionTable(**LINEAR, **FORTH, points=[0.0, 70.0, 130.0]), "an end of its range"),
+        (carried(CHANGING, (1.5, 2.3, math.pi)), "position 3"),
+        (carried(CHANGING, (math.pi, 3.6, 4.2)), "position 1"),
+        (carried(LIMITED, (0.6, 1.0, LIMIT)), "position 3"),
+    ],
+)
+def test_a_position_at_a_change_point_is_a_defect(task: TaskTable, where: str) -> None:
+    (one,) = solutions_of(task).examined
+    assert one.defects
+    assert one.fault.startswith(f"{where} is at a change point or limit"), one.defects
+    assert "assembled" not in one.proposal.doubt
 
 
 RATIOS = ("stroke_and_ratio", "slotted_lever", "whitworth", "crank_rocker")
@@ -236,8 +286,10 @@ def offset_by(**given: float) -> Solutions:
 
 def test_near_their_limits_ratios_and_offsets_keep_their_digits_and_beyond_are_refused() -> None:
     found = offset_by(time_ratio=2.995)
-    assert len(found.sound) == 12
-    for one in found.sound:
+    assert found.sound == [one for one in found.examined if one.least_sine >= IN_LINE]
+    assert len(found.sound) == 6  # of the others the rod is square to the line at the inner end
+    assert len(found.examined) == 12
+    for one in found.examined:
         assert max(one.off) < 1e-15 / one.least_sine**2
         folded, stretched = (position.driver_rad for position in one.positions)
         low, high = sorted(((stretched - folded) % math.tau, (folded - stretched) % math.tau))
