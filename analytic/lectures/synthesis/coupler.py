@@ -20,12 +20,20 @@ from analytic.lectures.synthesis.driving_dyad import swings_little, with_driving
 from analytic.lectures.synthesis.pose import (
     PlanePose,
     PoseDyad,
+    Slide,
     about_bisector,
     about_circumcentre,
     about_given_pivot,
     bisector,
+    crank_or_slide,
     refuse_coinciding,
     sound_pairs,
+)
+from analytic.lectures.synthesis.special_positions import (
+    SURELY,
+    cardan_crank,
+    special_proposals,
+    with_slide,
 )
 from models.errors import CrankcheckError
 from models.lectures.tasks.positions import CouplerTask
@@ -145,14 +153,29 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
     that holds the body in all positions."""
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     body = CarriedBody(task.name, task.source, poses, task.own_points)
-    size = max(abs(b.point - a.point) for a, b in itertools.combinations(body.poses, 2))
-    size += max(map(abs, body.points.values()))
-    refuse_coinciding(body.poses, size)
-    count = len(body.poses)
-    if count == 2:
+    refuse_coinciding(body.poses, body.size)
+    special = special_proposals(body, given_positions(body))
+    if special and special[0].allowed <= SURELY:
+        return special, len(special)
+    try:
+        proposals, looked = _general(task, body)
+    except CrankcheckError:
+        if not special:
+            raise
+        return special, len(special)
+    return special + proposals, len(special) + looked
+
+
+def _general(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
+    """Return the mechanisms of positions about different poles."""
+    if len(body.poses) == 2:
         pairs = list(_two(task, body))
-    elif count == 3:
-        pairs = [_three(task, body)]
+    elif len(body.poses) == 3:
+        one, other = _three(task, body)
+        if isinstance(one, Slide) or isinstance(other, Slide):
+            found = list(_sliding(task, body, (one, other)))
+            return found, len(found)
+        pairs = [((one, other), {})]
     else:
         return _many(task, body)
     proposals = [
@@ -192,19 +215,35 @@ def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str,
         yield (one, other), {f"{name} from the middle": f"{way:.6g} m" for name, way in told}
 
 
-def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
-    """Pair for three positions: from moving pivots by circles, from fixed ones by inversion."""
+def _three(task: CouplerTask, body: CarriedBody) -> list[PoseDyad | Slide]:
+    """Return two dyads for three positions: from moving pivots by circles, from fixed ones by
+    inversion."""
     if task.fixed_m is not None:
-        one, other = (
-            about_given_pivot(body.poses, complex(*place), letter)
-            for place, letter in zip(task.fixed_m, PIVOTS, strict=True)
+        return [about_given_pivot(body.poses, complex(*place)) for place in task.fixed_m]
+    return [about_circumcentre(body.poses, moving) for moving in _moving(task, body)]
+
+
+def _sliding(
+    task: CouplerTask, body: CarriedBody, dyads: Sequence[PoseDyad | Slide]
+) -> Iterator[Proposal]:
+    """Yield the slider-cranks of dyads of which one, or both, have a pivot at infinity. Raises
+    CrankcheckError for two sliders that no crank drives."""
+    given = given_positions(body)
+    slides = {which: one for which, one in enumerate(dyads) if isinstance(one, Slide)}
+    if len(slides) == 1:
+        ((which, slide),) = slides.items()
+        crank = dyads[1 - which]
+        assert isinstance(crank, PoseDyad)
+        yield with_slide(body, crank, slide, 1 - which, given)
+        return
+    crank = None if task.fixed_m is not None else cardan_crank(body, [*slides.values()])
+    if crank is None:
+        raise CrankcheckError(
+            f"{task.name}: both pivots lie on a line in the three positions, and the lines are "
+            "parallel or of the body: no crank drives two such sliders; take another pivot"
         )
-    else:
-        one, other = (
-            about_circumcentre(body.poses, moving, body.letter(moving, which))
-            for which, moving in enumerate(_moving(task, body))
-        )
-    return (one, other), {}
+    for which in (1, 0):
+        yield with_slide(body, crank, slides[which], 1 - which, given)
 
 
 def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
@@ -224,8 +263,17 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
         chosen = [(dyads[i], dyads[k]) for i, k in sound.pairs[:count].tolist()]
         steps = tuple(curve_steps(body, curves))
         return [body.four_bar(pair, steps=steps) for pair in chosen], len(sound.pairs)
-    pairs = list(itertools.combinations(dyads, 2))
-    proposals = [one for pair in pairs for one in _driven(task, body, pair, {})]
+    proposals = []
+    short = [
+        crank_or_slide([pose.at(each.moving) for pose in body.poses], each.fixed, each.moving)
+        for each in dyads
+    ]
+    for pair in itertools.combinations(short, 2):
+        one, other = pair
+        if isinstance(one, Slide) or isinstance(other, Slide):
+            proposals += _sliding(task, body, pair)
+        else:
+            proposals += _driven(task, body, (one, other), {})
     return proposals, len(proposals)
 
 

@@ -169,7 +169,8 @@ def passed(one: Examined) -> tuple[float, float]:
         return math.inf, 1.0
     size = one.scene.longest_m
     off = (each.off(motion, size)[k] for k, each in enumerate(one.positions))
-    sine = min(float(np.min(s[: len(at_s)])) for s in motion.conditioning.values())
+    sines = (float(np.min(s[: len(at_s)])) for s in motion.conditioning.values())
+    sine = min(sines, default=1.0)
     return float(max(off)), min(1.0, sine)
 
 
@@ -254,6 +255,54 @@ def test_a_position_at_a_change_point_is_a_defect(task: TaskTable, where: str) -
     assert one.defects
     assert one.fault.startswith(f"{where} is at a change point or limit"), one.defects
     assert "assembled" not in one.proposal.doubt
+
+
+def placed(*poses: tuple[complex, float], **given: object) -> CouplerTask:
+    """A body with its point P in places [m] at angles [deg]."""
+    positions = [{"point_m": [z.real, z.imag], "angle_deg": angle} for z, angle in poses]
+    return CouplerTask(**HEAD, positions=positions, **given)
+
+
+PINS = [[0.0, 0.1], [0.1, 0.0]]
+ABOUT, ANGLES = 0.3 + 0.1j, (0.0, 30.0, 70.0, 100.0, 160.0)
+TURNED = [(ABOUT + cmath.rect(0.2, math.radians(a)), a) for a in ANGLES]
+ROUNDED = [(complex(round(z.real, 6), round(z.imag, 6)), a) for z, a in TURNED]
+CIRCLE = [(z, 15.0) for z, _ in TURNED]
+ON_A_LINE = [(x * (1.0 + 0.5j), 20.0) for x in (0.0, 0.1, 0.3, 0.4, 0.2)]
+CRANK = [cmath.rect(0.1, t) for t in (0.3, 1.0, 1.8, 2.4, 2.9)]
+RODS = [(pin, -math.degrees(math.asin(pin.imag / 0.3))) for pin in CRANK]
+ROD_END = [CRANK[0].real + math.sqrt(0.09 - CRANK[0].imag ** 2), 0.0]
+TRAMMEL = [(complex(0.3 * math.cos(t)), 180.0 - math.degrees(t)) for t in (0.3, 0.7, 1.2)]
+TRAMMEL_PINS = [[0.3 * math.cos(0.3), 0.0], [0.0, 0.3 * math.sin(0.3)]]
+LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
+
+
+@pytest.mark.parametrize(
+    ("task", "word"),
+    [
+        (placed(*TURNED[:3], moving_m=PINS), "the body is a crank"),
+        (placed(*TURNED[:3], fixed_m=PINS), "the body is a crank"),
+        (placed(*((ABOUT, angle) for angle in ANGLES)), "the body is a crank"),
+        (placed(*ROUNDED), "positions met to"),
+        (placed(*CIRCLE[:3], moving_m=PINS), "driven at"),
+        (placed(*CIRCLE[:4]), "parallelogram"),
+        (placed(*ON_A_LINE[:3], moving_m=PINS), "the body is a slider"),
+        (placed(*ON_A_LINE), "the body is a slider"),
+        (placed(*RODS[:3], moving_m=[[CRANK[0].real, CRANK[0].imag], ROD_END]), "slider B"),
+        (placed(*RODS), "slider"),
+        (placed(*TRAMMEL, moving_m=TRAMMEL_PINS), "slider P"),
+        (placed(*LEVER, fixed_m=[[0.0, 0.0], [0.4, 0.0]]), "slider O4"),
+    ],
+)
+def test_positions_of_a_pivot_a_circle_or_a_line_have_their_mechanism(
+    task: CouplerTask, word: str
+) -> None:
+    found = solutions_of(task)
+    assert any(
+        word in " ".join(f"{key} {value}" for key, value in one.proposal.chosen.items())
+        and passed(one)[0] < max(1e-9, one.proposal.allowed)
+        for one in found.sound
+    ), [(one.defects, one.proposal.chosen) for one in found.examined]
 
 
 RATIOS = ("stroke_and_ratio", "slotted_lever", "whitworth", "crank_rocker")
