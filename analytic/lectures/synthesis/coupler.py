@@ -20,7 +20,7 @@ from analytic.lectures.synthesis.driving_dyad import swings_little, with_driving
 from analytic.lectures.synthesis.pose import (
     PlanePose,
     PoseDyad,
-    Slide,
+    PoseSlide,
     about_bisector,
     about_circumcentre,
     about_given_pivot,
@@ -147,9 +147,9 @@ FALLEN_BACK = 3
 """Number of examined pairs if all have a defect."""
 
 
-def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
-    """Return the four-bars of a task, and the number of pairs of cranks considered. Raises
-    CrankcheckError for positions that coincide; a point that stays, or runs on a line; no crank
+def coupler_proposals(task: CouplerTask, *, few: bool = False) -> tuple[list[Proposal], int]:
+    """Return the four-bars of a task, or ``few`` of very many, and the number of pairs of cranks
+    considered. Raises CrankcheckError for positions that coincide; a point that stays; no crank
     that holds the body in all positions."""
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     body = CarriedBody(task.name, task.source, poses, task.own_points)
@@ -158,7 +158,7 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
     if special and special[0].allowed <= SURELY:
         return special, len(special)
     try:
-        proposals, looked = _general(task, body)
+        proposals, looked = _general(task, body, few=few)
     except CrankcheckError:
         if not special:
             raise
@@ -166,18 +166,18 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
     return special + proposals, len(special) + looked
 
 
-def _general(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
+def _general(task: CouplerTask, body: CarriedBody, *, few: bool) -> tuple[list[Proposal], int]:
     """Return the mechanisms of positions about different poles."""
     if len(body.poses) == 2:
-        pairs = list(_two(task, body))
+        pairs = list(_two(task, body, DISTANCES[1:2] if few else DISTANCES))
     elif len(body.poses) == 3:
         one, other = _three(task, body)
-        if isinstance(one, Slide) or isinstance(other, Slide):
+        if isinstance(one, PoseSlide) or isinstance(other, PoseSlide):
             found = list(_sliding(task, body, (one, other)))
             return found, len(found)
         pairs = [((one, other), {})]
     else:
-        return _many(task, body)
+        return _many(task, body, few=few)
     proposals = [
         proposal for pair, chosen in pairs for proposal in _driven(task, body, pair, chosen)
     ]
@@ -204,18 +204,20 @@ def _moving(task: CouplerTask, body: CarriedBody) -> tuple[complex, complex]:
     return one, other
 
 
-def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str, str]]]:
+def _two(
+    task: CouplerTask, body: CarriedBody, shares: Sequence[float]
+) -> Iterator[tuple[Pair, dict[str, str]]]:
     """Yield pairs for two positions: the fixed pivots anywhere on the bisectors."""
     moving = _moving(task, body)
     ways = [abs(body.poses[1].at(z) - body.poses[0].at(z)) for z in moving]
-    steps = [sign * share * max(ways) for share in DISTANCES for sign in (1.0, -1.0)]
+    steps = [sign * share * max(ways) for share in shares for sign in (1.0, -1.0)]
     for far in [task.distances_m] if task.distances_m else itertools.product(steps, steps):
         one, other = (about_bisector(body.poses, *each) for each in zip(moving, far, strict=True))
         told = zip(PIVOTS, far, strict=True)
         yield (one, other), {f"{name} from the middle": f"{way:.6g} m" for name, way in told}
 
 
-def _three(task: CouplerTask, body: CarriedBody) -> list[PoseDyad | Slide]:
+def _three(task: CouplerTask, body: CarriedBody) -> list[PoseDyad | PoseSlide]:
     """Return two dyads for three positions: from moving pivots by circles, from fixed ones by
     inversion."""
     if task.fixed_m is not None:
@@ -224,29 +226,25 @@ def _three(task: CouplerTask, body: CarriedBody) -> list[PoseDyad | Slide]:
 
 
 def _sliding(
-    task: CouplerTask, body: CarriedBody, dyads: Sequence[PoseDyad | Slide]
+    task: CouplerTask, body: CarriedBody, dyads: Sequence[PoseDyad | PoseSlide]
 ) -> Iterator[Proposal]:
     """Yield the slider-cranks of dyads of which one, or both, have a pivot at infinity. Raises
     CrankcheckError for two sliders that no crank drives."""
     given = given_positions(body)
-    slides = {which: one for which, one in enumerate(dyads) if isinstance(one, Slide)}
-    if len(slides) == 1:
-        ((which, slide),) = slides.items()
-        crank = dyads[1 - which]
-        assert isinstance(crank, PoseDyad)
-        yield with_slide(body, crank, slide, 1 - which, given)
-        return
-    crank = None if task.fixed_m is not None else cardan_crank(body, [*slides.values()])
-    if crank is None:
+    slides = {which: one for which, one in enumerate(dyads) if isinstance(one, PoseSlide)}
+    cranks = [one for one in dyads if isinstance(one, PoseDyad)]
+    if not cranks and task.fixed_m is None:
+        cranks = [each for each in [cardan_crank(body, [*slides.values()])] if each is not None]
+    if not cranks:
         raise CrankcheckError(
             f"{task.name}: both pivots lie on a line in the three positions, and the lines are "
             "parallel or of the body: no crank drives two such sliders; take another pivot"
         )
-    for which in (1, 0):
-        yield with_slide(body, crank, slides[which], 1 - which, given)
+    for which, slide in slides.items():
+        yield with_slide(body, cranks[0], slide, 1 - which, given)
 
 
-def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
+def _many(task: CouplerTask, body: CarriedBody, *, few: bool) -> tuple[list[Proposal], int]:
     """Return four-bars of four positions, along Burmester's curves, or of five, by all cranks."""
     is_four = len(body.poses) == 4
     curves = four_positions(body.poses) if is_four else []
@@ -259,18 +257,18 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
         )
     if curves:
         sound = sound_pairs(body.poses, dyads)
-        count = min(CHOSEN, sound.sound) or FALLEN_BACK
+        count = min(FALLEN_BACK if few else CHOSEN, sound.sound) or FALLEN_BACK
         chosen = [(dyads[i], dyads[k]) for i, k in sound.pairs[:count].tolist()]
         steps = tuple(curve_steps(body, curves))
         return [body.four_bar(pair, steps=steps) for pair in chosen], len(sound.pairs)
-    proposals = []
+    proposals: list[Proposal] = []
     short = [
         crank_or_slide([pose.at(each.moving) for pose in body.poses], each.fixed, each.moving)
         for each in dyads
     ]
     for pair in itertools.combinations(short, 2):
         one, other = pair
-        if isinstance(one, Slide) or isinstance(other, Slide):
+        if isinstance(one, PoseSlide) or isinstance(other, PoseSlide):
             proposals += _sliding(task, body, pair)
         else:
             proposals += _driven(task, body, (one, other), {})

@@ -123,7 +123,7 @@ FAR = 1e4
 
 
 @dataclass(frozen=True)
-class Slide:
+class PoseSlide:
     """Point on a line, in place of a crank whose centre is at infinity: a moving point of the body
     [m, own frame] on a line of the ground, or ``inverted`` a fixed point on a line of the body. The
     line goes through a place [m] of its own body, in a direction [rad]; the point is up to ``off``
@@ -136,15 +136,15 @@ class Slide:
     off: float = 0.0
 
     @staticmethod
-    def of(places: Sequence[complex], point: complex, *, inverted: bool = False) -> "Slide":
+    def of(places: Sequence[complex], point: complex, *, inverted: bool = False) -> "PoseSlide":
         """Take the line through the two places furthest apart."""
         one, other = max(itertools.combinations(places, 2), key=lambda two: abs(two[1] - two[0]))
         along = (other - one) / abs(other - one)
         off = max(abs(((place - one) / along).imag) for place in places)
-        return Slide(point, one, cmath.phase(along), inverted, off)
+        return PoseSlide(point, one, cmath.phase(along), inverted, off)
 
 
-def about_circumcentre(poses: Sequence[PlanePose], moving: complex) -> PoseDyad | Slide:
+def about_circumcentre(poses: Sequence[PlanePose], moving: complex) -> PoseDyad | PoseSlide:
     """Return the dyad of three positions: the fixed pivot in the middle of the circle through a
     moving one's places; a slide where they lie on a line."""
     places = [pose.at(moving) for pose in poses]
@@ -153,20 +153,20 @@ def about_circumcentre(poses: Sequence[PlanePose], moving: complex) -> PoseDyad 
 
 def crank_or_slide(
     places: Sequence[complex], centre: complex | None, moving: complex
-) -> PoseDyad | Slide:
+) -> PoseDyad | PoseSlide:
     """Return the crank about the centre of places, or a slide where it is too far away."""
     near = _is_near(centre, places)
-    return PoseDyad(centre, moving) if near and centre is not None else Slide.of(places, moving)
+    return PoseDyad(centre, moving) if near and centre is not None else PoseSlide.of(places, moving)
 
 
-def about_given_pivot(poses: Sequence[PlanePose], fixed: complex) -> PoseDyad | Slide:
+def about_given_pivot(poses: Sequence[PlanePose], fixed: complex) -> PoseDyad | PoseSlide:
     """Return the dyad of three positions and a fixed pivot, by inversion: seen from the body the
     pivot is in three places, and the middle of their circle is the moving pivot; a slide of the
     body where they lie on a line."""
     seen = [pose.back(fixed) for pose in poses]
     centre = circle_through(*seen)
     if centre is None or not _is_near(centre, seen):
-        return Slide.of(seen, fixed, inverted=True)
+        return PoseSlide.of(seen, fixed, inverted=True)
     return PoseDyad(fixed, centre)
 
 

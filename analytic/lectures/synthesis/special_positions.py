@@ -26,7 +26,7 @@ from analytic.lectures.synthesis.pose import (
     PARALLEL,
     PlanePose,
     PoseDyad,
-    Slide,
+    PoseSlide,
     circle_through,
     pole,
 )
@@ -115,7 +115,7 @@ def _without_turn(body: CarriedBody) -> tuple[list[design.Proposal], float]:
     """Return the slider or the parallelograms of a body that does not turn, and the distance of its
     places from their line or circle [m]."""
     places = [pose.point for pose in body.poses]
-    slide = Slide.of(places, 0j)
+    slide = PoseSlide.of(places, 0j)
     span = max(abs(b - a) for a, b in itertools.combinations(places, 2))
     if slide.off <= EXACT * span:
         return [_on_a_line(body, slide)], slide.off
@@ -171,7 +171,7 @@ def _parallelograms(
         yield body.four_bar((dyads[0], dyads[1]), chosen=told, steps=(step,))
 
 
-def _on_a_line(body: CarriedBody, slide: Slide) -> design.Proposal:
+def _on_a_line(body: CarriedBody, slide: PoseSlide) -> design.Proposal:
     """Return the slider-crank whose slider the body is: it runs on a line and does not turn. A body
     that comes back does so in the other half of the crank's turn."""
     turn = cmath.exp(1j * slide.direction)
@@ -219,7 +219,7 @@ def _on_a_line(body: CarriedBody, slide: Slide) -> design.Proposal:
 
 
 def with_slide(
-    body: CarriedBody, dyad: PoseDyad, slide: Slide, which: int, given: design.DrawingStep
+    body: CarriedBody, dyad: PoseDyad, slide: PoseSlide, which: int, given: design.DrawingStep
 ) -> design.Proposal:
     """Return the slider-crank whose rod the body is, driven at the crank; ``which`` is the number
     of the crank (0 or 1). An inverted slide is a block about a fixed pivot, on a line of the body.
@@ -230,9 +230,11 @@ def with_slide(
     if len(own | dict(body.points)) == 1:
         own[design.letters_beside(own, 1)[0]] = slide.through
     ground = {pivot: dyad.fixed} | ({other: slide.point} if slide.inverted else {})
-    through = [slide.through.real, slide.through.imag]
-    line: Table = {"on": COUPLER if slide.inverted else "ground", "through_m": through}
-    line["direction_deg"] = math.degrees(slide.direction)
+    line: Table = {
+        "on": COUPLER if slide.inverted else "ground",
+        "through_m": [slide.through.real, slide.through.imag],
+        "direction_deg": math.degrees(slide.direction),
+    }
     links = {
         INPUT: bar(pivot, pin, dyad.radius(body.poses)),
         COUPLER: plate(own | dict(body.points)),
@@ -243,19 +245,22 @@ def with_slide(
     start = seen.at(slide.through)
     along = cmath.rect(abs(start - dyad.fixed), seen.angle + slide.direction)
     words = f"{other} lies on a line of the {'body' if slide.inverted else 'ground'} in all "
-    elements = (
+    elements: tuple[design.Element, ...] = (
         design.Segment(start - along, start + along),
         design.DrawnCircle(dyad.fixed, dyad.radius(body.poses)),
         *design.chained(dyad.fixed, body.poses[0].at(dyad.moving)),
         design.Dot(dyad.fixed, pivot, "result", fixed=True),
     )
     step = design.DrawingStep(f"{words}positions: a slider takes the place of its crank", elements)
-    told = {"driven at": pivot, "slider": f"{other}, along {math.degrees(slide.direction):.4g} deg"}
+    told = {
+        "driven at": pivot,
+        "slider": f"{other}, along {round(math.degrees(slide.direction), 6):g} deg",
+    }
     allowed = (1.0 + EXACT) * slide.off / draft.driven(TURNING).scene.longest_m
     return design.Proposal(draft, INPUT, positions, told, (given, step), allowed=allowed)
 
 
-def cardan_crank(body: CarriedBody, slides: Sequence[Slide]) -> PoseDyad | None:
+def cardan_crank(body: CarriedBody, slides: Sequence[PoseSlide]) -> PoseDyad | None:
     """Return the crank of an elliptic trammel: the circle through both sliders and the meeting
     point of their lines has its centre fixed in the body, and this runs on a circle about that
     point. None for parallel lines."""

@@ -3,7 +3,7 @@
 import cmath
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -165,11 +165,14 @@ class Starts:
         return tuple(name for name in STARTS if getattr(self, name) is None)
 
 
-def function_designs(task: FunctionTask) -> list[FunctionProposal]:
+def function_designs(
+    task: FunctionTask, progress: Callable[[float], None] | None = None
+) -> list[FunctionProposal]:
     """Return all mechanisms that meet the precision points of a task, in no order.
 
     Starts that too few points leave open are tried on a grid: every 15 degrees, every 7.5 for a
-    single one, and a slider's in half ranges up to three ranges from the foot. With equal ripples
+    single one, and a slider's in half ranges up to three ranges from the foot; ``progress`` is
+    called with the finished share. With equal ripples
     the points are moved; a mechanism without them keeps Chebyshev's spacing, with the reason in its
     `doubt`.
 
@@ -186,7 +189,10 @@ def function_designs(task: FunctionTask) -> list[FunctionProposal]:
     """
     proposals: list[FunctionProposal] = []
     special: CrankcheckError | None = None
-    for starts in starts_of(task):
+    every = list(starts_of(task))
+    for number, starts in enumerate(every):
+        if progress is not None:
+            progress(number / len(every))
         try:
             generators = _solved(task, task.x_points, starts)
         except CrankcheckError as fault:
