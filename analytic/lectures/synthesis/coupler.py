@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from analytic.lectures.synthesis.burmester import five_positions, four_positions
 from analytic.lectures.synthesis.design import (
+    COINCIDING,
     PIVOTS,
     CarriedBody,
     Dot,
@@ -154,7 +155,7 @@ def coupler_proposals(task: CouplerTask, *, few: bool = False) -> tuple[list[Pro
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     body = CarriedBody(task.name, task.source, poses, task.own_points)
     refuse_coinciding(body.poses, body.size)
-    special = special_proposals(body, given_positions(body))
+    special = special_proposals(body, given_positions(body)) if _is_special(task, body) else []
     if special and special[0].allowed <= SURELY:
         return special, len(special)
     try:
@@ -164,6 +165,15 @@ def coupler_proposals(task: CouplerTask, *, few: bool = False) -> tuple[list[Pro
             raise
         return special, len(special)
     return special + proposals, len(special) + looked
+
+
+def _is_special(task: CouplerTask, body: CarriedBody) -> bool:
+    """True for three positions and more, and for two if a moving pivot stays where it is."""
+    if len(body.poses) > 2:
+        return True
+    first, last = body.poses
+    near = COINCIDING * body.size
+    return any(abs(last.at(z) - first.at(z)) <= near for z in _moving(task, body))
 
 
 def _general(task: CouplerTask, body: CarriedBody, *, few: bool) -> tuple[list[Proposal], int]:

@@ -51,11 +51,9 @@ BEST = 3
 
 
 def special_proposals(body: CarriedBody, given: design.DrawingStep) -> list[design.Proposal]:
-    """Return the mechanisms of three to five positions about one pivot, or of a body that does not
+    """Return the mechanisms of positions about one pivot, or of a body that does not
     turn, along a circle (four and five: with three any two cranks do) or a line; none of others.
     ``given`` draws the positions."""
-    if len(body.poses) < 3:
-        return []
     size = body.size or 1.0
     turned = max(abs(math.remainder(p.angle - body.poses[0].angle, math.tau)) for p in body.poses)
     if turned > PARALLEL:

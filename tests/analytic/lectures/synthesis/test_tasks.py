@@ -284,6 +284,7 @@ LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
         (placed(*TURNED[:3], moving_m=PINS), "the body is a crank"),
         (placed(*TURNED[:3], fixed_m=PINS), "the body is a crank"),
         (placed(*((ABOUT, angle) for angle in ANGLES)), "the body is a crank"),
+        (placed(*TURNED[:2], moving_m=[[0.3, 0.1], [0.5, 0.1]]), "the body is a crank"),
         (placed(*ROUNDED), "positions met to"),
         (placed(*CIRCLE[:3], moving_m=PINS), "driven at"),
         (placed(*CIRCLE[:4]), "parallelogram"),
