@@ -256,6 +256,10 @@ def _sliding(
 
 def _many(task: CouplerTask, body: CarriedBody, *, few: bool) -> tuple[list[Proposal], int]:
     """Return four-bars of four positions, along Burmester's curves, or of five, by all cranks."""
+    lines = [PoseSlide.of([p.at(z) for p in body.poses], z) for z in body.points.values()]
+    if len(lines) > 1 and all(each.off <= COINCIDING * body.size for each in lines):
+        found = list(_sliding(task, body, lines))
+        return found, len(found)
     is_four = len(body.poses) == 4
     curves = four_positions(body.poses) if is_four else []
     dyads = _wished(task, curves) if is_four else five_positions(body.poses)

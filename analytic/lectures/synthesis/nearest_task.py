@@ -23,6 +23,8 @@ HALVINGS = 5
 OPENED = ("input_start_deg", "output_start_deg", "output_start_m", "crank_deg", "fixed_m")
 """Requirements that are left open, one at a time; a wish for the transmission comes after them."""
 LOOKS = 721
+ROUNDING = 1e-9
+"""Distance from a position that is met, over the size."""
 
 Solve = Callable[[TaskTable], list[Examined]]
 """Mechanisms without a defect of a task. Raises CrankcheckError for an impossible one."""
@@ -130,5 +132,7 @@ def _passes(task: TaskTable, one: Examined, number: int) -> tuple[float, str]:
     size = max(abs(each - place) for each, _ in task.poses) or one.scene.longest_m
     off = np.abs(there - target) / size + turned
     k = int(np.argmin(off))
+    if off[k] < ROUNDING:
+        return float(off[k]), ", passed in another order"
     text = f", passed by {abs(there[k] - target):.3g} m and {np.degrees(turned[k]):.3g} deg"
     return float(off[k]), text

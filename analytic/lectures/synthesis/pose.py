@@ -139,7 +139,7 @@ class PoseSlide:
     def of(places: Sequence[complex], point: complex, *, inverted: bool = False) -> "PoseSlide":
         """Take the line through the two places furthest apart."""
         one, other = max(itertools.combinations(places, 2), key=lambda two: abs(two[1] - two[0]))
-        along = (other - one) / abs(other - one)
+        along = (other - one) / (abs(other - one) or 1.0) or 1.0
         off = max(abs(((place - one) / along).imag) for place in places)
         return PoseSlide(point, one, cmath.phase(along), inverted, off)
 

@@ -182,8 +182,8 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
             return found
         reason = "every mechanism has a defect"
     except CrankcheckError as error:
-        if task.loads and "loads." in str(error):
-            raise
+        if (task.loads and "loads." in str(error)) or "coincide" in str(error):
+            raise  # faults of the task's file
         found, reason = Solutions(task, (), 0, ()), str(error)
 
     def solve(near: TaskTable) -> list[Examined]:

@@ -274,6 +274,10 @@ CRANK = [cmath.rect(0.1, t) for t in (0.3, 1.0, 1.8, 2.4, 2.9)]
 RODS = [(pin, -math.degrees(math.asin(pin.imag / 0.3))) for pin in CRANK]
 ROD_END = [CRANK[0].real + math.sqrt(0.09 - CRANK[0].imag ** 2), 0.0]
 TRAMMEL = [(complex(0.3 * math.cos(t)), 180.0 - math.degrees(t)) for t in (0.3, 0.7, 1.2)]
+TRAMMEL_ENDS = [
+    {"points": {"A": [0.3 * math.cos(t), 0.0], "B": [0.0, 0.3 * math.sin(t)]}}
+    for t in (0.3, 0.5, 0.7, 1.0, 1.2)
+]
 TRAMMEL_PINS = [[0.3 * math.cos(0.3), 0.0], [0.0, 0.3 * math.sin(0.3)]]
 LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
 
@@ -293,6 +297,7 @@ LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
         (placed(*RODS[:3], moving_m=[[CRANK[0].real, CRANK[0].imag], ROD_END]), "slider B"),
         (placed(*RODS), "slider"),
         (placed(*TRAMMEL, moving_m=TRAMMEL_PINS), "slider P"),
+        (CouplerTask(**HEAD, positions=TRAMMEL_ENDS), "slider A"),
         (placed(*LEVER, fixed_m=[[0.0, 0.0], [0.4, 0.0]]), "slider O4"),
     ],
 )
