@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from analytic.lectures.synthesis.burmester import five_positions, four_positions
 from analytic.lectures.synthesis.design import (
+    COINCIDING,
     PIVOTS,
     CarriedBody,
     Dot,
@@ -20,12 +21,20 @@ from analytic.lectures.synthesis.driving_dyad import swings_little, with_driving
 from analytic.lectures.synthesis.pose import (
     PlanePose,
     PoseDyad,
+    PoseSlide,
     about_bisector,
     about_circumcentre,
     about_given_pivot,
     bisector,
+    crank_or_slide,
     refuse_coinciding,
     sound_pairs,
+)
+from analytic.lectures.synthesis.special_positions import (
+    SURELY,
+    cardan_crank,
+    special_proposals,
+    with_slide,
 )
 from models.errors import CrankcheckError
 from models.lectures.tasks.positions import CouplerTask
@@ -139,22 +148,46 @@ FALLEN_BACK = 3
 """Number of examined pairs if all have a defect."""
 
 
-def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
-    """Return the four-bars of a task, and the number of pairs of cranks considered. Raises
-    CrankcheckError for positions that coincide; a point that stays, or runs on a line; no crank
+def coupler_proposals(task: CouplerTask, *, few: bool = False) -> tuple[list[Proposal], int]:
+    """Return the four-bars of a task, or ``few`` of very many, and the number of pairs of cranks
+    considered. Raises CrankcheckError for positions that coincide; a point that stays; no crank
     that holds the body in all positions."""
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     body = CarriedBody(task.name, task.source, poses, task.own_points)
-    size = max(abs(b.point - a.point) for a, b in itertools.combinations(body.poses, 2))
-    size += max(map(abs, body.points.values()))
-    refuse_coinciding(body.poses, size)
-    count = len(body.poses)
-    if count == 2:
-        pairs = list(_two(task, body))
-    elif count == 3:
-        pairs = [_three(task, body)]
+    refuse_coinciding(body.poses, body.size)
+    special = special_proposals(body, given_positions(body)) if _is_special(task, body) else []
+    if special and special[0].allowed <= SURELY:
+        return special, len(special)
+    try:
+        proposals, looked = _general(task, body, few=few)
+    except CrankcheckError:
+        if not special:
+            raise
+        return special, len(special)
+    return special + proposals, len(special) + looked
+
+
+def _is_special(task: CouplerTask, body: CarriedBody) -> bool:
+    """True for three positions and more, and for two if a moving pivot stays where it is."""
+    if len(body.poses) > 2:
+        return True
+    first, last = body.poses
+    near = COINCIDING * body.size
+    return any(abs(last.at(z) - first.at(z)) <= near for z in _moving(task, body))
+
+
+def _general(task: CouplerTask, body: CarriedBody, *, few: bool) -> tuple[list[Proposal], int]:
+    """Return the mechanisms of positions about different poles."""
+    if len(body.poses) == 2:
+        pairs = list(_two(task, body, DISTANCES[1:2] if few else DISTANCES))
+    elif len(body.poses) == 3:
+        one, other = _three(task, body)
+        if isinstance(one, PoseSlide) or isinstance(other, PoseSlide):
+            found = list(_sliding(task, body, (one, other)))
+            return found, len(found)
+        pairs = [((one, other), {})]
     else:
-        return _many(task, body)
+        return _many(task, body, few=few)
     proposals = [
         proposal for pair, chosen in pairs for proposal in _driven(task, body, pair, chosen)
     ]
@@ -181,34 +214,52 @@ def _moving(task: CouplerTask, body: CarriedBody) -> tuple[complex, complex]:
     return one, other
 
 
-def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str, str]]]:
+def _two(
+    task: CouplerTask, body: CarriedBody, shares: Sequence[float]
+) -> Iterator[tuple[Pair, dict[str, str]]]:
     """Yield pairs for two positions: the fixed pivots anywhere on the bisectors."""
     moving = _moving(task, body)
     ways = [abs(body.poses[1].at(z) - body.poses[0].at(z)) for z in moving]
-    steps = [sign * share * max(ways) for share in DISTANCES for sign in (1.0, -1.0)]
+    steps = [sign * share * max(ways) for share in shares for sign in (1.0, -1.0)]
     for far in [task.distances_m] if task.distances_m else itertools.product(steps, steps):
         one, other = (about_bisector(body.poses, *each) for each in zip(moving, far, strict=True))
         told = zip(PIVOTS, far, strict=True)
         yield (one, other), {f"{name} from the middle": f"{way:.6g} m" for name, way in told}
 
 
-def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
-    """Pair for three positions: from moving pivots by circles, from fixed ones by inversion."""
+def _three(task: CouplerTask, body: CarriedBody) -> list[PoseDyad | PoseSlide]:
+    """Return two dyads for three positions: from moving pivots by circles, from fixed ones by
+    inversion."""
     if task.fixed_m is not None:
-        one, other = (
-            about_given_pivot(body.poses, complex(*place), letter)
-            for place, letter in zip(task.fixed_m, PIVOTS, strict=True)
-        )
-    else:
-        one, other = (
-            about_circumcentre(body.poses, moving, body.letter(moving, which))
-            for which, moving in enumerate(_moving(task, body))
-        )
-    return (one, other), {}
+        return [about_given_pivot(body.poses, complex(*place)) for place in task.fixed_m]
+    return [about_circumcentre(body.poses, moving) for moving in _moving(task, body)]
 
 
-def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
+def _sliding(
+    task: CouplerTask, body: CarriedBody, dyads: Sequence[PoseDyad | PoseSlide]
+) -> Iterator[Proposal]:
+    """Yield the slider-cranks of dyads of which one, or both, have a pivot at infinity. Raises
+    CrankcheckError for two sliders that no crank drives."""
+    given = given_positions(body)
+    slides = {which: one for which, one in enumerate(dyads) if isinstance(one, PoseSlide)}
+    cranks = [one for one in dyads if isinstance(one, PoseDyad)]
+    if not cranks and task.fixed_m is None:
+        cranks = [each for each in [cardan_crank(body, [*slides.values()])] if each is not None]
+    if not cranks:
+        raise CrankcheckError(
+            f"{task.name}: both pivots lie on a line in the three positions, and the lines are "
+            "parallel or of the body: no crank drives two such sliders; take another pivot"
+        )
+    for which, slide in slides.items():
+        yield with_slide(body, cranks[0], slide, 1 - which, given)
+
+
+def _many(task: CouplerTask, body: CarriedBody, *, few: bool) -> tuple[list[Proposal], int]:
     """Return four-bars of four positions, along Burmester's curves, or of five, by all cranks."""
+    lines = [PoseSlide.of([p.at(z) for p in body.poses], z) for z in body.points.values()]
+    if len(lines) > 1 and all(each.off <= COINCIDING * body.size for each in lines):
+        found = list(_sliding(task, body, lines))
+        return found, len(found)
     is_four = len(body.poses) == 4
     curves = four_positions(body.poses) if is_four else []
     dyads = _wished(task, curves) if is_four else five_positions(body.poses)
@@ -220,12 +271,21 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
         )
     if curves:
         sound = sound_pairs(body.poses, dyads)
-        count = min(CHOSEN, sound.sound) or FALLEN_BACK
+        count = min(FALLEN_BACK if few else CHOSEN, sound.sound) or FALLEN_BACK
         chosen = [(dyads[i], dyads[k]) for i, k in sound.pairs[:count].tolist()]
         steps = tuple(curve_steps(body, curves))
         return [body.four_bar(pair, steps=steps) for pair in chosen], len(sound.pairs)
-    pairs = list(itertools.combinations(dyads, 2))
-    proposals = [one for pair in pairs for one in _driven(task, body, pair, {})]
+    proposals: list[Proposal] = []
+    short = [
+        crank_or_slide([pose.at(each.moving) for pose in body.poses], each.fixed, each.moving)
+        for each in dyads
+    ]
+    for pair in itertools.combinations(short, 2):
+        one, other = pair
+        if isinstance(one, PoseSlide) or isinstance(other, PoseSlide):
+            proposals += _sliding(task, body, pair)
+        else:
+            proposals += _driven(task, body, (one, other), {})
     return proposals, len(proposals)
 
 

@@ -220,6 +220,8 @@ def to_and_fro(
 INPUT, COUPLER, OUTPUT = "input", "coupler", "output"
 PIVOTS, PINS = ("O2", "O4"), "ABEFGHJKLM"
 """Fixed pivots as in the lecture, and free letters for pins."""
+COINCIDING = 1e-9
+"""Distance of a pin from a point of the body that is the same, over their size."""
 
 
 @dataclass(frozen=True)
@@ -231,6 +233,12 @@ class CarriedBody:
     source: str
     poses: tuple[PlanePose, ...]
     points: Mapping[str, complex]
+
+    @property
+    def size(self) -> float:
+        """Longest way of the body, and its reach [m]."""
+        ways = (abs(b.point - a.point) for a, b in itertools.combinations(self.poses, 2))
+        return max(ways) + max(map(abs, self.points.values()))
 
     def four_bar(
         self,
@@ -267,8 +275,9 @@ class CarriedBody:
 
     def letter(self, moving: complex, which: int) -> str:
         """Return the name of a pin: that of the coincident point of the body, or a free letter."""
+        near = COINCIDING * (abs(moving) + self.size)
         for name, place in self.points.items():
-            if place == moving:
+            if abs(place - moving) <= near:
                 return name
         return letters_beside(self.points, which + 1)[which]
 

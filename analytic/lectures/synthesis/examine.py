@@ -38,6 +38,10 @@ MARGIN = math.radians(5.0)
 """Swing of a limited driver beyond the outermost positions, where possible."""
 KEEP = 0.5
 """Share of the way from an outermost position to the end of a branch that it keeps clear of."""
+IN_LINE = 1e-3
+"""Sine of transmission, below which the links of a dyad are in line: 0.06 degrees. An error of a
+length is a thousand times as large in the position, and its assembly is open. Places given to six
+digits put a position so near to a change point."""
 
 
 @dataclass(frozen=True)
@@ -138,6 +142,7 @@ def examine(proposal: Proposal) -> Examined:
         if max(own_off) <= max(UNMET, proposal.allowed):
             in_a_turn = abs(angles[-1] - angles[0]) < math.tau
             defect, off = "none" if arc.low is not None or in_a_turn else "order", own_off
+    fault = "" if defect != "none" else _in_line(scene, positions, proposal.also_rad)
     sine, extent_m = _over_the_way(scene)
     kind = grashof_of(scene)
     return Examined(
@@ -152,7 +157,32 @@ def examine(proposal: Proposal) -> Examined:
         extent_m,
         off,
         _largest_torque(scene) if scene.loads else None,
+        fault,
     )
+
+
+def _in_line(
+    scene: Scene, positions: Sequence[PrecisionPosition], also_rad: Sequence[float]
+) -> str:
+    """Return the text on the first position, or end of a range, at a change point or a limit of the
+    driver: the links of a dyad are in line, and both of its assemblies are one."""
+    angles = np.array([*(each.driver_rad for each in positions), *also_rad])
+    try:
+        motion = solve_driven(
+            scene, angles, np.ones(1), np.zeros(1), links=(), points=(), sliders=(), bound=False
+        )
+    except ReachError:
+        return ""  # a defect of another kind, which is told where it is looked for
+    for key, sine in motion.conditioning.items():
+        near = np.flatnonzero(np.abs(np.broadcast_to(sine, angles.shape)) < IN_LINE)
+        if near.size:
+            k = int(near[0])
+            where = f"position {k + 1}" if k < len(positions) else "an end of its range"
+            return (
+                f"{where} is at a change point or limit: at {math.degrees(angles[k]):.6g} deg of "
+                f"the driver the two assemblies of dyad {key} meet"
+            )
+    return ""
 
 
 def _over_the_way(scene: Scene) -> tuple[float, float]:

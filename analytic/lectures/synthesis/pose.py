@@ -1,6 +1,7 @@
 """Positions of a body in the plane, the poles and bisectors between them, and pairs of dyads."""
 
 import cmath
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -117,32 +118,61 @@ def about_bisector(poses: Sequence[PlanePose], moving: complex, distance_m: floa
     return PoseDyad(bisector(first, second).at(distance_m), moving)
 
 
-def about_circumcentre(poses: Sequence[PlanePose], moving: complex, letter: str) -> PoseDyad:
+FAR = 1e4
+"""Radius of a circle, over the way on it, beyond which it is a line: no crank is so long."""
+
+
+@dataclass(frozen=True)
+class PoseSlide:
+    """Point on a line, in place of a crank whose centre is at infinity: a moving point of the body
+    [m, own frame] on a line of the ground, or ``inverted`` a fixed point on a line of the body. The
+    line goes through a place [m] of its own body, in a direction [rad]; the point is up to ``off``
+    [m] beside it."""
+
+    point: complex
+    through: complex
+    direction: float
+    inverted: bool = False
+    off: float = 0.0
+
+    @staticmethod
+    def of(places: Sequence[complex], point: complex, *, inverted: bool = False) -> "PoseSlide":
+        """Take the line through the two places furthest apart."""
+        one, other = max(itertools.combinations(places, 2), key=lambda two: abs(two[1] - two[0]))
+        along = (other - one) / (abs(other - one) or 1.0) or 1.0
+        off = max(abs(((place - one) / along).imag) for place in places)
+        return PoseSlide(point, one, cmath.phase(along), inverted, off)
+
+
+def about_circumcentre(poses: Sequence[PlanePose], moving: complex) -> PoseDyad | PoseSlide:
     """Return the dyad of three positions: the fixed pivot in the middle of the circle through a
-    moving one's places. Raises CrankcheckError where they lie on a line."""
+    moving one's places; a slide where they lie on a line."""
     places = [pose.at(moving) for pose in poses]
-    centre = circle_through(*places)
-    if centre is None:
-        across = math.degrees(cmath.phase(1j * (places[2] - places[0]))) % 180.0
-        raise CrankcheckError(
-            f"{letter} lies on a line in the three positions: the centre of its circle is at "
-            f"infinity, along {across:.4g} deg; a crank can not hold it (a slider on that line "
-            "can); take another moving pivot"
-        )
-    return PoseDyad(centre, moving)
+    return crank_or_slide(places, circle_through(*places), moving)
 
 
-def about_given_pivot(poses: Sequence[PlanePose], fixed: complex, letter: str) -> PoseDyad:
+def crank_or_slide(
+    places: Sequence[complex], centre: complex | None, moving: complex
+) -> PoseDyad | PoseSlide:
+    """Return the crank about the centre of places, or a slide where it is too far away."""
+    near = _is_near(centre, places)
+    return PoseDyad(centre, moving) if near and centre is not None else PoseSlide.of(places, moving)
+
+
+def about_given_pivot(poses: Sequence[PlanePose], fixed: complex) -> PoseDyad | PoseSlide:
     """Return the dyad of three positions and a fixed pivot, by inversion: seen from the body the
-    pivot is in three places, and the middle of their circle is the moving pivot. Raises
-    CrankcheckError where they lie on a line."""
-    centre = circle_through(*(pose.back(fixed) for pose in poses))
-    if centre is None:
-        raise CrankcheckError(
-            f"seen from the body, {letter} lies on a line in the three positions: the moving pivot "
-            "is at infinity; take another place for it"
-        )
+    pivot is in three places, and the middle of their circle is the moving pivot; a slide of the
+    body where they lie on a line."""
+    seen = [pose.back(fixed) for pose in poses]
+    centre = circle_through(*seen)
+    if centre is None or not _is_near(centre, seen):
+        return PoseSlide.of(seen, fixed, inverted=True)
     return PoseDyad(fixed, centre)
+
+
+def _is_near(centre: complex | None, places: Sequence[complex]) -> bool:
+    way = max(abs(place - places[0]) for place in places)
+    return centre is not None and abs(centre - places[0]) <= FAR * way
 
 
 @dataclass(frozen=True)

@@ -87,6 +87,12 @@ def lag_of(time_ratio: float) -> float:
     return math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
 
 
+def readable_ratio(time_ratio: float | None) -> str:
+    """Return a time ratio with the digits by which it differs from a whole number."""
+    ratio = time_ratio or math.nan
+    return f"{ratio:.{10 if 1e-8 < abs(ratio - round(ratio)) < 1e-4 else 6}g}"
+
+
 def circle_step(lag: float, seen: design.DrawnCircle, pivot: complex) -> design.DrawingStep:
     """Return the step to the places of O2 from which a stroke is seen under an angle [rad]."""
     words = (
@@ -131,9 +137,10 @@ def _by_time_ratio(task: StrokeTask, lag: float) -> Iterator[float]:
     most = 0.5 * math.pi - SQUARE
     if lag > most:
         raise CrankcheckError(
-            f"time_ratio is {task.time_ratio:.8g}: a slider-crank whose crank turns has one below "
-            f"3, and transmits from {(math.pi + most) / (math.pi - most):.4f} on by less than 0.1 "
-            "deg; a slotted lever has any (`crankcheck synth quick-return`)"
+            f"time_ratio is {readable_ratio(task.time_ratio)}: a slider-crank whose crank turns "
+            "has one below 3, and transmits by less than 0.1 deg above "
+            f"{(math.pi + most) / (math.pi - most):.4f}: give 1 to this; a slotted lever has any "
+            "(`crankcheck synth quick-return`)"
         )
     if task.offset_m is not None:
         yield _beside(task, lag, task.offset_m)
@@ -152,7 +159,7 @@ def _beside(task: StrokeTask, lag: float, offset: float) -> float:
         most = task.stroke_m / math.tan(lag)
         raise CrankcheckError(
             f"offset_m is {offset:g}: with a stroke of {task.stroke_m:g} m and a time ratio of "
-            f"{task.time_ratio:g} it lies between 0 and {most:.6g} m"
+            f"{readable_ratio(task.time_ratio)} it lies between 0 and {most:.6g} m"
         )
     sine = math.sin(lag)
     return math.atan(over / (sine + math.sqrt(sine**2 + over * least)))
@@ -166,7 +173,7 @@ def _with_rod(task: StrokeTask, lag: float, rod: float) -> float:
         low, high = (most * math.sin(x) for x in (0.5 * lag, 0.5 * (math.pi - lag)))
         raise CrankcheckError(
             f"rod_m is {rod:g}: with a stroke of {task.stroke_m:g} m and a time ratio of "
-            f"{task.time_ratio:g} it lies between {low:.6g} and {high:.6g} m"
+            f"{readable_ratio(task.time_ratio)} it lies between {low:.6g} and {high:.6g} m"
         )
     return at_far
 

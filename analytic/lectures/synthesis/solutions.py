@@ -12,13 +12,18 @@ from analytic.lectures.synthesis.coupler import coupler_proposals
 from analytic.lectures.synthesis.design import AskedAngle, AskedSlide, PrecisionPosition, Proposal
 from analytic.lectures.synthesis.examine import Examined, examine, ranked
 from analytic.lectures.synthesis.function.designs import function_designs
-from analytic.lectures.synthesis.function.generator import FunctionProposal, structural_error
+from analytic.lectures.synthesis.function.generator import (
+    STARTS,
+    FunctionProposal,
+    structural_error,
+)
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction
+from analytic.lectures.synthesis.nearest_task import nearest
 from analytic.lectures.synthesis.path.fit import Progress
 from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
 from analytic.lectures.synthesis.quick_return import quick_return_proposals, rocker_proposals
-from analytic.lectures.synthesis.slider_crank_strokes import stroke_proposals
+from analytic.lectures.synthesis.slider_crank_strokes import readable_ratio, stroke_proposals
 from analytic.lectures.synthesis.straight_line import hoeken, straight_line
 from analytic.lectures.synthesis.straight_part import peaucellier
 from analytic.mechanism.cycle import Travel, travel
@@ -128,9 +133,11 @@ def _told(one: Examined, found: Travel) -> str:
         goes = f"goes {found.stroke:.6g} m"
     else:
         goes = f"swings {math.degrees(found.stroke):.6g} deg"
-    return f"{goes}, time ratio {found.time_ratio:.6g}"
+    return f"{goes}, time ratio {readable_ratio(found.time_ratio)}"
 
 
+PROPOSED = 0.5
+"""Finished share of a search when all mechanisms are proposed."""
 LONGEST_NAME = 34
 """Letters of a task's name that go on to its scenes, which have 40 with their numbers."""
 MOST_PATHS = 10
@@ -140,12 +147,24 @@ MOST_PATHS = 10
 @dataclass(frozen=True)
 class Solutions:
     """All proposals examined, the best first; ``looked`` is the number considered for the choice,
-    and ``refused`` has the reasons of those that are no mechanism."""
+    and ``refused`` has the reasons of those that are no mechanism. ``without`` is the reason of a
+    task without a solution: then the first one does the nearest task that has one, and has what
+    that gives up for a defect."""
 
     task: TaskTable
     examined: tuple[Examined, ...]
     looked: int
     refused: tuple[str, ...]
+    without: str = ""
+
+    @property
+    def no_proof(self) -> str:
+        """Reason why there may be other solutions, in words; empty where all are proposed."""
+        if isinstance(self.task, PathTable):
+            return f"a search from {self.task.starts} starts, no proof that there are no others"
+        if any(f"{name} start" in one.proposal.chosen for one in self.examined for name in STARTS):
+            return "open starts are tried on a grid, no proof that there are no others"
+        return ""
 
     @property
     def sound(self) -> list[Examined]:
@@ -154,9 +173,35 @@ class Solutions:
 
 
 def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions:
-    """Propose and examine; a search calls ``progress`` with the finished share and its distance.
-    Raises CrankcheckError for a task without any mechanism."""
-    proposals, looked = _proposals(task, progress)
+    """Propose and examine; a search calls ``progress`` with the finished share and its distance. A
+    task without a solution is given the best of the nearest one that has some. Raises
+    CrankcheckError for a task without any, near to it as well."""
+    try:
+        found = _solved(task, progress)
+        if found.sound:
+            return found
+        reason = "every mechanism has a defect"
+    except CrankcheckError as error:
+        if (task.loads and "loads." in str(error)) or "coincide" in str(error):
+            raise  # faults of the task's file
+        found, reason = Solutions(task, (), 0, ()), str(error)
+
+    def solve(near: TaskTable) -> list[Examined]:
+        if progress is not None:
+            progress(0.99, math.inf)
+        return _solved(near, None, few=True).sound
+
+    gives_up, sound = nearest(task, solve)
+    offered = [replace(one, fault=f"gives up {gives_up}") for one in sound[:1]]
+    if not offered and not found.examined:
+        raise CrankcheckError(reason)
+    named = [_named(one, task, number) for number, one in enumerate([*offered, *found.examined], 1)]
+    return replace(found, examined=tuple(named), without=reason if offered else "")
+
+
+def _solved(task: TaskTable, progress: Progress | None, *, few: bool = False) -> Solutions:
+    """Return the solutions of a task itself. Raises CrankcheckError for a task without any."""
+    proposals, looked = _proposals(task, progress, few=few)
     examined, refused = [], []
     for number, proposal in enumerate(proposals, 1):
         draft = replace(
@@ -171,11 +216,11 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
                 raise  # of the task's file, and of no mechanism
             refused.append(str(error))
         if progress is not None and not isinstance(task, PathTable):
-            progress(number / len(proposals), math.inf)
+            progress(PROPOSED + (1.0 - PROPOSED) * number / len(proposals), math.inf)
     if not examined:
         why = f": {refused[0]}" if refused else ""
         raise CrankcheckError(f"{task.name}: no mechanism does it{why}")
-    named = [_named(one, number) for number, one in enumerate(ranked(examined), 1)]
+    named = [_named(one, task, number) for number, one in enumerate(ranked(examined), 1)]
     return Solutions(task, tuple(named), looked, tuple(refused))
 
 
@@ -191,16 +236,18 @@ def unfulfilled(one: Examined, task: TaskTable) -> list[str]:
     return told
 
 
-def _named(one: Examined, number: int) -> Examined:
+def _named(one: Examined, task: TaskTable, number: int) -> Examined:
     """Return a solution whose scene has a name of its own among those of its task."""
-    name = f"{one.scene.name[:LONGEST_NAME]}-{number}"
+    name = f"{task.name[:LONGEST_NAME]}-{number}"
     return replace(one, draft=replace(one.draft, name=name), scene=replace(one.scene, name=name))
 
 
-def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposal], int]:
+def _proposals(
+    task: TaskTable, progress: Progress | None, *, few: bool
+) -> tuple[list[Proposal], int]:
     """Return the proposals of a task, and the number considered."""
     if isinstance(task, CouplerTask):
-        return coupler_proposals(task)
+        return coupler_proposals(task, few=few)
     if isinstance(task, PathTable):
         search = generate(
             path_task(task),
@@ -219,7 +266,8 @@ def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposa
     elif isinstance(task, QuickReturnTask):
         found = quick_return_proposals(task)
     elif isinstance(task, FunctionTable):
-        found = function_designs(function_task(task))
+        tell = None if progress is None else lambda share: progress(PROPOSED * share, math.inf)
+        found = function_designs(function_task(task), tell)
     elif isinstance(task, StraightLineTable):
         found = [straight_line_of(task)]
     else:

@@ -37,6 +37,10 @@ def counted(solutions: Solutions, listed: int) -> str:
     told += f", {sound} without a defect"
     if solutions.refused:
         told += f"; {len(solutions.refused)} are none ({solutions.refused[0]})"
+    if solutions.no_proof:
+        told += f"; {solutions.no_proof}"
+    if solutions.without:
+        told += f"; no solution ({solutions.without}): the first one does the nearest task"
     return told + (f"; the best {listed} listed" if listed < many else "")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
@@ -89,7 +90,7 @@ class SynthRequest:
         task = load_task(self.kind, self.task)
         engines = chosen_engines(self.engines) if self.prove else []
         profiles = [name for name, _ in chosen_profiles(self.profiles or USUAL, engines)]
-        solutions = _searched(task, console)
+        solutions = _searched(task, progress)
         listed = solutions.examined[: self.best]
         say(console, f"{task.name}: {task.source}")
         say(console, design_tables.counted(solutions, len(listed)))
@@ -130,13 +131,22 @@ def _check(request: SynthRequest) -> None:
             raise CrankcheckError(f"{name} {chosen[0]}: engines are run by --prove; add it")
 
 
-def _searched(task: TaskTable, console: Console) -> Solutions:
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+TOLD_S = 3.0
+"""Time between two lines of progress where there is no terminal [s]."""
+
+
+def _searched(task: TaskTable, progress: Console) -> Solutions:
+    terminal, last = progress.is_terminal, time.monotonic()
+    with Progress(console=progress, transient=True, disable=not terminal) as bar:
         line = bar.add_task("searching", total=1.0)
 
         def tell(share: float, best: float) -> None:
+            nonlocal last
             near = f"searching, {best:.3g} m RMS" if math.isfinite(best) else "searching"
             bar.update(line, completed=share, description=near)
+            if not terminal and time.monotonic() - last >= TOLD_S:
+                last = time.monotonic()
+                say(progress, f"{near}: {100.0 * share:.0f} %")
 
         return solutions_of(task, tell)
 

@@ -3,7 +3,7 @@
 import cmath
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,6 +145,8 @@ def _degrees(angle: float) -> str:
 COARSE, FINE = 12, 24
 """Starts over half a turn that are tried if two are open, and if one is: the other half has the
 same mechanisms, as a negative length turns a start by 180 degrees."""
+ROUNDING = 1e-13
+"""Discriminant, over the largest of the range, that is zero: links in line at an end of a range."""
 MIDDLES = np.linspace(-3.0, 3.0, 13)
 """Tried middles of a slider's range, in ranges from the foot of the input's pivot."""
 
@@ -163,11 +165,14 @@ class Starts:
         return tuple(name for name in STARTS if getattr(self, name) is None)
 
 
-def function_designs(task: FunctionTask) -> list[FunctionProposal]:
+def function_designs(
+    task: FunctionTask, progress: Callable[[float], None] | None = None
+) -> list[FunctionProposal]:
     """Return all mechanisms that meet the precision points of a task, in no order.
 
     Starts that too few points leave open are tried on a grid: every 15 degrees, every 7.5 for a
-    single one, and a slider's in half ranges up to three ranges from the foot. With equal ripples
+    single one, and a slider's in half ranges up to three ranges from the foot; ``progress`` is
+    called with the finished share. With equal ripples
     the points are moved; a mechanism without them keeps Chebyshev's spacing, with the reason in its
     `doubt`.
 
@@ -184,7 +189,10 @@ def function_designs(task: FunctionTask) -> list[FunctionProposal]:
     """
     proposals: list[FunctionProposal] = []
     special: CrankcheckError | None = None
-    for starts in starts_of(task):
+    every = list(starts_of(task))
+    for number, starts in enumerate(every):
+        if progress is not None:
+            progress(number / len(every))
         try:
             generators = _solved(task, task.x_points, starts)
         except CrankcheckError as fault:
@@ -269,7 +277,8 @@ def _turned(task: FunctionTask, generator: Generator) -> list[str]:
 def _gap(task: FunctionTask, generator: Generator) -> list[str]:
     """Return the text on a mechanism that does not close over the whole range."""
     x = np.linspace(task.x_low, task.x_high, 1001)
-    opened = generator.discriminant(generator.input_start + task.input_turn(x)) < 0.0
+    room = generator.discriminant(generator.input_start + task.input_turn(x))
+    opened = room < -ROUNDING * np.max(np.abs(room))
     if not opened.any():
         return []
     return [f"it can not be assembled over the whole range: not at x = {x[np.argmax(opened)]:.6g}"]

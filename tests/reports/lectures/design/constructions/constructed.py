@@ -18,7 +18,7 @@ from analytic.lectures.synthesis.design import (
     Proposal,
     Segment,
 )
-from analytic.lectures.synthesis.pose import PlanePose, about_circumcentre, pole
+from analytic.lectures.synthesis.pose import PlanePose, PoseDyad, about_circumcentre, pole
 from models.lectures.draft import Draft, bar
 
 LECTURE = 'Lecture "Tong hop co cau" (synthesis)'
@@ -31,7 +31,9 @@ C, D = 0.0 + 0.0j, 0.12 + 0.0j
 def three_positions() -> Proposal:
     """A coupler C D in three positions, by circumcentres (the lecture, example 6)."""
     body = CarriedBody("three-positions", LECTURE + ", example 6", THREE, {"C": C, "D": D})
-    pair = about_circumcentre(THREE, C, "C"), about_circumcentre(THREE, D, "D")
+    pair = about_circumcentre(THREE, C), about_circumcentre(THREE, D)
+    assert isinstance(pair[0], PoseDyad)
+    assert isinstance(pair[1], PoseDyad)
     return body.four_bar(pair, steps=tuple(guiding_steps(body, pair, inverted=False)))
 
 
