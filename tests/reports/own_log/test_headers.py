@@ -6,7 +6,6 @@ from random import Random
 import numpy as np
 import pandas as pd
 import pytest
-from tests.reports.own_log.conftest import Judge
 
 import crankcheck
 from analytic.kinematics import solve
@@ -16,6 +15,7 @@ from models.files.reading import load_scene
 from reports.compare.compare import Truth
 from reports.logs.columns import columns_of
 from reports.logs.meanings import understood
+from tests.reports.own_log.conftest import Judge
 from tests.worlds.headers import FOREIGN, Header, header
 from tests.worlds.stranger_log import Dress
 from tests.worlds.tiers import slowly
