@@ -75,7 +75,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     **{
         f"solve fourbar-swing {option}": f"leave {option.split()[0]} out, and give --duration"
         for option in ("--at-deg 90", "--turns 2", "--steps-per-turn 9", "--clockwise",
-                       "--along C:30", "--forces")
+                       "--along C:30")
     },
     "solve fourbar-swing --duration nan": "--duration nan: give seconds above 0",
     "solve fourbar-swing --steps 0": "--steps 0: give at least 1",
