@@ -178,10 +178,16 @@ class Similar:
 @cache
 def atlas(family: Family) -> Atlas:
     """Return the entries of a family: some thousands in a fraction of a second."""
-    share = spread(ENTRIES[family], 5, seed=0)
-    x = between(share[:, :3], BOUNDS[family])
-    arm = arms(lengths(family, x)[1], share[:, 3:])
+    _, x, arm = _drawn(family, ENTRIES[family], 5)
     return Atlas(family, x, arm, descriptors(curves(family, x, arm)))
+
+
+def _drawn(family: Family, count: int, width: int) -> tuple[Array, Array, Complexes]:
+    """Return shares of even spread (E, width), and the shapes (3, E) and coupler points (E,) by the
+    first five of them."""
+    share = spread(count, width, seed=0)
+    x = between(share[:, :3], BOUNDS[family])
+    return share, x, arms(lengths(family, x)[1], share[:, 3:5])
 
 
 def arms(coupler: Array, share: Array) -> Complexes:
@@ -290,9 +296,7 @@ class Pieces:
 @cache
 def pieces(family: Family) -> Pieces:
     """Return the pieces of a family, drawn by growing angles of the crank."""
-    share = spread(PIECES[family], 7, seed=0)
-    x = between(share[:, :3], BOUNDS[family])
-    arm = arms(lengths(family, x)[1], share[:, 3:5])
+    share, x, arm = _drawn(family, PIECES[family], 7)
     if family == "limited":
         ends = _within_limits(lengths(family, x), share[:, 5:])
     else:
