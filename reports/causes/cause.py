@@ -199,6 +199,11 @@ class CauseSize:
         return CauseSize(min(self.largest, other.largest), min(self.rms, other.rms))
 
 
+def within_half_a_turn(angle_rad: Array) -> Array:
+    """Return angles without their whole turns, from -pi to below pi [rad]."""
+    return np.asarray(np.remainder(angle_rad + math.pi, math.tau) - math.pi)
+
+
 def levelled(error: Array, channel: Channel) -> tuple[float, Array]:
     """Return the mean of an error, and the error less it. For an angle the mean is the one nearest
     to 0 by whole turns; a wrapped angle takes the nearest turn again at every sample."""
@@ -206,7 +211,7 @@ def levelled(error: Array, channel: Channel) -> tuple[float, Array]:
         zero = float(np.mean(error))
         return zero, error - zero
     middle = float(np.angle(np.mean(np.exp(1j * error))))
-    near = np.remainder(error - middle + math.pi, math.tau) - math.pi
+    near = within_half_a_turn(error - middle)
     zero = middle + float(np.mean(near))
     if channel.wrapped:
         return zero, near - (zero - middle)

@@ -1,6 +1,5 @@
 """Rows that a log has lost, or has twice, where the times of the others were closed up."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -9,7 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from models.array import Array
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
-from reports.causes.cause import MOST, Rows
+from reports.causes.cause import MOST, Rows, within_half_a_turn
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import listed
 
@@ -57,7 +56,7 @@ def _told(there: Inquiry, columns: Sequence[str], first: int) -> Account | None:
             excerpt, limit = there.excerpts[column], there.excerpts[column].limit
             error = (excerpt.expected + excerpt.error)[:, None] - table
             if excerpt.channel.wrapped:
-                error = np.remainder(error + math.pi, math.tau) - math.pi
+                error = within_half_a_turn(error)
             usual = np.median(np.abs(error[few, path[few]]))
             noise = max(usual, np.median(np.abs(np.diff(excerpt.error))))
             squares += np.fmin(np.square(error / np.clip(noise, FINE * limit, limit)), OFF)

@@ -24,6 +24,7 @@ from reports.causes.account import (
     later,
     number,
 )
+from reports.causes.cause import within_half_a_turn
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
@@ -76,7 +77,7 @@ def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator
     gains = np.zeros(inquiry.rows)
     for column, excerpt in inquiry.excerpts.items():
         if excerpt.channel.kind.turns:
-            others[column] = np.remainder(others[column] + math.pi, math.tau) - math.pi
+            others[column] = within_half_a_turn(others[column])
         if column in inquiry.open:
             size = excerpt.size.rms
             gains += (excerpt.error / size) ** 2 - (others[column] / size) ** 2

@@ -9,7 +9,14 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later, number
-from reports.causes.cause import BROUGHT_WITHIN, CauseSize, Excerpt, Rows, levelled
+from reports.causes.cause import (
+    BROUGHT_WITHIN,
+    CauseSize,
+    Excerpt,
+    Rows,
+    levelled,
+    within_half_a_turn,
+)
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
 from reports.logs.kinds import TYPICAL, UNITS, si
@@ -281,7 +288,7 @@ def _unsigned_account(inquiry: Inquiry, column: str) -> Account | None:
     excerpt = inquiry.excerpts[column]
     expected = excerpt.expected
     if excerpt.channel.kind.turns:
-        expected = np.remainder(expected + math.pi, math.tau) - math.pi
+        expected = within_half_a_turn(expected)
     if np.any(excerpt.values < 0.0) or not np.any(expected < 0.0):
         return None
     errors = {column: excerpt.values - np.abs(expected)}

@@ -4,7 +4,6 @@ The first fault needs no fitted number: another unit or sign, or some samples th
 which are left out. The second is sought in the corrected readings.
 """
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -13,7 +12,7 @@ import numpy as np
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from reports.causes.account import CHOICE, Account
-from reports.causes.cause import TIGHT, CauseSize, Excerpt
+from reports.causes.cause import TIGHT, CauseSize, Excerpt, within_half_a_turn
 from reports.causes.hypotheses.filtered import filtered
 from reports.causes.hypotheses.late import late
 from reports.causes.hypotheses.misnamed import misnamed
@@ -135,7 +134,7 @@ def _likely(excerpt: Excerpt, fresh: Excerpt) -> bool:
     have lost any whole turns."""
     error = fresh.error
     if fresh.channel.kind.turns:
-        error = np.remainder(error + math.pi, math.tau) - math.pi
+        error = within_half_a_turn(error)
     expected = CauseSize.of_signal(fresh.expected, fresh.nothing).rms
     ratio = CauseSize.of_signal(fresh.expected + error).rms / expected
     nearer = CauseSize.of(error).rms < NEARER * CauseSize.of(excerpt.error).rms
