@@ -22,7 +22,7 @@ from models.errors import CrankcheckError, harmless
 from reports.cli.commands import COMMANDS
 from reports.output import console
 from reports.requests.options import named, note_of
-from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
+from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, may_print, seen
 
 BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
 TRACEBACK = "CRANKCHECK_TRACEBACK"
@@ -203,8 +203,9 @@ def _end(code: int, text: str) -> NoReturn:
     """End with a last line, where it can be written, and an exit code; a signal comes first."""
     if stopped := seen():
         code, text = stopped.code, stopped.word
-    with contextlib.suppress(OSError):
-        typer.echo(f"crankcheck: {harmless(text)}", err=True)
+    if not stopped or may_print():
+        with contextlib.suppress(OSError):
+            typer.echo(f"crankcheck: {harmless(text)}", err=True)
     raise SystemExit(code) from None
 
 

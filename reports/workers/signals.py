@@ -30,6 +30,8 @@ class Stopped(BaseException):
 
 
 _seen: list[Stopped] = []
+_printed = threading.Lock()
+"""Taken by whoever prints the one line of a signal: the unwound command, or the end without it."""
 _waiting: list[int] | None = None
 """Signals that came while they were held back; None while they are not."""
 
@@ -38,6 +40,11 @@ def seen() -> Stopped | None:
     """Return the signal that came, also where the interrupted code made another error of it (an
     import that is cut short is an ImportError)."""
     return _seen[0] if _seen else None
+
+
+def may_print() -> bool:
+    """Return True once: the one line of a signal is printed by who gets this."""
+    return _printed.acquire(blocking=False)
 
 
 def install() -> None:
@@ -77,8 +84,9 @@ def _unraisable(lost: sys.UnraisableHookArgs) -> None:
 def _end_at_once(stopped: Stopped) -> None:
     """Print the one line, and end the process, without unwinding: its children end with its pipes,
     its locks are free, and files are written whole or not at all."""
-    with suppress(OSError):
-        os.write(2, f"crankcheck: {stopped.word}\n".encode())
+    if may_print():
+        with suppress(OSError):
+            os.write(2, f"crankcheck: {stopped.word}\n".encode())
     os._exit(stopped.code)
 
 

@@ -196,6 +196,11 @@ def swallowed(*_):
 
 ScenesRequest.run = swallowed
 """,
+    "slow": """
+signals.PATIENCE_S = 0.1
+atexit.register(time.sleep, 3600.0)
+ScenesRequest.run = strike
+""",
     "terminated": "ScenesRequest.run = lambda *_: os.kill(os.getpid(), signal.SIGTERM)",
     "ignored": "signal.signal(signal.SIGINT, signal.SIG_IGN); ScenesRequest.run = strike",
     "told": "ScenesRequest.run = lambda *_: setattr(sys.stdout, 'flush', strike)",
@@ -206,7 +211,7 @@ ScenesRequest.run = swallowed
 def test_a_signal_is_neither_lost_nor_told_with_a_traceback(tmp_path: Path) -> None:
     told = (130, "", "crankcheck: interrupted\n")
     assert ends(ENDS, tmp_path) == {
-        **dict.fromkeys(("lost", "swallowed", "told"), told),
+        **dict.fromkeys(("lost", "swallowed", "slow", "told"), told),
         **dict.fromkeys(("ignored", "finished"), (0, "", "")),
         "terminated": (143, "", "crankcheck: terminated\n"),
     }
