@@ -1,6 +1,6 @@
 """Every planted fault is caught by the rule that it names, and nothing is found without it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import product
@@ -14,7 +14,7 @@ from reports.selftest import trial
 from reports.selftest.elastic_changes import LOOSE
 from reports.selftest.fault import FOURBAR, INSIDE
 from reports.selftest.trial import FAULTS, FaultTrial, healthy, passed_by, passes, tried
-from tests.worlds.tiers import few, slow
+from tests.worlds.tiers import few, slow, slowly
 
 ENGINES = ("mujoco", "pymunk")
 NO_FAULT_OF_A_RUN = {"CC112", "CC119", "CC126", "CC130", "CC133", "CC134"}
@@ -86,20 +86,29 @@ LENGTHY = {
     "beam-linear-given", "gravity-hardly", "springs-corrected", "modulus-off", "bending-reversed",
     "spring-prebent", "rocker-heavy", "start-unswung", "bending-explicit", "vibration-fed",
     "weight-later", "deflection-sign", "other-node", "beam-mass", "beam-stretches",
-    "beam-straight",
+    "beam-straight", "beam-damping", "beam-unswung", "beam-bend-scaled", "springs-of-fewer",
+    "start-straight", "spring-damping", "inertia-at-ends", "segments-heavy", "deflection-scaled",
+    "torque-late", "torque-lasts", "table-in-lines", "flywheel-lost", "spring-elsewhere",
+    "mass-wrong", "spring-reversed", "spring-long", "damper-lost",
 }  # fmt: skip
 """Truths of their own, which take half a second or more, as does that of `LOOSE`; and of elastic
-links and beams what others that fail the same rule are like."""
+links, beams and what is let go what others that fail the same rule are like."""
+AGAIN = {
+    ("vibration-damped", "pymunk"), ("start-contradicts", "pymunk"),
+    ("float32-arithmetic", "mujoco"),
+}  # fmt: skip
+"""Lengthy in this engine; the other one stays."""
 
 
 @pytest.mark.parametrize(
     "case",
     few(
         CASES,
-        [case for case in CASES if case[0] not in LENGTHY and case[1] != LOOSE],
-        "a second truth of elastic links, or one more fault of a rule of theirs",
+        [case for case in CASES
+         if case[0] not in LENGTHY and case[1] != LOOSE and (case[0], case[2]) not in AGAIN],
+        "a second truth, or one more fault of a rule of what bends or is let go",
     ),
-)
+)  # fmt: skip
 def test_a_planted_fault_fails_the_rule_that_it_names(case: tuple[str, str, str, int]) -> None:
     name, scene, engine, steps = case
     place = planted(name, scene, engine, steps)
@@ -127,9 +136,12 @@ def test_every_rule_has_a_fault_that_it_must_catch_and_what_is_promised_its_size
     assert set(RULES) - {fault.rule for fault in FAULTS.values()} == NO_FAULT_OF_A_RUN
 
 
-@pytest.mark.parametrize("kind", ["motion", "free"])
-def test_what_need_not_be_seen_is_not_seen(kind: str) -> None:
-    for one in passed_by(ENGINES, kind):
+@pytest.mark.parametrize(
+    ("kind", "engines"),
+    [("motion", ENGINES), ("free", ["mujoco"]), slowly("free", ["pymunk"], reason="as mujoco")],
+)
+def test_what_need_not_be_seen_is_not_seen(kind: str, engines: Sequence[str]) -> None:
+    for one in passed_by(engines, kind):
         assert set(one.failed.values()) == {()}, one
         assert one.nothing == ()
 
@@ -169,7 +181,12 @@ THERE = [
 
 
 @pytest.mark.parametrize(
-    "case", few(THERE, THERE[::4], "the same rule, of another fault or engine")
+    "case",
+    few(
+        THERE,
+        [case for case in THERE[::4] if case not in AGAIN],
+        "the same rule, of another fault or engine",
+    ),
 )
 def test_a_fault_in_a_run_through_change_points_fails_its_rule(case: tuple[str, str]) -> None:
     name, engine = case

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.synthesis import coupler
+from analytic.lectures.synthesis import coupler, solutions
 from analytic.lectures.synthesis.design import AskedSlide
 from analytic.lectures.synthesis.examine import IN_LINE, Examined, examine, passing_times
 from analytic.lectures.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
@@ -202,7 +202,7 @@ RARE = {"three_positions", "given_pivots", "four_positions"}
 @pytest.mark.parametrize(
     ("kind", "numbers"),
     [
-        *((kind, range(4 if kind in RARE else 1)) for kind in TASKS),
+        *((kind, range(1, 3) if kind in RARE else range(1)) for kind in TASKS),
         *(slowly(kind, range(44), reason="of forty, some are near a limit") for kind in TASKS),
         *(at_length(kind, range(4, 1004), reason="one circuit in a hundred") for kind in TASKS),
     ],
@@ -252,7 +252,10 @@ LIMIT = math.acos((0.3**2 + 0.4**2 - 0.45**2) / (2.0 * 0.3 * 0.4))
         (carried(LIMITED, (0.6, 1.0, LIMIT)), "position 3"),
     ],
 )
-def test_a_position_at_a_change_point_is_a_defect(task: TaskTable, where: str) -> None:
+def test_a_position_at_a_change_point_is_a_defect(
+    task: TaskTable, where: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(solutions, "nearest", lambda *_: ("", []))  # its search is tested below
     *_, one = solutions_of(task).examined
     assert one.fault.startswith(f"{where} is at a change point or limit"), one.defects
     assert "assembled" not in one.proposal.doubt
@@ -297,7 +300,7 @@ LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
         (placed(*RODS[:3], moving_m=[[CRANK[0].real, CRANK[0].imag], ROD_END]), "slider B"),
         (placed(*RODS), "slider"),
         (placed(*TRAMMEL, moving_m=TRAMMEL_PINS), "slider P"),
-        (CouplerTask(**HEAD, positions=TRAMMEL_ENDS), "slider A"),
+        slowly(CouplerTask(**HEAD, positions=TRAMMEL_ENDS), "slider A", reason="of five positions"),
         (placed(*LEVER, fixed_m=[[0.0, 0.0], [0.4, 0.0]]), "slider O4"),
     ],
 )
@@ -453,4 +456,4 @@ def test_the_same_seed_gives_the_same() -> None:
 
 def test_mechanisms_that_can_not_be_assembled_are_counted() -> None:
     one = best("coupler", "three-positions")
-    assert monte_carlo(one, 0.1, [1.0] * 9, 40).lost > 5
+    assert monte_carlo(one, 0.1, [1.0] * 9, 12).lost > 2
