@@ -29,7 +29,13 @@ MISSED = 0.02
 """The part of them that chance may make two faults of: a mean and a delay in noise, say."""
 
 
-@pytest.mark.parametrize("fault", FAULTS)
+AS_ANOTHER = {"fast_driver", "shaken_times", "backwards_driver"}
+"""As `slow_clock` and `rounded_times`, and as `test_guards.py` has it; each takes half a second."""
+
+
+@pytest.mark.parametrize(
+    "fault", few(FAULTS, [each for each in FAULTS if each not in AS_ANOTHER], "as another one")
+)
 def test_a_fault_is_named_with_its_channels(fault: str) -> None:
     planted, columns, found = diagnosed(fault)
     out = {reading.channel.column for reading in planted.case.out}
