@@ -9,7 +9,7 @@ from reports.requests.sweep import SweepRequest
 from tests.worlds.in_process import in_this_process
 
 SCENE = "fourbar-swing"
-LASTS_S = 1.0
+LASTS_S = 0.6
 
 
 def filled(folder: Path) -> Path:

@@ -42,7 +42,7 @@ def _add(
     one = load_scene(scene)
     dt_s = one.driver.law.period_s / steps
     cell = Cell(
-        one, engine, profile, dt_s, 2 * steps, profile == "tuned", settings=settings, converge=False
+        one, engine, profile, dt_s, steps, profile == "tuned", settings=settings, converge=False
     )
     found = measured(cell, keep_run=False)
     line = f"{scene} {engine} {variant}"

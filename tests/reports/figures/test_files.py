@@ -124,7 +124,7 @@ def test_what_was_run_and_what_failed_stand_under_a_result(drawn: Path) -> None:
     found = flat(drawn / "work-precision-slotted-lever.svg")
     for words in ("crankcheck 0.0.0, mujoco", "pymunk 7", "abacus", "2026-01-01T00:00:00"):
         assert words in found
-    assert "slotted-lever, 4 variants, 90 to 720 steps per turn, 2 turns" in found
+    assert "slotted-lever, 4 variants, 90 to 720 steps per turn, 1 turn" in found
     assert "error_bias 0" in found
     assert "pymunk no bias (1 of 4 diverged)" in found
     lever = texts((drawn / "convergence-slotted-lever.svg").read_bytes())

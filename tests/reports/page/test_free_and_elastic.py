@@ -113,7 +113,7 @@ def test_a_free_run_is_drawn_and_every_choice_has_curves(wide: Tab, free_path: P
     before = wide.drawn("#free-picture .overlays path")[0]
     wide.slide("free-slider", 300)
     assert wide.drawn("#free-picture .overlays path")[0] != before
-    assert "0.417 s" in wide.text("#free-angle")
+    assert "0.250 s" in wide.text("#free-angle")
 
 
 def test_settings_of_free_motion_are_to_be_copied(free: Stored) -> None:
