@@ -67,7 +67,6 @@ def test_it_is_out_of_tolerance_by_its_own_name() -> None:
         ("tune fourbar-lecture-1 --target 1e-3 --engine X", "engine penalty: it has no knobs"),
         ("history X 1.0", "history penalty: it has released versions of mujoco"),
         ("verify slotted-lever --engine X", "slotted-lever, penalty, tuned: penalty: it has no sl"),
-        ("verify fourbar-lecture-1 --drive servo --engine X", "penalty: it has no servo"),
         ("selftest --fault joint-dropped --engine X", "found --engine penalty"),
     ],
 )

@@ -116,7 +116,7 @@ def test_packages_of_our_names_in_the_users_folder_hide_nothing(
     installed: Path, mine: Path, module: bool
 ) -> None:
     start = [installed / "python", "-m", "crankcheck"] if module else [installed / "crankcheck"]
-    done = ran(*start, "verify", "fourbar-lecture-1", "--jobs", 2, cwd=mine)
+    done = ran(*start, "verify", "fourbar-lecture-1", "--engine", "mujoco", "--jobs", 2, cwd=mine)
     assert (done.returncode, done.stderr) == (0, "")
     assert "WITHIN TOLERANCE" in done.stdout
 

@@ -69,11 +69,6 @@ class Guise:
         return f"[file]\n{self.file}\n" if self.file else ""
 
 
-OUR_OWN = [
-    Column("crank_theta_rad", "crank", "angle"), Column("crank_omega_rad_s", "crank", "omega"),
-    Column("rocker_theta_rad", "rocker", "angle"), Column("rocker_alpha_rad_s2", "rocker", "alpha"),
-    Column("C_x_m", "C", "x"), Column("C_vx_m_s", "C", "vx"), Column("C_ay_m_s2", "C", "ay"),
-]  # fmt: skip
 DOTTED = [
     Column("crank.theta_rad", "crank", "angle"),
     Column("rocker.theta_rad", "rocker", "angle"),
@@ -103,25 +98,8 @@ SENSORS = [
     Column("ch 3", "rocker", "omega", DEG, parent="coupler", later_s=-STEP_S / 2.0),
     Column("Weg, x", "C", "x", MM, on="rocker", offset=-300.0),
 ]
-WRAPPED = [
-    Column("crank_deg", "crank", "angle", DEG, turn_from=-180.0),
-    Column("rocker_deg", "rocker", "angle", DEG, turn_from=0.0),
-    Column("rocker_omega_deg_s", "rocker", "omega", DEG),
-]
-COPIES = [
-    Column("coupler.C_x_mm", "C", "x", MM, on="coupler"),
-    Column("C x on rocker [mm]", "C", "x", MM, on="rocker"),
-    Column("C y on rocker [mm]", "C", "y", MM, on="rocker"),
-    Column("crank_deg", "crank", "angle", DEG),
-]
-RELATIVE = [
-    Column("crank_deg", "crank", "angle", DEG),
-    Column("rocker angle relative to coupler [deg]", "rocker", "angle", DEG, parent="coupler"),
-    Column("coupler_rel_crank_omega_rad_s", "coupler", "omega", parent="crank"),
-]
 GERMAN = Dress(separator=";", point=",", newline="\r\n", mark=True, quoted=True)
 GUISES = {
-    "our own names": Guise(OUR_OWN),
     "dots": Guise(DOTTED, ("time_ms", "ms")),
     "units in brackets": Guise(BRACKETS, ("t [s]", "s"), uneven),
     "tabs and remarks": Guise(
@@ -132,10 +110,6 @@ GUISES = {
     "decimal commas": Guise(SHORT, dress=GERMAN, file='decimal = ","'),
     "names that say nothing": Guise(
         SENSORS, ("Zeit", "us"), uneven, Dress(quoted=True), mapped=True),
-    "wrapped": Guise(WRAPPED, times=uneven),
-    "joints' angles": Guise(RELATIVE, times=uneven),
-    "copies of a pin": Guise(COPIES),
-    "few digits": Guise(SHORT, ("time_ms", "ms"), dress=Dress(digits=6)),
 }  # fmt: skip
 """Of the four-bar."""
 

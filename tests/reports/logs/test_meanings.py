@@ -213,20 +213,13 @@ SAID: dict[tuple[str, str, str], list[str]] = {
         "rocker.omega_rad_s", "omega(rocker)", "rocker_rad_s", "rocker.angular_velocity.z",
         "rocker.angle.velocity.z", "rocker omega/rad/s",
     ],
-    ("rocker", "angular velocity", "rpm"): ["Rocker Velocity [rpm]"],
-    ("rocker", "angular velocity", "deg/s"): ["rocker angular velocity (deg/s)"],
     ("rocker", "angular acceleration", "rad/s^2"): [
         "rocker_alpha_rad_s2", "rocker acceleration [rad/s²]",
     ],
     ("C", "x", "mm"): ["C.x_mm", "xC [mm]", "C_x_mm on coupler"],
-    ("C", "y", "in"): ["C pos y [in]"],
-    ("C", "vx", "m/s"): ["C.vx_m_s"],
-    ("C", "vx", "mm/s"): ["C x velocity [mm/s]"],
     ("C", "ay", "m/s^2"): ["C_ay_m_s2"],
     ("crank", "angle", "deg"): ["driver_deg"],
-    ("C", "x", "m"): ["Cx"],
     ("C", "vy", "m/s"): ["vyC"],
-    ("C", "v", "m/s"): ["C_v_m_s"],
 }  # fmt: skip
 
 

@@ -71,31 +71,11 @@ def test_what_is_not_of_the_scene_is_left_out_and_listed(judge: Judge) -> None:
     assert all(column in told for column in ("state", "empty", "motor current [A]"))
 
 
-def test_what_a_log_lacks_is_not_judged_unless_it_is_required(judge: Judge) -> None:
-    log = Dress().text(logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), SHORT[1:2]))
-    told = judge(PLAIN, log).stdout
-    assert "not judged" in told.lower()
-    assert "coupler" in told
-    for name in ("coupler", "C"):
-        judge(PLAIN, log, "--require", name, code=1)
-    judge(PLAIN, log, "--require", "rocker.angle")
-
-
 @pytest.mark.parametrize(("scene", "linkage"), LINKAGES.items(), ids=list(LINKAGES))
 def test_another_speed_and_start_are_fitted(scene: str, linkage: Linkage, judge: Judge) -> None:
     moved = replace(linkage, speed_rad_s=9.3, start_deg=linkage.start_deg + 2.0)
     log = Dress().text(logged(moved, uneven(moved, 1.0, PER_TURN), COLUMNS[scene]))
     assert "9.3" in judge(scene, log, "--drive", "fitted").stdout
-
-
-def test_a_crank_that_turns_as_it_likes_is_taken_as_it_is_logged(judge: Judge) -> None:
-    log = logged(FOURBAR, even(FOURBAR, 1.5, PER_TURN), SHORT)
-    clock = log["time_s"]
-    log["time_s"] = clock + 0.02 * np.sin(10.0 * clock) ** 2
-    text = Dress().text(log)
-    judge(PLAIN, text, code=1)
-    judge(PLAIN, text, "--drive", "fitted", code=1)
-    judge(PLAIN, text, "--drive", "logged")
 
 
 def test_a_log_that_begins_late_in_a_later_turn_is_the_same(judge: Judge) -> None:

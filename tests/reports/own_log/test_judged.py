@@ -97,9 +97,11 @@ SEVERAL: list[dict[str, Array]] = [
 
 @pytest.mark.parametrize("columns", SEVERAL, ids="+".join)
 def test_no_right_reading_hides_a_wrong_one_of_the_same_thing(columns: dict[str, Array]) -> None:
-    assert judged(columns).verdict == "within"
+    some = {"t": TIME_S, **columns}
+    some = {name: each[::5] for name, each in some.items()}
+    assert judged(some).verdict == "within"
     for wrong in columns:
-        out = judged({**columns, wrong: columns[wrong] + 0.3 * np.sin(9 * TIME_S)})
+        out = judged({**some, wrong: some[wrong] + 0.3 * np.sin(9 * some["t"])})
         assert out.verdict == "out"
         assert log_rows(out)[0].columns == tuple(columns)
 
@@ -359,7 +361,8 @@ def written(scene: Scene) -> pd.DataFrame:
 
 def test_a_log_of_another_assembly_of_a_triad_is_told_by_its_number() -> None:
     scene = load_scene("triad-platform")
-    log = written(replace(scene, branch={"plate": 2}))
+    other = replace(scene, branch={"plate": 2})
+    log = motion_frame(solve(other, np.linspace(0.0, scene.driver.law.period_s, 60)))
     angles = log[[c for c in log if c == "time_s" or c.endswith("_theta_rad")]]
     one = crankcheck.judge(scene, angles, target=1e-6)
     assert one.verdict == "out"

@@ -1,5 +1,6 @@
 """The cycle that a machine repeats: by hand, beside an integration, and where there is none; and
-the flywheel for a coefficient of fluctuation, exact beside approximate."""
+the flywheel for a coefficient of fluctuation, exact beside approximate. Positions of rest:
+by hand, as extremes of the potential energy, and as motion has them."""
 
 import itertools
 import math
@@ -12,6 +13,8 @@ from scipy.integrate import solve_ivp
 
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
+from analytic.kinematics import solve_driven
+from analytic.lectures.regulation.equilibria import equilibria
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.periodic_solution import StallError
 from analytic.lectures.regulation.steady_cycle import (
@@ -414,3 +417,52 @@ def test_a_flywheel_alone_may_be_all_that_moves() -> None:
     found = wanted(shaft(PULL, inertia=0.0), 0.1)
     assert found.bare is None
     assert found.inertia_kg_m2 == pytest.approx(4.0, rel=1e-11)
+
+
+@pytest.mark.parametrize("rate", [0.0, 3.0])
+def test_a_pendulum_by_hand(rate: float) -> None:
+    """J theta'' = -m g l cos(theta) - k (theta - free), m g l = 0.981 N m, J = 2 + m l^2."""
+    scene = shaft({})
+    crank = replace(scene.links["crank"], centre_m=(0.1, 0.0))
+    springs = {"s": PinSpring("s", rate, 0.0, 0.3, "A", (GROUND, "crank"))} if rate else {}
+    scene = replace(
+        scene, links={**scene.links, "crank": crank}, springs=springs, gravity_m_s2=(0.0, -9.81)
+    )
+    found = [one for one in equilibria(scene).found if one.circuit == 0]
+    assert [one.stiffness > 0.0 for one in found] == ([True] if rate else [True, False])
+    for one in found:
+        theta = one.driver_rad
+        assert -0.981 * math.cos(theta) == pytest.approx(rate * (theta - 0.3), abs=1e-12)
+        slope = rate - 0.981 * math.sin(theta)
+        assert one.stiffness == pytest.approx(slope / 2.01, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["fourbar-swing", "fourbar-double-rocker-swing"])
+def test_a_stable_one_is_swung_about_and_has_the_least_potential(name: str) -> None:
+    """Half a small oscillation later it stands on the other side; the lowest is the lowest of a
+    circuit, whose limits are passed."""
+    scene, rests = load_scene(name), equilibria(load_scene(name))
+    own = [one for one in rests.found if one.circuit == rests.circuits.own[0]]
+    for one in (each for each in own if each.stiffness > 0.0):
+        start = one.driver_rad + 1e-4
+        sign = dict(zip(rests.circuits.signed.dyads, one.signs, strict=True))
+        driver = Driver(scene.driver.link, Released(start, 0.0, 1.0))
+        half_s = math.pi / math.sqrt(one.stiffness)
+        free = release(
+            replace(scene, branch=sign, driver=driver, start=type(scene.start)()), half_s
+        )
+        swung = free.law.at(np.array([half_s]))[0][0] - one.driver_rad
+        assert swung == pytest.approx(-1e-4, rel=1e-2)
+    lowest = math.inf
+    for arc, _ in rests.circuits.course:
+        theta = arc.angles(4001)[1:-1]
+        motion = solve_driven(rests.circuits.signed.with_signs(arc.signs), theta, 0.0, 0.0)
+        height = np.zeros_like(theta)
+        for link in scene.links.values():  # bars: their centres are between their ends
+            ends = [motion.points[point].position[:, 1] for point in link.points]
+            height += 9.81 * link.mass_kg * np.mean(ends, axis=0)
+        lowest = min(lowest, float(height.min()))
+    stable = [one.potential_j for one in own if one.stiffness > 0.0]
+    assert min(stable) == pytest.approx(lowest, rel=1e-4)
+    assert min(stable) <= lowest + 1e-12
+    assert len(own) == 2 * len(stable)

@@ -28,7 +28,9 @@ def off_by_reference(fit: PathFit, task: PathTask) -> Array:
     return np.abs(motion.points["P"].position @ (1.0, 1j) - task.array)
 
 
-@pytest.mark.parametrize(("timed", "closed"), KINDS, ids=NAMES)
+@pytest.mark.parametrize(
+    ("timed", "closed"), [*KINDS[:3], slowly(*KINDS[3], reason="as each of both alone")], ids=NAMES
+)
 def test_a_four_bar_is_found_again_from_its_path(timed: bool, closed: bool) -> None:
     task = random_path(1, 15, timed=timed, closed=closed)
     found = generate(task, starts=FEW)
@@ -58,19 +60,17 @@ def test_most_are_found_again(timed: bool, closed: bool, least: float, count: in
     assert near >= least * count
 
 
-def test_timing_is_kept_and_without_it_the_angles_are_free() -> None:
-    task, starts = random_path(4, 12, timed=True, closed=True), 8
-    for fit in generate(task, starts=starts).fits:
+def test_timing_is_kept() -> None:
+    task = random_path(4, 12, timed=True, closed=True)
+    for fit in generate(task, starts=FEW).fits:
         assert np.diff(fit.crank_rad) == pytest.approx(np.diff(task.crank_rad), abs=1e-5)
     # Other angles for the same points are another task, that the same four-bar does not do.
     warped = task.turned_rad + 0.15 * np.sin(task.turned_rad)
     other = replace(task, crank_rad=tuple(warped.tolist()))
-    assert generate(other, starts=starts).fits[0].rms_m > 1e-3 * task.radius_m
-    free = generate(replace(task, crank_rad=None), starts=starts).fits[0]
-    assert free.rms_m < 1e-5 * task.radius_m
+    assert generate(other, starts=FEW).fits[0].rms_m > 1e-3 * task.radius_m
 
 
-@pytest.mark.parametrize("timed", [True, False])
+@pytest.mark.parametrize("timed", [slowly(True, reason="as without timing"), False])
 def test_noise_is_not_fitted_and_not_made_worse(timed: bool) -> None:
     noise = 0.01
     task = random_path(1, 40, timed=timed, closed=True, noise=noise)
@@ -83,7 +83,7 @@ def test_noise_is_not_fitted_and_not_made_worse(timed: bool) -> None:
 
 def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first() -> None:
     task = random_path(0, 12, timed=False, closed=True, noise=0.02)
-    fits = generate(task, count=6, starts=16).fits
+    fits = generate(task, count=4, starts=12).fits
     assert len(fits) > 2
     errors = [round(fit.rms_m / task.radius_m, 6) for fit in fits]
     assert errors == sorted(errors)
@@ -101,7 +101,7 @@ def test_cognates_are_among_them() -> None:
 
 def test_the_same_seed_gives_the_same_answer() -> None:
     task = random_path(3, 10, timed=True, closed=True, noise=0.02)
-    one, same, other = (generate(task, starts=FEW, seed=seed).fits for seed in (1, 1, 2))
+    one, same, other = (generate(task, starts=2, seed=seed).fits for seed in (1, 1, 2))
     assert [fit.four_bar for fit in one] == [fit.four_bar for fit in same]
     assert one[0].rms_m != other[0].rms_m
 
@@ -114,14 +114,14 @@ def test_a_search_ends_with_its_time_and_tells_how_far_it_is() -> None:
     assert found.fits
     assert len(told) <= 3
     told.clear()
-    assert generate(task, starts=8, progress=lambda *each: told.append(each)).complete
+    assert generate(task, starts=FEW, progress=lambda *each: told.append(each)).complete
     shares, best = map(list, zip(*told, strict=True))
     assert (shares, shares[-1]) == (sorted(shares), 1.0)
     assert best == sorted(best, reverse=True)
     assert best[-1] < 1e-2 * task.radius_m
 
 
-@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("closed", [True, slowly(False, reason="as of a closed path")])
 def test_points_in_a_wrong_order_are_never_met_as_if_in_order(closed: bool) -> None:
     task = random_path(5, 14, timed=False, closed=closed)
     points = list(task.points)

@@ -17,8 +17,8 @@ from models.lectures.tasks.positions import CouplerTask
 from reports.lectures.design.proof import by_reference, proven
 from tests.worlds.tiers import slowly
 
-QUICK = ("three-positions", "five-positions", "by-angle", "isosceles", "slotted-lever", "whitworth",
-         "power-4-points", "power-5-points", "evans", "peaucellier")  # fmt: skip
+QUICK = ("three-positions", "by-angle", "isosceles", "slotted-lever", "whitworth",
+         "power-4-points", "evans", "peaucellier")  # fmt: skip
 EVERY = [
     (kind, name) if name in QUICK else slowly(kind, name, reason="one more of a kind")
     for kind, names in shipped_tasks().items()

@@ -66,7 +66,7 @@ def test_what_makes_no_sense_is_refused(words: str, said: str) -> None:
 
 
 def test_elastic_links_that_are_let_go_are_verified_where_they_are_named() -> None:
-    asked = [*MUJOCO, "--segments", 4, "--no-convergence", "--duration", 0.3]
+    asked = [*MUJOCO, "--segments", 4, "--no-convergence", "--duration", 0.1]
     told = crankcheck("verify", PULSE, *asked)
     assert "elastic links, profile tuned" in told
     assert "WITHIN TOLERANCE" in told
@@ -113,7 +113,7 @@ def test_a_sweep_steps_elastic_links_as_their_segments_ask() -> None:
 
 def test_what_is_let_go_is_swept_and_timed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
-    asked = [*MUJOCO, "--free", "--segments", 4, "--dt", "1e-3,5e-4", "--duration", 0.3]
+    asked = [*MUJOCO, "--free", "--segments", 4, "--dt", "1e-3,5e-4", "--duration", 0.1]
     told = crankcheck("sweep", PULSE, "-o", tmp_path / "s", *asked)
     assert "2 run now" in told
     assert "2 timed now" in told

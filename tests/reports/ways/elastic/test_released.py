@@ -25,7 +25,7 @@ from tests.worlds.tiers import slowly
 
 PULSE, CONTROLLED = "fourbar-elastic-pulse", "fourbar-elastic-controlled"
 SEGMENTS = 4
-LASTS_S = {PULSE: 0.3, CONTROLLED: 0.1}
+LASTS_S = {PULSE: 0.15, CONTROLLED: 0.1}
 """What starts straight rings with all that it has, and takes longer."""
 ENGINES = "runs at three steps; the truth is one for all engines, and what drives is loads"
 
@@ -94,7 +94,7 @@ def test_the_footer_says_what_stands_under_its_heads(checked: Checked) -> None:
         "angles, places and rates are over G",
         "Given as 4 segments, plain springs.",
         f"{PULSE}, mujoco: the segments end before the engine does",
-        "s over 0.3 s; G up to",
+        "s over 0.15 s; G up to",
     ):
         assert part in told
     assert not [part for part in ("geometry at", "Classes") if part in told]
