@@ -97,7 +97,7 @@ def disagreement(scene: Scene, closed: Motion, second: Motion) -> float:
 @pytest.mark.parametrize(
     ("name", "samples"),
     [
-        *((name, 5) for name in SIX),
+        *((name, 3) for name in SIX),
         *(
             slowly(name, 73, reason="shapes of the same dyads, all over the turn")
             for name in shipped()
@@ -130,7 +130,7 @@ def _hold_to_newton(designed: Designed) -> None:
 @pytest.mark.parametrize(
     ("form", "count"),
     [
-        *((form, 2) for form in OF_EACH_KIND),
+        *((form, 1) for form in OF_EACH_KIND),
         *(slowly(form, 4, reason="every role of a link, a block and a guide") for form in FORMS),
     ],
 )

@@ -21,7 +21,7 @@ from models.array import Array
 
 CRANK, COUPLER, ROCKER, GROUND = 0.1, 0.25, 0.2, 0.3
 START = math.pi / 2
-TURNS = 2
+TURNS = 1
 
 
 def angles(crank: Array) -> tuple[Array, Array]:
@@ -126,7 +126,7 @@ def simulated(system: Any, simulation: Any, nodes: list[Any]) -> list[Array]:
 
 
 def exudyn_error(snippet: str, steps: int, speed: float) -> float:
-    """The largest error of coupler and rocker [rad] over two turns with a snippet; infinite where
+    """The largest error of coupler and rocker [rad] over a turn with a snippet; infinite where
     exudyn goes no further."""
     container = exu.SystemContainer()
     system = container.AddSystem()
@@ -198,7 +198,7 @@ def pasted(text: str, snippet: str) -> str:
 
 
 def mujoco_error(snippet: str, steps: int, speed: float) -> float:
-    """The largest error of coupler and rocker [rad] over two turns of the MJCF with a snippet."""
+    """The largest error of coupler and rocker [rad] over a turn of the MJCF with a snippet."""
     # The snippet's rule: 1e12 times the sum of mass L^2 + inertia, L = 0.3 m.
     flywheel = 1e12 * (0.55 * 0.3**2 + (0.1**3 + 0.25**3 + 0.2**3) / 12)
     text = fourbar_bodies(MJCF, flywheel)
@@ -248,7 +248,7 @@ class Clocked(pymunk.Space):
 
 
 def pymunk_error(snippet: str, steps: int, speed: float) -> float:
-    """The largest error of coupler and rocker [rad] over two turns of a space with a snippet, which
+    """The largest error of coupler and rocker [rad] over a turn of a space with a snippet, which
     is run so many ``steps`` times in a turn, and may step the space several times."""
     space = Clocked()
     (crank, coupler, rocker), joints = pymunk_fourbar(space, speed)

@@ -27,6 +27,7 @@ from tests.worlds.in_process import in_this_process
 
 STUDY = """
 scenes: [fourbar-lecture-1]
+turns: 1
 steps_per_turn: [90, 360, 1440, 5760]
 variants:
   - {engine: mujoco, profile: as-shipped}

@@ -14,7 +14,7 @@ from reports.judge.rows import cell_row
 from reports.plan.requirements import held_steps
 from reports.selftest.elastic_changes import in_beam, in_given, stiffer_beam
 from reports.selftest.elastic_faults import springs, stiffer
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slow
 from tests.worlds.turns import of_turns
 
 USUAL = 720
@@ -123,6 +123,7 @@ def test_eight_elements_are_within_a_thousandth_of_the_beam(eight: Checked) -> N
     assert "8 elements" in said
 
 
+@slow("two seconds: a truth that stretches")
 def test_a_beam_stretches_and_is_damped(eight: Checked) -> None:
     found = within(beam(with_coupler(axial_n=8e4, damping_s=1e-3)))
     assert off(found) < 1e-4
