@@ -197,15 +197,6 @@ def test_two_faults_in_different_channels_are_each_named() -> None:
     assert by_name(found) == {"sign": (first,), "stuck": (second,)}
 
 
-def test_a_sample_that_sticks_in_a_log_that_is_late_is_named_too() -> None:
-    late = at(FOUR, FOUR.time_s + 0.3)
-    stuck = late.values["rocker_a"].copy()
-    stuck[100:105] = stuck[99]
-    found = by_name(causes(late.put({"rocker_a": stuck}).case))
-    assert found["stuck"] == ("rocker_a",)
-    assert "rocker_a" in found["start"]
-
-
 def test_causes_are_found_of_the_geometry_at_the_logged_crank() -> None:
     plain = of(angle("crank"), angle("rocker"), angle("coupler"))
     crank = plain.values["crank_a"] + 0.2 * np.sin(plain.time_s)

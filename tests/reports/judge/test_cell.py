@@ -32,13 +32,6 @@ from tests.worlds.turns import of_turns
 BOTH = pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
 
 
-@BOTH
-def test_a_tuned_fourbar_shrinks_with_second_order(fourbar: Scene, engine: str) -> None:
-    seen = check(of_turns(fourbar, engine, converge=True)).convergence
-    assert (seen.trend, seen.unit, len(seen.error)) == ("shrinks", "rad", 3)
-    assert seen.order == pytest.approx(2.0, abs=0.3)
-
-
 @pytest.mark.parametrize(("off_s", "trend"), [(2e-11, "at rounding"), (3e-10, "does not shrink")])
 def test_what_rounding_explains_of_the_crank_it_explains_of_all_links(
     fourbar: Scene, monkeypatch: pytest.MonkeyPatch, off_s: float, trend: str

@@ -168,7 +168,6 @@ AT = 'qpos="1 2 3 0.8 0.3 0.4 0.33166248 0 0 0" qvel="1 1 1 1 1 1 1 1 1"'
 PLACED = f'<keyframe><key name="home" {AT}/></keyframe>'
 CARRIED = {
     "on a slide": (on(SLIDE), "base: body base is held (slide go)"),
-    "on a free body": (on("<freejoint/>"), "base: body base is held (a free)"),
     "on a free body, from a keyframe in which it moves": (
         (*on("<freejoint/>"), "</equality>", f"</equality>{PLACED}"),
         "body base is held (a free)",
@@ -183,11 +182,6 @@ CARRIED = {
     "with a rod on a ball joint": (('<joint name="B"/>', '<joint name="B" type="ball"/>'), "C +1"),
     "with a foot": (foot('<joint name="ankle"/>'), "left out: foot (hinge ankle), hanging on the"),
     "with a foot that leaves the plane": (foot('<joint type="ball"/>'), "left out: foot (a ball)"),
-    "with a foot on a pin": (
-        ("</worldbody>", FLOATING,
-         *tied('<connect body1="coupler" body2="foot" anchor="0.2 0 0.1"/>')),
-        "left out: foot (free toe)",
-    ),
     "with a tool welded on": (
         ("</worldbody>", FLOATING, *tied('<weld body1="coupler" body2="foot"/>')),
         "left out: foot (free toe)",

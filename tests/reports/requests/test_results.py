@@ -131,13 +131,6 @@ def test_what_is_said_names_arguments_and_no_options(ran: crankcheck.Simulation)
     assert in_python(tried).startswith("Tried at the same step: settings pymunk.iterations=300 ")
 
 
-def test_judge_prints_what_the_command_prints(ran: crankcheck.Simulation, tmp_path: Path) -> None:
-    log = tmp_path / "log.csv"
-    ran.frame().to_csv(log, index=False)
-    printed = crank("judge", SCENE, log, "--step", repr(ran.dt_s)).stdout
-    assert without_time(str(crankcheck.judge(SCENE, log, step_s=ran.dt_s))) == without_time(printed)
-
-
 def test_a_run_that_an_engine_can_not_do_is_told_and_drawn() -> None:
     scene = crankcheck.load_scene("slider-crank-central")
     light = {k: replace(x, mass_kg=0.0, inertia_kg_m2=0.0) for k, x in scene.links.items()}

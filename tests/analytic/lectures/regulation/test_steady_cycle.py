@@ -91,8 +91,6 @@ def lines(degrees: tuple[float, ...], values: tuple[float, ...]) -> Tabulated:
 JUMP_DEG = 1e-8
 OF_LINES = {
     "extremes within a line": lines((0.0, 80.0, 180.0, 260.0), (0.0, 2000.0, 0.0, 1500.0)),
-    "peaks nearly alike": lines((0.0, 61.3, 123.4, 180.0, 241.3, 303.4, 308.0),
-                                (0.0, 90.0, -90.0, 0.0, 90.0, -90.001, 0.0)),
     "jumps": lines((0.0, 120.3, 120.3 + JUMP_DEG, 240.1, 240.1 + JUMP_DEG),
                    (0.0, 0.0, -60.0, -60.0, 0.0)),
 }  # fmt: skip

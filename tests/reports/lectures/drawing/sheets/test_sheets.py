@@ -17,7 +17,7 @@ from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.sheets.centre_sheet import centres_of, draw_centres
 from reports.lectures.drawing.sheets.letters import Letter, write_letters
-from reports.lectures.drawing.sheets.paper import Box, Canvas, Paper, line, text
+from reports.lectures.drawing.sheets.paper import Box, Canvas, Paper, line
 from reports.lectures.drawing.sheets.polygon_sheet import draw_sheet, laid_out
 from reports.lectures.drawing.sheets.position_sheet import PositionSheet, draw_positions, positions
 from reports.lectures.drawing.sheets.scheme import assembled
@@ -43,18 +43,6 @@ def angles_of(scene: Scene, count: int) -> list[float]:
         return list(np.arange(count) * math.tau / count)
     spare = 0.04 * (high - low)
     return list(np.linspace(low + spare, high - spare, count))
-
-
-def test_the_check_tells_words_on_lines_on_words_and_off_the_sheet() -> None:
-    canvas = sheet_with(((20.0, 51.0), (60.0, 51.0), "black"))
-    axes = canvas.layer("words")
-    text(axes, 30.0, 50.0, "crossed")
-    text(axes, 30.0, 80.0, "first")
-    text(axes, 31.0, 80.5, "second")
-    text(axes, 178.0, 20.0, "beyond")
-    text(axes, 100.0, 52.0, "clear")
-    told = ["'first' over 'second'", "'crossed' on a line", "'beyond' off the sheet"]
-    assert overlaps(canvas.figure) == told
 
 
 def test_a_letter_stands_beside_its_point_clear_of_the_lines_that_meet_there() -> None:
