@@ -50,12 +50,10 @@ REFUSED = {
     f"verify out/verify.csv {COARSE} -o out":
         "-o out/verify.csv: that is out/verify.csv, which is read",
     "solve mine.csv -o mine.csv": "-o mine.csv: .* is read",
-    "cycle mine.csv -o mine.csv": "-o mine.csv: .* is read",
     "flywheel mine.toml --delta 0.02 --write sub/../mine.toml":
         "--write .*: that is mine.toml, which is read",
     "export mine.xml -o sub/../mine.xml": "-o .*: that is mine.xml",
     "view mine.gif -o mine.gif": "-o mine.gif: .* is read",
-    "view fourbar-lecture-1.gif": "view four.*gif: .* is read",
     "tune mine.db --engine mujoco --target 1e-3 -o mine.db": "-o mine.db: holds something else",
     "sweep out/manifest.json -o out": "out",
     "sweep --study mine.toml -o mine.toml": "mine.toml",
