@@ -26,7 +26,6 @@ def pytest_configure() -> None:
 
 @pytest.fixture
 def programs() -> Iterator[Start]:
-    """Starts programs, which end with the test."""
     with started() as start:
         yield start
 

@@ -105,7 +105,6 @@ def parsed(text: str) -> ast.Module:
 
 
 def name_of(path: Path, root: Path = ROOT) -> str:
-    """The dotted name of a file."""
     return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
 
 
@@ -135,7 +134,6 @@ def _is_module(name: str, root: Path) -> bool:
 
 
 def all_imports(root: Path = ROOT) -> list[Import]:
-    """What the files of all packages import."""
     files = [path for package in ARROWS for path in sorted((root / package).rglob("*.py"))]
     return [each for path in files for each in imports(path, root)]
 

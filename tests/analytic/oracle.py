@@ -44,12 +44,10 @@ class Place:
 
 
 def toward(angle: Jet) -> Place:
-    """The unit vector at an angle."""
     return Place(*cos_sin(angle))
 
 
 def at(x: Number, y: Number) -> Place:
-    """A point at rest."""
     return Place(Jet(x), Jet(y))
 
 

@@ -103,7 +103,6 @@ class WideChain(JetChain):
         self.bodies = (*scene.links, *blocks)
 
     def solve(self, motion: Motion) -> Solved:
-        """The motion at the times of another one, which is near it."""
         drive = law_at(self.scene.driver.law, self.given.law, motion.time_s)
         place = self._coordinates(motion, drive)
         inverse = Wide(np.linalg.inv(np.float64(self._jacobian(place, drive))))

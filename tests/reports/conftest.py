@@ -61,8 +61,6 @@ def disturbed(fake_engine: ModuleType) -> Callable[..., Run]:
 
 @pytest.fixture(scope="session")
 def errors_of(disturbed: Callable[..., Run]) -> Callable[..., Errors]:
-    """The errors that `compare` finds in a disturbed run."""
-
     def find(scene: Scene, *args: object, **options: object) -> Errors:
         return compare(Beside.of(Truth(scene), disturbed(scene, *args, **options)))
 

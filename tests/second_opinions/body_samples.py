@@ -117,7 +117,6 @@ def weights_and_loads(scene: Scene, motion: Motion) -> Iterator[Push]:
 
 
 def springs_on_bodies(scene: Scene, motion: Motion) -> Iterator[Push]:
-    """What all springs exert on bodies other than the ground."""
     for spring in scene.springs.values():
         if isinstance(spring, LineSpring):
             pushes = _between_points(scene, motion, spring)

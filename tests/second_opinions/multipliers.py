@@ -98,11 +98,9 @@ class Equations:
     applied: Array
 
     def accelerations(self) -> Array:
-        """q'' (T, n)."""
         return refined(self.jacobian, self.gamma)
 
     def multipliers(self) -> Array:
-        """lambda (T, n)."""
         inertia = (self.mass @ self.accelerations()[:, :, None])[:, :, 0]
         return refined(np.swapaxes(self.jacobian, 1, 2), self.applied - inertia)
 

@@ -75,7 +75,6 @@ def _stations(start: float, end: float) -> Array:
 
 
 def _solved(system: Constraints, q: Array, right: Array, theta: float) -> Array:
-    """The solution of Phi_q x = right."""
     try:
         solution: Array = np.linalg.solve(system.jacobian(q), right).astype(np.float64)
         return solution

@@ -76,6 +76,5 @@ def test_a_model_that_is_not_the_scene_is_refused_by_name(
 
 
 def with_rocker(facts: Facts, change: Callable[[BodyPose], BodyPose]) -> Facts:
-    """The facts with another rocker at the start."""
     bodies = {**facts.start.bodies, "rocker": change(facts.start.bodies["rocker"])}
     return replace(facts, start=replace(facts.start, bodies=bodies))

@@ -247,7 +247,6 @@ def bomb(path: Path) -> None:
 
 
 def sheet_of(path: Path, inside: str) -> None:
-    """A workbook whose sheet is this XML."""
     plain = io.BytesIO()
     openpyxl.Workbook().save(plain)
     with zipfile.ZipFile(plain) as old, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as new:

@@ -229,7 +229,6 @@ class _Writer:
         return np.asarray(self.turn @ np.array([*place, 0.0]) + shift)
 
     def _local(self, body: _Body, place: Point) -> str:
-        """A place of the plane in the frame of a body."""
         return self._vector(body.axes.T @ (self._space(place) - body.origin))
 
     def _axes(self, matrix: Array) -> str:

@@ -8,7 +8,6 @@ GROUPS = ("of_scene", "of_forces", "of_motion", "of_links")
 
 
 def with_facts(errors: Errors, **changed: object) -> Errors:
-    """The errors with facts of those names."""
     for group in GROUPS:
         facts = getattr(errors, group)
         own = {each.name: changed.pop(each.name) for each in fields(facts) if each.name in changed}

@@ -24,7 +24,6 @@ def sleepy(seconds: int) -> str:
 
 
 def where(_: int) -> str:
-    """The process that works on it."""
     return str(os.getpid())
 
 

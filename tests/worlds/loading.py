@@ -79,7 +79,6 @@ def near_dead_point(scene: Scene, chance: random.Random) -> Scene | None:
 
 
 def massless(scene: Scene) -> Scene:
-    """The scene with no mass in it."""
     links = {n: replace(k, mass_kg=0.0, inertia_kg_m2=0.0) for n, k in scene.links.items()}
     sliders = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
     return replace(scene, links=links, sliders=sliders)

@@ -65,7 +65,6 @@ def parts(page: str) -> dict[str, str]:
 
 
 def _console(command: str, lines: Sequence[str], code: int) -> str:
-    """What `commands` has read, as a page has it."""
     ended = ["$ echo $?", str(code)] if code else []
     return "\n".join(["```console", f"$ {command}", *lines, *ended, "```", ""])
 
@@ -94,7 +93,6 @@ def _uses(step: str, file: str) -> bool:
 
 
 def words(command: str) -> list[str]:
-    """The command, with the programs of this environment."""
     name, *rest = shlex.split(command)
     programs = {"crankcheck": COMMAND, "python": PYTHON}
     return [programs.get(name, name), *rest]

@@ -84,7 +84,6 @@ def size_of(channel: Channel) -> float:
 
 
 def numbers(sheet: Sheet, column: str) -> Array:
-    """What stands in a column."""
     channel = sheet.channels[column]
     return channel.sign * sheet.values[column] / size_of(channel)
 
@@ -103,7 +102,6 @@ def of_scene(sheet: Sheet, scene: Scene) -> Planted:
 
 
 def exchanged(sheet: Sheet, columns: Sequence[str]) -> Planted:
-    """The sheet with the numbers of each column in the one before it."""
     others = (*columns[1:], columns[0])
     written = {
         column: read(sheet, column, numbers(sheet, other))
@@ -113,7 +111,6 @@ def exchanged(sheet: Sheet, columns: Sequence[str]) -> Planted:
 
 
 def changed(sheet: Sheet, column: str, change: Callable[[Array], Array]) -> Planted:
-    """The sheet with other readings in one column."""
     values = wrapped(sheet.channels[column], change(sheet.values[column]))
     return sheet.put({column: values}), [column]
 

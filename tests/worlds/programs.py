@@ -53,7 +53,6 @@ def programs() -> Iterator[Start]:
 
 
 def _end(program: subprocess.Popen[str]) -> None:
-    """Kill a program with all of its group."""
     with contextlib.suppress(ProcessLookupError, PermissionError, AttributeError):
         os.killpg(program.pid, signal.SIGKILL)  # AttributeError: not on Windows
     program.kill()

@@ -133,7 +133,6 @@ def _masses(draw: st.DrawFn) -> Tree:
 
 @st.composite
 def drivers(draw: st.DrawFn) -> Tree:
-    """A driver under one of the laws."""
     law = draw(st.sampled_from(["", "", "", "constant", "oscillating", "from-rest"]))
     start = draw(between(-180.0, 180.0))
     if law == "oscillating":
@@ -201,7 +200,6 @@ def _spoil(draw: st.DrawFn, tree: Tree) -> None:
 
 
 def _paths(tree: object, here: Path = ()) -> Iterator[Path]:
-    """Where there is something in the tree."""
     if isinstance(tree, Mapping):
         parts: list[tuple[str | int, object]] = list(tree.items())
     else:
@@ -223,7 +221,6 @@ def _put(holder: object, key: str | int, value: object) -> None:
 
 
 def _copied(value: object) -> object:
-    """The value with lists and tables of its own."""
     if isinstance(value, dict):
         return {key: _copied(each) for key, each in value.items()}
     return [_copied(each) for each in value] if isinstance(value, list) else value

@@ -196,7 +196,6 @@ def at(sheet: Sheet, time_s: Array, *columns: str) -> Sheet:
 
 
 def later(sheet: Sheet, samples: float, *columns: str) -> Sheet:
-    """The sheet with the readings of so many samples later."""
     return at(sheet, sheet.time_s + samples * sheet.step_s, *columns)
 
 

@@ -50,7 +50,6 @@ class Layout:
         return cmath.rect(self.number(low, high), self.number(-math.pi, math.pi))
 
     def near(self, body: str) -> complex:
-        """A place for a pin on a body."""
         return self.frames[body][0] + self.arm(0.2, 0.8) * self.reach.get(body, 1.0)
 
     def lean(self) -> float:
@@ -264,7 +263,6 @@ OF_EACH_KIND = list({form[:3]: form for form in FORMS}.values())
 
 
 def some_forms(kind: str, chance: random.Random) -> list[str]:
-    """A form of the kind, and at times another."""
     forms = [chance.choice([form for form in FORMS if form.startswith(kind)])]
     return [*forms, chance.choice(FORMS)] if chance.random() < 0.4 else forms
 

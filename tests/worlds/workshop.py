@@ -72,7 +72,6 @@ def _same_exudyn_steps(steps: int, integrator: Any, radius: float) -> Array:
 
 
 def _rest(simulation: Any) -> Array:
-    """The coordinates of the rest over a second."""
     container = exu.SystemContainer()  # which has to live as long as its system
     system = container.AddSystem()
     exudyn_fourbar(system, SPEED)

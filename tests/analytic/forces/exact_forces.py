@@ -87,7 +87,6 @@ class _Demand:
             self.b[self.at[name] + 2] -= size
 
     def push(self, name: str, place: mpc, force: mpc) -> None:
-        """A force on a body at a place of the plane."""
         if name != GROUND:
             row = self.at[name]
             self.b[row] -= force.real

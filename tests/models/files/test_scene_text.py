@@ -76,14 +76,12 @@ TURN = "start_deg = 30.0\nspeed_rad_s = 1.0"
 
 
 def driven(text: str, driver: str) -> str:
-    """A scene file with another driver."""
     found, changes = re.subn(r"\[driver\]\n(.+\n)+", f"[driver]\n{driver}\n", text)
     assert changes == 1
     return found
 
 
 def numbered(branch: str) -> str:
-    """The triad with another branch."""
     return re.sub(r"\[branch\]\n.*\n", "", TRIAD) + f"\n[branch]\n{branch}\n"
 
 
@@ -139,7 +137,6 @@ REFUSED = [
 
 
 def moved(scene: Scene) -> None:
-    """Solve a scene over its course."""
     analyse(scene)
     solve(scene, np.linspace(0.0, scene.driver.law.period_s, 49))
 

@@ -21,7 +21,6 @@ from tests.worlds.runs import start_of
 
 
 def assembled(text: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The model at its keyframe."""
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)

@@ -32,7 +32,6 @@ def point(name: str, axis: str) -> Channel:
 
 
 def bars(**lengths: float) -> Scene:
-    """The four-bar with bars of other lengths [m]."""
     links = dict(SCENE.links)
     for name, length in lengths.items():
         first, second = links[name].points

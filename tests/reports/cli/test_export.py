@@ -28,7 +28,6 @@ from tests.worlds.loading import massless
 
 
 def exported(name: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The model that is printed, as its keyframe has it."""
     model = mujoco.MjModel.from_xml_string(told(f"export {name}"))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)

@@ -20,7 +20,6 @@ LEAST: dict[str, tuple[object, ...]] = {
 
 
 def kind_of(line: str) -> type:
-    """The kind of the request of a command."""
     kind = named(COMMANDS[line.split()[0]][0])
     return named(kind.answered_by) if hasattr(kind, "answered_by") else kind
 

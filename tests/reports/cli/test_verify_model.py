@@ -25,7 +25,6 @@ INCLUDING = SLIDER_CRANK.replace('<option timestep="0.002"/>', '<include file="p
 
 
 def run_here(account: ModelAccount, _: object, done: Callable[[CheckedLine], None]) -> JudgedModel:
-    """All lines in this process."""
     return judged_lines(account, checked_line, done)
 
 

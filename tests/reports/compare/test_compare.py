@@ -52,7 +52,6 @@ def with_link(run: Run, name: str = "rocker", **series: Array) -> Run:
 def pure(
     errors: Errors, quantity: str, source: Source = "reported", kind: ErrorKind = "total"
 ) -> float:
-    """The worst error of a quantity as a pure number."""
     return errors.worst(quantity, source, kind).pure
 
 

@@ -65,7 +65,6 @@ def traced(
 
 
 def rows_off(trace: dict[str, Array], time_s: Array = TIME_S, scene: Scene = FOURBAR) -> Array:
-    """The displacements of a trace."""
     return unpacked(displacements(scene, trace, time_s))
 
 

@@ -239,7 +239,6 @@ def test_a_run_that_did_not_end_well_fails_with_its_reason_and_is_told_one_cure(
 
 
 def over(floor: float, error: float) -> list[float]:
-    """Errors of second order over a floor."""
     return [floor + error / 4**k for k in range(3)]
 
 

@@ -177,7 +177,6 @@ LAWS = {
 
 
 def share(scene: Scene, errors: Errors) -> float:
-    """The drive error over its limit."""
     return errors.worst("drive").pure / limits(scene, errors, {})["drive"].number
 
 

@@ -291,7 +291,6 @@ def printed(one: JudgedModel, width: int = 100) -> list[str]:
 
 
 def place(lines: list[str], words: str) -> int:
-    """The first line with these words."""
     return next(number for number, line in enumerate(lines) if words in line)
 
 

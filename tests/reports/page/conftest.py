@@ -187,5 +187,4 @@ def phone(tab: Tab) -> Iterator[Tab]:
 
 @pytest.fixture
 def page(opened: Tab) -> Page:
-    """The page that the fixture of a file has opened."""
     return opened.page

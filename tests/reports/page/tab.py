@@ -190,7 +190,6 @@ class Tab:
         )
 
     def drawn(self, shapes: str) -> list[str]:
-        """How some shapes are drawn at the moment."""
         found = "all => all.map(each => each.getAttribute('d') ?? '')"
         return self.page.locator(shapes).evaluate_all(found)
 

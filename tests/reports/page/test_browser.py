@@ -30,7 +30,6 @@ def order(page: Page, table: str, column: int) -> list[float]:
 
 
 def corners(path: Locator) -> Array:
-    """The corners of a drawn path [pixel]."""
     numbers = re.findall(r"-?[\d.]+", path.get_attribute("d") or "")
     return np.reshape(np.array(numbers, dtype=float), (-1, 2))
 

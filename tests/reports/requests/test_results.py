@@ -28,7 +28,6 @@ SCENE = "fourbar-lecture-1"
 
 @pytest.fixture(scope="session")
 def results(ran: crankcheck.Simulation) -> dict[str, Shown]:
-    """One of each kind."""
     solution = crankcheck.solve(SCENE)
     return {
         "solution": solution,

@@ -61,8 +61,6 @@ def flipped(raw: bytes) -> bytes:
 
 
 def manifest(change: Callable[[dict[str, Any]], object]) -> Change:
-    """Change what the manifest says, with what it says of itself as it was."""
-
     def changed(raw: bytes) -> bytes:
         said = json.loads(raw)
         change(said)

@@ -132,7 +132,6 @@ def test_a_changed_scene_of_the_same_name_and_what_is_no_store_are_refused(
 
 @pytest.fixture
 def held(store: Path) -> Iterator[FileLock]:
-    """The lock of the store, as a sweep holds it."""
     with FileLock(store / ".lock", timeout=0) as taken:
         yield taken
 

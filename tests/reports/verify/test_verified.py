@@ -30,7 +30,6 @@ def cures(checked: Checked) -> set[str]:
 
 @pytest.fixture
 def runs(monkeypatch: pytest.MonkeyPatch) -> list[Cell]:
-    """The cells that are run, in their order."""
     asked: list[Cell] = []
 
     def noted(one: Cell) -> Checked:

@@ -104,7 +104,6 @@ BARE = {"beside": "", "weld": "", "more": "", "crank_end": "crank"}
 def started(
     path: Path, crank: str, integrator: str = "as-written"
 ) -> tuple[OwnModelSession, State]:
-    """A model with one of the cranks at its start, as written."""
     path.write_text(MODEL.format(rocker=ROCKER, **BARE | CRANKS[crank]), encoding="utf-8")
     own = read_model(path, "motor")
     scene = assembled(own, ModelRequest(path, "motor", 10.0)).scene

@@ -42,7 +42,6 @@ def elsewhere(text: str, folder: Path) -> str:
 
 
 def printed(program: str) -> str:
-    """What it prints in this process."""
     out = io.StringIO()
     with contextlib.redirect_stdout(out):
         exec(program, {})
@@ -50,7 +49,6 @@ def printed(program: str) -> str:
 
 
 def columns_of(text: str) -> dict[str, np.ndarray]:
-    """The columns of numbers that were printed."""
     rows = np.loadtxt(io.StringIO(text), delimiter=",", skiprows=1)
     return dict(zip(text.splitlines()[0].split(","), rows.T, strict=True))
 

@@ -54,7 +54,6 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
 
 
 def places(beside: Beside) -> list[Error]:
-    """Phase and places alone."""
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     tracks = beside.tracks(("phase", *named("place")), beside.reference)
     return [whole_row(track, at) for track in tracks]

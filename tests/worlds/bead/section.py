@@ -6,7 +6,6 @@ from reports.page.sections.section import PageReport, Section, WaySection
 
 
 def build(report: PageReport) -> Section | None:
-    """The section; None where there is no bead."""
     lines = report.of_kind("bead")
     if not lines:
         return None

@@ -39,7 +39,6 @@ class Swing:
 
 
 def swing_of(scene: Scene) -> Swing:
-    """That of a scene of one link."""
     (link,) = scene.links.values()
     arm = complex(*link.centre_m) - complex(*link.points[next(iter(scene.ground))])
     inertia = link.inertia_kg_m2 + link.mass_kg * abs(arm) ** 2
@@ -52,5 +51,4 @@ def swing_of(scene: Scene) -> Swing:
 
 
 def moved(scene: Scene, swing: Swing, time_s: Array) -> Motion:
-    """The scene with its spoke as the swing has it."""
     return solve_driven(scene, *swing.at(time_s), time_s, bound=False)

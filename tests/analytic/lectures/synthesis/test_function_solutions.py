@@ -180,7 +180,6 @@ def by_homotopy(poses: list[PlanePose]) -> list[PoseDyad]:
 
 
 def away(one: PoseDyad, others: Iterable[PoseDyad]) -> float:
-    """How far the nearest of others is from a dyad."""
     return min(abs(one.fixed - o.fixed) + abs(one.moving - o.moving) for o in others)
 
 

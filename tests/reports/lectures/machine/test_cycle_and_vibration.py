@@ -33,7 +33,6 @@ def _in_a_folder_with_the_shaft_of_40_j(
 
 
 def told(line: str) -> str:
-    """What a line of the command prints."""
     result = crank(*line.split())
     assert result.exit_code == 0, result.output
     lines = [line.rstrip() for line in result.output.splitlines()]
@@ -46,7 +45,6 @@ def joined(line: str) -> str:
 
 
 def numbers(output: str, start: str) -> list[float]:
-    """The numbers of the one row that begins so."""
     (words,) = re.findall(rf"^{re.escape(start)} +(.*)$", output, flags=re.MULTILINE)
     return [float(each) for each in re.findall(r"[-+]?[\d.]+(?:e[-+]?\d+)?(?= |$)", words)]
 

@@ -51,7 +51,6 @@ QUICK = [("Burmester's curves", A4), ("far pole", UPRIGHT)]
 
 @cache
 def sheet_of(name: str, paper: Paper = A4) -> Canvas:
-    """The sheet, drawn once."""
     return construction_sheet(EVERY[name](), paper)
 
 

@@ -175,8 +175,6 @@ def ripple(t: Array, order: int = 0) -> Array:
 
 @pytest.fixture
 def write(tmp_path: Path) -> Write:
-    """Writes a log of columns."""
-
     def log(**columns: Array) -> Path:
         path = tmp_path / "run.csv"
         rows = np.column_stack(list(columns.values()))
