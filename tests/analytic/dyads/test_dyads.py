@@ -130,7 +130,7 @@ def test_error_never_exceeds_the_bound(kind: str, count: int) -> None:
     assert (found.sine < 2e-3).mean() > 0.3, "half of the dyads are meant to stand near toggle"
 
 
-@many(200)
+@many(100)
 @pytest.mark.parametrize("kind", KINDS)
 def test_bound_covers_inputs_that_are_wrong_by_their_stated_error(kind: str, count: int) -> None:
     """From rounding up to errors as large as the links, in places, rates, and turning guides."""
