@@ -29,8 +29,8 @@ MISSED = 0.02
 """The part of them that chance may make two faults of: a mean and a delay in noise, say."""
 
 
-AS_ANOTHER = {"fast_driver", "shaken_times", "backwards_driver"}
-"""As `slow_clock` and `rounded_times`, and as `test_guards.py` has it; each takes half a second."""
+AS_ANOTHER = {"fast_driver"}
+"""As `slow_clock`, and as `test_told.py` has it; half a second."""
 
 
 @pytest.mark.parametrize(

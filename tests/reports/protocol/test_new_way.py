@@ -21,9 +21,9 @@ ENGINE = "--engine tests.worlds.bead.engine:ENGINE"
 COMMANDS = {
     "verify": f"verify bead.toml {ENGINE} --profile tuned --json verdict.json",
     "refused": f"verify fast.toml {ENGINE}",
-    "run": f"run bead.toml {ENGINE} --duration 1.5 -o log.csv",
+    "run": f"run bead.toml {ENGINE} --duration 0.75 -o log.csv",
     "judge": "judge bead.toml log.csv --step 0.0004 --json log.json",
-    "sweep": f"sweep bead.toml {ENGINE} --profile tuned --free --duration 1.5 --dt 1e-3 -o study "
+    "sweep": f"sweep bead.toml {ENGINE} --profile tuned --free --duration 0.75 --dt 1e-3 -o study "
     "--no-timing --jobs 1",
     "report": "report study -o page.html",
     "figures": "figures study -o figs",
