@@ -24,7 +24,7 @@ WITH_EXAMPLES = [
 (ENGINES,) = (page for page in PAGES.values() if "`examples/engine/penalty_engine.py` is" in page)
 MADE = {"forces": "figs", "elastic": "figs", "how-to/own-model": "out"}
 """Folders that a page has made, and names all files of."""
-SHORT = ("index", "theory/centres")
+SHORT = ("index",)
 """Pages whose commands take some tenths of a second."""
 
 

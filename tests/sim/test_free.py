@@ -26,6 +26,7 @@ from sim.registry import ENGINES
 from sim.run import run
 from sim.run.check import refuse_other_model
 from tests.worlds import runs
+from tests.worlds.tiers import slow
 
 DT_S = 1e-3
 
@@ -171,9 +172,10 @@ def test_of_a_driven_mechanism_no_energy_is_told() -> None:
         assert runs.ran(load_scene("shaper"), name, dt_s=1e-3, steps=10).energy is None
 
 
+@slow("two seconds: loads that hang on the angle are asked for at every stage of a step")
 def test_an_engine_runs_the_cycle_that_the_flywheel_is_for() -> None:
     """The drive a constant torque, two cycles: nothing settles, so that the second is as the
-    first. Some 2 s, as loads that hang on the angle are asked for at every stage of a step."""
+    first."""
     cycle = wanted_flywheel(TurningMachine.of(load_scene("engine-four-stroke")), 0.02).cycle
     scene = cycle_scene(cycle, 2.05)
     link = runs.ran(scene, "mujoco", per_turn=1400, drive="free").motion.links[scene.driver.link]

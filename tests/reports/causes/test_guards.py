@@ -17,7 +17,7 @@ from reports.causes.world import World
 from reports.logs.channel import Channel
 from reports.logs.kinds import KINDS
 from tests.worlds.sheets import SCENE, Sheet, angle, at, later, of, omega, only
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slow
 
 PLAIN = of(angle("rocker"), angle("coupler"))
 THREE = of(angle("rocker"), omega("rocker"), angle("coupler"))
@@ -49,6 +49,7 @@ def test_no_length_is_told_that_would_move_a_channel_that_is_right() -> None:
     assert "length" not in {cause.name for cause in found}
 
 
+@slow("a second; that a size is told where all lengths are, `test_faults.py` has")
 def test_two_bars_of_other_lengths_are_not_a_scene_of_another_size() -> None:
     plain = of(point("B", "x"), point("B", "y"), point("C", "x"), angle("rocker"))
     both = plain.of(solve(bars(crank=0.11, coupler=0.24), plain.time_s, bound=False))
