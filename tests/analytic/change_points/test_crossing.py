@@ -24,6 +24,7 @@ from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.test_bounds import errors, over
+from tests.worlds.tiers import slow
 
 Lengths = tuple[float, float, float, float]
 OFF = 1e-30
@@ -265,6 +266,7 @@ def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to
     assert found == pytest.approx(float(exact(0)["coupler"].value), abs=1e-8)
 
 
+@slow("two seconds: the longest chains")
 def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
     theta = np.array([1.5, 0.5, 0.0, -0.5])
     motion = driven(WindowChain(6).scene(), theta)

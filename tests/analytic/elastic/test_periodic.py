@@ -42,6 +42,7 @@ from models.scene.laws import ConstantSpeed, FromRest
 from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
 from tests.analytic.elastic.driven import FEW, following, form_of, turning, with_elastic
+from tests.worlds.tiers import slow
 
 DRIVEN = [n for n in shipped("elastic") if type(load_scene(n).driver.law) is ConstantSpeed]
 
@@ -126,6 +127,7 @@ def test_a_load_over_time_has_to_repeat(orders: float, repeats: bool) -> None:
         assert periodic_motion(form).decay < 1e-12
 
 
+@slow("a second: 257 terms of a load with kinks")
 def test_what_kinks_leave_out_is_in_the_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     """A load with kinks has a series without end: two motions that stop at as many of its terms
     leave the same out."""
@@ -203,6 +205,7 @@ def apart_from(expected: Array, end: Array) -> float:
     return float(np.abs((end - expected) / scale).max() / np.abs(expected / scale).max())
 
 
+@slow("a second: the multipliers are held by what Liouville says")
 def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
     form = form_of(turning(4.15, rocker=30.0), ONE)
     found = stability_of(form, periodic_motion(form))

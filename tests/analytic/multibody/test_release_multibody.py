@@ -112,6 +112,7 @@ def test_sensitivity_is_what_a_changed_start_grows_by() -> None:
     assert own.sensitivity(end)[0] < 100.0
 
 
+@slow("a second: only so long a changed speed grows by as much")
 def test_sensitivity_is_what_a_changed_speed_grows_by_too() -> None:
     """Spun so fast that its speed tells when it is where."""
     pulsed = load_scene("fourbar-pulse")

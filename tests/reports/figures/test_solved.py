@@ -33,7 +33,7 @@ from reports.lectures.drawing.workbook.solve_family import (
 from reports.lectures.machine import vibration_figures as figures
 from reports.lectures.machine.regulation_figures import REGULATION_FIGURES, Regulated
 from tests.reports.figures.test_files import has_room, texts
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slow
 
 FOUR_STROKES = Tabulated((0.0, 3.0, 6.0, 12.0), (0.0, 5.0, -2.0, 0.0), period=4.0 * math.pi)
 WORK = Load("work", "crank", None, FOUR_STROKES, "angle")
@@ -174,6 +174,7 @@ def test_the_curve_is_the_deflection(vibration: SteadyVibration) -> None:
     assert curve[[0, -1]] == pytest.approx(1e3 * swing.middle[0], abs=1e-9)
 
 
+@slow("a second: that control does is tests/analytic/elastic")
 def test_control_takes_out_what_rings_without_it() -> None:
     scene = load_scene("fourbar-elastic-controlled")
     motion = control_elastic(scene, UNTIL_S, Modes(1))

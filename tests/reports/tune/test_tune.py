@@ -17,6 +17,7 @@ from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.mujoco.knobs import EVALUATIONS
 from sim.registry.offers import search_space
+from tests.worlds.tiers import slow
 from tests.worlds.workshop import mujoco_disturbance
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
@@ -45,6 +46,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@slow("two seconds: test_search.py goes on with a search cut short")
 def test_one_seed_gives_the_same_in_two_halves(path: Path, whole: tuple[int, str]) -> None:
     told(replace(SMALL, budget=4, output=path))
     assert told(replace(SMALL, output=path)) == whole

@@ -41,7 +41,7 @@ from tests.worlds.live_tables import (
     scene_of,
     write_changed,
 )
-from tests.worlds.tiers import few
+from tests.worlds.tiers import slow
 
 PARALLELOGRAM = {"AB": 0.1, "BC": 0.3, "CD": 0.1, "AD": 0.3, "start_deg": 0.0}
 
@@ -339,7 +339,8 @@ def by_library(table: FormulaTable, file: Path) -> Mapping[str, np.ndarray]:
     return columns
 
 
-@pytest.mark.parametrize("kind", few(KINDS, {"slider-crank-offset"}, "seconds: each formula anew"))
+@slow("seconds of each kind: each formula anew, which `evaluated` does as well")
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_library_recalculates_what_was_changed_and_says_what_is_open(
     kind: str, tmp_path: Path
 ) -> None:
