@@ -32,8 +32,8 @@ from sim.run.check import SAME
 SETTLING = 40
 """Samples in which an engine that starts with closed pins comes to its steady error: their rates
 are separate rows, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
-SETS = 2
-"""Sets of instants that are kept: positions and velocities often have two."""
+SETS = 3
+"""Sets of instants that are kept: positions, and velocities half a step before or after them."""
 
 
 @lru_cache(maxsize=1)
@@ -97,14 +97,15 @@ class Truth:
 
 
 def kept(motions: dict[bytes, Motion], time_s: Array, solved: Callable[[Array], Motion]) -> Motion:
-    """Return the motion at instants (T,), solved once, and then kept in the place of the oldest."""
+    """Return the motion at instants (T,), solved once, and then kept in the place of that whose
+    last use is longest ago."""
     instants = time_s.tobytes()
-    motion = motions.get(instants)
+    motion = motions.pop(instants, None)
     if motion is None:
         motion = solved(time_s)
-        for oldest in list(motions)[: 1 - SETS]:
-            motions.pop(oldest, None)  # another thread may have done so
-        motions[instants] = motion
+    for oldest in list(motions)[: 1 - SETS]:
+        motions.pop(oldest, None)  # another thread may have done so
+    motions[instants] = motion
     return motion
 
 
