@@ -170,7 +170,7 @@ def random_task(kind: str, number: int) -> TaskTable:
     return TASKS[kind](np.random.default_rng([19, list(TASKS).index(kind), number]))
 
 
-@functools.cache
+@functools.lru_cache(100)
 def random_solutions(kind: str, number: int) -> Solutions:
     """The solutions of that task, of many that hold a body no more than four. Raises
     CrankcheckError for one of four positions that none does."""
