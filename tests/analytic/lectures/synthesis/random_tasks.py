@@ -245,5 +245,6 @@ def proofs(kind: str, start: int = 0) -> Iterator[tuple[int, dict[str, float]]]:
 
 
 def _proof(one: Examined, kind: str, number: int, engine: str) -> float:
+    own = one.proposal.allowed * one.scene.longest_m  # of a fit, which no engine mends
     every = proven(one, random_task(kind, number), engine)
-    return max(math.inf if math.isnan(met.off) else met.off / met.limit for met in every)
+    return max(math.inf if math.isnan(met.off) else met.off / (met.limit + own) for met in every)
