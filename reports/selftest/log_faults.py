@@ -225,7 +225,6 @@ START = slice(5, 39)
 
 
 def _angle(change: Distortion, link: Callable[[Scene], str] = last) -> Plant:
-    """Change the angle of the last link, or of another."""
     return in_log(of_output("theta", change, link))
 
 
@@ -240,7 +239,6 @@ def _omega(change: Distortion) -> Plant:
 
 
 def _all_of(change: Callable[[Array], Array]) -> Distortion:
-    """Change the whole series, or leave it for a size of 0."""
     return lambda series, size: change(series) if size else series
 
 
@@ -292,7 +290,6 @@ VALUES = (
 
 
 def _with(series: str, at: int, value: float) -> Callable[[Scene, Run], Run]:
-    """Add a value to a sample of the last link."""
     change = of_output(series, lambda own, _: spoilt(own, at, value))
     return lambda scene, done: change(scene, done, 1.0)
 

@@ -8,13 +8,11 @@ import numpy as np
 
 from models.scene import Same, Scene
 from reports.compare.compare import truth_of
-from reports.selftest import free_changes
+from reports.selftest import engines, free_changes, requests
 from reports.selftest.elastic_changes import at_quarter, in_chain_log, in_given
 from reports.selftest.elastic_faults import segments, springs, stiffer
-from reports.selftest.engines import after_a_third
 from reports.selftest.fault import Plant, Unseen, in_log, in_scene, planting, switched
 from reports.selftest.log_faults import moved, of_output, taken
-from reports.selftest.requests import other_engine
 from sim.engine import Cost, Energy, Run
 from sim.registry import engine, offering
 from sim.run import run, setup
@@ -26,7 +24,7 @@ def _all_renamed(
 ) -> Run:
     """Run another engine, with every word as in the requested run."""
     asked = setup(scene, state, name, profile, **options)
-    other = other_engine(name)
+    other = requests.other_engine(name)
     if not size or other is None:
         return run(scene, state, name, profile, **options)
     done = run(scene, state, other, profile, **{**options, "settings": None})
@@ -36,12 +34,11 @@ def _all_renamed(
 
 def _as_silent(name: str) -> bool:
     """True if there is another engine that reports what this one does."""
-    other, silent = other_engine(name), not engine(name).reports_accelerations
+    other, silent = requests.other_engine(name), not engine(name).reports_accelerations
     return other is not None and (silent or engine(other).reports_accelerations)
 
 
 def _tenth(scene: Scene, done: Run, size: float) -> Run:
-    """Bring places nearer to the reference, by a factor of ten."""
     own = moved(done)
     true = truth_of(Same(scene)).at(own.time_s)
     kept = 1.0 - 0.9 * size
@@ -72,7 +69,6 @@ def _cheaper(_: Scene, done: Run, size: float) -> Run:
 
 
 def _of_energy(change: Callable[[Energy], Energy]) -> Plant:
-    """Change the energy in the log of a healthy run."""
     return switched(lambda _, done: replace(done, energy=done.energy and change(done.energy)))
 
 
@@ -104,7 +100,7 @@ UNSEEN = (
         "gravity-midway",
         "gravity is switched on in mid-run",
         f"{_NO_FORCES} Gravity at the start is refused (gravity-left-on).",
-        after_a_third(lambda tools: lambda session, size: tools.pull(session, 9.81 * size)),
+        engines.after_a_third(lambda tools: lambda session, size: tools.pull(session, 9.81 * size)),
         needs=lambda name: name in offering("spoiler"),
     ),
     Unseen(
