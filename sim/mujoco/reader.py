@@ -161,7 +161,9 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         raise file.ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
     keyframe = None if key is None else names.index(key)
     if keyframe is not None:
-        _refuse_not_finite(path, model, keyframe)
+        for what in ("qpos", "mpos", "mquat"):
+            if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
+                raise file.ModelError(f"{path}: keyframe {key}: its {what} is not finite")
         model = _moved(model, keyframe)
     try:
         qpos = model.qpos0 if keyframe is None else model.key_qpos[keyframe]
@@ -184,13 +186,6 @@ def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
                     f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
                     f"turns off it, to within {MOST_TURNS}"
                 )
-
-
-def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
-    for what in ("qpos", "mpos", "mquat"):
-        if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
-            name = file.name_of(model, "key", keyframe)
-            raise file.ModelError(f"{path}: keyframe {name}: its {what} is not finite")
 
 
 def _moved(model: Any, keyframe: int) -> Any:
