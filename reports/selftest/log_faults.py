@@ -294,7 +294,7 @@ def _with(series: str, at: int, value: float) -> Callable[[Scene, Run], Run]:
 def _without(bodies: str, name: Callable[[Scene], str]) -> Callable[[Scene, Run], Run]:
     def changed(scene: Scene, done: Run) -> Run:
         kept: dict[str, Any] = {bodies: dict(getattr(moved(done), bodies))}
-        del kept[bodies][name(scene)]
+        kept[bodies].pop(name(scene), None)
         return replace(done, motion=replace(moved(done), **kept))
 
     return changed
