@@ -121,17 +121,17 @@ CHANGED = {
         "{clock_of(drive) for drive in drives} <= {SECONDS}",
         "(not ({clock_of(drive) for drive in drives} <= {SECONDS}))",
     ),
-    102: (
-        '_beam("beam-modulus", "the modulus is too large", in_beam(stiffer_beam), 1e-2, "of it"),',
-        "1e-2",
-        "0.0125",
-    ),
+    102: ('elastic.in_beam(elastic.stiffer_beam), 1e-2, "of it"),', "1e-2", "0.0125"),
     103: (
         "return run(scene, state, name, *args, settings={**(settings or {}), **wrong}, **more)",
         "(settings or {})",
         "(name or {})",
     ),
-    106: ("return omega * 30.0 / np.pi", "omega * 30.0 / np.pi", "(omega * 30.0 * np.pi)"),
+    106: (
+        "_omega(_all_of(lambda omega: omega * 30.0 / np.pi))),",
+        "omega * 30.0 / np.pi",
+        "(omega * 30.0 * np.pi)",
+    ),
     108: (
         "size = SMALL if width_in(caption) <= room else TINY",
         "width_in(caption) <= room",

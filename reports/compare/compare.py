@@ -21,8 +21,7 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import Motion, State
-from models.scene import Same, Scene
-from models.scene.driver import driver_place
+from models.scene import Same, Scene, driver
 from reports.compare.errors import Error, Errors
 from reports.compare.tracks import Track, angle_error, fitting, lacking, tracks
 from reports.quantities import named
@@ -124,12 +123,6 @@ class Beside:
     motion: Motion
     _own: dict[str, tuple[Track, ...]] = field(default_factory=dict, repr=False, compare=False)
 
-    @staticmethod
-    def of(truth: Truth, run: Run) -> Beside | None:
-        """Return the run beside the reference; None where it logged nothing."""
-        motion = run.motion
-        return Beside(truth, run, motion) if motion is not None and motion.time_s.size else None
-
     @property
     def scene(self) -> Scene:
         return self.truth.scene
@@ -153,7 +146,7 @@ class Beside:
     @cached_property
     def crank(self) -> Array:
         """The logged coordinate of the driver [rad, or m of a slider], (T,); NaN without one."""
-        return fitting(driver_place(self.scene, self.motion), self.motion.time_s)
+        return fitting(driver.driver_place(self.scene, self.motion), self.motion.time_s)
 
     @cached_property
     def drive(self) -> Array:

@@ -14,7 +14,7 @@ from analytic.kinematics import repeats_after, solve
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.scene import Same, Scene
-from reports.compare.compare import Beside, truth_of
+from reports.compare.compare import truth_of
 from reports.compare.last_turn import Trace, trace
 from reports.compare.tracks import length
 from reports.judge.cell import Cell, Checked, examined
@@ -212,7 +212,7 @@ def checked_line(line: ModelLine) -> CheckedLine:
 
 def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
     """Return the course of a run, None without a log. Raises CrankcheckError for no reference."""
-    beside = Beside.of(truth_of(Same(cell.scene)), run)
+    beside = truth_of(Same(cell.scene)).beside(run)
     if beside is None:
         return None
     time_s = beside.motion.time_s

@@ -10,7 +10,7 @@ import pytest
 from analytic.kinematics import solve
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.compare.compare import Beside, Truth, compare
+from reports.compare.compare import Truth, compare
 from reports.compare.errors import Errors
 from sim.engine import Poses, Run
 from sim.run import run
@@ -64,6 +64,6 @@ def errors_of(disturbed: Callable[..., Run]) -> Callable[..., Errors]:
     """The errors that `compare` finds in a disturbed run."""
 
     def find(scene: Scene, *args: object, **options: object) -> Errors:
-        return compare(Beside.of(Truth(scene), disturbed(scene, *args, **options)))
+        return compare(Truth(scene).beside(disturbed(scene, *args, **options)))
 
     return find
