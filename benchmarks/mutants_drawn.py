@@ -115,7 +115,7 @@ CHANGED = {
         "(name not in own or OTHERS.get(name) in own)",
     ),
     86: ("log: OwnLog = field(kw_only=True)", "True", "False"),
-    87: ("words = words[:-1]", "-1", "1"),
+    87: ("while words and words[-1] in AFTER:", "-1", "1"),
     101: (
         "return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS",
         "{clock_of(drive) for drive in drives} <= {SECONDS}",
