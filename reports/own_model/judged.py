@@ -84,14 +84,13 @@ class JudgedModel:
     def others(self) -> list[CheckedLine]:
         """The other lines worth reporting."""
         names = told(self.account.profiles)
-        rest = [one for one in self.lines if one.cell.profile not in names]
-        return [one for one in rest if self._is_worth_reporting(one)]
-
-    def _is_worth_reporting(self, one: Checked) -> bool:
-        if one.status != self.own.status:
-            return True
-        factor = self.gains(one)[0]
-        return not (1 / SAYS <= factor <= SAYS) and math.isfinite(factor)
+        rest = [(one, self.gains(one)[0]) for one in self.lines if one.cell.profile not in names]
+        return [
+            one
+            for one, factor in rest
+            if one.status != self.own.status
+            or (math.isfinite(factor) and not 1 / SAYS <= factor <= SAYS)
+        ]
 
     def without(self, kind: str) -> CheckedLine | None:
         """Return the line without the disturbances of a kind, None where there is none."""

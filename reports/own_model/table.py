@@ -257,7 +257,9 @@ STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
 def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
     """Print the whole model."""
     _failures(console, judged)
-    _told(console, str(judged.account.request.path), reading(judged.account))
+    console.print(Text(harmless(str(judged.account.request.path)), "bold"))
+    for head, text in reading(judged.account).items():
+        hanging(console, f"  {head}: ", harmless(text))
     console.print()
     console.print(_table(judged, console.width), "")
     if text := still_out(judged):
@@ -265,12 +267,10 @@ def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> Non
     if text := gaps(judged):
         hanging(console, "joints: ", harmless(text))
     _disturbing(console, judged)
-    _recommended(console, judged)
+    console.print(Text(recommended_head(judged), "bold"))
+    console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
     console.print(Text(harmless(verdict_text(judged)), STYLES[judged.verdict]))
-    lines = [
-        *footer(judged),
-        ", ".join(f"{name} {value}" for name, value in facts.items()),
-    ]
+    lines = [*footer(judged), ", ".join(f"{name} {value}" for name, value in facts.items())]
     console.print(escape("\n".join(lines)), style="dim", highlight=False)
 
 
@@ -280,12 +280,6 @@ def _failures(console: Console, judged: JudgedModel) -> None:
     head = f"{MARKS[judged.verdict].plain}  {judged.account.request.path}, as written"
     show_failed(console, head, titled(judged.failures), judged.own.remedy)
     console.print()
-
-
-def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
-    console.print(Text(harmless(title), "bold"))
-    for head, text in told.items():
-        hanging(console, f"  {head}: ", harmless(text))
 
 
 def _table(judged: JudgedModel, width: int) -> Table:
@@ -338,11 +332,6 @@ def _disturbing(console: Console, judged: JudgedModel) -> None:
         texts = [group.short(), *([group.effect] if group.effect else [])]
         hanging(console, f"  {group.kind}: ", harmless("; ".join(texts)))
     console.print()
-
-
-def _recommended(console: Console, judged: JudgedModel) -> None:
-    console.print(Text(recommended_head(judged), "bold"))
-    console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
 
 
 def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:

@@ -61,16 +61,10 @@ class ReadModel:
     @property
     def disturbances(self) -> list[Disturbance]:
         """Disturbances, with points of a link that may have been meant to be one."""
-        called = self.planar.read.names
-        near = [
-            Disturbance(
-                "near points",
-                f"{called[each.link]}: {each.first} and {each.second} are {each.distance_m:.3g} m "
-                "apart",
-            )
-            for each in nearly(self.planar.read.points, self.planar.linkage)
-        ]
-        return [*self._present, *near]
+        read = self.planar.read
+        near = nearly(read.parts.points, self.planar.linkage)
+        of_links = [Disturbance("near points", f"{read.names[at]}: {text}") for at, text in near]
+        return [*self._present, *of_links]
 
     @property
     def files(self) -> list[Path]:
@@ -101,7 +95,7 @@ class ReadModel:
     @property
     def notes(self) -> Sequence[str]:
         """What was held, and left out."""
-        return self.planar.linkage.component.loop.notes
+        return self.planar.linkage.component.notes
 
     def welds(self) -> list[str]:
         """List the welds that unite bodies of the linkage."""

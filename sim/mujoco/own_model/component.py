@@ -94,29 +94,13 @@ class RigidBody:
     joints: tuple[PlanarJoint, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Component:
-    """The driven loop without the ground, which has the id 0."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Component(DrivenLoop):
+    """The driven loop in its plane, without the ground, which has the id 0."""
 
-    loop: DrivenLoop
-    data: Any
     plane: Plane
     bodies: tuple[RigidBody, ...]
     rods: tuple[HeldRod, ...]
-
-    @property
-    def model(self) -> Any:
-        """The model; the base of the loop counts as ground."""
-        return self.loop.model
-
-    @property
-    def driven(self) -> int:
-        return self.loop.driven
-
-    @property
-    def closures(self) -> tuple[ModelClosure, ...]:
-        """Equalities that close the loop."""
-        return self.loop.closures
 
     def rigid(self, body: int) -> int:
         """Return the rigid body of a body of the model."""
@@ -133,11 +117,10 @@ def component(model: Any, joint: str, qpos: Array) -> Component:
         See `driven_loop`; a joint off the plane, or of another kind.
     """
     loop = driven_loop(model, joint, qpos)
-    data = loop.data
-    plane = Plane.across(data.xaxis[loop.driven])
+    plane = Plane.across(loop.data.xaxis[loop.driven])
     rods: list[HeldRod] = []
-    bodies = tuple(_body(loop, plane, body, rods) for body in loop.bodies)
-    return Component(loop, data, plane, bodies, tuple(rods))
+    bodies = tuple(_body(loop, plane, body, rods) for body in loop.ids)
+    return Component(**vars(loop), plane=plane, bodies=bodies, rods=tuple(rods))
 
 
 def _body(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> RigidBody:
@@ -154,7 +137,7 @@ def _rod(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> tupl
     plane hold there at two places, and add it to the rods; none for any other body."""
     model, data, index = loop.model, loop.data, int(loop.model.body_jntadr[root])
     kind = JOINTS[int(model.jnt_type[index])]
-    carries = any(rigid(model, int(model.body_parentid[body])) == root for body in loop.bodies)
+    carries = any(rigid(model, int(model.body_parentid[body])) == root for body in loop.ids)
     if kind not in ("free", "ball") or carries:
         return ()
     places = [data.xanchor[index]] if kind == "ball" else []

@@ -33,7 +33,6 @@ JOINTS = {
     kind.value: kind.name.removeprefix("mjJNT_").lower()
     for kind in mujoco.mjtJoint.__members__.values()
 }
-HINGE = mujoco.mjtJoint.mjJNT_HINGE.value
 SHOWN = 6
 WORLD = 0
 NOTHING = 1e-9
@@ -45,7 +44,8 @@ Ties = Mapping[int, set[int]]
 
 @dataclass(frozen=True, eq=False)
 class DrivenLoop:
-    """The rigid bodies that move with the joint ``driven``, and the equalities that close them.
+    """The rigid bodies ``ids`` that move with the joint ``driven``, and the equalities that close
+    them.
 
     ``model`` counts the base as ground, ``data`` is its pose. ``held`` are the freedoms of the base
     [columns of qvel], ``idle`` the equalities that would move it; ``follows`` says that bodies hang
@@ -55,7 +55,7 @@ class DrivenLoop:
     model: Any
     data: Any
     driven: int
-    bodies: tuple[int, ...]
+    ids: tuple[int, ...]
     closures: tuple[ModelClosure, ...]
     held: tuple[int, ...] = ()
     idle: tuple[int, ...] = ()
@@ -271,7 +271,7 @@ def _not_drivable(model: Any, index: int, ties: Ties) -> str:
     if len(block) > 2 and not block & {WORLD, *above[1:]}:
         return ""
     told = f"it turns against body {body_name(model, parent)}, and not against the ground"
-    movers = [b for b in above if any(model.jnt_type[j] != HINGE for j in _joints(model, [b]))]
+    movers = [b for b in above if not all(is_hinge(model, j) for j in _joints(model, [b]))]
     if movers and len(block) > 2:
         told += f", which its loop meets too; hold that body: take out {_joints_of(model, movers)}"
     return told

@@ -15,7 +15,6 @@ from models.scene import GROUND, Scene
 from models.scene.joints import blocks, sliding_angle
 from sim.mujoco.own_model.component import PlanarJoint
 from sim.mujoco.own_model.driven_loop import WORLD, reading
-from sim.mujoco.own_model.held_rods import seen
 from sim.mujoco.own_model.linkage import Linkage, Placement, pair, size
 from sim.mujoco.own_model.scene import Matter, SceneRead
 
@@ -233,7 +232,8 @@ class PlanarModel:
     def seen(self, q: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
         """Return coordinates, rates and accelerations of the freedoms in the senses of the scene,
         (T, n) each, from those of the model, (T, nq) and (T, nv)."""
-        q, rate, push = seen(self.linkage.component.rods, q, rate, push)
+        rods = [rod.seen(q, rate, push) for rod in self.linkage.component.rods]
+        q, rate, push = map(np.hstack, zip((q, rate, push), *rods, strict=True))
         at, dofs = list(self.limbs.positions), list(self.limbs.rates)
         senses = np.array(self.limbs.senses)
         return q[:, at] * senses, rate[:, dofs] * senses, push[:, dofs] * senses
@@ -241,10 +241,7 @@ class PlanarModel:
     def put(self, data: Any, q: Array, rate: Array) -> None:
         """Set the freedoms of ``data`` to coordinates and rates in the senses of the scene."""
         model = self.model
-        every, rates = (
-            np.append(data.qpos, np.zeros(len(q))),
-            np.append(data.qvel, np.zeros(len(q))),
-        )
+        every, rates = (np.append(each, np.zeros(len(q))) for each in (data.qpos, data.qvel))
         every[list(self.limbs.positions)] = np.array(self.limbs.senses) * q
         rates[list(self.limbs.rates)] = np.array(self.limbs.senses) * rate
         data.qpos[:], data.qvel[:] = every[: model.nq], rates[: model.nv]

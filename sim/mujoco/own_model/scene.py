@@ -142,11 +142,6 @@ class SceneRead:
     names: Mapping[int, str]
     parts: SceneParts
 
-    @property
-    def points(self) -> tuple[NamedPoint, ...]:
-        """Points of the scene, as its links are drawn."""
-        return tuple(self.parts.points)
-
 
 def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
     """Make the scene of a linkage.

@@ -62,7 +62,7 @@ class OwnModelSession(SteppedModel):
         )
         self._own, self._scene = own, scene
         self._settings = held(model, own.loops, settings)
-        loop = own.linkage.component.loop
+        loop = own.linkage.component
         _give_flywheel(model, [int(model.jnt_dofadr[own.driven]), *loop.held], own.inertia_kg_m2)
         model.eq_active0[list(loop.idle)] = 0
         self._hold(model, own.keyframe)
@@ -77,10 +77,10 @@ class OwnModelSession(SteppedModel):
         self._own.put(self._data, q, rate)
         crank = int(self._model.jnt_dofadr[self._own.driven])
         self._data.qvel[crank] = float(scene.driver.law.at(np.array([state.time_s]))[1][0])
-        loop = self._own.linkage.component.loop
+        loop = self._own.linkage.component
         self._data.qvel[list(loop.held)] = 0.0
         if loop.follows:
-            own = np.isin(self._model.dof_bodyid, loop.bodies)
+            own = np.isin(self._model.dof_bodyid, loop.ids)
             _let_follow(self._model, self._data, {*np.flatnonzero(own), *loop.held})
 
     def record(self, steps: int, every: int) -> Log:
@@ -177,7 +177,7 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
         MuJoCo sees a loop open that is closed in the closed form: the model was misread.
     """
     model, data = own.model, mujoco.MjData(own.model)
-    if own.linkage.component.loop.held:
+    if own.linkage.component.held:
         data.qpos[:] = own.qpos
     touching: dict[tuple[str, str], int] = {}
     low, high = np.full(model.nq, np.inf), np.full(model.nq, -np.inf)
