@@ -145,18 +145,15 @@ class Excerpt:
     def rest(self, error: Array, expected: Array | None = None) -> float:
         """Return the remaining part of the error if it is ``error``, against another reference
         ``expected``: by maximum or root mean square, whichever is more; infinite if missing."""
-        left, size = (
-            CauseSize.of(error),
-            self.size if expected is None else self.size_beside(expected),
-        )
+        left = CauseSize.of(error)
+        size = self.size if expected is None else self.size_beside(expected)
         pairs = ((left.largest, size.largest), (left.rms, size.rms))
         return max(part / whole if whole > 0.0 else np.inf for part, whole in pairs)
 
     def left(self, error: Array) -> float:
         """Return the largest remaining error over the original one."""
-        return CauseSize.of(error).largest / max(
-            CauseSize.of(self.error).largest, np.finfo(float).tiny
-        )
+        before = max(CauseSize.of(self.error).largest, np.finfo(float).tiny)
+        return CauseSize.of(error).largest / before
 
     def explained(self, error: Array, expected: Array | None = None) -> bool:
         """True if the remaining error is small enough for an explanation."""

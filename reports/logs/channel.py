@@ -92,12 +92,18 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Gap:
-    """A column with the gap at a pin or slider: in its ``unit``, and as ``opening_m`` (T,)."""
+class GapColumn:
+    """A column with the distance of the bodies at a pin or slider, in its ``unit``."""
 
     column: str
     of: str
     unit: str
+
+
+@dataclass(frozen=True)
+class Gap(GapColumn):
+    """Such a column with its numbers (T,) [m]."""
+
     opening_m: Array
 
 

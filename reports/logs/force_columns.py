@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -66,10 +66,7 @@ def log_forces(
         time_s if acting_s is None else acting_s,
         {p: _pin(p, bodies, read, nothing) for p, bodies in joined_at(scene).items()},
         {
-            name: SliderForces(
-                read.get(("normal", name, "", 0), nothing),
-                read.get(("moment", name, "", 0), nothing),
-            )
+            name: SliderForces(*(read.get((kind, name, "", 0), nothing) for kind in OF_GUIDES))
             for name in scene.sliders
         },
         read.get(drive_place(scene), nothing),
@@ -153,6 +150,7 @@ UNITS: Mapping[str, Mapping[str, float]] = {
 TIMES = "force_time_s"
 Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
 """Content of a column: kind, point or slider, body, and axis; a push drives a slider."""
+OF_GUIDES: Sequence[Literal["normal", "moment"]] = ("normal", "moment")
 MOMENTS = ("torque", "moment")
 A_FORCE = "a force, which is judged with --forces"
 FORCE_LENGTH = "it is the length of a force, whose components are judged with --forces"
@@ -192,10 +190,8 @@ def force_places(scene: Scene) -> dict[str, Place]:
             if len(bodies) == 2:
                 found[f"{point}_f{letter}"] = ("pin", point, bodies[1], axis)
     for name in scene.sliders:
-        for kind in ("normal", "moment"):
-            of: Place = ("normal" if kind == "normal" else "moment", name, "", 0)
-            found[f"{name}_slider_{kind}"] = of
-            found[f"{name}_{kind}"] = of
+        for kind in OF_GUIDES:
+            found[f"{name}_slider_{kind}"] = found[f"{name}_{kind}"] = (kind, name, "", 0)
     return found
 
 

@@ -8,7 +8,7 @@ reference.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Protocol, cast
 
 import numpy as np
@@ -52,23 +52,11 @@ class AtCrank(Truth):
             return self.crank_rad
         return np.interp(time_s, self.time_s, self.crank_rad)
 
-    def at(self, time_s: Array) -> Motion:
+    def _solved(self, time_s: Array) -> Motion:
         """Return the reference at instants of the rows; other angles are interpolated."""
-        instants = time_s.tobytes()
-        if instants not in self._motions:
-            crank = self.crank_at(time_s)
-            _, omega, alpha = self.scene.driver.law.at(time_s)
-            self._motions[instants] = solve_driven(
-                self.scene,
-                crank,
-                omega,
-                alpha,
-                time_s,
-                links=self.links,
-                points=self.points,
-                bound=self.bound,
-            )
-        return self._motions[instants]
+        crank, (_, omega, alpha) = self.crank_at(time_s), self.scene.driver.law.at(time_s)
+        solved = partial(solve_driven, links=self.links, points=self.points, bound=self.bound)
+        return solved(self.scene, crank, omega, alpha, time_s)
 
 
 @dataclass(frozen=True)
@@ -181,7 +169,6 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         stopped_at_s=float(log.time_s[-1]),
         start_s=float(log.time_s[0]),
         steps=steps,
-        every=1,
         with_forces=borne is not None,
         forces_of="steps" if borne and borne.of_steps else "states",
     )
@@ -217,9 +204,7 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     way = way_of(log.scene)
     roles = way.roles_of(with_forces=beside.run.with_forces)
     for name, entry in QUANTITIES.items():
-        if entry.role not in roles:
-            continue
-        if name == "segments":  # which the same column says as the deflection
+        if entry.role not in roles or name == "segments":  # said as the deflection by its column
             continue
         reference, whole = beside.reference, beside.whole
         if entry.role == "force":

@@ -3,13 +3,13 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
-from models.errors import CrankcheckError, cut, few, shown
+from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.compare.compare import Truth
@@ -48,27 +48,10 @@ class DriveFit:
     explains: bool = True
 
 
-def refuse_geometry_alone(drive: LogDrive, *, forces: bool) -> None:
-    """Refuse forces where the geometry alone is judged. Raises CrankcheckError."""
-    if forces and drive == "logged":
-        raise CrankcheckError(
-            "--forces: with --drive logged the geometry alone is judged, and forces take rates; "
-            "use --drive scene or fitted"
-        )
-
-
 def why_aside(drive: LogDrive, driver: str) -> str:
     """Return the reason why quantities in a log are not judged at the logged angle."""
     what = "--drive logged judges the geometry alone," if drive == "logged" else "the log is judged"
     return f"{what} at its angle of {driver}"
-
-
-def chosen_drive(text: str) -> LogDrive:
-    """Return the drive of that name. Raises CrankcheckError for another."""
-    for name in get_args(LogDrive):
-        if text == name:
-            return name  # type: ignore[no-any-return]  # get_args has lost what they are
-    raise CrankcheckError(f"--drive {shown(text)}: unknown; use scene, fitted or logged")
 
 
 def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:

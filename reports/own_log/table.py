@@ -106,7 +106,7 @@ def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
 def _table(rows: Sequence[LogRow], width: int) -> Table:
     heads = (*HEADS, *["at t\ns:"] * (width >= WIDE))
     table = grid(heads, gap=1, cut=("",), least={"columns": 12, "read as": 16})
-    for row in sorted(rows, key=lambda row: row.verdict == "within"):
+    for row in rows:
         mark = Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red")
         names, what, *numbers = _texts(row)
         at = [f"{row.error.time_of_maximum_s:.4g}".replace("nan", "-")] if width >= WIDE else []
@@ -121,8 +121,9 @@ def _texts(row: LogRow) -> tuple[str, ...]:
 
 
 def shown_rows(judged: JudgedLog) -> list[LogRow]:
-    """Return the rows of a table: all columns, and other errors out of tolerance."""
-    return [row for row in log_rows(judged) if row.verdict == "out" or not row.is_aside]
+    """Return the rows of a table: all columns, and other errors out of tolerance, these first."""
+    rows = [row for row in log_rows(judged) if row.verdict == "out" or not row.is_aside]
+    return sorted(rows, key=lambda row: row.verdict == "within")
 
 
 def rest_text(judged: JudgedLog) -> str:
@@ -261,21 +262,16 @@ HEADS = ("", "columns", "read as", "largest\nerror:", "of its\nscale:", "limit:"
 
 def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     """Return the verdict, the faults and causes, every error, and the reference of the numbers."""
+    failures = (f"{f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures)
+    rows = shown_rows(judged)
+    cells = [("ok" if row.verdict == "within" else "OUT", *_texts(row)) for row in rows]
     parts = [
         f"## crankcheck judge: {plain(judged.log.source)}",
         f"**{verdict_line(judged).plain}**",
-    ]
-    parts += [
-        "\n".join(
-            f"- {f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures
-        ),
+        "\n".join(f"- {failure}" for failure in failures),
         "\n".join(f"- cause: {plain(cause_text(c))}" for c in judged.causes),
+        table(HEADS, cells, COMMENT_ROOM, "errors"),
     ]
-    cells = [
-        ("ok" if row.verdict == "within" else "OUT", *_texts(row))
-        for row in sorted(shown_rows(judged), key=lambda row: row.verdict == "within")
-    ]
-    parts.append(table(HEADS, cells, COMMENT_ROOM, "errors"))
     told = [f"drive: {fit_text(judged)}"] if judged.fit else []
     told += [f"not judged: {line}" for line in not_judged_lines(judged)]
     told += filter(None, [rest_text(judged)])

@@ -11,14 +11,7 @@ from reports.judge.halving import worst_place
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding
 from reports.output.numbers import short
-from reports.own_model.account import (
-    CheckedLine,
-    ModelAccount,
-    ModelLine,
-    ProposedChange,
-    checked_line,
-    told,
-)
+from reports.own_model.account import CheckedLine, ModelAccount, ModelLine, checked_line, told
 from reports.verify.advised import HELPS
 from reports.workers.isolated import Isolated, Limits, Lost
 
@@ -223,16 +216,14 @@ def chosen(account: ModelAccount, own: CheckedLine, run: Run) -> ModelAccount:
     contacts are off only for an error `SAYS` times less. If none gains, ``helps`` is False."""
     limit = _error(own)
     quick = replace(account, request=replace(account.request, converge=False))
-
-    def error(proposal: ProposedChange) -> float:
-        if not proposal.patch:
-            return limit
-        return _error(run(ModelLine(replace(quick, recommended=proposal), account.profiles[-1])))
-
+    lines = [
+        (each, ModelLine(replace(quick, recommended=each), account.profiles[-1]))
+        for each in account.proposals
+    ]
     for integrator in (True, False):
         found = [
-            (error(each), each)
-            for each in account.proposals
+            (_error(run(line)) if each.patch else limit, each)
+            for each, line in lines
             if each.advised.integrator == integrator
         ]
         kept = next(pair for pair in found if not pair[1].advised.contacts_off)

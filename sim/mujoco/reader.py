@@ -17,18 +17,9 @@ from models.scene import Scene
 from sim.engine import Drive, Engine, Poses, Session, Settings
 from sim.engine.measure import gaps
 from sim.engine.tree_poses import body_poses
-from sim.mujoco.own_model import variants
+from sim.mujoco.own_model import file, variants
 from sim.mujoco.own_model.component import component, loose_joints
 from sim.mujoco.own_model.disturbing import disturbances
-from sim.mujoco.own_model.file import (
-    ModelError,
-    body_name,
-    files,
-    load,
-    name_of,
-    scene_name,
-    text_of,
-)
 from sim.mujoco.own_model.linkage import linkage, nearly
 from sim.mujoco.own_model.planar_model import PlanarModel, limbs_of
 from sim.mujoco.own_model.scene import scene_of
@@ -69,7 +60,7 @@ class ReadModel:
     @property
     def files(self) -> list[Path]:
         """The file, and its included files."""
-        return files(self.path)
+        return file.files(self.path)
 
     def drawn(self) -> Poses:
         """Return the pose of the file: as drawn, or of the keyframe."""
@@ -101,7 +92,7 @@ class ReadModel:
         """List the welds that unite bodies of the linkage."""
         component = self.planar.linkage.component
         return [
-            f"{' and '.join(body_name(component.model, body) for body in each.bodies)}"
+            f"{' and '.join(file.body_name(component.model, body) for body in each.bodies)}"
             for each in component.closures
             if each.kind == "weld"
         ]
@@ -114,8 +105,8 @@ class ReadModel:
         """Put the model into states of its closed form."""
         try:
             return tour(self.planar, scene, states)
-        except ModelError as error:
-            raise ModelError(f"{self.path}: {error}") from None
+        except file.ModelError as error:
+            raise file.ModelError(f"{self.path}: {error}") from None
 
     def engine(self, advised: Advised) -> Engine:
         """Return MuJoCo with this model, and the lines of its report as profiles."""
@@ -135,7 +126,7 @@ class ReadModel:
         planar = self.planar
         told = variants.advice(planar.model, dt_s, advised)
         try:
-            raw = text_of(self.path)
+            raw = file.text_of(self.path)
             new = variants.patched(raw, planar.loops, int(planar.model.neq), told)
             found = compiled_file(self.path, new)
             text = variants.diff(self.path, raw, new)
@@ -160,12 +151,12 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name, or a keyframe
         that is not finite, or a hinge that is many turns away.
     """
-    model = load(path)
-    names = [name_of(model, "key", index) for index in range(model.nkey)]
+    model = file.load(path)
+    names = [file.name_of(model, "key", index) for index in range(model.nkey)]
     if key is not None and key not in names:
         there = [name for name in names if name]
         hint = suggestion(key, there, "it has") if there else "the model has none with a name"
-        raise ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
+        raise file.ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
     keyframe = None if key is None else names.index(key)
     if keyframe is not None:
         _refuse_not_finite(path, model, keyframe)
@@ -173,9 +164,9 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
     try:
         qpos = model.qpos0 if keyframe is None else model.key_qpos[keyframe]
         joined = linkage(component(model, joint, qpos))
-        scene = scene_of(joined, scene_name(path.stem, "model", ()), f"read off {path.name}")
-    except ModelError as error:
-        raise ModelError(f"{path}: {error}") from None
+        scene = scene_of(joined, file.scene_name(path.stem, "model", ()), f"read off {path.name}")
+    except file.ModelError as error:
+        raise file.ModelError(f"{path}: {error}") from None
     planar = PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe)
     _refuse_many_turns(path, planar)
     return ReadModel(path, planar)
@@ -187,7 +178,7 @@ def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
         for joint in body.joints:
             turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
             if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
-                raise ModelError(
+                raise file.ModelError(
                     f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
                     f"turns off it, to within {MOST_TURNS}"
                 )
@@ -196,8 +187,8 @@ def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
 def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
     for what in ("qpos", "mpos", "mquat"):
         if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
-            name = name_of(model, "key", keyframe)
-            raise ModelError(f"{path}: keyframe {name}: its {what} is not finite")
+            name = file.name_of(model, "key", keyframe)
+            raise file.ModelError(f"{path}: keyframe {name}: its {what} is not finite")
 
 
 def _moved(model: Any, keyframe: int) -> Any:

@@ -130,23 +130,20 @@ def _of_slider(slider: Slider) -> Iterator[DimensionFault]:
     sine, cosine = math.sin(slider.direction_rad), math.cos(slider.direction_rad)
     x, y = slider.through_m
 
-    def other(scene: Scene, **changed: Any) -> Scene:
-        return replace(scene, sliders={**scene.sliders, slider.name: replace(slider, **changed)})
+    def other(name: str, scene: Scene, value: Any) -> Scene:
+        changed = replace(slider, **{name: value})
+        return replace(scene, sliders={**scene.sliders, slider.name: changed})
 
     def beside(scene: Scene, value: float) -> Scene:
-        return other(scene, through_m=(x - value * sine, y + value * cosine))
-
-    def turned(scene: Scene, value: float) -> Scene:
-        return other(scene, direction_rad=value)
-
-    def tilted(scene: Scene, value: float) -> Scene:
-        return other(scene, angle_rad=value)
+        return other("through_m", scene, (x - value * sine, y + value * cosine))
 
     where = "" if slider.on == GROUND else f" on {slider.on}"
     yield DimensionFault(f"distance of {line}{where} to its left", 0.0, beside)
-    yield DimensionFault(f"direction of {line}{where}", slider.direction_rad, turned, "rad")
-    if slider.link is not None:
-        yield DimensionFault(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
+    for name, words in (
+        ("direction_rad", f"direction of {line}{where}"),
+        *([("angle_rad", f"angle of {slider.link} to {line}")] if slider.link is not None else []),
+    ):
+        yield DimensionFault(words, getattr(slider, name), partial(other, name), "rad")
 
 
 def _with_axis(place: tuple[float, float], axis: int, value: float) -> tuple[float, float]:

@@ -16,9 +16,10 @@ from reports.compare.compare import Truth
 from reports.describe.free_motion import motion_frame
 from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of, read_columns
+from reports.logs.instants import time_of
 from reports.logs.kinds import KINDS, Meaning
 from reports.logs.map_file import FileTable, map_of, map_text, read_map
-from reports.logs.meanings import time_of, understood
+from reports.logs.meanings import understood
 from reports.logs.names import SceneNames, meaning
 from reports.logs.text_rows import Layout
 
