@@ -65,15 +65,7 @@ class World:
     @staticmethod
     def of(truth: Truth) -> World:
         """Return the world of a reference, as it is driven."""
-        if not isinstance(truth, AtCrank) or truth.time_s is None or truth.crank_rad is None:
-            return World(truth.scene)
-        times, angles, law = truth.time_s, truth.crank_rad, truth.scene.driver.law
-
-        def drive(instants: Array) -> Orders:
-            _, omega, alpha = law.at(instants)
-            return np.interp(instants, times, angles), omega, alpha
-
-        return World(truth.scene, drive)
+        return World(truth.scene, truth.driven_at if isinstance(truth, AtCrank) else None)
 
     def at(self, stamped: Array, channels: Iterable[Channel]) -> Motion:
         """Return the motion (T,) of measured bodies at stamps [s]. Raises CrankcheckError."""

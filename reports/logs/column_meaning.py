@@ -10,7 +10,6 @@ from models.array import Array
 from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from models.scene.laws import MOST_TURNS
-from reports.logs import force_columns
 from reports.logs.channel import Channel, Gap, GapColumn, Reading
 from reports.logs.columns import Columns
 from reports.logs.kinds import DIMENSION, KINDS, TYPICAL, UNITS, Meaning, si
@@ -146,12 +145,6 @@ def unjudged_columns(
         and has_numbers(columns.raw[column])
         and not (why == OUT_OF_PLANE and np.ptp(columns.numbers(column)) <= FLAT)
     )
-
-
-def beside_forces(columns: Columns, unjudged: Iterable[tuple[str, str]]) -> dict[str, Array]:
-    """Return the lengths of forces and the friction of a log, by column."""
-    own = (force_columns.FORCE_LENGTH, force_columns.FRICTION)
-    return {c: force_columns.force_numbers(columns, c) for c, why in unjudged if why in own}
 
 
 MOST = 1e15

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -223,9 +223,17 @@ def _stems(column: str) -> Iterator[tuple[str, str, str]]:
         yield words, kind, ""
 
 
+def beside_forces(columns: Columns, unjudged: Iterable[tuple[str, str]]) -> dict[str, Array]:
+    """Return the lengths of forces and the friction of a log, by column, of those ``unjudged``."""
+    own = (FORCE_LENGTH, FRICTION)
+    return {column: force_numbers(columns, column) for column, why in unjudged if why in own}
+
+
 def why_not_judged(column: str, scene: Scene) -> str:
-    """Return the reason why a column named like a force is not judged: a length, friction, a
-    missing body; "" for other columns."""
+    """Return the reason why a column named like a force is not judged beside the motion: a force, a
+    length, friction, a missing body; "" for other columns."""
+    if names_force(column, scene):
+        return A_FORCE
     reasons = _others(scene)
     return next((reasons[stem] for stem, _, _ in _stems(column) if stem in reasons), "")
 
@@ -252,5 +260,4 @@ def _others(scene: Scene) -> dict[str, str]:
 
 
 def _vector(stem: str) -> tuple[str, str, str]:
-    """Return the names of components and length of a force."""
     return f"{stem}_fx", f"{stem}_fy", f"{stem}_f"

@@ -78,7 +78,6 @@ def further(columns: Columns, column: str, zero_s: Decimal, scene: Scene) -> Arr
 
 
 def _seconds(columns: Columns, column: str, unit: str, zero_s: Decimal) -> Array:
-    """Return a column of times in seconds after ``zero_s``."""
     size = UNITS["time"][unit]
     return np.asarray(columns.less(column, zero_s / Decimal(str(size))) * size)
 
@@ -109,7 +108,6 @@ def of_rows(columns: Columns, column: str, map_: Map, scene: Scene) -> tuple[Arr
 
 
 def _refuse_back(columns: Columns, column: str, time_s: Array) -> None:
-    """Refuse times that go back or stand still. Raises CrankcheckError."""
     steps = np.diff(time_s)
     back = np.flatnonzero(steps <= 0.0)
     if back.size:

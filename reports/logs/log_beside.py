@@ -7,7 +7,7 @@ reference.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Protocol, cast
 
@@ -40,23 +40,23 @@ class AtCrank(Truth):
     Rates are by the scene's law, as the measure of its difficulty; ``with_rates`` if they are
     judged as well."""
 
-    time_s: Array | None = None
-    crank_rad: Array | None = None
+    time_s: Array = field(kw_only=True)
+    crank_rad: Array = field(kw_only=True)
     with_rates: bool = False
 
     def crank_at(self, time_s: Array) -> Array:
         """Return the driver's angle at instants of the rows [rad]; at others interpolated."""
-        assert self.time_s is not None
-        assert self.crank_rad is not None
         if np.array_equal(time_s, self.time_s):
             return self.crank_rad
         return np.interp(time_s, self.time_s, self.crank_rad)
 
+    def driven_at(self, time_s: Array) -> tuple[Array, Array, Array]:
+        """Return that angle with its rate and acceleration, which are by the scene's law."""
+        return self.crank_at(time_s), *self.scene.driver.law.at(time_s)[1:]
+
     def _solved(self, time_s: Array) -> Motion:
-        """Return the reference at instants of the rows; other angles are interpolated."""
-        crank, (_, omega, alpha) = self.crank_at(time_s), self.scene.driver.law.at(time_s)
         solved = partial(solve_driven, links=self.links, points=self.points, bound=self.bound)
-        return solved(self.scene, crank, omega, alpha, time_s)
+        return solved(self.scene, *self.driven_at(time_s), time_s)
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,6 @@ from models.errors import CrankcheckError, listed, shown, suggestion
 from models.files.inputs import UnreadableError, regular_text, tables
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.kinds import DIMENSION, KINDS, UNITS
-from reports.logs.text_rows import Layout
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
 Truth = Annotated[bool, Field(strict=True)]
@@ -56,7 +55,8 @@ class MapTable(BaseModel):
 
 
 class FileTable(MapTable):
-    """Format of the file; ``holes = "meant"`` permits some in an even log."""
+    """Format of the file, "" where it is to be found; ``holes = "meant"`` permits some in an even
+    log."""
 
     separator: Literal["", ",", ";", "\t", " "] = ""
     decimal: Literal[".", ","] = "."
@@ -96,11 +96,6 @@ class Map(MapTable):
     file: FileTable = FileTable()
     time: TimeTable = TimeTable()
     channel: Annotated[list[ChannelTable], Field(max_length=2_000)] = []
-
-    @property
-    def layout(self) -> Layout:
-        """The format of the file by the map."""
-        return Layout(self.file.separator, self.file.decimal, self.file.sheet)
 
 
 def read_map(path: Path) -> Map:

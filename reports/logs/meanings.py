@@ -10,7 +10,7 @@ from models.scene import Scene
 from reports.logs import column_meaning, instants, map_file
 from reports.logs.channel import Channel, GapColumn, OwnLog, Reading
 from reports.logs.columns import Columns
-from reports.logs.force_columns import A_FORCE, TIMES, log_forces, names_force, why_not_judged
+from reports.logs.force_columns import TIMES, beside_forces, log_forces, names_force, why_not_judged
 from reports.logs.names import SceneNames, is_named, meaning
 
 
@@ -42,7 +42,11 @@ def understood(
         if column not in borne and column not in times.values()
     }
     gaps = [each for each in meant.values() if isinstance(each, GapColumn)]
-    unused = [(c, _why_unused(c, why, scene)) for c, why in meant.items() if isinstance(why, str)]
+    unused = [
+        (column, why if why == map_file.LEFT_OUT else why_not_judged(column, scene) or why)
+        for column, why in meant.items()
+        if isinstance(why, str)
+    ]
     channels = [each for each in meant.values() if isinstance(each, Channel)]
     channels = column_meaning.sized_channels(channels, columns, told, scene.sliders)
     channels, copies, still = judged_channels(channels, scene)
@@ -81,7 +85,7 @@ def understood(
         still=tuple(map(reading, still)),
         unused=tuple(unused),
         unjudged=unjudged,
-        besides=column_meaning.beside_forces(columns, unjudged) if forces else {},
+        besides=beside_forces(columns, unjudged) if forces else {},
         forces=log_forces(columns, scene, base, acts, ignored) if forces else None,
     )
 
@@ -115,13 +119,6 @@ def _meant(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callabl
         return not isinstance(found, str) and (found.gap or found.of not in scene.ground)
 
     return is_wanted
-
-
-def _why_unused(column: str, why: str, scene: Scene) -> str:
-    """Return the reason for a column that has no meaning as a motion."""
-    if why == map_file.LEFT_OUT:
-        return why
-    return A_FORCE if names_force(column, scene) else why_not_judged(column, scene) or why
 
 
 def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) -> str:

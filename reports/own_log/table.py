@@ -31,37 +31,24 @@ FEW = 12
 
 def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
     """Print a judged log."""
-    _failures(console, judged)
-    _late(console, judged)
+    _causes(console, judged)
     console.print(_table(shown_rows(judged), console.width), "")
     _rest(console, judged)
     console.print(verdict_line(judged))
     console.print(escape("\n".join(footer(judged, facts))), style="dim", highlight=False)
 
 
-def _failures(console: Console, judged: JudgedLog) -> None:
-    if not judged.failures:
-        return
-    head = f"OUT  {judged.log.source}, scene {judged.scene.name}"
-    show_failed(console, head, titled(judged.failures))
-    for cause in judged.causes:
-        if cause.name not in ADVICE:
-            hanging(console, "  cause: ", cause_text(cause), style="cyan")
-    if rest := unexplained(judged):
-        hanging(console, "  cause: ", no_cause_text(judged, rest), style="cyan")
-    console.print()
-
-
-ADVICE = ("advice",)
-"""Causes that are reported within limits as well."""
-
-
-def _late(console: Console, judged: JudgedLog) -> None:
+def _causes(console: Console, judged: JudgedLog) -> None:
+    """Print the failures with their causes; within limits the causes of delays, as notes."""
+    head, style = ("  cause: ", "cyan") if judged.failures else ("note: ", "yellow")
     if judged.failures:
-        return
+        title = f"OUT  {judged.log.source}, scene {judged.scene.name}"
+        show_failed(console, title, titled(judged.failures))
     for cause in judged.causes:
-        hanging(console, "note: ", cause_text(cause), style="yellow")
-    if judged.causes:
+        hanging(console, head, cause_text(cause), style=style)
+    if judged.failures and (rest := unexplained(judged)):
+        hanging(console, head, no_cause_text(judged, rest), style=style)
+    if judged.failures or judged.causes:
         console.print()
 
 

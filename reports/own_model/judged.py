@@ -140,7 +140,6 @@ def errors_of(one: Checked) -> tuple[float, float, float]:
 
 
 def _ratio(own: float, other: float) -> float:
-    """Return the ratio of two errors, NaN where one is missing."""
     if math.isnan(own) or math.isnan(other):
         return math.nan
     if own == other:

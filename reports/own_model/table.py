@@ -93,7 +93,6 @@ def _pose_text(account: ModelAccount) -> str:
 
 
 def _far(account: ModelAccount) -> list[str]:
-    """Return the pins far outside their bodies, in words."""
     return [each.text for each in account.disturbances if each.kind == FAR_PIN]
 
 

@@ -78,7 +78,7 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     if isinstance(log, str | PathLike):
         path, worth = path_of(log, "log"), wanted(scene, told, forces=forces)
         # No name for the columns, which take as much memory as all readings.
-        return understood(read_columns(path, told.layout, worth), scene, told, forces=forces)
+        return understood(read_columns(path, told.file, worth), scene, told, forces=forces)
     frame, source = _frame_of(log)
     return understood(columns_of(frame, source), scene, told, forces=forces)
 

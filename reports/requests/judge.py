@@ -53,7 +53,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     while True:
         blank = None
         try:
-            columns = read_columns(log, map_.layout, wanted(scene, map_))
+            columns = read_columns(log, map_.file, wanted(scene, map_))
             blank = blank_map(columns, scene, map_)
             text = map_text(understood(columns, scene, map_), map_.file)
         except CrankcheckError as error:

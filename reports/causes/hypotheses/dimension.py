@@ -25,7 +25,7 @@ SENSITIVE = 1e-12
 """Sum of squares of the reference's change with a dimension, below which it counts as 0."""
 ROUNDS = 6
 BEST = 2e-3
-"""Remaining part of an error too well explained to look for a dimension."""
+"""Remaining part of the error of a single channel too well explained to look for a dimension."""
 SLIGHT = 1e-6
 """Change by which slopes are taken, over the longest link or in radians."""
 FARTHEST = 1.0
@@ -51,7 +51,8 @@ class DimensionFault:
 def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of the dimensions that explain most, alone or both of a point."""
     columns = list(inquiry.unclaimed)
-    if not columns or (len(columns) == 1 and _told_alone(inquiry, columns[0])):
+    rests = [account.rests.get(columns[0], 1.0) for account in inquiry.accounts if columns]
+    if not columns or (len(columns) == 1 and min(rests, default=1.0) < BEST):
         return
     scene = inquiry.world.scene
     likely = _likely(inquiry, columns, dimensions(scene)[:MOST])
@@ -60,12 +61,6 @@ def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
     both = [tuple(one for one in likely if one.point == point) for point in points]
     pairs = [each for each in both if len(each) == 2][:2]
     yield from (_told(inquiry, columns, chosen) for chosen in (*singles, *pairs))
-
-
-def _told_alone(inquiry: Inquiry, column: str) -> bool:
-    """True if an account with few numbers explains a single channel too well for anything else."""
-    rests = (account.rests.get(column, 1.0) for account in inquiry.accounts)
-    return min(rests, default=1.0) < BEST
 
 
 def dimensions(scene: Scene) -> list[DimensionFault]:

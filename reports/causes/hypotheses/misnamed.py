@@ -143,23 +143,17 @@ def swapped(inquiry: Inquiry) -> Iterator[Account]:
         for ring in _rings(holds, (first,)):
             pairs = list(pairwise((*ring, first)))
             held = {column: holds[column][other] for column, other in pairs}
+            each = ", ".join(f"{inquiry.channel(other).name} in {c}" for c, other in pairs)
             told = inquiry.account(
                 "swapped",
                 CAUSE + CHOICE,
                 {column: error for column, (_, error) in held.items()},
-                _swap_phrase(inquiry, pairs),
+                "{who} have each other's readings" + (f": {each}" if len(pairs) > 2 else ""),
                 corrections={c: meaning(inquiry.channel(c), held[c][0]) for c in ring},
                 expected={column: inquiry.excerpts[other].expected for column, other in pairs},
             )
             if told is not None and len(told.columns) == len(ring):
                 yield told
-
-
-def _swap_phrase(inquiry: Inquiry, pairs: list[tuple[str, str]]) -> str:
-    if len(pairs) == 2:
-        return "{who} have each other's readings"
-    rings = ", ".join(f"{inquiry.channel(other).name} in {column}" for column, other in pairs)
-    return f"{{who}} have each other's readings: {rings}"
 
 
 def meaning(channel: Channel, instead: Channel) -> dict[str, object]:

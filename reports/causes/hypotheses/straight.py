@@ -43,18 +43,16 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
     """Yield each line that explains a channel: by sign or unit, by zero, by gain, or by two."""
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
+        known = list(_known(excerpt.channel))
+        zero = [line for line in known if line.name == "offset"]
         if excerpt.nought:
-            yield from _accounts(
-                inquiry, excerpt, [StraightLineFault("offset", CAUSE + NUMBER, 1.0, shifted=True)]
-            )
+            yield from _accounts(inquiry, excerpt, zero)
         elif np.ptp(excerpt.expected) <= excerpt.nothing:
             # A channel that stays: a zero explains whatever is there, and is the last thing to be.
-            plain = [line for line in _known(excerpt.channel) if not line.shifted]
-            told = list(_accounts(inquiry, excerpt, plain))
-            zero = [line for line in _known(excerpt.channel) if line.name == "offset"]
-            yield from told or _accounts(inquiry, excerpt, zero)
+            plain = [line for line in known if not line.shifted]
+            yield from list(_accounts(inquiry, excerpt, plain)) or _accounts(inquiry, excerpt, zero)
         else:
-            yield from _accounts(inquiry, excerpt, [*_known(excerpt.channel), *_fitted(excerpt)])
+            yield from _accounts(inquiry, excerpt, [*known, *_fitted(excerpt)])
 
 
 def _accounts(
@@ -174,7 +172,6 @@ def _steady_rate(excerpt: Excerpt) -> float:
 
 
 def _amount(value: float, unit: str, channel: Channel) -> str:
-    """Return a number in the unit of the log, and in SI where that differs."""
     dimension = channel.kind.dimension
     shown = f"{value / UNITS[dimension][unit]:+.4g} {unit}"
     return shown if unit == si(dimension) else f"{shown} ({value:+.4g} {si(dimension)})"

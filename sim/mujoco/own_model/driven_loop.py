@@ -137,7 +137,6 @@ def _freedoms(model: Any, bodies: Collection[int]) -> list[int]:
 
 
 def _joints_of(model: Any, bodies: Collection[int]) -> str:
-    """Return the joints of rigid bodies in words."""
     told = [
         (JOINTS[int(model.jnt_type[joint])], file.name_of(model, "joint", joint))
         for joint in _joints(model, bodies)

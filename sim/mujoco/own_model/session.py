@@ -86,20 +86,18 @@ class OwnModelSession(SteppedModel):
     def record(self, steps: int, every: int) -> Log:
         """Advance and log. Raises EngineError where the driven joint has left its course."""
         log = super().record(steps, every)
-        if not log.diverged:
-            self._refuse_lost_drive(log.poses)
-        return log
-
-    def _refuse_lost_drive(self, poses: Poses) -> None:
-        turned = poses.bodies[self._scene.driver.link].theta
-        wanted = self._scene.driver.law.at(poses.time_s)[0]
-        off = float(np.max(np.abs((turned - turned[0]) - (wanted - wanted[0]))))
+        if log.diverged:
+            return log
+        turned = log.poses.bodies[self._scene.driver.link].theta
+        wanted = self._scene.driver.law.at(log.poses.time_s)[0]
+        off = np.max(np.abs((turned - turned[0]) - (wanted - wanted[0])))
         if off > LOST_RAD:
             raise EngineError(
                 f"the driven joint is off by {off:.3g} rad, for all its flywheel, so that the line "
                 "says nothing of the loops; take off what loads that joint (damping, friction), or "
                 "please report it where nothing does"
             )
+        return log
 
     def facts(self) -> Facts:
         """Read the model as MuJoCo holds it now."""
@@ -235,7 +233,6 @@ def _geom(model: Any, geom: int) -> str:
 
 
 def _passed(own: PlanarModel, low: Any, high: Any) -> list[str]:
-    """List the limited joints that pass their limits."""
     model, texts = own.model, []
     for body in own.linkage.component.bodies:
         for joint in (each.index for each in body.joints):

@@ -250,7 +250,6 @@ def _options(
 
 
 def _tag(name: bytes, attributes: Mapping[str, str]) -> bytes:
-    """Write an element without content."""
     return _set(b"<" + name + b"/>", attributes)
 
 
