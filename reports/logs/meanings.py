@@ -1,4 +1,4 @@
-"""Conversion of columns to readings, by their names and the map; and the columns of times."""
+"""Conversion of columns to readings, by their names and the map; and the map that says it."""
 
 from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
@@ -158,6 +158,38 @@ def judged_channels(
             main.append(each)
     place = {each.column: n for n, each in enumerate(channels)}
     return sorted(main, key=lambda one: place[one.column]), copies, still
+
+
+def map_text(log: OwnLog, file: map_file.FileTable) -> str:
+    """Return the map of a log as understood, with the other columns as remarks, and the entries of
+    the original map on the file."""
+    lines = [*map_file.HEAD, "", *map_file.file_lines(file)]
+    if log.timed:
+        lines += ["[time]", *map_file.entries({"column": log.stamp[0], "unit": log.stamp[1]})]
+    if log.zero_s:
+        lines.append('zero = "first"')
+    for reading in (*log.readings, *log.copies):
+        lines += ["", "[[channel]]", *_channel_lines(reading.channel)]
+    for gap in log.gaps:
+        told = {"column": gap.column, "of": gap.of, "kind": "gap", "unit": gap.unit}
+        lines += ["", "[[channel]]", *map_file.entries(told)]
+    for column, reason in log.unused:
+        ignored = ["[[channel]]", *map_file.entries({"column": column, "ignore": True})]
+        left_out = reason == map_file.LEFT_OUT
+        lines += ["", *(ignored if left_out else map_file.form_lines(column, reason))]
+    return "\n".join(lines) + "\n"
+
+
+def _channel_lines(channel: Channel) -> Sequence[str]:
+    """Return a channel as lines of TOML, without defaults."""
+    told = {name: getattr(channel, name) for name in ("column", "of", "kind", "unit")}
+    told["kind"] = channel.kind.name
+    plain = Channel(channel.column, channel.kind, channel.of, channel.unit)
+    for name in ("sign", "offset", "wrapped", "relative_to", "on", "time", "delay_s"):
+        value = getattr(channel, name)
+        if value != getattr(plain, name) or (name == "wrapped" and channel.kind.turns):
+            told[name] = value
+    return map_file.entries(told)
 
 
 def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, str] | None:

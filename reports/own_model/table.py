@@ -186,10 +186,9 @@ def verdict_text(judged: JudgedModel) -> str:
         head += f", of a linkage that may not be the one you mean ({far[0].partition(';')[0]})"
     if not judged.account.helps:
         return f"{head}; {NO_HELP}"
-    better = "within" if last.verdict == "within" else last.verdict
     gain = judged.gains(last)[0]
     words = f", {factor_words(gain)}" if math.isfinite(gain) else ""
-    return f"{head}; recommended: {better}{words}"
+    return f"{head}; recommended: {last.verdict}{words}"
 
 
 def _why_out(judged: JudgedModel) -> str:

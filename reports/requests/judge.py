@@ -17,7 +17,7 @@ from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.judge import tolerance
-from reports.logs.map_file import Map, map_text, read_map
+from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.formats import junit
 from reports.output.numbers import finite
@@ -46,7 +46,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     CrankcheckError for a log that no map alone can mend.
     """
     from reports.logs.columns import read_columns  # pandas, which takes a third of a second
-    from reports.logs.meanings import blank_map, understood, wanted
+    from reports.logs.meanings import blank_map, map_text, understood, wanted
 
     fault: CrankcheckError | None = None
     tried, entries = [map_], dict[str, str]()

@@ -174,14 +174,13 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
 
 def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
     """Refuse hinges with so many turns that the rounding of their angles would be judged."""
-    for body in planar.linkage.component.bodies:
-        for joint in body.joints:
-            turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
-            if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
-                raise file.ModelError(
-                    f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
-                    f"turns off it, to within {MOST_TURNS}"
-                )
+    for joint in planar.limbs.joints:
+        turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
+        if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
+            raise file.ModelError(
+                f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
+                f"turns off it, to within {MOST_TURNS}"
+            )
 
 
 def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:

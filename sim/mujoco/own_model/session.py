@@ -234,15 +234,12 @@ def _geom(model: Any, geom: int) -> str:
 
 def _passed(own: PlanarModel, low: Any, high: Any) -> list[str]:
     model, texts = own.model, []
-    for body in own.linkage.component.bodies:
-        for joint in (each.index for each in body.joints):
-            if not model.jnt_limited[joint]:
-                continue
-            at = int(model.jnt_qposadr[joint])
-            least, most = (float(end) for end in model.jnt_range[joint])
-            past = max(least - float(low[at]), float(high[at]) - most)
-            if past > 0.0:
-                turns = is_hinge(model, joint)
-                far = f"{math.degrees(past):.3g} deg" if turns else f"{past:.3g} m"
-                texts.append(f"joint {joint_name(model, joint)} is led past its limit by {far}")
+    for joint in (each.index for each in own.limbs.joints if model.jnt_limited[each.index]):
+        at = int(model.jnt_qposadr[joint])
+        least, most = (float(end) for end in model.jnt_range[joint])
+        past = max(least - float(low[at]), float(high[at]) - most)
+        if past > 0.0:
+            turns = is_hinge(model, joint)
+            far = f"{math.degrees(past):.3g} deg" if turns else f"{past:.3g} m"
+            texts.append(f"joint {joint_name(model, joint)} is led past its limit by {far}")
     return texts

@@ -18,8 +18,8 @@ from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of, read_columns
 from reports.logs.instants import time_of
 from reports.logs.kinds import KINDS, Meaning
-from reports.logs.map_file import FileTable, map_of, map_text, read_map
-from reports.logs.meanings import understood
+from reports.logs.map_file import FileTable, map_of, read_map
+from reports.logs.meanings import map_text, understood
 from reports.logs.names import SceneNames, meaning
 
 SCENE = load_scene("fourbar-lecture-1")
