@@ -120,12 +120,10 @@ def compare(
             )
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.log_beside import beside_truth
-    from reports.own_log.drives import chosen_drive, refuse_geometry_alone
     from reports.own_log.judged import without_times
     from reports.own_log.log_limits import LogRequest, log_kind
 
-    chosen = chosen_drive(arguments.one_of(drive, "--drive", any_log.LOG_DRIVES))
-    refuse_geometry_alone(chosen, forces=arguments.is_true(forces, "forces"))
+    chosen = any_log.drive_of(drive, forces=forces)
     log = any_log.log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
     given = given_of([scene], segments, springs)

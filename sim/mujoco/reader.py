@@ -48,16 +48,10 @@ class ReadModel:
     @property
     def disturbances(self) -> list[Disturbance]:
         """Disturbances, with points of a link that may have been meant to be one."""
-        called = self.planar.read.names
-        near = [
-            Disturbance(
-                "near points",
-                f"{called[each.link]}: {each.first} and {each.second} are {each.distance_m:.3g} m "
-                "apart",
-            )
-            for each in nearly(self.planar.read.points, self.planar.linkage)
-        ]
-        return [*self._present, *near]
+        read = self.planar.read
+        near = nearly(read.parts.points, self.planar.linkage)
+        of_links = [Disturbance("near points", f"{read.names[at]}: {text}") for at, text in near]
+        return [*self._present, *of_links]
 
     @property
     def files(self) -> list[Path]:
@@ -88,7 +82,7 @@ class ReadModel:
     @property
     def notes(self) -> Sequence[str]:
         """What was held, and left out."""
-        return self.planar.linkage.component.loop.notes
+        return self.planar.linkage.component.notes
 
     def welds(self) -> list[str]:
         """List the welds that unite bodies of the linkage."""
@@ -178,14 +172,13 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
 
 def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
     """Refuse hinges with so many turns that the rounding of their angles would be judged."""
-    for body in planar.linkage.component.bodies:
-        for joint in body.joints:
-            turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
-            if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
-                raise file.ModelError(
-                    f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
-                    f"turns off it, to within {MOST_TURNS}"
-                )
+    for joint in planar.limbs.joints:
+        turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
+        if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
+            raise file.ModelError(
+                f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
+                f"turns off it, to within {MOST_TURNS}"
+            )
 
 
 def _moved(model: Any, keyframe: int) -> Any:
