@@ -115,23 +115,23 @@ CHANGED = {
         "(name not in own or OTHERS.get(name) in own)",
     ),
     86: ("log: OwnLog = field(kw_only=True)", "True", "False"),
-    87: ("words = words[:-1]", "-1", "1"),
+    87: ("while words and words[-1] in AFTER:", "-1", "1"),
     101: (
         "return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS",
         "{clock_of(drive) for drive in drives} <= {SECONDS}",
         "(not ({clock_of(drive) for drive in drives} <= {SECONDS}))",
     ),
-    102: (
-        '_beam("beam-modulus", "the modulus is too large", in_beam(stiffer_beam), 1e-2, "of it"),',
-        "1e-2",
-        "0.0125",
-    ),
+    102: ('elastic.in_beam(elastic.stiffer_beam), 1e-2, "of it"),', "1e-2", "0.0125"),
     103: (
         "return run(scene, state, name, *args, settings={**(settings or {}), **wrong}, **more)",
         "(settings or {})",
         "(name or {})",
     ),
-    106: ("return omega * 30.0 / np.pi", "omega * 30.0 / np.pi", "(omega * 30.0 * np.pi)"),
+    106: (
+        "_omega(_all_of(lambda omega: omega * 30.0 / np.pi))),",
+        "omega * 30.0 / np.pi",
+        "(omega * 30.0 * np.pi)",
+    ),
     108: (
         "size = SMALL if width_in(caption) <= room else TINY",
         "width_in(caption) <= room",

@@ -17,10 +17,8 @@ from models.scene.laws import ConstantSpeed
 from models.scene.loads import ConstantFriction
 from reports.judge.cell import Cell
 from reports.judge.three_steps import AT_ROUNDING
-from reports.plan.grid import shape_digest
-from reports.plan.singular import refuse_singular
+from reports.plan import grid, singular, study
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
-from reports.plan.study import load_study
 from reports.results.floor_fit import interpolate
 from reports.results.lines import OWN, Line, value_text
 from reports.store.reader import Stored
@@ -130,7 +128,7 @@ def demanded(
     demand = Demand(moved, speed_rad_s, frame_s, target, turns)
     _refuse_frame(demand)
     for scene in moved:
-        refuse_singular(scene, turns * demand.period_s)
+        singular.refuse_singular(scene, turns * demand.period_s)
     return demand
 
 
@@ -215,7 +213,7 @@ def choices(engines: Sequence[str], others: Iterable[Choice]) -> tuple[Choice, .
 
 def _shipped() -> Iterator[Choice]:
     """Yield the variants of the shipped study, of the installed engines."""
-    for variant in (one for several in load_study(None).variants for one in several.each()):
+    for variant in (one for several in study.load_study(None).variants for one in several.each()):
         with suppress(EngineError):
             settings = resolved(profile_of(engine(variant.engine), variant.profile), variant.chosen)
             yield Choice(variant.engine, variant.name, variant.profile, settings)
@@ -332,7 +330,7 @@ def _refusal(line: Line, stored_text: str, scene: Scene, text: str, choice: Choi
         return f"of {line.engine} {line.version}; here it is {here}"
     if line.drive != "prescribed":
         return f"under the drive {line.drive}"
-    if shape_digest(stored_text) != shape_digest(text):
+    if grid.shape_digest(stored_text) != grid.shape_digest(text):
         return f"another scene {line.scene}"
     law = parse_scene(stored_text, line.scene).driver.law
     ours = scene.driver.law

@@ -181,7 +181,6 @@ class _TriedRuns:
         return self.worst_seen(substeps).error <= self.demand.target
 
     def forget_the_study(self) -> None:
-        """Keep the results of runs now alone."""
         self.known = MeasuredStudy()
         run = {
             substeps: {name: seen for name, seen in here.items() if not seen.studied}
@@ -190,13 +189,11 @@ class _TriedRuns:
         self.seen = {substeps: here for substeps, here in run.items() if here}
 
     def reached(self, substeps: int) -> bool:
-        """True if every scene was seen to reach the target."""
         here = self.seen[substeps]
         whole = len(here) == len(self.demand.scenes)
         return whole and all(seen.error <= self.demand.target for seen in here.values())
 
     def worst_seen(self, substeps: int) -> Worst:
-        """Return the worst of the scenes that were looked at."""
         here = self.seen[substeps]
         name = max(here, key=lambda name: here[name].error)
         return Worst(substeps, name, here[name])

@@ -10,7 +10,7 @@ from rich.text import Text
 from models.errors import few, harmless
 from reports.advise.advice import Advice, Offer
 from reports.advise.demand import Demand
-from reports.advise.search import WORDS, SearchResult, Worst
+from reports.advise.search import WORDS, Worst
 from reports.output.console import grid, hanging, say_whole
 from reports.output.formats import json_text
 from reports.output.numbers import count, short
@@ -162,19 +162,15 @@ def footer(advice: Advice) -> str:
         "none do, their error is the least that was seen.",
         "ms per second: of stepping alone, for a second of the mechanism's own time, on the "
         f"dearest scene; times of one run, to compare with each other{noise}.",
-        *_of_scenes(advice),
     ]
+    if not advice.named:
+        lines.append(
+            "Another mechanism may need other numbers: crankcheck advise SCENE ... takes your own."
+        )
     if known.folder is not None:
         lines += list(_of_study(advice))
     lines.append(", ".join(f"{name} {value}" for name, value in facts.items()))
     return "\n".join(lines)
-
-
-def _of_scenes(advice: Advice) -> Iterator[str]:
-    if not advice.named:
-        yield (
-            "Another mechanism may need other numbers: crankcheck advise SCENE ... takes your own."
-        )
 
 
 def _of_study(advice: Advice) -> Iterator[str]:
@@ -209,16 +205,11 @@ def _of(advice: Advice, offer: Offer) -> Iterator[str]:
     """Yield the remarks on one offer; "" where there is none."""
     reached = offer.reached
     yield reached.ended.reason if reached.ended else ""
-    yield _unsteady(reached)
+    if reached.unsteady:
+        numbers = few((str(n) for n in reached.unsteady), SHOWN)
+        yield f"within with {numbers} sub-steps, and not with more: that is luck, and no promise"
     yield _growth(reached.promise or reached.at_frame)
     yield advice.caution(offer)
-
-
-def _unsteady(reached: SearchResult) -> str:
-    if not reached.unsteady:
-        return ""
-    numbers = few((str(n) for n in reached.unsteady), SHOWN)
-    return f"within with {numbers} sub-steps, and not with more: that is luck, and no promise"
 
 
 def _growth(worst: Worst | None) -> str:
@@ -286,7 +277,6 @@ def _offer(advice: Advice, offer: Offer) -> Mapping[str, object]:
 
 
 def _worst(demand: Demand, worst: Worst | None) -> dict[str, object]:
-    """Return the numbers of some sub-steps; none where they were not run."""
     if worst is None:
         return {}
     return {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -232,15 +232,6 @@ def fitted(
         if float(left @ left) > (1.0 - SETTLED) * size:
             break
     return at
-
-
-def fitted_from(
-    residual: Residual, starts: Iterable[Sequence[float]], delta: Sequence[float]
-) -> Array | None:
-    """Return the parameters (p,) with the least residual, fitted from several starts, if any."""
-    tried = (fitted(residual, start, delta) for start in starts)
-    found = [each for each in tried if each is not None]
-    return min(found, key=lambda each: float(np.sum(residual(each) ** 2)), default=None)
 
 
 def _slopes(residual: Residual, at: Array, left: Array, delta: Sequence[float]) -> Array | None:

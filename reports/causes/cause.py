@@ -31,8 +31,33 @@ class LogCase:
 
     @cached_property
     def excerpts(self) -> Mapping[str, Excerpt]:
-        """The excerpt of each judged channel. Raises CrankcheckError without a reference."""
-        return excerpts(self.readings, self.truth, self.limits)
+        """The excerpt of each judged channel, all at the same rows, including those of the largest
+        errors. Raises CrankcheckError without a reference."""
+        judged = [reading for reading in self.readings if reading.channel.column in self.limits]
+        motions, told = {}, []
+        for reading in judged:
+            of = id(reading.instants)
+            if of not in motions:
+                motions[of] = self.truth.at(reading.instants)
+            expected = reading.channel.expected(motions[of])
+            error = np.abs(_finite(reading.channel.error(reading.values, expected)))
+            row = int(np.argmax(error)) if error.size else 0
+            told.append((reading, expected, row, float(error[row])))
+        besides = [row for _, _, row, _ in told]
+        rows = picked(max((r.values.size for r in judged), default=0), besides)
+        return {
+            reading.channel.column: Excerpt(
+                reading=reading,
+                limit=self.limits[reading.channel.column],
+                worst=worst,
+                rows=rows,
+                values=reading.values[rows],
+                instants=reading.instants[rows],
+                expected=expected[rows],
+                error=_finite(reading.channel.error(reading.values[rows], expected[rows])),
+            )
+            for reading, expected, _, worst in told
+        }
 
     @property
     def out(self) -> tuple[Reading, ...]:
@@ -130,7 +155,8 @@ class Excerpt:
     def size_beside(self, expected: Array) -> CauseSize:
         """Return the scale for another reference: an explanation has to predict the readings, and
         not merely to be nearer than a large error. A signal of 0 sets no bound."""
-        return CauseSize.of(self.error).least(CauseSize.of_signal(expected, self.nothing))
+        sizes = CauseSize.of(self.error), CauseSize.of_signal(expected, self.nothing)
+        return CauseSize(min(each.largest for each in sizes), min(each.rms for each in sizes))
 
     @property
     def nothing(self) -> float:
@@ -145,18 +171,15 @@ class Excerpt:
     def rest(self, error: Array, expected: Array | None = None) -> float:
         """Return the remaining part of the error if it is ``error``, against another reference
         ``expected``: by maximum or root mean square, whichever is more; infinite if missing."""
-        left, size = (
-            CauseSize.of(error),
-            self.size if expected is None else self.size_beside(expected),
-        )
+        left = CauseSize.of(error)
+        size = self.size if expected is None else self.size_beside(expected)
         pairs = ((left.largest, size.largest), (left.rms, size.rms))
         return max(part / whole if whole > 0.0 else np.inf for part, whole in pairs)
 
     def left(self, error: Array) -> float:
         """Return the largest remaining error over the original one."""
-        return CauseSize.of(error).largest / max(
-            CauseSize.of(self.error).largest, np.finfo(float).tiny
-        )
+        before = max(CauseSize.of(self.error).largest, np.finfo(float).tiny)
+        return CauseSize.of(error).largest / before
 
     def explained(self, error: Array, expected: Array | None = None) -> bool:
         """True if the remaining error is small enough for an explanation."""
@@ -195,9 +218,6 @@ class CauseSize:
         moving = CauseSize.of(series - 0.5 * (series.max() + series.min()))
         return moving if moving.largest > 1e-9 * whole.largest else whole
 
-    def least(self, other: CauseSize) -> CauseSize:
-        return CauseSize(min(self.largest, other.largest), min(self.rms, other.rms))
-
 
 def within_half_a_turn(angle_rad: Array) -> Array:
     """Return angles without their whole turns, from -pi to below pi [rad]."""
@@ -219,39 +239,7 @@ def levelled(error: Array, channel: Channel) -> tuple[float, Array]:
     return zero, left - math.tau * np.round(left[:1] / math.tau)
 
 
-def excerpts(
-    readings: Sequence[Reading], truth: Truth, limits: Mapping[str, float]
-) -> dict[str, Excerpt]:
-    """Return the excerpt of each reading that has a limit, by column, all at the same rows,
-    including those of the largest errors. Raises CrankcheckError where there is no reference."""
-    judged = [reading for reading in readings if reading.channel.column in limits]
-    motions, told = {}, []
-    for reading in judged:
-        of = id(reading.instants)
-        if of not in motions:
-            motions[of] = truth.at(reading.instants)
-        expected = reading.channel.expected(motions[of])
-        error = np.abs(_finite(reading.channel.error(reading.values, expected)))
-        row = int(np.argmax(error)) if error.size else 0
-        told.append((reading, expected, row, float(error[row])))
-    rows = picked(max((r.values.size for r in judged), default=0), [row for _, _, row, _ in told])
-    return {
-        reading.channel.column: Excerpt(
-            reading=reading,
-            limit=limits[reading.channel.column],
-            worst=worst,
-            rows=rows,
-            values=reading.values[rows],
-            instants=reading.instants[rows],
-            expected=expected[rows],
-            error=_finite(reading.channel.error(reading.values[rows], expected[rows])),
-        )
-        for reading, expected, _, worst in told
-    }
-
-
 def _finite(error: Array) -> Array:
-    """Return an error with 0 for each value that is not finite."""
     return np.where(np.isfinite(error), error, 0.0)
 
 

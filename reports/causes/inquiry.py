@@ -141,33 +141,19 @@ class Inquiry:
     ) -> Account | None:
         """Return the account with these remaining ``errors``, by column, against another reference
         ``expected``; None where it explains no open column and none of ``besides``."""
-        instead, told = expected or {}, dict[str, float]()
-        for column in (*self.open, *besides):
-            if column in errors:
-                excerpt, error = self.excerpts[column], errors[column]
-                if column not in self.open or excerpt.explained(error, instead.get(column)):
-                    told[column] = excerpt.rest(error, instead.get(column))
+        instead, told, mended = expected or {}, dict[str, float](), dict[str, float]()
+        for column in (each for each in (*self.open, *besides) if each in errors):
+            excerpt, error, other = self.excerpts[column], errors[column], instead.get(column)
+            if column not in self.open or excerpt.explained(error, other):
+                told[column] = excerpt.rest(error, other)
+            # One fault of several channels may be small in some of them.
+            elif expected is not None and CauseSize.of(error).largest <= SPOILT * excerpt.limit:
+                mended[column] = excerpt.rest(error, other)
         if not told:
             return None
-        if expected is not None:  # one fault of several channels may be small in some of them
-            told |= self._mended(errors, expected)
+        told |= {column: rest for column, rest in mended.items() if rest < MENDED}
         lefts = {column: self.excerpts[column].left(errors[column]) for column in told}
         return Account(name, cost, told, lefts, phrase, corrections or {})
-
-    def _mended(
-        self, errors: Mapping[str, Array], expected: Mapping[str, Array]
-    ) -> dict[str, float]:
-        """Return the remaining part, by column, of errors now within their limits, or noise."""
-        found = {}
-        for column in self.open:
-            if column not in errors:
-                continue
-            excerpt, error = self.excerpts[column], errors[column]
-            if CauseSize.of(error).largest <= SPOILT * excerpt.limit:
-                rest = excerpt.rest(error, expected[column])
-                if rest < MENDED:
-                    found[column] = rest
-        return found
 
     def account_of_world(
         self,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import TypedDict
+from functools import partial
 
 import numpy as np
 
@@ -65,29 +65,22 @@ class World:
     @staticmethod
     def of(truth: Truth) -> World:
         """Return the world of a reference, as it is driven."""
-        if not isinstance(truth, AtCrank) or truth.time_s is None or truth.crank_rad is None:
-            return World(truth.scene)
-        times, angles, law = truth.time_s, truth.crank_rad, truth.scene.driver.law
-
-        def drive(instants: Array) -> Orders:
-            _, omega, alpha = law.at(instants)
-            return np.interp(instants, times, angles), omega, alpha
-
-        return World(truth.scene, drive)
+        return World(truth.scene, truth.driven_at if isinstance(truth, AtCrank) else None)
 
     def at(self, stamped: Array, channels: Iterable[Channel]) -> Motion:
         """Return the motion (T,) of measured bodies at stamps [s]. Raises CrankcheckError."""
         instants = stamped
         for change in reversed(self.stamps):
             instants = change(instants)
-        names = _measured_bodies(channels)
-        if self.drive is None:
-            motion = solve(self.scene, instants, bound=False, **names)
-        else:
-            theta, omega, alpha = self.drive(instants)
-            motion = solve_driven(
-                self.scene, theta, omega, alpha, time_s=instants, bound=False, **names
-            )
+        names: dict[str, list[str]] = {"link": [], "point": [], "slider": []}
+        for channel in channels:
+            names[channel.kind.body_kind].append(channel.of)
+            names["link"] += filter(None, [channel.relative_to])
+        links, points, sliders = (tuple(dict.fromkeys(each)) for each in names.values())
+        solved = partial(solve, self.scene, instants)
+        if self.drive is not None:
+            solved = partial(solve_driven, self.scene, *self.drive(instants), instants)
+        motion = solved(links=links, points=points, sliders=sliders, bound=False)
         if self.pace != 1.0:
             motion = _paced(motion, self.pace)
         for frame in self.frames:
@@ -98,27 +91,13 @@ class World:
         """Return the world with other instants behind the stamps of the log."""
         return replace(self, stamps=(*self.stamps, change))
 
+    def later(self, by_s: float) -> World:
+        """Return the world in which all that is logged belongs so much later."""
+        return self.stamped(lambda stamps: stamps + by_s)
+
     def framed(self, frame: LogFrame) -> World:
         """Return the world with a further frame of the log."""
         return replace(self, frames=(*self.frames, frame))
-
-
-class Bodies(TypedDict):
-    """Names of bodies, as `solve` takes them."""
-
-    links: tuple[str, ...]
-    points: tuple[str, ...]
-    sliders: tuple[str, ...]
-
-
-def _measured_bodies(channels: Iterable[Channel]) -> Bodies:
-    names: dict[str, dict[str, None]] = {"link": {}, "point": {}, "slider": {}}
-    for channel in channels:
-        names[channel.kind.body_kind][channel.of] = None
-        if channel.relative_to:
-            names["link"][channel.relative_to] = None
-    links, points, sliders = (tuple(each) for each in names.values())
-    return Bodies(links=links, points=points, sliders=sliders)
 
 
 def _paced(motion: Motion, pace: float) -> Motion:

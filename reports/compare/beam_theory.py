@@ -16,12 +16,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from analytic.elastic.control import elastic_history
+from analytic.elastic import control, elastic_motion, engine_start, natural, released
 from analytic.elastic.discretisation import REFERENCE, Polynomials
-from analytic.elastic.elastic_motion import ElasticHistory
-from analytic.elastic.engine_start import chain_motion
-from analytic.elastic.natural import lowest_rad_s
-from analytic.elastic.released import ROUGH
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
@@ -69,23 +65,23 @@ class BeamTheory:
         return self.shape == "periodic"
 
     @cached_property
-    def beam(self) -> ElasticHistory:
+    def beam(self) -> elastic_motion.ElasticHistory:
         return self._moved(REFERENCE)
 
-    def _moved(self, by: Polynomials, *, stiffened: bool = True) -> ElasticHistory:
-        return elastic_history(
-            self.scene, self.until_s, by, self.shape, stiffened=stiffened, tolerance=ROUGH
+    def _moved(self, by: Polynomials, *, stiffened: bool = True) -> elastic_motion.ElasticHistory:
+        return control.elastic_history(
+            self.scene, self.until_s, by, self.shape, stiffened=stiffened, tolerance=released.ROUGH
         )
 
     @cached_property
-    def other(self) -> ElasticHistory:
+    def other(self) -> elastic_motion.ElasticHistory:
         """The motion by other polynomials."""
         return self._moved(self.others)
 
     @cached_property
     def lowest_rad_s(self) -> float:
         """The lowest angular frequency of the links, each alone."""
-        return lowest_rad_s(self.scene)
+        return natural.lowest_rad_s(self.scene)
 
     @cached_property
     def looks_s(self) -> Array:
@@ -169,8 +165,8 @@ class ExactChain:
     shape: Shape
 
     @cached_property
-    def motion(self) -> ElasticHistory:
-        return chain_motion(self.chain, self.shape, self.until_s)
+    def motion(self) -> elastic_motion.ElasticHistory:
+        return engine_start.chain_motion(self.chain, self.shape, self.until_s)
 
     def at(self, time_s: Array) -> Motion:
         """Return the motion at times [s] (T,), with the links and points of the scene."""

@@ -11,9 +11,8 @@ from analytic.structure.mobility import analyse
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion
-from reports.compare.compare import Beside
+from reports.compare import compare, free_truth
 from reports.compare.errors import Departure
-from reports.compare.free_truth import FreeBeside
 from reports.quantities.free_and_elastic import GEOMETRY
 
 AWAY_RAD = 0.5
@@ -28,7 +27,7 @@ MOST_CHOICES = 6
 """Largest number of choices of assembly: two to this power are tried one by one."""
 
 
-def departure(beside: Beside) -> Departure | None:
+def departure(beside: compare.Beside) -> Departure | None:
     """Return the place where the first link left the branch of the scene with its loop closed.
 
     A link that is far off in a closed loop has left its branch if the mechanism is in another
@@ -44,7 +43,7 @@ def departure(beside: Beside) -> Departure | None:
 
 
 def _far_off(
-    beside: Beside, errors: Iterable[tuple[str, Array]]
+    beside: compare.Beside, errors: Iterable[tuple[str, Array]]
 ) -> tuple[Mask, tuple[int, str] | None]:
     """Return the samples at which links are far off while the loop is closed, by the ``errors`` of
     their angles; and the sample and link where this began first."""
@@ -63,7 +62,7 @@ def _far_off(
     return far, min(left, default=None)
 
 
-def _elsewhere(beside: Beside, far: Mask) -> bool:
+def _elsewhere(beside: compare.Beside, far: Mask) -> bool:
     """True if the mechanism is in another assembly at one of the samples ``far``.
 
     Assemblies are the choices of their groups, in solving order: two of a dyad, up to six of a
@@ -113,7 +112,7 @@ def _turned(angle: Array) -> Array:
     return np.asarray(np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi)
 
 
-def free_departure(beside: FreeBeside) -> Departure | None:
+def free_departure(beside: free_truth.FreeBeside) -> Departure | None:
     """Return the place where the first link left the reference's assembly at that time, with its
     loop closed.
 
@@ -136,7 +135,7 @@ def free_departure(beside: FreeBeside) -> Departure | None:
     return Departure(link, float(beside.motion.time_s[index]), float(beside.crank[index]))
 
 
-def _free_elsewhere(beside: FreeBeside, far: Mask) -> bool:
+def _free_elsewhere(beside: free_truth.FreeBeside, far: Mask) -> bool:
     """True if the run is in any assembly of its own driver angle at one of the samples ``far``."""
     scene = beside.scene
     keys = [group.branch_key for group in analyse(scene).groups if group.assemblies == 2]

@@ -21,8 +21,7 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import Motion, State
-from models.scene import Same, Scene
-from models.scene.driver import driver_place
+from models.scene import Same, Scene, driver
 from reports.compare.errors import Error, Errors
 from reports.compare.tracks import Track, angle_error, fitting, lacking, tracks
 from reports.quantities import named
@@ -32,8 +31,8 @@ from sim.run.check import SAME
 SETTLING = 40
 """Samples in which an engine that starts with closed pins comes to its steady error: their rates
 are separate rows, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
-SETS = 2
-"""Sets of instants that are kept: positions and velocities often have two."""
+SETS = 3
+"""Sets of instants that are kept: positions, and velocities half a step before or after them."""
 
 
 @lru_cache(maxsize=1)
@@ -97,14 +96,15 @@ class Truth:
 
 
 def kept(motions: dict[bytes, Motion], time_s: Array, solved: Callable[[Array], Motion]) -> Motion:
-    """Return the motion at instants (T,), solved once, and then kept in the place of the oldest."""
+    """Return the motion at instants (T,), solved once, and then kept in the place of that whose
+    last use is longest ago."""
     instants = time_s.tobytes()
-    motion = motions.get(instants)
+    motion = motions.pop(instants, None)
     if motion is None:
         motion = solved(time_s)
-        for oldest in list(motions)[: 1 - SETS]:
-            motions.pop(oldest, None)  # another thread may have done so
-        motions[instants] = motion
+    for oldest in list(motions)[: 1 - SETS]:
+        motions.pop(oldest, None)  # another thread may have done so
+    motions[instants] = motion
     return motion
 
 
@@ -122,12 +122,6 @@ class Beside:
     run: Run
     motion: Motion
     _own: dict[str, tuple[Track, ...]] = field(default_factory=dict, repr=False, compare=False)
-
-    @staticmethod
-    def of(truth: Truth, run: Run) -> Beside | None:
-        """Return the run beside the reference; None where it logged nothing."""
-        motion = run.motion
-        return Beside(truth, run, motion) if motion is not None and motion.time_s.size else None
 
     @property
     def scene(self) -> Scene:
@@ -152,7 +146,7 @@ class Beside:
     @cached_property
     def crank(self) -> Array:
         """The logged coordinate of the driver [rad, or m of a slider], (T,); NaN without one."""
-        return fitting(driver_place(self.scene, self.motion), self.motion.time_s)
+        return fitting(driver.driver_place(self.scene, self.motion), self.motion.time_s)
 
     @cached_property
     def drive(self) -> Array:

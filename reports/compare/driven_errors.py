@@ -12,8 +12,7 @@ from reports.compare.error_rows import Instants, instants_of, whole_row, whole_r
 from reports.compare.errors import DRIVEN, Error, Errors
 from reports.compare.hardness import conditioning, loading, uneven
 from reports.compare.whole_errors import ComparedParts, force_rows, summed, whole_errors
-from reports.quantities import named
-from reports.quantities.quantity import Role
+from reports.quantities import named, quantity
 
 
 def compared(beside: Beside, errors: Errors | None) -> Errors:
@@ -43,7 +42,7 @@ def places(beside: Beside) -> list[Error]:
     return _of_roles(beside, at, "drive", "place", "closure")
 
 
-def _of_roles(beside: Beside, at: Instants, *roles: Role) -> list[Error]:
+def _of_roles(beside: Beside, at: Instants, *roles: quantity.Role) -> list[Error]:
     return [row for role in roles for row in whole_rows(beside, at, role)]
 
 

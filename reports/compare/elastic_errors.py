@@ -6,25 +6,24 @@ from functools import partial
 import numpy as np
 
 from models.motion import Motion
-from reports.compare.compare import Beside
+from reports.compare import compare, tracks
 from reports.compare.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import ElasticFacts, Error, Errors
-from reports.compare.tracks import length
 from reports.quantities import QUANTITIES, named
 
 BEAM, CHAIN = ("deflection", "extension"), ("segments",)
 """Quantities compared with the beam, and with the exact chain."""
 
 
-def compared(beside: Beside, errors: Errors | None) -> Errors:
+def compared(beside: compare.Beside, errors: Errors | None) -> Errors:
     """Return the errors of a run as with rigid links, and those of its elastic links."""
     assert isinstance(beside, ElasticBeside)
     assert errors is not None
     return replace(errors, rows=(*errors.rows, *places(beside)), of_links=elastic_facts(beside))
 
 
-def places(beside: Beside) -> list[Error]:
+def places(beside: compare.Beside) -> list[Error]:
     """Return deflections and extensions against the beam: of the run, of kind "total", and of the
     exact chain, of kind "chain"."""
     assert isinstance(beside, ElasticBeside)
@@ -71,6 +70,6 @@ def _apart_by_name(beside: ElasticBeside, chain: Motion, beam: Motion) -> dict[s
                 continue
             scale = measure.scale(beside.scene, beam)
             for body in ours.keys() & theirs.keys():
-                off = float(np.max(length(theirs[body] - ours[body]))) / scale
+                off = float(np.max(tracks.length(theirs[body] - ours[body]))) / scale
                 found[name] = max(found.get(name, 0.0), off)
     return found

@@ -156,8 +156,17 @@ class ElasticTruth(Truth):
         return None
 
     def logged(self, run: Run) -> Run:
-        """Return a run of the engine's scene as one of the scene."""
-        return folded_run(self.cut, run)
+        """Return a run with links, points and pins of the scene; the pins between pieces show in
+        the deflection, which is off where they come apart."""
+        if run.motion is None:
+            return run
+        cut, folded = self.cut, self.cut.folded(run.motion)
+        inner = {node for name in cut.scene.elastic for node in cut.nodes(name)[1:-1]}
+        if folded.forces is not None:
+            links = {part: name for name in cut.scene.elastic for part in cut.bodies(name)}
+            folded = replace(folded, forces=_without(folded.forces, inner, links))
+        gaps = {name: gap for name, gap in run.gaps.items() if name not in inner}
+        return replace(run, motion=folded, gaps=gaps)
 
     def _beside(self, run: Run, motion: Motion) -> Beside:
         return ElasticBeside(self, run, motion, elastic=self)
@@ -262,24 +271,7 @@ class ElasticBeside(Beside):
         raise ReachError("where links bend the driver's angle does not say where the others are")
 
 
-def folded_run(cut: CutScene, run: Run) -> Run:
-    """Return a run with links, points and pins of the scene; the pins between pieces show in the
-    deflection, which is off where they come apart."""
-    motion = run.motion
-    if motion is None:
-        return run
-    inner = {node for name in cut.scene.elastic for node in cut.nodes(name)[1:-1]}
-    folded = cut.folded(motion)
-    if folded.forces is not None:
-        links = {part: name for name in cut.scene.elastic for part in cut.bodies(name)}
-        folded = replace(folded, forces=_without(folded.forces, inner, links))
-    gaps = {name: gap for name, gap in run.gaps.items() if name not in inner}
-    return replace(run, motion=folded, gaps=gaps)
-
-
 def _without(forces: Forces, inner: set[str], links: Mapping[str, str]) -> Forces:
-    """Return the forces in the pins of the scene, on its links."""
-
     def on_links(bodies: Mapping[str, Array]) -> dict[str, Array]:
         return {links.get(body, body): force for body, force in bodies.items()}
 

@@ -20,8 +20,7 @@ from reports.compare.compare import EPSILON, Beside
 from reports.compare.errors import Error, ErrorKind
 from reports.compare.hardness import WINDOW_RAD, near
 from reports.compare.tracks import Track, length, rate, second_rate, size
-from reports.quantities import QUANTITIES, named
-from reports.quantities.quantity import Role, Source
+from reports.quantities import QUANTITIES, named, quantity
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ def whole_row(track: Track, at: Instants, kind: ErrorKind = "total") -> Error:
 
 
 def _numbers(
-    track: Track, error: Array, bound: Array, at: Instants, source: Source, kind: ErrorKind
+    track: Track, error: Array, bound: Array, at: Instants, source: quantity.Source, kind: ErrorKind
 ) -> Error:
     """Return a series of lengths (T,) of a track's error as numbers, with their uncertainty."""
     measured = size(error)
@@ -94,14 +93,14 @@ def _numbers(
     )
 
 
-def rate_rows(track: Track, at: Instants, source: Source) -> Iterable[Error]:
+def rate_rows(track: Track, at: Instants, source: quantity.Source) -> Iterable[Error]:
     """Yield a rate as rows of its parts: first samples, those at change points, and the rest."""
     error = length(track.error)
     for kind, part, instants in at.parts:
         yield _numbers(track, error[part], track.bound[part], instants, source, kind)
 
 
-def whole_rows(beside: Beside, at: Instants, role: Role) -> list[Error]:
+def whole_rows(beside: Beside, at: Instants, role: quantity.Role) -> list[Error]:
     """Return the quantities of a role, each over the whole run; one after the other, as the tracks
     of one take enough memory."""
     every = (beside.tracks((name,), beside.reference) for name in named(role))

@@ -11,13 +11,11 @@ from analytic.forces.late_impulses import late_impulses
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.joints import has_loops
-from reports.compare.branch import free_departure
-from reports.compare.compare import Beside
+from reports.compare import branch, compare, hardness
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import Error, Errors
 from reports.compare.free_facts import FreeFacts, energy_rows, momentum_rows, window_s
 from reports.compare.free_truth import FreeBeside
-from reports.compare.hardness import conditioning, uneven
 from reports.compare.tracks import Track, length
 from reports.compare.whole_errors import TWICE, ComparedParts, force_rows, whole_errors
 from reports.quantities.free_and_elastic import GEOMETRY, PHASE
@@ -31,7 +29,7 @@ STILL = 1e-12
 """Speed below which the driver is at rest, over its largest."""
 
 
-def compared(beside: Beside, errors: Errors | None) -> Errors:
+def compared(beside: compare.Beside, errors: Errors | None) -> Errors:
     """Return the errors of a free run, as far as the reference is known; no module comes before."""
     assert isinstance(beside, FreeBeside)
     reference, scene = beside.reference, beside.scene
@@ -46,18 +44,18 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
         placed=[*_phase_and_places(beside, same_time, at), *geometry],
         notes=(*notes, *_notes(beside, facts)),
         borne=replace(borne, facts=replace(borne.facts, load_slopes={}), unsure={}),
-        departure=free_departure(beside),
-        conditioning=max(conditioning(reference, at.driver_rad), least),
+        departure=branch.free_departure(beside),
+        conditioning=max(hardness.conditioning(reference, at.driver_rad), least),
         summed_rad=TWICE * beside.run.steps * sys.float_info.epsilon / 2.0 * farthest,
         # In an open chain joint coordinates are as good as their integrator: nothing is too near.
-        far=uneven(scene, reference, at.driver_rad) if has_loops(scene) else {},
+        far=hardness.uneven(scene, reference, at.driver_rad) if has_loops(scene) else {},
         motion=facts,
         conserved=[*energy_rows(beside), *momentum_rows(beside)],
     )
     return whole_errors(beside, at, parts)
 
 
-def places(beside: Beside) -> list[Error]:
+def places(beside: compare.Beside) -> list[Error]:
     """Return phase, positions at the same time, geometry and gaps alone."""
     assert isinstance(beside, FreeBeside)
     at = instants_of(beside, beside.motion.time_s, beside.reference)

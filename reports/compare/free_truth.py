@@ -12,8 +12,7 @@ import numpy as np
 
 from models.array import Array
 from models.motion import Motion, State
-from models.scene import Driver, Scene, as_bytes
-from models.scene.driver import LONGEST_S, Released
+from models.scene import Driver, Scene, as_bytes, driver
 from reports.compare.compare import Beside, Truth, first_samples, incomplete
 from reports.compare.tracks import Track
 from reports.quantities.free_and_elastic import PHASE
@@ -43,7 +42,7 @@ def free_truth_until(
     `analytic.free.release`."""
     motion = kept_motion(scene, lasts_s)
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
-    law = Released(
+    law = driver.Released(
         float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s
     )
     given = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
@@ -218,7 +217,7 @@ def long_enough_s(scene: Scene, lasts_s: float) -> float:
         load.characteristic.nearest(until_s) for load in scene.loads.values() if load.over == "time"
     ]
     # Without its rounding it is one for all steps of a sweep.
-    return max(lasts_s, min(float(f"{until_s:.9g}"), LONGEST_S, *ends))
+    return max(lasts_s, min(float(f"{until_s:.9g}"), driver.LONGEST_S, *ends))
 
 
 @lru_cache(maxsize=4)

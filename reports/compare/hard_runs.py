@@ -1,7 +1,6 @@
 """Hard free runs: a chain of windows compared with its closed form (`analytic.free.exact_motions`),
 and a mechanism that is thrown at its toggle."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,38 +13,26 @@ from models.motion import Motion
 from models.scene.hard import WindowChain
 from reports.compare.branch import AWAY_RAD, CLOSED, HERE_RAD
 from reports.compare.errors import Departure
-from sim.engine import Engine, Run, SettingValue
-from sim.run import run
+from sim.engine import Run
 
 
 @dataclass(frozen=True)
 class ChainErrors:
     """Errors of an engine on a chain, at the logged samples, shape (T,).
 
-    ``place_m`` is the distance of B0 from its true position [m], ``speed_m_s`` that of its
-    velocity, and ``energy_j`` the energy less that of the start in the closed form [J], both at the
-    instants of the velocities; ``lean_rad`` the largest angle between two rockers, or of a coupler
-    to the ground line [rad], 0 in the closed form; ``gap_m`` the largest gap of a pin [m].
+    ``place_m`` is the distance of B0 from its true position [m], ``energy_j`` the energy less that
+    of the start in the closed form [J], at the instants of the velocities; ``lean_rad`` the largest
+    angle between two rockers, or of a coupler to the ground line [rad], 0 in the closed form;
+    ``gap_m`` the largest gap of a pin [m].
     """
 
     chain: WindowChain
     run: Run
     time_s: Array
     place_m: Array
-    speed_m_s: Array
     energy_j: Array
     lean_rad: Array
     gap_m: Array
-
-    @property
-    def energy_drift(self) -> float:
-        """The largest change of the energy, over the 2 m g l P that rises and falls in a turn.
-
-        For a chain without weight, over the energy of the start.
-        """
-        turning = ChainMotion(self.chain)
-        scale = turning.exchanged_j or _start_j(turning)
-        return float(np.max(np.abs(self.energy_j))) / scale
 
     @property
     def left(self) -> Departure | None:
@@ -60,43 +47,6 @@ class ChainErrors:
         angle = self.run.motion.links["rocker0"].theta[index]
         rod = _leaning(self.chain, self.run.motion, int(away[0]))
         return Departure(rod, float(self.time_s[index]), float(angle))
-
-    def place_until(self, time_s: float) -> float:
-        """Return the largest error of B0 up to a time [m]; NaN if the run ended before it."""
-        if self.time_s[-1] < time_s - 1e-9:
-            return float("nan")
-        return float(np.max(self.place_m[self.time_s <= time_s + 1e-9]))
-
-
-def hold(
-    chain: WindowChain,
-    engine: str | Engine,
-    profile: str = "tuned",
-    *,
-    dt_s: float,
-    duration_s: float,
-    every: int = 1,
-    settings: Mapping[str, SettingValue] | None = None,
-) -> ChainErrors:
-    """Run a chain from upright, free, for ``duration_s`` in steps of ``dt_s``, and compare.
-
-    Every ``every``-th step is logged. Raises CrankcheckError, as `sim.run.run` does, and for a run
-    that did not start.
-    """
-    start = ChainMotion(chain).motion(np.array([0.0])).state(0)
-    steps = max(round(duration_s / dt_s / every), 1) * every
-    done = run(
-        chain.scene(),
-        start,
-        engine,
-        profile,
-        dt_s=dt_s,
-        steps=steps,
-        every=every,
-        drive="free",
-        settings=settings,
-    )
-    return compared(chain, done)
 
 
 def compared(chain: WindowChain, done: Run) -> ChainErrors:
@@ -113,26 +63,16 @@ def compared(chain: WindowChain, done: Run) -> ChainErrors:
             done,
             motion.time_s,
             np.hypot(*(motion.points["B0"].position - arm).T),
-            _velocity_error(turning, done),
-            done.energy.total_j - _start_j(turning),
+            done.energy.total_j - start_j(turning),
             _lean(chain, motion),
             np.max(list(done.gaps.values()), axis=0),
         )
 
 
-def _start_j(turning: ChainMotion) -> float:
+def start_j(turning: ChainMotion) -> float:
+    """Return the energy of the start, upright [J]."""
     theta, omega, _ = turning.at(np.array([0.0]))
     return float(turning.energy(theta, omega)[0])
-
-
-def _velocity_error(turning: ChainMotion, done: Run) -> Array:
-    """Return the distance of the velocity of B0 from the true one [m/s], (T,)."""
-    assert done.motion is not None
-    time_s = done.motion.time_s if done.velocity_time_s is None else done.velocity_time_s
-    theta, omega, _ = turning.at(time_s)
-    speed = turning.chain.length_m * omega[:, None]
-    true = speed * np.stack([-np.sin(theta), np.cos(theta)], axis=-1)
-    return np.asarray(np.hypot(*(done.motion.points["B0"].velocity - true).T))
 
 
 def _leaning(chain: WindowChain, motion: Motion, index: int) -> str:

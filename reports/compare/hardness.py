@@ -15,10 +15,7 @@ from numpy.typing import NDArray
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Crossing, Motion
-from models.scene import Scene
-from models.scene.driver import driver_course
-from models.scene.joints import block_name, blocks, local_point
-from models.scene.loads import Load
+from models.scene import Scene, driver, joints, loads
 from reports.compare.tracks import length
 from reports.quantities.quantity import BodyKind
 
@@ -72,7 +69,7 @@ def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex12
         push = size * turn * np.exp(1j * load.direction_rad)
         force += push
         if body in scene.links:
-            place, centre = local_point(scene, body, load.point), scene.links[body].centre_m
+            place, centre = joints.local_point(scene, body, load.point), scene.links[body].centre_m
             arm = turned * complex(place[0] - centre[0], place[1] - centre[1])
             moment += (arm.conj() * push).imag
     return force, moment
@@ -81,18 +78,18 @@ def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex12
 def _angle(scene: Scene, motion: Motion, body: str) -> Array | float:
     """Return the angle of a link, or of a block, which is turned with its guide [rad]."""
     for slider in scene.sliders.values():
-        if block_name(slider) == body:
+        if joints.block_name(slider) == body:
             guide = motion.links.get(slider.on)
             return slider.direction_rad + (0.0 if guide is None else guide.theta)
     return motion.links[body].theta
 
 
-def _magnitude(scene: Scene, load: Load, motion: Motion) -> Array:
+def _magnitude(scene: Scene, load: loads.Load, motion: Motion) -> Array:
     """Return the size of a load over a motion [N or N m]."""
     slid = None if load.slider is None else motion.sliders[load.slider]
     x = motion.time_s
     if load.over == "angle":
-        x = driver_course(scene, motion)[0]
+        x = driver.driver_course(scene, motion)[0]
     elif load.over == "displacement" and slid is not None:
         x = slid.displacement
     return load.magnitude(x, None if slid is None else slid.speed)
@@ -105,7 +102,7 @@ def _largest(series: Array) -> float:
 def _mass(scene: Scene, body: str) -> float:
     """Return the mass of a body [kg]; for a massless body, the least mass of any other."""
     own = {name: link.mass_kg for name, link in scene.links.items()}
-    own |= {name: slider.mass_kg for name, slider in blocks(scene).items()}
+    own |= {name: slider.mass_kg for name, slider in joints.blocks(scene).items()}
     heavy = [mass for mass in own.values() if mass > 0.0]
     return own.get(body) or min(heavy, default=1.0)
 
@@ -130,7 +127,7 @@ def load_slopes(
     return {"reaction": _largest(bears), "torque": _largest(turns)}
 
 
-def _slope(load: Load, motion: Motion) -> Array:
+def _slope(load: loads.Load, motion: Motion) -> Array:
     """Return the slope of a load at every sample [N/m or N], 0 where it does not act."""
     assert load.slider is not None
     slid = motion.sliders[load.slider]
@@ -141,11 +138,11 @@ def _slope(load: Load, motion: Motion) -> Array:
     return np.where(acts[load.stroke], slope, 0.0) if load.stroke in acts else slope
 
 
-def _speed(scene: Scene, load: Load, motion: Motion) -> Array:
+def _speed(scene: Scene, load: loads.Load, motion: Motion) -> Array:
     """Return the speed of the loaded point or body [m/s or rad/s]."""
     if load.point is not None:
         return np.asarray(np.hypot(*motion.points[load.point].velocity.T))
-    guides = {block_name(slider): slider.on for slider in scene.sliders.values()}
+    guides = {joints.block_name(slider): slider.on for slider in scene.sliders.values()}
     turns = motion.links.get(guides.get(load.body, load.body))  # a block turns with its guide
     return np.zeros_like(motion.time_s) if turns is None else np.abs(turns.omega)
 

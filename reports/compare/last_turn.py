@@ -17,9 +17,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.compare import Truth, each_at
-from reports.compare.free_truth import FreeBeside
-from reports.compare.tracks import Track
+from reports.compare import compare, free_truth, tracks
 from reports.quantities import named
 from sim.engine import Run
 
@@ -29,13 +27,13 @@ SAMPLES_PER_TURN = 90
 """Divides the usual numbers of steps in a turn, so that cells of a line share their instants."""
 
 
-def trace(truth: Truth, run: Run) -> Trace:
+def trace(truth: compare.Truth, run: Run) -> Trace:
     """Return the series of a run; empty where it logged nothing that is finite."""
     scene = truth.scene
     if run.motion is None or run.motion.time_s.size < 2:
         return {}
     kept = _instants(scene, run)
-    beside = truth.beside(each_at(run, lambda series: series[kept]))
+    beside = truth.beside(compare.each_at(run, lambda series: series[kept]))
     assert beside is not None
     series = {
         "time_s": beside.motion.time_s,
@@ -54,7 +52,7 @@ def trace(truth: Truth, run: Run) -> Trace:
     for name, own in beside.motion.elastic.items():
         series[f"deflection.{name}"] = own.middle
         series[f"deflection_error.{name}"] = own.middle - beside.reference.elastic[name].middle
-    if isinstance(beside, FreeBeside):
+    if isinstance(beside, free_truth.FreeBeside):
         series |= free_series(beside)
     return {name: np.ascontiguousarray(each) for name, each in series.items()}
 
@@ -71,7 +69,7 @@ def _instants(scene: Scene, run: Run) -> np.ndarray:
     return np.round(times.size - 1 - span + np.linspace(0, span, parts + 1)).astype(np.intp)
 
 
-def _errors(placed: Iterable[Track], prefix: str) -> Mapping[str, Array]:
+def _errors(placed: Iterable[tracks.Track], prefix: str) -> Mapping[str, Array]:
     """Return the errors of links and sliders, which have a sign."""
     return {
         f"{prefix}{track.quantity}.{track.body}": track.error
@@ -84,7 +82,7 @@ SAMPLES = 720
 """Samples of a whole free run: some fifty in a swing of a mechanism that lasts ten seconds."""
 
 
-def free_series(beside: FreeBeside) -> Mapping[str, Array]:
+def free_series(beside: free_truth.FreeBeside) -> Mapping[str, Array]:
     """Return series by name, (T,) each, of a run that was thinned out to the kept instants.
 
     ``phase`` [rad] is the driver's error at the same time, ``growth`` the sensitivity, ``omega``

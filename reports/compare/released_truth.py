@@ -23,12 +23,8 @@ from analytic.multibody.bodies import EnergyBalance
 from models.array import Array
 from models.errors import EngineError, ReachError
 from models.motion import Motion
-from models.scene import Scene, as_bytes
-from models.scene.cut_links import with_rigid_links
-from models.scene.cut_scenes import SegmentedScene
-from reports.compare import elastic_truth, free_truth
-from reports.compare.beam_theory import FreeBeamTheory
-from reports.compare.compare import Beside, first_samples
+from models.scene import Scene, as_bytes, cut_links, cut_scenes
+from reports.compare import beam_theory, compare, elastic_truth, free_truth
 from reports.compare.free_truth import FreeBeside, FreeTruth
 from reports.quantities.free_and_elastic import PHASE
 from sim.engine import Run
@@ -61,14 +57,14 @@ def _truth(
 ) -> ReleasedElasticTruth:
     scene: Scene = pickle.loads(pickled)
     until_s = free_truth.long_enough_s(scene, dt_s * steps)
-    theory = elastic_truth.kept_theory(pickled, until_s, FreeBeamTheory)
+    theory = elastic_truth.kept_theory(pickled, until_s, beam_theory.FreeBeamTheory)
     chain = elastic_truth.cut_scene(scene, count, springs)
-    if not isinstance(chain, SegmentedScene):
+    if not isinstance(chain, cut_scenes.SegmentedScene):
         raise EngineError(
             f"{scene.name}: it is let go, and what engines make of it with beams of their own is "
             "not held to anything yet; leave --springs beam out"
         )
-    rigid = free_truth.free_truth(with_rigid_links(scene), steps, dt_s)
+    rigid = free_truth.free_truth(cut_links.with_rigid_links(scene), steps, dt_s)
     paced = replace(scene, driver=rigid.scene.driver)
     return ReleasedElasticTruth(paced, cut=chain, theory=theory, rigid=rigid, known_rad=known_rad)
 
@@ -114,24 +110,20 @@ class ReleasedElasticTruth(elastic_truth.ChainTruth):
         known &= bent <= MOST_DOUBT * theory.largest_m
         return math.inf if known.all() else float(time_s[int(np.argmin(known))])
 
-    @property
-    def _works(self) -> ReleasedElasticMotion:
-        """The motion with the reference energies: that of the engine's own chain, if known."""
-        motion = self.exact.motion if self.is_exact else self.beam
-        assert isinstance(motion, ReleasedElasticMotion)
-        return motion
-
-    def _beside(self, run: Run, motion: Motion) -> Beside:
+    def _beside(self, run: Run, motion: Motion) -> compare.Beside:
         known = int(np.searchsorted(motion.time_s, self.known_s))
-        judged = first_samples(run, max(known, 1))
+        judged = compare.first_samples(run, max(known, 1))
         assert judged.motion is not None
+        # The reference energies are those of the engine's own chain, if known.
+        works = self.exact.motion if self.is_exact else self.beam
+        assert isinstance(works, ReleasedElasticMotion)
         return ReleasedElasticBeside(
             self,
             judged,
             judged.motion,
             elastic=self,
             whole_run=run,
-            free=BentReference(self.rigid.free, self._works),
+            free=BentReference(self.rigid.free, works),
         )
 
 

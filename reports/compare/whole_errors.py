@@ -12,17 +12,14 @@ import numpy as np
 from analytic.forces.late_impulses import jolts
 from models.array import Array, Mask
 from models.motion import Forces, Motion
-from models.scene import Scene
-from models.scene.joints import mass_ratio
-from models.scene.laws import ConstantSpeed, Law
+from models.scene import Scene, joints, laws
 from reports.compare import error_rows, errors
 from reports.compare.compare import Beside
 from reports.compare.hardness import curvature, inertia_share, load_slopes, unevenly_turned
 from reports.compare.tracks import length
 from reports.output.numbers import count
-from reports.quantities import named
+from reports.quantities import named, quantity
 from reports.quantities.forces import acting, acting_at, largest_reaction, largest_torque, silent
-from reports.quantities.quantity import BodyKind
 from sim.engine import Run
 
 UNSURE = 1e-5
@@ -193,7 +190,7 @@ class ComparedParts:
     departure: errors.Departure | None
     conditioning: float
     summed_rad: float
-    far: Mapping[tuple[BodyKind, str], float]
+    far: Mapping[tuple[quantity.BodyKind, str], float]
     motion: errors.MotionFacts
     conserved: Iterable[errors.Error] = ()
     drives_within: bool = False
@@ -223,7 +220,7 @@ def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) 
             summed_rad=parts.summed_rad,
             jolt=float(jolt[0]),
             worst_jolt=float(np.max(jolt)),
-            mass_ratio=mass_ratio(scene),
+            mass_ratio=joints.mass_ratio(scene),
             drives_within=parts.drives_within,
             starts_in_passage=bool(np.any(at.passed[: at.first])),
             uneven={body: size / growth for body, size in parts.far.items()},
@@ -243,7 +240,7 @@ TWICE = 4.0
 """Factor for an angle that is added up twice."""
 
 
-def summed(law: Law, dt_s: float, steps: int) -> float:
+def summed(law: laws.Law, dt_s: float, steps: int) -> float:
     """Return the largest effect of rounding on the driver's angle in ``steps`` of ``dt_s`` [rad].
 
     At constant speed an engine adds ``speed * dt`` to the angle at every step (MuJoCo ``qpos += dt
@@ -261,4 +258,4 @@ def summed(law: Law, dt_s: float, steps: int) -> float:
     lasts_s = steps * dt_s
     farthest = law.offset_rad + lasts_s * law.fastest_until(lasts_s)
     once = steps * sys.float_info.epsilon / 2.0 * farthest
-    return once if isinstance(law, ConstantSpeed) else TWICE * once
+    return once if isinstance(law, laws.ConstantSpeed) else TWICE * once

@@ -14,7 +14,7 @@ from models.errors import EngineError
 from models.motion import Forces, State
 from models.scene import Same, Scene
 from models.scene.laws import Law
-from reports.compare.compare import Beside, compare, truth_of
+from reports.compare.compare import compare, truth_of
 from reports.compare.errors import Errors
 from sim.engine import Drive, Engine, ForceSession, Poses, Run, Session, Settings
 from sim.engine.settings import SettingError, profile_of, resolved
@@ -120,7 +120,7 @@ class Subject:
 
     def errors(self, done: Run) -> Errors | None:
         """Return the errors of a run; None where it logged nothing."""
-        return compare(Beside.of(truth_of(Same(self.scene)), done))
+        return compare(truth_of(Same(self.scene)).beside(done))
 
 
 def numbers(poses: Poses, names: Sequence[str] = ()) -> Array:

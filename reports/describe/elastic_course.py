@@ -17,12 +17,10 @@ from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion
-from models.scene import Scene
-from models.scene.cut_links import line_of, with_rigid_links
+from models.scene import Scene, cut_links
 from models.scene.driver import Controlled
 from models.scene.elastic import Shape
-from reports.describe.elastic_words import described
-from reports.describe.free_motion import Columns, tables_over_time
+from reports.describe import elastic_words, free_motion
 from reports.output.console import plain_table
 
 SHARES = np.linspace(0.0, 1.0, 41)
@@ -111,7 +109,7 @@ def elastic_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
     """Return a motion at times [s], (T,) in ascending order. Raises CrankcheckError where there is
     none."""
     scene = motion.scene
-    words = [described(scene, motion.by), f"start {start_of(motion)}"]
+    words = [elastic_words.described(scene, motion.by), f"start {start_of(motion)}"]
     words += ["shortening left out"] * (not motion.stiffened)
     own, rigid = sampled(motion, time_s), _with_rigid_links(motion, time_s)
     return ElasticCourse(scene, own, rigid, bent(motion, time_s, SHARES), ", ".join(words))
@@ -130,7 +128,7 @@ def drawn_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
 
 def _with_rigid_links(motion: ElasticHistory, time_s: Array) -> Motion:
     """Return the same mechanism, driven or free alike, with its forces where it is driven."""
-    scene = with_rigid_links(motion.scene)
+    scene = cut_links.with_rigid_links(motion.scene)
     if scene.is_free:
         return release(scene, motion.until_s).at(time_s, bound=False)
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)
@@ -169,7 +167,7 @@ def energy_columns(motion: ElasticHistory, time_s: Array) -> dict[str, Array]:
 def elastic_tables(course: ElasticCourse, width: int) -> list[Table]:
     """Return tables over time: bending and extension of elastic links, and the motion of links and
     sliders with and without them."""
-    bodies: list[tuple[str, Columns]] = []
+    bodies: list[tuple[str, free_motion.Columns]] = []
     for name, shape in course.motion.elastic.items():
         bent = [("middle\nm", shape.middle)] * course.scene.elastic[name].bends
         bodies.append((name, [*bent, ("extension\nm", shape.extension)]))
@@ -179,7 +177,7 @@ def elastic_tables(course: ElasticCourse, width: int) -> list[Table]:
     if course.torques is not None:
         both = [(f"{h}\nN m", v) for h, v in zip(("elastic", "rigid"), course.torques, strict=True)]
         bodies.append(("torque", both))
-    return tables_over_time(course.scene, course.motion, bodies, width)
+    return free_motion.tables_over_time(course.scene, course.motion, bodies, width)
 
 
 @dataclass(frozen=True)
@@ -202,7 +200,7 @@ def extremes(course: ElasticCourse) -> list[DeflectionExtreme]:
 
 def _series(course: ElasticCourse) -> Iterator[tuple[str, str, Array, str]]:
     for name, shape in course.motion.elastic.items():
-        length_m, places = line_of(course.scene, name).length_m, course.bent[name]
+        length_m, places = cut_links.line_of(course.scene, name).length_m, course.bent[name]
         link = course.scene.elastic[name]
         if link.bends:
             middle = float(np.max(np.abs(shape.middle)))

@@ -7,15 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.elastic import elastic_motion, released
 from analytic.elastic.discretisation import Discretisation, ElasticDoubt, Elements, Modes, Segments
-from analytic.elastic.elastic_motion import ElasticHistory
-from analytic.elastic.released import ReleasedElasticMotion
 from models.array import Array
 from models.motion import Motion
-from models.scene import Scene
-from models.scene.cut_links import line_of
-from models.scene.elastic import ElasticLink, Shape
-from models.scene.laws import ConstantSpeed
+from models.scene import Scene, cut_links, elastic, laws
 from reports.output.numbers import count, error_text, listed, readable
 
 NEAR = 0.1
@@ -25,7 +21,7 @@ SLOW = 20
 SLIGHT = 1e-2
 """Largest square of a slope for which a curvature is the second derivative of a deflection, to
 about that share of it."""
-STARTS: dict[Shape, str] = {
+STARTS: dict[elastic.Shape, str] = {
     "periodic": "Starts on the periodic motion: it comes back after a period of the driver.",
     "quasi-static": "Starts with the deflection that the rigid motion asks for (quasi-static); "
     "what that leaves of the vibration rings on{damped}.",
@@ -55,9 +51,9 @@ def described(scene: Scene, by: Discretisation) -> str:
     return listed([*across, *along])
 
 
-def _link(scene: Scene, own: ElasticLink) -> str:
+def _link(scene: Scene, own: elastic.ElasticLink) -> str:
     """Return a link with its stiffness and its first natural frequencies between its pins."""
-    line = line_of(scene, own.link)
+    line = cut_links.line_of(scene, own.link)
     parts = []
     if own.bends:
         first = own.bending_rad_s(line.length_m, line.density_kg_m)
@@ -73,12 +69,12 @@ def _link(scene: Scene, own: ElasticLink) -> str:
 def _ratio(scene: Scene, first_rad_s: float) -> str:
     words = f"{first_rad_s:.6g} rad/s on"
     law = scene.driver.law
-    if isinstance(law, ConstantSpeed):
+    if isinstance(law, laws.ConstantSpeed):
         words += f" ({first_rad_s / abs(law.speed_rad_s):.4g} times the speed of the driver)"
     return words
 
 
-def start_words(scene: Scene, start: Shape) -> str:
+def start_words(scene: Scene, start: elastic.Shape) -> str:
     """Return the start in a sentence."""
     damped = any(own.damping_s for own in scene.elastic.values())
     ending = " until it is damped" if damped else ", as nothing damps it"
@@ -89,8 +85,8 @@ def elastic_warnings(scene: Scene, largest_m: dict[str, float]) -> Iterator[str]
     """Yield sentences on the limits of the model, with the largest deflections [m] by link."""
     law = scene.driver.law
     for name, own in scene.elastic.items():
-        line = line_of(scene, name)
-        if own.bends and not own.damping_s and isinstance(law, ConstantSpeed):
+        line = cut_links.line_of(scene, name)
+        if own.bends and not own.damping_s and isinstance(law, laws.ConstantSpeed):
             ratio = own.bending_rad_s(line.length_m, line.density_kg_m) / abs(law.speed_rad_s)
             if 1 <= round(ratio) <= SLOW and abs(ratio - round(ratio)) < NEAR:
                 yield (
@@ -137,7 +133,7 @@ def _over(off: Array, series: Array) -> float:
     return float(np.nanmax(off, initial=0.0)) / (largest or 1.0)
 
 
-def beam_certainty(motion: ElasticHistory) -> list[str]:
+def beam_certainty(motion: elastic_motion.ElasticHistory) -> list[str]:
     """Return the uncertainty of a motion, in sentences. Raises CrankcheckError where no other can
     be computed."""
     if isinstance(motion.by, Segments):
@@ -155,11 +151,11 @@ def beam_certainty(motion: ElasticHistory) -> list[str]:
     return notes
 
 
-def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
+def _by_other_shapes(motion: elastic_motion.ElasticHistory, time_s: Array, own: Motion) -> str:
     """Compare with the next finer description; for elements, and for free motion, which take long,
     with one of fewer shapes, whose error is the larger one, if there are any fewer."""
     fewer = coarser(motion.by)
-    slow = isinstance(motion, ReleasedElasticMotion) or isinstance(motion.by, Elements)
+    slow = isinstance(motion, released.ReleasedElasticMotion) or isinstance(motion.by, Elements)
     if not slow or described(motion.scene, fewer) == described(motion.scene, motion.by):
         found = _shares(own, motion.finer.at(time_s))
         told = [

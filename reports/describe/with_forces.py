@@ -14,9 +14,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Forces, Motion
-from models.scene import Scene
-from models.scene.characteristics import Constant
-from models.scene.driver import driver_place, driver_shown, driver_unit
+from models.scene import Scene, characteristics, driver
 from reports.describe.free_motion import instants
 from reports.output.numbers import count, listed
 
@@ -40,8 +38,12 @@ def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: boo
     Raises CrankcheckError as `analytic.forces.kinetostatics.forces`, for dead points only where all
     samples are in one; and for a load over time on a motion whose times are mere labels.
     """
-    if not by_law:
-        _refuse_loads_over_time(scene)
+    for load in () if by_law else scene.loads.values():
+        if load.over == "time" and not isinstance(load.characteristic, characteristics.Constant):
+            raise CrankcheckError(
+                f"forces at an angle: loads.{load.name} follows time, and an angle does not say "
+                "when it is; ask for a motion over time"
+            )
     when = motion.time_s if by_law else motion
     acting = forces(scene, when, bound=bound, skip_dead_points=True)
     if acting.torque.size and np.all(np.isnan(acting.torque)):
@@ -96,15 +98,6 @@ def turn_with_forces(scene: Scene, samples: int = TURN) -> Motion:
     return with_forces(scene, solve(scene, time_s))
 
 
-def _refuse_loads_over_time(scene: Scene) -> None:
-    for load in scene.loads.values():
-        if load.over == "time" and not isinstance(load.characteristic, Constant):
-            raise CrankcheckError(
-                f"forces at an angle: loads.{load.name} follows time, and an angle does not say "
-                "when it is; ask for a motion over time"
-            )
-
-
 def force_notes(scene: Scene, motion: Motion) -> list[str]:
     """Return the undetermined forces, in sentences."""
     acting = motion.forces
@@ -138,9 +131,9 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
 
 
 def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
-    if driver_place(scene, motion) is None:
+    if driver.driver_place(scene, motion) is None:
         return count(samples.size, "instant")
-    places, unit = driver_shown(scene, motion)[samples], driver_unit(scene)
+    places, unit = driver.driver_shown(scene, motion)[samples], driver.driver_unit(scene)
     places = np.round(places % 360.0 if unit == "deg" else places, 6)
     places = places % 360.0 if unit == "deg" else places
     angles = [f"{each:g} {unit}" for each in sorted(set(places.tolist()))]
@@ -208,15 +201,11 @@ def cleaned_forces(acting: Forces) -> Forces:
     jams = acting.has_equilibria(2)
 
     def clean(series: Array, limit: Array) -> Array:
-        return _cleaned(series, np.where(jams, 0.0, limit))
+        """Clean a series (T,) or (T, 2) by its bound (T,)."""
+        rows, limit = series.T, np.where(jams, 0.0, limit)
+        largest = float(np.nanmax(np.abs(rows), initial=0.0))
+        swallowed = np.where(limit <= max(UNCERTAIN * largest, 1e-9), 0.0, np.nan)
+        return np.asarray(np.where(np.abs(rows) <= limit, swallowed, rows).T)
 
     clear = acting.each_series(clean, bound)
     return replace(clear, bound=bound, friction_solution=acting.friction_solution)
-
-
-def _cleaned(series: Array, limit: Array) -> Array:
-    """Return a series (T,) or (T, 2) with a bound (T,), cleaned."""
-    rows = series.T
-    largest = float(np.nanmax(np.abs(rows), initial=0.0))
-    swallowed = np.where(limit <= max(UNCERTAIN * largest, 1e-9), 0.0, np.nan)
-    return np.asarray(np.where(np.abs(rows) <= limit, swallowed, rows).T)

@@ -15,18 +15,15 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from models.array import Array
-from models.scene import Scene
-from models.scene.cut_links import line_of
+from models.scene import Scene, cut_links, laws
 from models.scene.driver import Controlled
-from models.scene.laws import ConstantSpeed
 from reports.describe.elastic_course import Apart, ElasticCourse
 from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
 from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
 from reports.figures.style import INK, PAGE_IN, QUIET, SMALL, FigureSet, Look, note, shorten
 from reports.output.numbers import readable
-from reports.protocol.length import SECONDS, TURNS
-from reports.protocol.way import way_of
+from reports.protocol import length, way
 
 ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}
 RIGID: Look = {"color": "#c04a1d", "linewidth": 0.9, "linestyle": (0, (4.0, 2.0))}
@@ -58,10 +55,10 @@ class CourseAxis:
     def of(course: ElasticCourse) -> CourseAxis:
         scene, time_s = course.scene, course.time_s
         law = scene.driver.law
-        if isinstance(law, ConstantSpeed) and time_s[-1] <= TURN * law.period_s:
+        if isinstance(law, laws.ConstantSpeed) and time_s[-1] <= TURN * law.period_s:
             degrees = np.degrees(course.motion.links[scene.driver.link].theta)
             return CourseAxis(scene, degrees, f"angle of {scene.driver.link} [deg]", 60.0)
-        if isinstance(law, ConstantSpeed):
+        if isinstance(law, laws.ConstantSpeed):
             return CourseAxis(scene, time_s / law.period_s, f"turns of {scene.driver.link}")
         return CourseAxis(scene, time_s, "time [s]")
 
@@ -87,10 +84,9 @@ def _notes(course: ElasticCourse) -> list[str]:
 
 
 def _deflection(course: ElasticCourse) -> Figure | None:
-    """Draw the deflection of the middle of each elastic link; None where no link bends."""
     curves = {}
     for name in (name for name, own in course.scene.elastic.items() if own.bends):
-        line = line_of(course.scene, name)
+        line = cut_links.line_of(course.scene, name)
         label = f"middle of {name}, {readable(0.5 * line.length_m)} m from {line.pins[0]}"
         curves[label] = 1e3 * course.motion.elastic[name].middle
     return _of_links(course, curves, "Deflection", "deflection [mm]") if curves else None
@@ -118,7 +114,6 @@ def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, la
 
 
 def _torque(course: ElasticCourse) -> Figure | None:
-    """Draw the torque of the drive with elastic links and with rigid ones, and their difference."""
     if course.torques is None:
         return None
     elastic, rigid = course.torques
@@ -167,8 +162,8 @@ def _chosen(course: ElasticCourse) -> list[Apart]:
 
 
 BESIDE = {
-    TURNS: ("rigid links", "Displacements from rigid links", 1.0),
-    SECONDS: ("lines between pins", "Deflections", 0.0),
+    length.TURNS: ("rigid links", "Displacements from rigid links", 1.0),
+    length.SECONDS: ("lines between pins", "Deflections", 0.0),
 }
 """Name of the thin mechanism, magnified quantity, and turns from which on times are shown."""
 
@@ -190,7 +185,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
         (Line2D([], [], color=colour, linewidth=2.0), f"{name}{' (elastic)' * (name in own.bent)}")
         for name, colour in colours.items()
     ]
-    ghost, what, turns = BESIDE[way_of(scene).clock]
+    ghost, what, turns = BESIDE[way.way_of(scene).clock]
     entries.append((Line2D([], [], **GHOST), ghost))
     title = f"{what}, magnified {factor:g} times: {scene.name}"
     figure, panes = sheet(PAGE_IN, replace(panels, height=height), title, entries, _notes(course))

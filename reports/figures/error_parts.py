@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from models.scene import Scene
-from models.scene.driver import driver_axis
+from models.scene import Scene, driver
 from reports.drawing.moving import told_places
 from reports.figures.drawing import ends
 from reports.figures.sheet import corner_words, grid, tenfold
@@ -48,9 +47,9 @@ def draw(report: Report, name: str) -> Figure | None:
     titles = [label(named(line)) for line in lines]
     steps = {one.steps_per_turn for one in cells if one is not None}
     at = " and ".join(f"{n:g}" for n in sorted(steps))
-    over = driver_axis(scene).rpartition(" [")[0]
+    over = driver.driver_axis(scene).rpartition(" [")[0]
     title = f"Error over the {over}: {name}, {body.name}, {at} steps per turn"
-    labels = (driver_axis(scene), f"error of {body.name} [unit in the panel]")
+    labels = (driver.driver_axis(scene), f"error of {body.name} [unit in the panel]")
     drawn = {part for one in cells if one is not None for part in one.parts.curves}
     entries = [(Line2D([], [], **LOOKS[n][1]), LOOKS[n][0]) for n in LOOKS if n in drawn]
     figure, axes = grid(titles, title, labels, entries, notes(report, lines), apart=True)

@@ -17,13 +17,10 @@ from numpy.typing import NDArray
 from analytic.forces.virtual_power import ReducedMachine, reduced_machine
 from models.array import Array
 from models.motion import Forces, Motion
-from models.scene import Scene
-from models.scene.characteristics import Constant
+from models.scene import Scene, characteristics, laws
 from models.scene.driver import driver_axis, driver_course, driver_shown, driver_stands
-from models.scene.laws import ConstantSpeed
+from reports.describe import free_motion, with_forces
 from reports.describe.force_tables import cycle_of, cycle_words, flow_of
-from reports.describe.free_motion import acted_on
-from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import goes_round
 from reports.drawing.shape import PATH_SAMPLES, Label, clear_of_locking, colours_of, place, turn_of
@@ -74,7 +71,7 @@ class ForceTurn:
         """Notes under each figure."""
         scene = self.scene
         notes = [style.note(scene, "closed form", "driver", style.loads_told(scene))]
-        notes += force_notes(scene, self.motion)
+        notes += with_forces.force_notes(scene, self.motion)
         if self.acting.has_equilibria(0).any():
             left = "" if self.has_forces else ", which is all of the turn"
             notes.append(f"Forces within 5 deg of it are not drawn{left}.")
@@ -83,16 +80,16 @@ class ForceTurn:
 
 def force_turn(scene: Scene) -> ForceTurn:
     """Return the turn of a scene. Raises CrankcheckError as `with_forces`."""
-    motion = turn_with_forces(scene)
+    motion = with_forces.turn_with_forces(scene)
     assert motion.forces is not None
     reduced = reduced_machine(scene, motion.time_s)
-    acting = clear_of_locking(cleaned_forces(motion.forces))
+    acting = clear_of_locking(with_forces.cleaned_forces(motion.forces))
     law, every = scene.driver.law, np.arange(motion.time_s.size)
     label, x = driver_axis(scene), driver_shown(scene, motion)
     ends = (float(x.min()), float(x.max()))
     if not goes_round(scene):  # every place may be passed twice
         x, label, ends = motion.time_s, "time [s]", (0.0, law.period_s)
-    elif isinstance(law, ConstantSpeed) and _is_cyclic(scene, np.radians(x)):
+    elif isinstance(law, laws.ConstantSpeed) and _is_cyclic(scene, np.radians(x)):
         # A turn is like every other: it is drawn from 0 on, wherever it began.
         around = np.mod(np.round(x[:-1], 9), 360.0)
         every = np.argsort(around)
@@ -107,7 +104,7 @@ def _is_cyclic(scene: Scene, theta: Array) -> bool:
     none follows the angle otherwise than turn by turn (a four-stroke's does)."""
     for load in scene.loads.values():
         own = load.characteristic
-        if isinstance(own, Constant) or load.over == "displacement":
+        if isinstance(own, characteristics.Constant) or load.over == "displacement":
             continue
         if load.over == "time":
             return False
@@ -130,7 +127,7 @@ ROOM = 0.12
 def hodographs(turn: ForceTurn) -> Figure | None:
     """Draw polar diagrams, the way of the tip of each pin's reaction over a turn, drawn from one
     point, a panel per pin, with equal axes each; None where there are no reactions."""
-    pins = list(acted_on(turn.acting))
+    pins = list(free_motion.acted_on(turn.acting))
     if not (pins and turn.has_forces):
         return None
     columns = 2 if len(pins) == 4 else min(COLUMNS, len(pins))
@@ -309,7 +306,7 @@ def reactions(axis: Abscissa, acting: Forces, notes: Sequence[str]) -> Figure | 
     colours, guides = colours_of(axis.scene), acting.sliders
     forces = [
         (f"{point} on {body}", np.hypot(*force.T), colours.get(body, INK))
-        for point, body, _, force in acted_on(acting)
+        for point, body, _, force in free_motion.acted_on(acting)
     ]
     forces += [(f"slider {name}, normal (signed)", one.normal, INK) for name, one in guides.items()]
     moments = [

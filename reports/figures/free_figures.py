@@ -88,7 +88,6 @@ def free_course(free: FreeMotion, *, with_forces: bool = False) -> FreeCourse:
 
 
 def _over_time(course: FreeCourse) -> Figure:
-    """Draw the driver's angle and angular velocity over time, in two panels."""
     driver = course.driver
     turns = float(np.ptp(driver.theta)) > 4 * math.tau
     unit, per = ("turns", math.tau) if turns else ("deg", math.radians(1.0))
@@ -157,7 +156,6 @@ def _over_one_turn(degrees: Array, omega: Array) -> tuple[Array, Array]:
 
 
 def _reactions(course: FreeCourse) -> Figure | None:
-    """Draw the reactions over time, if they were requested."""
     if course.acting is None:
         return None
     return reactions(course, course.acting, course.notes_over_time)

@@ -10,8 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
 from models.scene import Scene
-from reports.compare.free_facts import window_means
-from reports.compare.last_turn import Trace
+from reports.compare import free_facts, last_turn
 from reports.describe.facts import describe_law
 from reports.drawing.shape import true_motion
 from reports.figures.drawing import Mark, around, marks
@@ -41,7 +40,7 @@ class FreeRun:
     name: str
     dt_s: float
     mark: Mark
-    trace: Trace
+    trace: last_turn.Trace
 
     @property
     def time_s(self) -> Array:
@@ -181,7 +180,7 @@ def energy_change(report: Report, name: str) -> Figure | None:
     figure, axes = grid(titles, title, labels, entries, shown.notes, apart=True)
     for run, panel in zip(runs, axes, strict=True):
         assert run.energy is not None
-        means = window_means(shown.scene, run.time_s, run.energy)  # NaN at both ends
+        means = free_facts.window_means(shown.scene, run.time_s, run.energy)  # NaN at both ends
         scale = tenfold(float(np.nanmax(np.abs(run.energy))))
         panel.plot(run.time_s, run.energy / scale, color=run.mark.colour, **RAW)
         panel.plot(run.time_s, means / scale, color=run.mark.colour, **MEANS)

@@ -14,11 +14,9 @@ from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
 from models.motion import Motion
-from models.scene import Scene
-from models.scene.driver import driver_stands
+from models.scene import Scene, driver
 from reports.describe.facts import describe_law
-from reports.drawing.force_arrows import ForceArrows
-from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
+from reports.drawing import force_arrows, gif
 from reports.drawing.shape import PATH_SAMPLES, Sheet, box_of, clearest, names, turn_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, Look, width_in
@@ -43,7 +41,7 @@ def draw(report: Report, name: str) -> Figure | None:
     truth, samples = OF_CLOCK[way_of(scene).clock]
     path = turn_of(scene, samples)
     at = clearest(path)
-    title = f"{name}, {driver_stands(scene, path, at)}"
+    title = f"{name}, {driver.driver_stands(scene, path, at)}"
     own = facts_of(report).get("crankcheck", "")
     longest = f"longest link L = {scene.longest_m:g} m"
     origin = f"crankcheck {own}, {truth}; driver {describe_law(scene)}; {longest}."
@@ -58,7 +56,7 @@ def mechanism_at(
     box: tuple[Array, Array],
     title: str,
     notes: Sequence[str],
-    arrows: ForceArrows | None = None,
+    arrows: force_arrows.ForceArrows | None = None,
 ) -> Figure:
     """Draw a scene at a sample of its path, within a box, with arrows of its forces if any."""
     low, high = box
@@ -68,11 +66,11 @@ def mechanism_at(
     figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], notes)
     per_m = float(min(wide / (high[0] - low[0]), height / (high[1] - low[1])))
     _frame(axes, low, high, per_m)
-    draw_bodies(axes, scene, path, path, at, 0.5)
+    gif.draw_bodies(axes, scene, path, path, at, 0.5)
     taken = []
     if arrows is not None:
-        draw_arrows(axes, arrows, path, at)
-        scale_bar(axes, arrows, box, SMALL)
+        gif.draw_arrows(axes, arrows, path, at)
+        gif.scale_bar(axes, arrows, box, SMALL)
         taken = [each.shaft for each in arrows.at(path, at)]
     paper = Sheet(low, tuple((high - low) * per_m), per_m, 0.1 * scene.longest_m)
     for each in names(scene, path, at, paper, _name_size, taken):

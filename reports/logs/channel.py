@@ -92,12 +92,18 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Gap:
-    """A column with the gap at a pin or slider: in its ``unit``, and as ``opening_m`` (T,)."""
+class GapColumn:
+    """A column with the distance of the bodies at a pin or slider, in its ``unit``."""
 
     column: str
     of: str
     unit: str
+
+
+@dataclass(frozen=True)
+class Gap(GapColumn):
+    """Such a column with its numbers (T,) [m]."""
+
     opening_m: Array
 
 
@@ -157,7 +163,12 @@ def logged_motion(
     reading: a coordinate of a point that the log lacks equals the reference."""
     bodies: dict[str, dict[str, dict[str, Array]]]
     bodies = {"links": {}, "points": {}, "sliders": {}, "elastic": {}}
-    for (kind, body), several in sorted(_slots(log).items(), key=lambda slot: slot[0][0].is_size):
+    # One each, but several for rates of a point on several bodies, and for angles of a link that
+    # are also relative to others.
+    slots: dict[tuple[Kind, str], list[Reading]] = {}
+    for reading in log.readings:
+        slots.setdefault((reading.channel.kind, reading.channel.of), []).append(reading)
+    for (kind, body), several in sorted(slots.items(), key=lambda slot: slot[0][0].is_size):
         right = kind.of(truth_of(kind.order), body)
         wrong = _largest([error_of(reading) for reading in several], kind.order)
         fields = bodies[kind.bodies].setdefault(body, {})
@@ -180,15 +191,6 @@ def _of_size(logged: Array, vectors: Array, size: Array, error: Array) -> Array:
     along[size == 0.0, 0] = 1.0
     more = np.abs(error) > np.hypot(*(logged - vectors).T)
     return np.where(more[:, None], vectors + error[:, None] * along, logged)
-
-
-def _slots(log: OwnLog) -> dict[tuple[Kind, str], list[Reading]]:
-    """Return the readings by the series of a motion: one each, but several for rates of a point on
-    several bodies, and for angles of a link that are also relative to others."""
-    slots: dict[tuple[Kind, str], list[Reading]] = {}
-    for reading in log.readings:
-        slots.setdefault((reading.channel.kind, reading.channel.of), []).append(reading)
-    return slots
 
 
 def _largest(errors: Sequence[Array], order: Order) -> Array:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from models.array import Array
 from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from models.scene.laws import MOST_TURNS
-from reports.logs import force_columns
-from reports.logs.channel import Channel, Gap, Reading
+from reports.logs.channel import Channel, Gap, GapColumn, Reading
 from reports.logs.columns import Columns
 from reports.logs.kinds import DIMENSION, KINDS, TYPICAL, UNITS, Meaning, si
 from reports.logs.map_file import LEFT_OUT, ChannelTable
@@ -19,46 +18,23 @@ from reports.logs.names import OUT_OF_PLANE, SceneNames, is_named, meaning
 from reports.logs.text_lines import is_number
 
 
-@dataclass(frozen=True)
-class GapColumn:
-    """A column with the distance of the bodies at a pin or slider."""
-
-    column: str
-    of: str
-    unit: str
-
-
-def column_meaning(
+def of_column(
     column: str, told: ChannelTable | None, named: SceneNames, times: Mapping[str, str]
 ) -> Channel | GapColumn | str:
     """Return the meaning of a column, or the reason for none. Raises CrankcheckError."""
     if told and told.ignore:
         return LEFT_OUT
+    where = f"[[channel]] {column!r}"
+    found: Meaning | str = Meaning("", None, False, "")
     if told is None or told.of is None or told.kind is None:
         found = meaning(column, named, told.unit or "" if told else "")
-        if isinstance(found, str):
-            if told is None:
-                return found
-            if told.of is None or told.kind is None:
-                raise CrankcheckError(
-                    f"[[channel]] {column!r}: add of, kind and unit, as the name does not say "
-                    f"them: {found}"
-                )
-            found = Meaning("", None, False, "")
-    else:
-        found = Meaning(told.of, None, told.kind == "gap", "")
-    return _corrected_channel(column, told, found, named, times)
-
-
-def _corrected_channel(
-    column: str,
-    told: ChannelTable | None,
-    found: Meaning,
-    named: SceneNames,
-    times: Mapping[str, str],
-) -> Channel | GapColumn:
+    if isinstance(found, str):
+        if told is None:
+            return found
+        raise CrankcheckError(
+            f"{where}: add of, kind and unit, as the name does not say them: {found}"
+        )
     told = told or ChannelTable.model_construct(column=column)
-    where = f"[[channel]] {column!r}"
     of = told.of or found.of
     kinds = named.kinds_of(of)
     if not kinds:
@@ -66,10 +42,9 @@ def _corrected_channel(
         raise CrankcheckError(f"{where}, of: {of!r} is not in scene {named.scene.name}; {hint}")
     if (told.kind or ("gap" if found.gap else "")) == "gap":
         return GapColumn(column, of, told.unit or found.unit or "m")
+    kind = found.kind
     if told.kind is not None:
         kind = next((KINDS[k, told.kind] for k in kinds if (k, told.kind) in KINDS), None)
-    else:
-        kind = found.kind
     if kind is None or kind.body_kind not in kinds:
         have = ", ".join(name for k, name in KINDS if k in kinds)
         asked = f"{told.kind!r} is no kind of reading of" if told.kind else "none for"
@@ -89,18 +64,9 @@ def _corrected_channel(
     if told.time is not None and told.time not in times.values():
         hint = suggestion(told.time, times.values(), "columns of times are")
         raise CrankcheckError(f"{where}, time: {told.time!r} is no column of times; {hint}")
-    return Channel(
-        column,
-        kind,
-        of,
-        unit,
-        told.sign,
-        told.offset,
-        relative_to=relative_to,
-        on=on,
-        delay_s=told.delay_s,
-        time=time if time != times["time"] else "",
-    )
+    time = time if time != times["time"] else ""
+    plain = Channel(column, kind, of, unit, told.sign, told.offset)
+    return replace(plain, relative_to=relative_to, on=on, delay_s=told.delay_s, time=time)
 
 
 def _check_roles(
@@ -181,12 +147,6 @@ def unjudged_columns(
     )
 
 
-def beside_forces(columns: Columns, unjudged: Iterable[tuple[str, str]]) -> dict[str, Array]:
-    """Return the lengths of forces and the friction of a log, by column."""
-    own = (force_columns.FORCE_LENGTH, force_columns.FRICTION)
-    return {c: force_columns.force_numbers(columns, c) for c, why in unjudged if why in own}
-
-
 MOST = 1e15
 """Largest magnitude of a reading [SI] that is no angle."""
 DIGITS = 2e-3
@@ -248,5 +208,5 @@ def gaps_told(columns: Columns, gaps: Iterable[GapColumn]) -> tuple[Gap, ...]:
             raise CrankcheckError(f"column {gap.column!r}: {gap.unit} is no unit of length")
         opening = np.abs(columns.numbers(gap.column) * UNITS["length"][gap.unit])
         _refuse_huge(columns, gap, opening)
-        found.append(Gap(gap.column, gap.of, gap.unit, opening))
+        found.append(Gap(**vars(gap), opening_m=opening))
     return tuple(found)

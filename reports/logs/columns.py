@@ -15,8 +15,9 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no types
 from models.array import NO_NUMBERS, Array
 from models.errors import CrankcheckError, cut, suggestion
 from models.files.inputs import UnreadableError, regular_bytes
+from reports.logs.map_file import FileTable
 from reports.logs.text_lines import COMMA, is_number, refuse_columns, refuse_rows, row_line
-from reports.logs.text_rows import Layout, text_columns
+from reports.logs.text_rows import text_columns
 from reports.logs.workbook import plain, sheet_columns
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
@@ -126,7 +127,7 @@ def _is_empty(cell: object) -> bool:
 
 
 def read_columns(
-    path: Path, layout: Layout | None = None, wanted: Callable[[str], bool] = lambda name: True
+    path: Path, layout: FileTable | None = None, wanted: Callable[[str], bool] = lambda name: True
 ) -> Columns:
     """Read the columns of a log: text with a header (.csv, .tsv, .txt; the separator is found),
     .parquet or .xlsx, in the ``layout`` of the user's map. Columns of a text whose names are not
@@ -135,7 +136,7 @@ def read_columns(
     Raises CrankcheckError for no plain file, one of another kind or too large, a damaged or empty
     one, two columns of one name.
     """
-    layout = layout or Layout()
+    layout = layout or FileTable()
     ending = path.suffix.lower()
     if ending not in ENDINGS:
         found = repr(ending) if ending else "no ending"
@@ -152,9 +153,8 @@ def read_columns(
             _refuse_twins(names, f"log {path}")
             by_name = dict(zip(names, cells, strict=True))
             return Columns(str(path), by_name, first, decimal=layout.decimal)
-        table, names, first, passed = text_columns(raw, layout, wanted)
-        tables = [table]
-        del raw, table
+        *tables, names, first, passed = text_columns(raw, layout, wanted)
+        del raw
         columns = _named(_of_table(str(path), tables, first), names, path)
         return replace(columns, passed=passed, decimal=layout.decimal)
     except UnreadableError as error:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -66,10 +66,7 @@ def log_forces(
         time_s if acting_s is None else acting_s,
         {p: _pin(p, bodies, read, nothing) for p, bodies in joined_at(scene).items()},
         {
-            name: SliderForces(
-                read.get(("normal", name, "", 0), nothing),
-                read.get(("moment", name, "", 0), nothing),
-            )
+            name: SliderForces(*(read.get((kind, name, "", 0), nothing) for kind in OF_GUIDES))
             for name in scene.sliders
         },
         read.get(drive_place(scene), nothing),
@@ -153,6 +150,7 @@ UNITS: Mapping[str, Mapping[str, float]] = {
 TIMES = "force_time_s"
 Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
 """Content of a column: kind, point or slider, body, and axis; a push drives a slider."""
+OF_GUIDES: Sequence[Literal["normal", "moment"]] = ("normal", "moment")
 MOMENTS = ("torque", "moment")
 A_FORCE = "a force, which is judged with --forces"
 FORCE_LENGTH = "it is the length of a force, whose components are judged with --forces"
@@ -192,10 +190,8 @@ def force_places(scene: Scene) -> dict[str, Place]:
             if len(bodies) == 2:
                 found[f"{point}_f{letter}"] = ("pin", point, bodies[1], axis)
     for name in scene.sliders:
-        for kind in ("normal", "moment"):
-            of: Place = ("normal" if kind == "normal" else "moment", name, "", 0)
-            found[f"{name}_slider_{kind}"] = of
-            found[f"{name}_{kind}"] = of
+        for kind in OF_GUIDES:
+            found[f"{name}_slider_{kind}"] = found[f"{name}_{kind}"] = (kind, name, "", 0)
     return found
 
 
@@ -227,9 +223,17 @@ def _stems(column: str) -> Iterator[tuple[str, str, str]]:
         yield words, kind, ""
 
 
+def beside_forces(columns: Columns, unjudged: Iterable[tuple[str, str]]) -> dict[str, Array]:
+    """Return the lengths of forces and the friction of a log, by column, of those ``unjudged``."""
+    own = (FORCE_LENGTH, FRICTION)
+    return {column: force_numbers(columns, column) for column, why in unjudged if why in own}
+
+
 def why_not_judged(column: str, scene: Scene) -> str:
-    """Return the reason why a column named like a force is not judged: a length, friction, a
-    missing body; "" for other columns."""
+    """Return the reason why a column named like a force is not judged beside the motion: a force, a
+    length, friction, a missing body; "" for other columns."""
+    if names_force(column, scene):
+        return A_FORCE
     reasons = _others(scene)
     return next((reasons[stem] for stem, _, _ in _stems(column) if stem in reasons), "")
 
@@ -256,5 +260,4 @@ def _others(scene: Scene) -> dict[str, str]:
 
 
 def _vector(stem: str) -> tuple[str, str, str]:
-    """Return the names of components and length of a force."""
     return f"{stem}_fx", f"{stem}_fy", f"{stem}_f"

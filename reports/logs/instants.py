@@ -12,11 +12,72 @@ from models.scene import Scene
 from models.scene.laws import MOST_TURNS
 from reports.logs.channel import Channel, Reading, is_driver
 from reports.logs.columns import ONE_FILE, SPARSE, Columns
-from reports.logs.kinds import DIMENSION, UNITS, spelled_unit, without_unit
+from reports.logs.kinds import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit
+from reports.logs.map_file import Map
+
+TIME_NAMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime",
+              "simulation time", "elapsed", "elapsed time", "time steps",
+              "timesteps"}  # fmt: skip
 
 
-def seconds(columns: Columns, column: str, unit: str, zero_s: Decimal) -> Array:
-    """Return a column of times in seconds after ``zero_s``."""
+def time_of(column: str, told: str = "") -> tuple[str, str] | None:
+    """Return kind (``time``, ``velocity time``, ``acceleration time``) and unit, perhaps ``told``,
+    of a column of times; None for others. Raises CrankcheckError for two units."""
+    text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", without_unit(column)[0])
+    words = [word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", text) if word]
+    unit = ""
+    if len(words) > 1 and DIMENSION.get(spelled_unit(words[-1])) == "time":
+        unit = spelled_unit(words.pop())
+        if words[-1] == "in":
+            words.pop()
+    name = " ".join(words)
+    if name not in TIME_NAMES and name not in ("velocity time", "acceleration time"):
+        return None
+    unit = told or one_unit(column, unit) or si("time")
+    return ("time" if name in TIME_NAMES else name, unit) if DIMENSION[unit] == "time" else None
+
+
+def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
+    """Return the columns of times, by kind: that of all rows is ``time``, "" for none. Raises
+    CrankcheckError for two."""
+    found: dict[str, list[str]] = {}
+    others = {one.column for one in map_.channel if one.ignore or map_.time.column is not None}
+    for column in columns.raw:
+        if column not in others and (time := time_of(column, map_.time.unit or "")):
+            found.setdefault(time[0], []).append(column)
+    if map_.time.column is not None:
+        columns.require([map_.time.column], "[time] column")
+        found["time"] = [map_.time.column]
+    for whose, several in found.items():
+        if len(several) > 1:
+            raise CrankcheckError(
+                f"{columns.source}: two columns of times, {several[0]!r} and {several[1]!r}; say "
+                "which in [time] of a map, and ignore the other, or say time in the [[channel]] of "
+                f"columns that go by it; of two rates, {ONE_FILE}"
+                if whose == "time"
+                else f"{columns.source}: two columns for {whose}: {', '.join(several[:2])}"
+            )
+    clocks = (one.time or "" for one in map_.channel if one.time in columns.raw)
+    further = {f"clock {name}": name for name in clocks if may_be_times(name)}
+    return {"time": "", **{whose: several[0] for whose, several in found.items()}, **further}
+
+
+def _unit_of(column: str, told: str = "") -> str:
+    """Return the unit of a column of times, perhaps ``told``."""
+    found = time_of(column, told)
+    return told or (found[1] if found else unit_named(column) or si("time"))
+
+
+def further(columns: Columns, column: str, zero_s: Decimal, scene: Scene) -> Array:
+    """Return the instants in a further column of times, after ``zero_s`` [s]. Raises
+    CrankcheckError for times that go back, or far from the start."""
+    time_s = _seconds(columns, column, _unit_of(column), zero_s)
+    _refuse_back(columns, column, time_s)
+    _refuse_far(columns, column, time_s, scene)
+    return time_s
+
+
+def _seconds(columns: Columns, column: str, unit: str, zero_s: Decimal) -> Array:
     size = UNITS["time"][unit]
     return np.asarray(columns.less(column, zero_s / Decimal(str(size))) * size)
 
@@ -29,23 +90,24 @@ HOLE = 1.9
 """Ratio of an interval to the usual one from which on samples are missing."""
 
 
-def of_rows(
-    columns: Columns, column: str, unit: str, zero_s: Decimal, *, holes: bool = False
-) -> Array:
-    """Return the times of all rows after ``zero_s`` [s], (T,). Raises CrankcheckError for fewer
-    than 2 rows; times that go back or stand still; samples missing in an even log, unless ``holes``
-    are intended."""
-    time_s = seconds(columns, column, unit, zero_s)
+def of_rows(columns: Columns, column: str, map_: Map, scene: Scene) -> tuple[Array, str, Decimal]:
+    """Return the times of all rows [s], (T,), the unit of their column, and the time [s] that was
+    subtracted from them. Raises CrankcheckError for fewer than 2 rows; times that go back or stand
+    still, or are far from the start; samples missing in an even log, unless the map permits it."""
+    unit, zero_s = _unit_of(column, map_.time.unit or ""), Decimal(0)
+    if map_.time.zero and columns.numbers(column).size:
+        zero_s = columns.exact(column, 0) * Decimal(str(UNITS["time"][unit]))
+    time_s = _seconds(columns, column, unit, zero_s)
     if time_s.size < 2:
         raise CrankcheckError(f"{columns.source}: {time_s.size} row; a motion has at least 2")
-    refuse_back(columns, column, time_s)
-    if not holes:
+    _refuse_back(columns, column, time_s)
+    if map_.file.holes != "meant":
         _refuse_holes(columns, column, time_s, np.diff(time_s))
-    return time_s
+    _refuse_far(columns, column, time_s, scene)
+    return time_s, unit, zero_s
 
 
-def refuse_back(columns: Columns, column: str, time_s: Array) -> None:
-    """Refuse times that go back or stand still. Raises CrankcheckError."""
+def _refuse_back(columns: Columns, column: str, time_s: Array) -> None:
     steps = np.diff(time_s)
     back = np.flatnonzero(steps <= 0.0)
     if back.size:
@@ -58,7 +120,7 @@ def refuse_back(columns: Columns, column: str, time_s: Array) -> None:
         )
 
 
-def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> None:
+def _refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> None:
     """Refuse times so late that the place within a turn is lost. Raises CrankcheckError."""
     far = float(np.max(np.abs(time_s)))
     turns = far / scene.driver.law.period_s

@@ -7,8 +7,8 @@ reference.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from typing import Protocol, cast
 
 import numpy as np
@@ -40,35 +40,23 @@ class AtCrank(Truth):
     Rates are by the scene's law, as the measure of its difficulty; ``with_rates`` if they are
     judged as well."""
 
-    time_s: Array | None = None
-    crank_rad: Array | None = None
+    time_s: Array = field(kw_only=True)
+    crank_rad: Array = field(kw_only=True)
     with_rates: bool = False
 
     def crank_at(self, time_s: Array) -> Array:
         """Return the driver's angle at instants of the rows [rad]; at others interpolated."""
-        assert self.time_s is not None
-        assert self.crank_rad is not None
         if np.array_equal(time_s, self.time_s):
             return self.crank_rad
         return np.interp(time_s, self.time_s, self.crank_rad)
 
-    def at(self, time_s: Array) -> Motion:
-        """Return the reference at instants of the rows; other angles are interpolated."""
-        instants = time_s.tobytes()
-        if instants not in self._motions:
-            crank = self.crank_at(time_s)
-            _, omega, alpha = self.scene.driver.law.at(time_s)
-            self._motions[instants] = solve_driven(
-                self.scene,
-                crank,
-                omega,
-                alpha,
-                time_s,
-                links=self.links,
-                points=self.points,
-                bound=self.bound,
-            )
-        return self._motions[instants]
+    def driven_at(self, time_s: Array) -> tuple[Array, Array, Array]:
+        """Return that angle with its rate and acceleration, which are by the scene's law."""
+        return self.crank_at(time_s), *self.scene.driver.law.at(time_s)[1:]
+
+    def _solved(self, time_s: Array) -> Motion:
+        solved = partial(solve_driven, links=self.links, points=self.points, bound=self.bound)
+        return solved(self.scene, *self.driven_at(time_s), time_s)
 
 
 @dataclass(frozen=True)
@@ -181,7 +169,6 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         stopped_at_s=float(log.time_s[-1]),
         start_s=float(log.time_s[0]),
         steps=steps,
-        every=1,
         with_forces=borne is not None,
         forces_of="steps" if borne and borne.of_steps else "states",
     )
@@ -217,9 +204,7 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     way = way_of(log.scene)
     roles = way.roles_of(with_forces=beside.run.with_forces)
     for name, entry in QUANTITIES.items():
-        if entry.role not in roles:
-            continue
-        if name == "segments":  # which the same column says as the deflection
+        if entry.role not in roles or name == "segments":  # said as the deflection by its column
             continue
         reference, whole = beside.reference, beside.whole
         if entry.role == "force":

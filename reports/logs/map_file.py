@@ -29,9 +29,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from models.errors import CrankcheckError, listed, shown, suggestion
 from models.files.inputs import UnreadableError, regular_text, tables
-from reports.logs.channel import Channel, OwnLog
 from reports.logs.kinds import DIMENSION, KINDS, UNITS
-from reports.logs.text_rows import Layout
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
 Truth = Annotated[bool, Field(strict=True)]
@@ -56,7 +54,8 @@ class MapTable(BaseModel):
 
 
 class FileTable(MapTable):
-    """Format of the file; ``holes = "meant"`` permits some in an even log."""
+    """Format of the file, "" where it is to be found; ``holes = "meant"`` permits some in an even
+    log."""
 
     separator: Literal["", ",", ";", "\t", " "] = ""
     decimal: Literal[".", ","] = "."
@@ -96,11 +95,6 @@ class Map(MapTable):
     file: FileTable = FileTable()
     time: TimeTable = TimeTable()
     channel: Annotated[list[ChannelTable], Field(max_length=2_000)] = []
-
-    @property
-    def layout(self) -> Layout:
-        """The format of the file by the map."""
-        return Layout(self.file.separator, self.file.decimal, self.file.sheet)
 
 
 def read_map(path: Path) -> Map:
@@ -146,27 +140,6 @@ def _check_words(map_: Map, place: str) -> None:
         raise CrankcheckError(listed(place, faults))
 
 
-def map_text(log: OwnLog, file: FileTable) -> str:
-    """Return the map of a log as understood, with the other columns as remarks, and the entries of
-    the original map on the file."""
-    lines = [*HEAD, "", *file_lines(file)]
-    if log.timed:
-        lines += ["[time]", *_entries({"column": log.stamp[0], "unit": log.stamp[1]})]
-    if log.zero_s:
-        lines.append('zero = "first"')
-    for reading in (*log.readings, *log.copies):
-        lines += ["", "[[channel]]", *_channel(reading.channel)]
-    for gap in log.gaps:
-        told = {"column": gap.column, "of": gap.of, "kind": "gap", "unit": gap.unit}
-        lines += ["", "[[channel]]", *_entries(told)]
-    for column, reason in log.unused:
-        if reason == LEFT_OUT:
-            lines += ["", "[[channel]]", f"column = {toml_text(column)}", "ignore = true"]
-            continue
-        lines += ["", *form_lines(column, reason)]
-    return "\n".join(lines) + "\n"
-
-
 def form_lines(column: str, reason: str) -> Sequence[str]:
     """Return a form for a column without meaning, for that reason, as remarks."""
     head = [f"# {' '.join(reason.split())}", "# [[channel]]", f"# column = {toml_text(column)}"]
@@ -180,28 +153,16 @@ def file_lines(file: FileTable) -> Sequence[str]:
 
 def table_lines(head: str, table: MapTable) -> Sequence[str]:
     """Return a table of a map as lines of TOML, without defaults."""
-    return [head, *_entries(table.model_dump(exclude_defaults=True))]
+    return [head, *entries(table.model_dump(exclude_defaults=True))]
 
 
-def _entries(told: Mapping[str, object]) -> list[str]:
+def entries(told: Mapping[str, object]) -> list[str]:
     """Return keys with texts, truths and numbers, as lines of TOML."""
     lines = []
     for key, value in told.items():
         shown = toml_text(value) if isinstance(value, str) else repr(value)
         lines.append(f"{key} = {shown.lower() if isinstance(value, bool) else shown}")
     return lines
-
-
-def _channel(channel: Channel) -> Sequence[str]:
-    """Return a channel as lines of TOML, without defaults."""
-    told = {name: getattr(channel, name) for name in ("column", "of", "kind", "unit")}
-    told["kind"] = channel.kind.name
-    plain = Channel(channel.column, channel.kind, channel.of, channel.unit)
-    for name in ("sign", "offset", "wrapped", "relative_to", "on", "time", "delay_s"):
-        value = getattr(channel, name)
-        if value != getattr(plain, name) or (name == "wrapped" and channel.kind.turns):
-            told[name] = value
-    return _entries(told)
 
 
 def toml_text(value: str) -> str:

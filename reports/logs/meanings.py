@@ -1,94 +1,17 @@
-"""Conversion of columns to readings, by their names and the map; and the columns of times."""
+"""Conversion of columns to readings, by their names and the map; and the map that says it."""
 
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
 
 import numpy as np
 
-from models.array import Array
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
-from reports.logs import instants, map_file
-from reports.logs.channel import Channel, OwnLog, Reading
-from reports.logs.column_meaning import (
-    GapColumn,
-    beside_forces,
-    column_meaning,
-    gaps_told,
-    reading,
-    sized_channels,
-    unjudged_columns,
-)
-from reports.logs.columns import ONE_FILE, Columns
-from reports.logs.force_columns import A_FORCE, TIMES, log_forces, names_force, why_not_judged
-from reports.logs.kinds import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit
-from reports.logs.map_file import Map
+from reports.logs import column_meaning, instants, map_file
+from reports.logs.channel import Channel, GapColumn, OwnLog, Reading
+from reports.logs.columns import Columns
+from reports.logs.force_columns import TIMES, beside_forces, log_forces, names_force, why_not_judged
 from reports.logs.names import SceneNames, is_named, meaning
-
-TIME_NAMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime",
-              "simulation time", "elapsed", "elapsed time", "time steps",
-              "timesteps"}  # fmt: skip
-
-
-def time_of(column: str, told: str = "") -> tuple[str, str] | None:
-    """Return kind (``time``, ``velocity time``, ``acceleration time``) and unit, perhaps ``told``,
-    of a column of times; None for others. Raises CrankcheckError for two units."""
-    text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", without_unit(column)[0])
-    words = [word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", text) if word]
-    unit = ""
-    if len(words) > 1 and DIMENSION.get(spelled_unit(words[-1])) == "time":
-        unit = spelled_unit(words.pop())
-        if words[-1] == "in":
-            words.pop()
-    name = " ".join(words)
-    if name not in TIME_NAMES and name not in ("velocity time", "acceleration time"):
-        return None
-    unit = told or one_unit(column, unit) or si("time")
-    return ("time" if name in TIME_NAMES else name, unit) if DIMENSION[unit] == "time" else None
-
-
-def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
-    """Return the columns of times, by kind: that of all rows is ``time``, "" for none. Raises
-    CrankcheckError for two."""
-    found: dict[str, list[str]] = {}
-    others = {one.column for one in map_.channel if one.ignore or map_.time.column is not None}
-    for column in columns.raw:
-        if column not in others and (time := time_of(column, map_.time.unit or "")):
-            found.setdefault(time[0], []).append(column)
-    if map_.time.column is not None:
-        columns.require([map_.time.column], "[time] column")
-        found["time"] = [map_.time.column]
-    for whose, several in found.items():
-        if len(several) > 1:
-            raise CrankcheckError(
-                f"{columns.source}: two columns of times, {several[0]!r} and {several[1]!r}; say "
-                "which in [time] of a map, and ignore the other, or say time in the [[channel]] of "
-                f"columns that go by it; of two rates, {ONE_FILE}"
-                if whose == "time"
-                else f"{columns.source}: two columns for {whose}: {', '.join(several[:2])}"
-            )
-    clocks = (one.time or "" for one in map_.channel if one.time in columns.raw)
-    further = {f"clock {name}": name for name in clocks if instants.may_be_times(name)}
-    return {"time": "", **{whose: several[0] for whose, several in found.items()}, **further}
-
-
-def unit_of_time(column: str, map_: Map) -> str:
-    """Return the unit of the times of all rows."""
-    told = time_of(column, map_.time.unit or "")
-    return map_.time.unit or (told[1] if told else instants.unit_named(column) or si("time"))
-
-
-def further_instants(columns: Columns, column: str, zero_s: Decimal, scene: Scene) -> Array:
-    """Return the instants in a further column of times, after ``zero_s`` [s]. Raises
-    CrankcheckError for times that go back, or far from the start."""
-    told = time_of(column)
-    unit = told[1] if told else instants.unit_named(column) or si("time")
-    time_s = instants.seconds(columns, column, unit, zero_s)
-    instants.refuse_back(columns, column, time_s)
-    instants.refuse_far(columns, column, time_s, scene)
-    return time_s
 
 
 def understood(
@@ -102,7 +25,7 @@ def understood(
     that contradict their kind; cells that are no numbers; a map with unknown names.
     """
     map_ = map_ or map_file.Map()
-    times = time_columns(columns, map_)
+    times = instants.time_columns(columns, map_)
     told = {one.column: one for one in map_.channel}
     columns.require(told, "[[channel]] column")
     for column in told:
@@ -112,12 +35,22 @@ def understood(
                 "other column that is"
             )
     borne = {name for name in columns.raw if forces and names_force(name, scene)}
-    moving = replace(columns, raw={n: x for n, x in columns.raw.items() if n not in borne})
-    channels, gaps, unused = _by_meaning(moving, scene, told, times)
-    channels, copies, still = judged_channels(
-        sized_channels(channels, columns, told, scene.sliders), scene
-    )
-    unjudged = unjudged_columns(columns, unused, SceneNames(scene))
+    named = SceneNames(scene)
+    meant = {
+        column: column_meaning.of_column(column, told.get(column), named, times)
+        for column in columns.raw
+        if column not in borne and column not in times.values()
+    }
+    gaps = [each for each in meant.values() if isinstance(each, GapColumn)]
+    unused = [
+        (column, why if why == map_file.LEFT_OUT else why_not_judged(column, scene) or why)
+        for column, why in meant.items()
+        if isinstance(why, str)
+    ]
+    channels = [each for each in meant.values() if isinstance(each, Channel)]
+    channels = column_meaning.sized_channels(channels, columns, told, scene.sliders)
+    channels, copies, still = judged_channels(channels, scene)
+    unjudged = column_meaning.unjudged_columns(columns, unused, named)
     unused += [(each.column, STILL) for each in still]
     if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
@@ -125,38 +58,31 @@ def understood(
     main, unit, zero_s = times["time"], "", Decimal(0)
     further = {c for c in times.values() if c != main}
     if main:
-        unit = unit_of_time(main, map_)
-        if map_.time.zero and columns.numbers(main).size:
-            zero_s = columns.exact(main, 0) * Decimal(str(UNITS["time"][unit]))
-        base = instants.of_rows(columns, main, unit, zero_s, holes=map_.file.holes == "meant")
-        instants.refuse_far(columns, main, base, scene)
+        base, unit, zero_s = instants.of_rows(columns, main, map_, scene)
     else:
         others = {name for name, reason in unused if reason != map_file.LEFT_OUT} | {*further}
         angle = instants.driver_channel(columns, scene, channels, others, forces=bool(borne))
-        base = instants.turning_s(
-            reading(columns, angle, told.get(angle.column), np.empty(0)), scene
-        )
-    apart = {name: further_instants(columns, name, zero_s, scene) for name in further}
+        crank = column_meaning.reading(columns, angle, told.get(angle.column), np.empty(0))
+        base = instants.turning_s(crank, scene)
+    apart = {name: instants.further(columns, name, zero_s, scene) for name in further}
 
-    def readings(some: Sequence[Channel]) -> tuple[Reading, ...]:
-        return tuple(
-            reading(columns, each, told.get(each.column), apart.get(each.time, base))
-            for each in some
-        )
+    def reading(of: Channel) -> Reading:
+        at = apart.get(of.time, base)
+        return column_meaning.reading(columns, of, told.get(of.column), at)
 
     ignored = {column for column, one in told.items() if one.ignore}
-    acts = further_instants(columns, TIMES, zero_s, scene) if TIMES in borne else None
+    acts = instants.further(columns, TIMES, zero_s, scene) if TIMES in borne else None
     return OwnLog(
         source=columns.source,
         scene=scene,
         time_s=base,
-        readings=readings(channels),
+        readings=tuple(map(reading, channels)),
         stamp=(main, unit),
         zero_s=float(zero_s),
         timed=bool(main),
-        copies=readings(copies),
-        gaps=gaps_told(columns, gaps),
-        still=readings(still),
+        copies=tuple(map(reading, copies)),
+        gaps=column_meaning.gaps_told(columns, gaps),
+        still=tuple(map(reading, still)),
         unused=tuple(unused),
         unjudged=unjudged,
         besides=beside_forces(columns, unjudged) if forces else {},
@@ -185,7 +111,7 @@ def _meant(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callabl
         if forces and names_force(column, scene):
             return True
         try:
-            if column == map_.time.column or time_of(column):
+            if column == map_.time.column or instants.time_of(column):
                 return True
             found = meaning(column, named)
         except CrankcheckError:
@@ -193,32 +119,6 @@ def _meant(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callabl
         return not isinstance(found, str) and (found.gap or found.of not in scene.ground)
 
     return is_wanted
-
-
-def _by_meaning(
-    columns: Columns,
-    scene: Scene,
-    told: Mapping[str, map_file.ChannelTable],
-    times: Mapping[str, str],
-) -> tuple[list[Channel], list[GapColumn], list[tuple[str, str]]]:
-    """Return the columns of the scene, and the others with the reason. Raises CrankcheckError."""
-    named = SceneNames(scene)
-    channels: list[Channel] = []
-    gaps: list[GapColumn] = []
-    unused: list[tuple[str, str]] = []
-    for column in columns.raw:
-        if column in times.values():
-            continue
-        found = column_meaning(column, told.get(column), named, times)
-        if isinstance(found, str):
-            is_force = names_force(column, scene)
-            told_so = A_FORCE if is_force else why_not_judged(column, scene)
-            unused.append((column, found if found == map_file.LEFT_OUT else told_so or found))
-        elif isinstance(found, GapColumn):
-            gaps.append(found)
-        else:
-            channels.append(found)
-    return channels, gaps, unused
 
 
 def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) -> str:
@@ -238,9 +138,7 @@ def judged_channels(
     and those of points of the ground. Raises CrankcheckError for two columns of one
     quantity."""
     first: dict[tuple[object, ...], Channel] = {}
-    main: list[Channel] = []
-    copies: list[Channel] = []
-    still: list[Channel] = []
+    main, copies, still = list[Channel](), list[Channel](), list[Channel]()
     order = {body: n for n, body in enumerate([*scene.links])}
     for each in sorted(channels, key=lambda one: (bool(one.relative_to), order.get(one.on, -1))):
         key = (each.kind, each.of, each.on, each.relative_to)
@@ -260,6 +158,38 @@ def judged_channels(
             main.append(each)
     place = {each.column: n for n, each in enumerate(channels)}
     return sorted(main, key=lambda one: place[one.column]), copies, still
+
+
+def map_text(log: OwnLog, file: map_file.FileTable) -> str:
+    """Return the map of a log as understood, with the other columns as remarks, and the entries of
+    the original map on the file."""
+    lines = [*map_file.HEAD, "", *map_file.file_lines(file)]
+    if log.timed:
+        lines += ["[time]", *map_file.entries({"column": log.stamp[0], "unit": log.stamp[1]})]
+    if log.zero_s:
+        lines.append('zero = "first"')
+    for reading in (*log.readings, *log.copies):
+        lines += ["", "[[channel]]", *_channel_lines(reading.channel)]
+    for gap in log.gaps:
+        told = {"column": gap.column, "of": gap.of, "kind": "gap", "unit": gap.unit}
+        lines += ["", "[[channel]]", *map_file.entries(told)]
+    for column, reason in log.unused:
+        ignored = ["[[channel]]", *map_file.entries({"column": column, "ignore": True})]
+        left_out = reason == map_file.LEFT_OUT
+        lines += ["", *(ignored if left_out else map_file.form_lines(column, reason))]
+    return "\n".join(lines) + "\n"
+
+
+def _channel_lines(channel: Channel) -> Sequence[str]:
+    """Return a channel as lines of TOML, without defaults."""
+    told = {name: getattr(channel, name) for name in ("column", "of", "kind", "unit")}
+    told["kind"] = channel.kind.name
+    plain = Channel(channel.column, channel.kind, channel.of, channel.unit)
+    for name in ("sign", "offset", "wrapped", "relative_to", "on", "time", "delay_s"):
+        value = getattr(channel, name)
+        if value != getattr(plain, name) or (name == "wrapped" and channel.kind.turns):
+            told[name] = value
+    return map_file.entries(told)
 
 
 def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, str] | None:
@@ -288,8 +218,11 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
         f"# The scene has {', '.join(map(map_file.toml_text, dict.fromkeys(every)))}.",
         "",
         *(map_file.file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
-        *_time_lines(map_, times, columns.raw),
+        *map_file.table_lines("[time]", map_.time),
     ]
+    if not times:
+        lines += [f"# column = {map_file.toml_text(name)}" for name in columns.raw]
+        lines.append('# unit = "s"')
     for name in others:
         lines.append("")
         if name in told:
@@ -306,20 +239,11 @@ def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
     found: set[str] = set()
     for name in set(names).difference(left_out):
         try:
-            if time_of(name):
+            if instants.time_of(name):
                 found.add(name)
         except CrankcheckError:
             continue
     return found
-
-
-def _time_lines(map_: map_file.Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
-    """Return the table of times; with remarks for missing entries."""
-    lines = [*map_file.table_lines("[time]", map_.time)]
-    if not times:
-        lines += [f"# column = {map_file.toml_text(name)}" for name in names]
-        lines.append('# unit = "s"')
-    return lines
 
 
 def _why_no_meaning(name: str, named: SceneNames) -> str:

@@ -26,14 +26,6 @@ class Beginning:
     whole: bool
 
 
-@dataclass(frozen=True)
-class Body:
-    """The text of the rows, and the numbers of skipped lines, from the first row on."""
-
-    text: memoryview
-    passed: Array
-
-
 def row_line(passed: Array, row: int) -> int:
     """Return the line of a row, both counted from the first row; some lines are ``passed``."""
     rows_before = passed - np.arange(passed.size)
@@ -70,9 +62,10 @@ def beginning(raw: bytes) -> Beginning:
     return Beginning(lines, offsets, whole)
 
 
-def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> Body:
-    """Return the rows of a text from a byte on, without lines that are blank or remarks. A line
-    within a quoted field is no remark, nor is a row by ``is_row``."""
+def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> tuple[memoryview, Array]:
+    """Return the rows of a text from a byte on, without lines that are blank or remarks, and the
+    numbers of these lines, from the first row on. A line within a quoted field is no remark, nor is
+    a row by ``is_row``."""
     passed: list[int] = []
     kept: list[memoryview] = []
     view = memoryview(raw)
@@ -93,7 +86,7 @@ def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> Body:
     kept.append(view[at:])
     parts = [part for part in kept if len(part)]
     text = parts[0] if len(parts) == 1 else memoryview(b"".join(parts))
-    return Body(text, np.asarray(passed, dtype=np.int64))
+    return text, np.asarray(passed, dtype=np.int64)
 
 
 SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", " ": "spaces"}

@@ -11,6 +11,7 @@ from models.array import Array
 from models.errors import cut
 from models.files.inputs import UnreadableError
 from reports.logs import text_lines
+from reports.logs.map_file import FileTable
 from reports.logs.text_lines import TITLE, Header, header_of, marked_rows
 
 DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
@@ -23,10 +24,12 @@ LONG = re.compile(r"-?(\d{16,}|\d{8,}[.,]\d+)")
 
 @dataclass(frozen=True)
 class RowReader:
-    """Reader of the rows ``below`` the header of a text, with decimals after a point or comma."""
+    """Reader of the rows below the header of a ``text``, with decimals after a point or comma;
+    ``passed`` are the numbers of skipped lines, from the first row on."""
 
     header: Header
-    below: text_lines.Body
+    text: memoryview
+    passed: Array
     decimal: str
 
     def table(self, fields: Sequence[str], wanted: Callable[[str], bool]) -> pa.Table:
@@ -61,7 +64,7 @@ class RowReader:
                     )
 
     def _read(self, types: Mapping[str, pa.DataType]) -> pa.Table:
-        text = self.below.text
+        text = self.text
         if self.header.separator == " ":
             clean = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(text)))
             text = memoryview(clean)
@@ -122,7 +125,7 @@ class RowReader:
         return table.drop_columns([""])
 
     def _line(self, row: int) -> int:
-        return self.header.first + 1 + text_lines.row_line(self.below.passed, row)
+        return self.header.first + 1 + text_lines.row_line(self.passed, row)
 
 
 def _type_of(field: str) -> pa.DataType:
@@ -154,15 +157,6 @@ def _count_lines(text: memoryview) -> int:
     return count + (len(text) > 0 and text[-1] != 10)
 
 
-@dataclass(frozen=True)
-class Layout:
-    """Format of a file by its map: "" where it is to be found."""
-
-    separator: str = ""
-    decimal: str = "."
-    sheet: str = ""
-
-
 def _as_utf_8(raw: bytes) -> bytes:
     """Return a text in UTF-16, with a mark or of ASCII, as UTF-8; another as it is."""
     marks = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
@@ -175,7 +169,7 @@ def _as_utf_8(raw: bytes) -> bytes:
 
 
 def text_columns(
-    raw: bytes, layout: Layout, wanted: Callable[[str], bool]
+    raw: bytes, layout: FileTable, wanted: Callable[[str], bool]
 ) -> tuple[pa.Table, Sequence[str], int, Array]:
     """Read the ``wanted`` columns of a text with a header: all its names, the line of the first
     row, and the lines from there on that are no rows; those that are blank or remarks are skipped
@@ -185,8 +179,8 @@ def text_columns(
     header = header_of(start, layout.separator, wanted)
     names = header.names
     is_row = marked_rows(names, header.separator, wanted)
-    below = text_lines.body(raw, start.offsets[header.first], is_row)
+    text, passed = text_lines.body(raw, start.offsets[header.first], is_row)
     fields = text_lines.fields_of(start.lines[header.first], header.separator)
-    table = RowReader(header, below, layout.decimal).table(fields, wanted)
+    table = RowReader(header, text, passed, layout.decimal).table(fields, wanted)
     kept = names[:-1] if header.ends else names
-    return table, kept, header.first + 1, below.passed
+    return table, kept, header.first + 1, passed

@@ -11,13 +11,7 @@ import pandas as pd
 
 from models.errors import cut, few, suggestion
 from models.files.inputs import UnreadableError
-from reports.logs.text_lines import (
-    are_numbers,
-    refuse_columns,
-    refuse_rows,
-    units_below,
-    with_units,
-)
+from reports.logs import text_lines
 
 MOST_SHEET_BYTES = 400_000_000
 """Limit of an unpacked workbook."""
@@ -77,8 +71,8 @@ def _rows(sheet: Any) -> list[Sequence[object]]:
     while rows and not rows[-1]:
         rows.pop()
     wide = max(map(len, rows), default=0)
-    refuse_columns(wide)
-    refuse_rows(len(rows), 1)
+    text_lines.refuse_columns(wide)
+    text_lines.refuse_rows(len(rows), 1)
     if len(rows) * wide > MOST_CELLS:
         raise UnreadableError(
             f"cells up to row {len(rows)} and column {wide}; at most {MOST_CELLS} are read: clear "
@@ -101,17 +95,17 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
             f": column {blank + 1} has no name in row {at + 1}; that row holds the names of the "
             "columns: clear what stands above them, or beside"
         )
-    if are_numbers(names):
+    if text_lines.are_numbers(names):
         raise UnreadableError(
             f": row {at + 1} holds numbers and no names; put a header above them, such as time_s "
             "and rocker_deg"
         )
     first = at + 1
-    if first < len(rows) and (units := units_below(_row_texts(rows[first], wide), wide)):
-        names, first = with_units(names, units), first + 1
+    if first < len(rows) and (units := text_lines.units_below(_row_texts(rows[first], wide), wide)):
+        names, first = text_lines.with_units(names, units), first + 1
     if first == len(rows):
         raise UnreadableError(": a header and no rows; a log has rows of numbers")
-    refuse_rows(len(rows) - first, wide)
+    text_lines.refuse_rows(len(rows) - first, wide)
     cells = ([row[n] if n < len(row) else None for row in rows[first:]] for n in range(wide))
     columns = [np.array([plain(cell) for cell in each], dtype=object) for each in cells]
     return names, columns, first + 1

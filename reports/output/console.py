@@ -75,6 +75,12 @@ def say_each(console: Console, texts: Iterable[str], style: str = "dim") -> None
         say(console, text, style)
 
 
+def print_each(console: Console, tables: Iterable[Table]) -> None:
+    """Print tables, an empty line below each."""
+    for table in tables:
+        console.print(table, "")
+
+
 def say_whole(console: Console, *texts: str) -> None:
     """Print each text that is not empty as `say`, its lines as long as they are, and nothing in it
     that acts on a terminal."""

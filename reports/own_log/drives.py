@@ -3,13 +3,13 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
-from models.errors import CrankcheckError, cut, few, shown
+from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.compare.compare import Truth
@@ -48,27 +48,10 @@ class DriveFit:
     explains: bool = True
 
 
-def refuse_geometry_alone(drive: LogDrive, *, forces: bool) -> None:
-    """Refuse forces where the geometry alone is judged. Raises CrankcheckError."""
-    if forces and drive == "logged":
-        raise CrankcheckError(
-            "--forces: with --drive logged the geometry alone is judged, and forces take rates; "
-            "use --drive scene or fitted"
-        )
-
-
 def why_aside(drive: LogDrive, driver: str) -> str:
     """Return the reason why quantities in a log are not judged at the logged angle."""
     what = "--drive logged judges the geometry alone," if drive == "logged" else "the log is judged"
     return f"{what} at its angle of {driver}"
-
-
-def chosen_drive(text: str) -> LogDrive:
-    """Return the drive of that name. Raises CrankcheckError for another."""
-    for name in get_args(LogDrive):
-        if text == name:
-            return name  # type: ignore[no-any-return]  # get_args has lost what they are
-    raise CrankcheckError(f"--drive {shown(text)}: unknown; use scene, fitted or logged")
 
 
 def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
@@ -78,7 +61,7 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     if drive == "scene" and log.timed:
         return Truth(log.scene, links=links, points=points), None
     refuse_other_than_cranked(log.scene, f"--drive {drive}")
-    crank = crank_reading(log)
+    crank = next((each for each in log.readings if is_driver(each.channel, log.scene)), None)
     if drive == "logged" or not log.timed:
         if drive != "logged":
             _refuse_without_times(log, drive)
@@ -133,11 +116,6 @@ def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
     }
     links = tuple(name for name in scene.links if name in named)
     return links, tuple(name for name in moving if name in named)
-
-
-def crank_reading(log: OwnLog) -> Reading | None:
-    """Return the reading of the driver's angle, if there is one."""
-    return next((each for each in log.readings if is_driver(each.channel, log.scene)), None)
 
 
 def moved(scene: Scene, speed_rad_s: float, start_rad: float) -> Scene:
@@ -240,10 +218,8 @@ def _least(
         change, *_ = np.linalg.lstsq(slope, -rest, rcond=None)
         normal = np.linalg.pinv(slope.T @ slope)
         sigma = math.sqrt(float(rest @ rest) / max(rest.size - 2, 1))
-        doubts = (
-            sigma * math.sqrt(max(float(normal[0, 0]), 0.0)),
-            sigma * math.sqrt(max(float(normal[1, 1]), 0.0)),
-        )
+        first, second = (sigma * math.sqrt(max(each, 0.0)) for each in np.diag(normal).tolist())
+        doubts = first, second
         better = (guess[0] + float(change[0]), guess[1] + float(change[1]))
         after = _rest(scene, readings, better)
         if _size(after) > _size(rest):
@@ -287,9 +263,8 @@ FACTORS = (1.0, 0.5, 0.7, 1.5, 2.0)
 
 def speeds(readings: Sequence[Reading], usual_rad_s: float) -> list[float]:
     """Return speeds of both signs [rad/s]: of repeating readings, then near the scene's own."""
-    found = [usual_rad_s * factor for factor in FACTORS]
-    periodic = _frequencies(readings)
-    chosen = dict.fromkeys([*periodic, *(abs(each) for each in found)])
+    usual = (abs(usual_rad_s * factor) for factor in FACTORS)
+    chosen = dict.fromkeys([*_frequencies(readings), *usual])
     sign = math.copysign(1.0, usual_rad_s)
     return [side * each for each in chosen for side in (sign, -sign)]
 

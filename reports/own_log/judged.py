@@ -24,18 +24,8 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import UNITS
 from reports.logs.log_beside import LogBeside, aside, beside_truth, lacking, readings_of
 from reports.output.numbers import error_text
+from reports.own_log import log_limits
 from reports.own_log.drives import DriveFit, LogDrive, why_aside
-from reports.own_log.log_limits import (
-    HeldLog,
-    LogRequest,
-    absent_names,
-    findings_of_ground,
-    limit_of,
-    log_kind,
-    log_limits,
-    refuse_unjudged,
-    required_name,
-)
 from sim.engine import Placing
 
 ITSELF = (
@@ -70,7 +60,7 @@ class JudgedLog(Evidence):
     @property
     def truth_name(self) -> str:
         """The reference in words."""
-        return log_kind(self.scene).truth_name
+        return log_limits.log_kind(self.scene).truth_name
 
     @property
     def failures(self) -> tuple[Finding, ...]:
@@ -81,7 +71,7 @@ class JudgedLog(Evidence):
         return "out" if self.failures else "within"
 
 
-def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
+def judge_log(log: OwnLog, request: log_limits.LogRequest) -> JudgedLog:
     """Compare a log with the closed form, and judge it.
 
     Raises CrankcheckError for neither target nor step for the content of the log; a target of
@@ -89,11 +79,11 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     that the log does not allow; a range in which the mechanism cannot move.
     """
     _refuse_step(log, request.step_s)
-    required = [required_name(log.scene, name) for name in request.require]
+    required = [log_limits.required_name(log.scene, name) for name in request.require]
     if log.forces is None:
         refuse_forces_unasked("--require", (quantity for _, quantity, _ in required))
         refuse_forces_unasked("--target", request.target)
-    log, truth, fit = log_kind(log.scene).truth(log, request)
+    log, truth, fit = log_limits.log_kind(log.scene).truth(log, request)
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)
     assert errors is not None
@@ -108,9 +98,9 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     not_judged = lacking(log, beside)
     why = why_aside(request.drive, log.scene.driver.name)
     _refuse_aside(aside(log, not_judged), required, why, errors)
-    absent = absent_names(log.scene, required, not_judged, errors)
-    chosen = log_limits(beside.scene, errors, request.target, request.step_s)
-    refuse_unjudged(log, beside, errors, chosen)
+    absent = log_limits.absent_names(log.scene, required, not_judged, errors)
+    chosen = log_limits.by_quantity(beside.scene, errors, request.target, request.step_s)
+    log_limits.refuse_unjudged(log, beside, errors, chosen)
     departure = errors.departure
     evidence = Evidence(
         status="branch-changed" if departure else "ok",
@@ -129,7 +119,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         drive=request.drive,
         step_s=request.step_s,
         fit=fit,
-        findings=(*_findings(evidence, request), *findings_of_ground(log, chosen)),
+        findings=(*_findings(evidence, request), *log_limits.findings_of_ground(log, chosen)),
         causes=found,
         not_judged=not_judged,
         notes=(*errors.notes, *notes),
@@ -142,7 +132,8 @@ def _causes_and_notes(
     rows = [row for row in errors.rows if row.kind == "total"]
     itself = (ITSELF,) if rows and all(row.maximum == 0.0 for row in rows) else ()
     out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
-    found, notes = log_kind(log.scene).explained(HeldLog(log, truth, fit, evidence, errors, out))
+    held = log_limits.HeldLog(log, truth, fit, evidence, errors, out)
+    found, notes = log_limits.log_kind(log.scene).explained(held)
     return tuple(found), itself or tuple(notes)
 
 
@@ -155,7 +146,7 @@ def _placing(errors: Errors) -> Placing:
     return "integrated" if worst is not None and not worst.pure <= near else "solved"
 
 
-def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
+def _findings(evidence: Evidence, request: log_limits.LogRequest) -> tuple[Finding, ...]:
     """Return the findings of the applicable rules; their cures are for engines, and left out."""
     left_out = NOT_OF_LOGS if request.step_s else (*NOT_OF_LOGS, *STEPPED)
     rules = [rule for id_, rule in RULES.items() if id_ not in left_out]
@@ -264,7 +255,7 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
     for error in errors.rows:
         if error.kind not in KINDS or error.tolerance not in judged.limits:
             continue
-        limit = limit_of(error, judged, errors)
+        limit = log_limits.limit_of(error, judged, errors)
         read = readings_of(judged.log, error) if error.source == "reported" else ()
         columns = tuple(each.channel.column for each in read)
         unit = _unit(read, error.unit)

@@ -78,7 +78,7 @@ EVERY = "all"
 """Key of a target for all quantities."""
 
 
-def log_limits(
+def by_quantity(
     scene: Scene, errors: Errors, target: Mapping[str, float], step_s: float
 ) -> dict[str, Limit]:
     """Return the limit of each judged quantity, by target or by a step [s], 0 for none; infinite

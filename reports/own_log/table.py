@@ -31,37 +31,24 @@ FEW = 12
 
 def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
     """Print a judged log."""
-    _failures(console, judged)
-    _late(console, judged)
+    _causes(console, judged)
     console.print(_table(shown_rows(judged), console.width), "")
     _rest(console, judged)
     console.print(verdict_line(judged))
     console.print(escape("\n".join(footer(judged, facts))), style="dim", highlight=False)
 
 
-def _failures(console: Console, judged: JudgedLog) -> None:
-    if not judged.failures:
-        return
-    head = f"OUT  {judged.log.source}, scene {judged.scene.name}"
-    show_failed(console, head, titled(judged.failures))
-    for cause in judged.causes:
-        if cause.name not in ADVICE:
-            hanging(console, "  cause: ", cause_text(cause), style="cyan")
-    if rest := unexplained(judged):
-        hanging(console, "  cause: ", no_cause_text(judged, rest), style="cyan")
-    console.print()
-
-
-ADVICE = ("advice",)
-"""Causes that are reported within limits as well."""
-
-
-def _late(console: Console, judged: JudgedLog) -> None:
+def _causes(console: Console, judged: JudgedLog) -> None:
+    """Print the failures with their causes; within limits the causes of delays, as notes."""
+    head, style = ("  cause: ", "cyan") if judged.failures else ("note: ", "yellow")
     if judged.failures:
-        return
+        title = f"OUT  {judged.log.source}, scene {judged.scene.name}"
+        show_failed(console, title, titled(judged.failures))
     for cause in judged.causes:
-        hanging(console, "note: ", cause_text(cause), style="yellow")
-    if judged.causes:
+        hanging(console, head, cause_text(cause), style=style)
+    if judged.failures and (rest := unexplained(judged)):
+        hanging(console, head, no_cause_text(judged, rest), style=style)
+    if judged.failures or judged.causes:
         console.print()
 
 
@@ -106,7 +93,7 @@ def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
 def _table(rows: Sequence[LogRow], width: int) -> Table:
     heads = (*HEADS, *["at t\ns:"] * (width >= WIDE))
     table = grid(heads, gap=1, cut=("",), least={"columns": 12, "read as": 16})
-    for row in sorted(rows, key=lambda row: row.verdict == "within"):
+    for row in rows:
         mark = Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red")
         names, what, *numbers = _texts(row)
         at = [f"{row.error.time_of_maximum_s:.4g}".replace("nan", "-")] if width >= WIDE else []
@@ -121,8 +108,9 @@ def _texts(row: LogRow) -> tuple[str, ...]:
 
 
 def shown_rows(judged: JudgedLog) -> list[LogRow]:
-    """Return the rows of a table: all columns, and other errors out of tolerance."""
-    return [row for row in log_rows(judged) if row.verdict == "out" or not row.is_aside]
+    """Return the rows of a table: all columns, and other errors out of tolerance, these first."""
+    rows = [row for row in log_rows(judged) if row.verdict == "out" or not row.is_aside]
+    return sorted(rows, key=lambda row: row.verdict == "within")
 
 
 def rest_text(judged: JudgedLog) -> str:
@@ -261,21 +249,16 @@ HEADS = ("", "columns", "read as", "largest\nerror:", "of its\nscale:", "limit:"
 
 def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     """Return the verdict, the faults and causes, every error, and the reference of the numbers."""
+    failures = (f"{f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures)
+    rows = shown_rows(judged)
+    cells = [("ok" if row.verdict == "within" else "OUT", *_texts(row)) for row in rows]
     parts = [
         f"## crankcheck judge: {plain(judged.log.source)}",
         f"**{verdict_line(judged).plain}**",
-    ]
-    parts += [
-        "\n".join(
-            f"- {f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures
-        ),
+        "\n".join(f"- {failure}" for failure in failures),
         "\n".join(f"- cause: {plain(cause_text(c))}" for c in judged.causes),
+        table(HEADS, cells, COMMENT_ROOM, "errors"),
     ]
-    cells = [
-        ("ok" if row.verdict == "within" else "OUT", *_texts(row))
-        for row in sorted(shown_rows(judged), key=lambda row: row.verdict == "within")
-    ]
-    parts.append(table(HEADS, cells, COMMENT_ROOM, "errors"))
     told = [f"drive: {fit_text(judged)}"] if judged.fit else []
     told += [f"not judged: {line}" for line in not_judged_lines(judged)]
     told += filter(None, [rest_text(judged)])

@@ -14,7 +14,7 @@ from analytic.kinematics import repeats_after, solve
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.scene import Same, Scene
-from reports.compare.compare import Beside, truth_of
+from reports.compare.compare import truth_of
 from reports.compare.last_turn import Trace, trace
 from reports.compare.tracks import length
 from reports.judge.cell import Cell, Checked, examined
@@ -110,8 +110,7 @@ def read(request: ModelRequest, limits: Limits) -> ModelAccount:
 def read_here(request: ModelRequest) -> ModelAccount:
     """Read as `read`, in this process."""
     own = reader()(request.path, request.joint, request.key)
-    found = assembled(own, request)
-    scene = found.scene
+    scene, notes = assembled(own, request)
     check_names(scene)
     dt_s, steps = _step_s_and_count(scene, own, request)
     turns = min(dt_s * steps / scene.driver.law.period_s, repeats_after(scene) / math.tau)
@@ -129,9 +128,11 @@ def read_here(request: ModelRequest) -> ModelAccount:
             f"{far_pins(own)}"
         ) from None
     seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
+    # Contacts off only where links touch, and the file's own integrator where another is no help.
+    possible = itertools.product((True, False), (True, False) if seen.touching else (False,))
     proposals = [
         ProposedChange(advised, own.patch(dt_s, advised))
-        for advised in _proposed(bool(seen.touching))
+        for advised in itertools.starmap(Advised, possible)
     ]
     met = [
         Disturbance("contacts", f"{first} touches {second} in {share:.0%} of the poses")
@@ -146,23 +147,13 @@ def read_here(request: ModelRequest) -> ModelAccount:
         dt_s=dt_s,
         steps=steps,
         open_m=own.open_m(),
-        notes=[*own.notes, *found.notes, *passed],
+        notes=[*own.notes, *notes, *passed],
         disturbances=[*met, *own.disturbances],
         profiles=list(own.engine(proposals[0].advised).profiles),
         proposals=proposals,
         recommended=proposals[0],
         files=own.files,
     )
-
-
-def _proposed(touching: bool) -> list[Advised]:
-    """Return possible recommendations: contacts off only where links are ``touching``, and the
-    file's own integrator where another one is no help."""
-    return [
-        Advised(integrator, contacts_off)
-        for integrator in (True, False)
-        for contacts_off in ((True, False) if touching else (False,))
-    ]
 
 
 def _step_s_and_count(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
@@ -212,7 +203,7 @@ def checked_line(line: ModelLine) -> CheckedLine:
 
 def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
     """Return the course of a run, None without a log. Raises CrankcheckError for no reference."""
-    beside = Beside.of(truth_of(Same(cell.scene)), run)
+    beside = truth_of(Same(cell.scene)).beside(run)
     if beside is None:
         return None
     time_s = beside.motion.time_s

@@ -7,7 +7,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,20 +28,11 @@ SHUT = 1e-3
 """Largest distance of a pose from the assembly in which it is drawn shut."""
 ALIKE = 0.1
 """A pose fits two assemblies if it is nearer to the best than the next by less than this share."""
-TURN = math.tau
 SHOWN = 6
 
 
-@dataclass(frozen=True)
-class AssembledModel:
-    """The scene for the run, with notes on its choice."""
-
-    scene: Scene
-    notes: tuple[str, ...]
-
-
-def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
-    """Return the scene of a model, in the assembly as drawn.
+def assembled(own: OwnModel, request: ModelRequest) -> tuple[Scene, list[str]]:
+    """Return the scene of a model, in the assembly as drawn, with notes on its choice.
 
     Raises CrankcheckError for a start many turns away; no closed form; a pose that two assemblies
     fit as well, or a driver angle that none reaches, with the range in the coordinate of the joint;
@@ -59,25 +49,23 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
         structure = analyse(bare)
     except CrankcheckError as error:
         raise CrankcheckError(f"{request.path}: {error}{_why_mobile(own, request)}") from None
-    keys = [group.branch_key for group in structure.groups if group.assemblies == 2]
-    numbered: dict[str, Sequence[int]] = dict.fromkeys(keys, (1, -1))
-    numbered |= {t.branch_key: range(1, MOST_ASSEMBLIES + 1) for t in structure.triads}
-    keys = list(numbered)
-    unknown = [key for key in request.branch if key not in keys]
+    dyads = (group.branch_key for group in structure.groups if group.assemblies == 2)
+    choices: dict[str, Sequence[int]] = dict.fromkeys(dyads, (1, -1))
+    choices |= {t.branch_key: range(1, MOST_ASSEMBLIES + 1) for t in structure.triads}
+    unknown = [key for key in request.branch if key not in choices]
     if unknown:
-        have = f"it has {', '.join(keys)}" if keys else "it has none"
         raise CrankcheckError(
-            f"--branch {unknown[0]}: it chooses between no two assemblies; {have}"
+            f"--branch {unknown[0]}: it chooses between no two assemblies; it has "
+            f"{', '.join(choices) or 'none'}"
         )
-    left = [key for key in keys if key not in request.branch]
+    left = [key for key in choices if key not in request.branch]
     if len(left) > MOST_CHOICES:
         raise CrankcheckError(
             f"{request.path}: {len(left)} choices between two assemblies, of which {MOST_CHOICES} "
             f"are found by trying; choose {len(left) - MOST_CHOICES} or more with --branch NAME=1 "
             f"or NAME=-1, of {', '.join(left)}"
         )
-    every = partial(_fits, own, bare, numbered, request=request)
-    ranked = sorted(every(request.branch), key=lambda fit: fit.far)
+    ranked = sorted(_fits(own, request, bare, choices, request.branch), key=lambda fit: fit.far)
     if not ranked:
         why = f"{_why_not_assembled(own, bare, request)}{far_pins(own)}"
         raise CrankcheckError(f"{request.path}: {why}")
@@ -85,23 +73,23 @@ def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     able = [fit for fit in ranked if not fit.outside or fit.far <= SHUT] or ranked
     best, scene = able[0], able[0].scene
     if _alike(able):
-        choices = " or ".join(_words(fit.scene.branch) for fit in able[:2])
+        two = " or ".join(_words(fit.scene.branch) for fit in able[:2])
         raise CrankcheckError(
-            f"{request.path}: the pose fits two assemblies equally well, {choices}; choose with "
+            f"{request.path}: the pose fits two assemblies equally well, {two}; choose with "
             "--branch NAME=1 or NAME=-1, or start from another pose with --key"
         )
     how = "beside what --branch names " * bool(request.branch) + "nearest to the pose"
     how = how if left else "as --branch names it"
-    notes = [f"assembly: {_words(scene.branch)}, {how}"] if keys else []
-    if keys and (best is not ranked[0] or _alike(ranked)):
+    notes = [f"assembly: {_words(scene.branch)}, {how}"] if choices else []
+    if choices and (best is not ranked[0] or _alike(ranked)):
         notes[0] += " of those within all ranges"
         notes[0] += f"; nearer is {_broken(ranked[0])}" if best is not ranked[0] else ""
     if best.outside:
-        others = every({}) if len(keys) <= MOST_CHOICES else []
+        others = _fits(own, request, bare, choices, {}) if len(choices) <= MOST_CHOICES else []
         within = [_words(fit.scene.branch) for fit in others if not fit.outside]
         cure = f"{within[0]} stays within all ranges" if within else "no assembly found is within"
         notes.append(f"start: {_broken(best)}; {cure}")
-    return AssembledModel(_started(scene, request), tuple(notes))
+    return _started(scene, request), notes
 
 
 class _Fit(NamedTuple):
@@ -123,11 +111,24 @@ def _broken(fit: _Fit) -> str:
 
 
 def _started(scene: Scene, request: ModelRequest) -> Scene:
-    """Return a scene at the start that the request names. Raises CrankcheckError as `_led_to`."""
+    """Return a scene at the start that the request names, in the assembly to which the driver leads
+    from the pose: assemblies of class III groups are numbered where they start. Raises
+    CrankcheckError."""
     if request.start_deg is None:
         return scene
     law = ConstantSpeed(math.radians(request.start_deg), request.speed_rad_s)
-    return _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
+    elsewhere = replace(scene, driver=Driver(scene.driver.link, law))
+    if not analyse(scene).triads:
+        return elsewhere
+    there = law.at(np.zeros(1))[0]
+    motion = solve_driven(scene, there, np.ones(1), np.zeros(1), bound=False)
+    found = in_assembly(elsewhere, motion)
+    if found is None:
+        raise CrankcheckError(
+            f"{request.path}: --start {request.start_deg:g}: the assembly of the pose is not told "
+            "there from others; start nearer to the pose"
+        )
+    return found
 
 
 def _words(branch: Mapping[str, int]) -> str:
@@ -143,28 +144,12 @@ def _why_mobile(own: OwnModel, request: ModelRequest) -> str:
     return ""
 
 
-def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
-    """Return a scene with another start, in the assembly to which the driver leads from the pose:
-    assemblies of class III groups are numbered where they start. Raises CrankcheckError."""
-    if not analyse(scene).triads:
-        return elsewhere
-    there = elsewhere.driver.law.at(np.zeros(1))[0]
-    motion = solve_driven(scene, there, np.ones(1), np.zeros(1), bound=False)
-    found = in_assembly(elsewhere, motion)
-    if found is None:
-        raise CrankcheckError(
-            f"{request.path}: --start {request.start_deg:g}: the assembly of the pose is not told "
-            "there from others; start nearer to the pose"
-        )
-    return found
-
-
 def _fits(
     own: OwnModel,
+    request: ModelRequest,
     bare: Scene,
     choices: Mapping[str, Sequence[int]],
     chosen: Mapping[str, int],
-    request: ModelRequest,
 ) -> Iterator[_Fit]:
     """Yield every assembly with the ``chosen`` signs."""
     left = [key for key in choices if key not in chosen]
@@ -189,7 +174,7 @@ def _fits(
 
 
 def _distance(frame: Frame, pose: BodyPose, longest_m: float) -> float:
-    turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, TURN))
+    turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, math.tau))
     return max(turn, math.dist(frame.origin, pose.origin[0]) / (longest_m or 1.0))
 
 
@@ -213,7 +198,7 @@ def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
     """Return the requested and the possible range of the driver in words; ``otherwise`` if empty.
     The angle of the driver is its joint's reading, so that all is in the joint's own coordinate."""
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
-    way = math.copysign(TURN, request.speed_rad_s)
+    way = math.copysign(math.tau, request.speed_rad_s)
     end = start + way * request.turns
     spans = [_near(span, start) for span in reach(scene)]
     if not spans:
@@ -225,7 +210,7 @@ def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
     cure = "start in between with --start, and take less of a turn with --turns"
     if inside is not None:
         left = (inside[1] if way > 0.0 else inside[0]) - start
-        most = math.floor(1e3 * abs(left) / TURN) / 1e3
+        most = math.floor(1e3 * abs(left) / math.tau) / 1e3
         cure = f"take less of a turn, --turns {most:g} at most, or another --start"
     return (
         f"joint {request.joint} would turn from {math.degrees(start):.4g} to "
@@ -235,7 +220,7 @@ def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
 
 def _near(span: tuple[float, float], angle: float) -> tuple[float, float]:
     """Return the range, moved by whole turns, that is nearest to an angle."""
-    turns = round((angle - (span[0] + span[1]) / 2) / TURN) * TURN
+    turns = round((angle - (span[0] + span[1]) / 2) / math.tau) * math.tau
     return span[0] + turns, span[1] + turns
 
 

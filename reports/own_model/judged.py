@@ -11,14 +11,7 @@ from reports.judge.halving import worst_place
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding
 from reports.output.numbers import short
-from reports.own_model.account import (
-    CheckedLine,
-    ModelAccount,
-    ModelLine,
-    ProposedChange,
-    checked_line,
-    told,
-)
+from reports.own_model.account import CheckedLine, ModelAccount, ModelLine, checked_line, told
 from reports.verify.advised import HELPS
 from reports.workers.isolated import Isolated, Limits, Lost
 
@@ -84,14 +77,13 @@ class JudgedModel:
     def others(self) -> list[CheckedLine]:
         """The other lines worth reporting."""
         names = told(self.account.profiles)
-        rest = [one for one in self.lines if one.cell.profile not in names]
-        return [one for one in rest if self._is_worth_reporting(one)]
-
-    def _is_worth_reporting(self, one: Checked) -> bool:
-        if one.status != self.own.status:
-            return True
-        factor = self.gains(one)[0]
-        return not (1 / SAYS <= factor <= SAYS) and math.isfinite(factor)
+        rest = [(one, self.gains(one)[0]) for one in self.lines if one.cell.profile not in names]
+        return [
+            one
+            for one, factor in rest
+            if one.status != self.own.status
+            or (math.isfinite(factor) and not 1 / SAYS <= factor <= SAYS)
+        ]
 
     def without(self, kind: str) -> CheckedLine | None:
         """Return the line without the disturbances of a kind, None where there is none."""
@@ -148,7 +140,6 @@ def errors_of(one: Checked) -> tuple[float, float, float]:
 
 
 def _ratio(own: float, other: float) -> float:
-    """Return the ratio of two errors, NaN where one is missing."""
     if math.isnan(own) or math.isnan(other):
         return math.nan
     if own == other:
@@ -224,16 +215,14 @@ def chosen(account: ModelAccount, own: CheckedLine, run: Run) -> ModelAccount:
     contacts are off only for an error `SAYS` times less. If none gains, ``helps`` is False."""
     limit = _error(own)
     quick = replace(account, request=replace(account.request, converge=False))
-
-    def error(proposal: ProposedChange) -> float:
-        if not proposal.patch:
-            return limit
-        return _error(run(ModelLine(replace(quick, recommended=proposal), account.profiles[-1])))
-
+    lines = [
+        (each, ModelLine(replace(quick, recommended=each), account.profiles[-1]))
+        for each in account.proposals
+    ]
     for integrator in (True, False):
         found = [
-            (error(each), each)
-            for each in account.proposals
+            (_error(run(line)) if each.patch else limit, each)
+            for each, line in lines
             if each.advised.integrator == integrator
         ]
         kept = next(pair for pair in found if not pair[1].advised.contacts_off)

@@ -93,7 +93,6 @@ def _pose_text(account: ModelAccount) -> str:
 
 
 def _far(account: ModelAccount) -> list[str]:
-    """Return the pins far outside their bodies, in words."""
     return [each.text for each in account.disturbances if each.kind == FAR_PIN]
 
 
@@ -187,10 +186,9 @@ def verdict_text(judged: JudgedModel) -> str:
         head += f", of a linkage that may not be the one you mean ({far[0].partition(';')[0]})"
     if not judged.account.helps:
         return f"{head}; {NO_HELP}"
-    better = "within" if last.verdict == "within" else last.verdict
     gain = judged.gains(last)[0]
     words = f", {factor_words(gain)}" if math.isfinite(gain) else ""
-    return f"{head}; recommended: {better}{words}"
+    return f"{head}; recommended: {last.verdict}{words}"
 
 
 def _why_out(judged: JudgedModel) -> str:
@@ -257,7 +255,9 @@ STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
 def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
     """Print the whole model."""
     _failures(console, judged)
-    _told(console, str(judged.account.request.path), reading(judged.account))
+    console.print(Text(harmless(str(judged.account.request.path)), "bold"))
+    for head, text in reading(judged.account).items():
+        hanging(console, f"  {head}: ", harmless(text))
     console.print()
     console.print(_table(judged, console.width), "")
     if text := still_out(judged):
@@ -265,12 +265,10 @@ def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> Non
     if text := gaps(judged):
         hanging(console, "joints: ", harmless(text))
     _disturbing(console, judged)
-    _recommended(console, judged)
+    console.print(Text(recommended_head(judged), "bold"))
+    console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
     console.print(Text(harmless(verdict_text(judged)), STYLES[judged.verdict]))
-    lines = [
-        *footer(judged),
-        ", ".join(f"{name} {value}" for name, value in facts.items()),
-    ]
+    lines = [*footer(judged), ", ".join(f"{name} {value}" for name, value in facts.items())]
     console.print(escape("\n".join(lines)), style="dim", highlight=False)
 
 
@@ -280,12 +278,6 @@ def _failures(console: Console, judged: JudgedModel) -> None:
     head = f"{MARKS[judged.verdict].plain}  {judged.account.request.path}, as written"
     show_failed(console, head, titled(judged.failures), judged.own.remedy)
     console.print()
-
-
-def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
-    console.print(Text(harmless(title), "bold"))
-    for head, text in told.items():
-        hanging(console, f"  {head}: ", harmless(text))
 
 
 def _table(judged: JudgedModel, width: int) -> Table:
@@ -338,11 +330,6 @@ def _disturbing(console: Console, judged: JudgedModel) -> None:
         texts = [group.short(), *([group.effect] if group.effect else [])]
         hanging(console, f"  {group.kind}: ", harmless("; ".join(texts)))
     console.print()
-
-
-def _recommended(console: Console, judged: JudgedModel) -> None:
-    console.print(Text(recommended_head(judged), "bold"))
-    console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
 
 
 def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:

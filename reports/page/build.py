@@ -15,8 +15,7 @@ from reports.page.sections import OF_WAYS, SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.sections.section import BUDGET, PageReport, Section
-from reports.results.lines import Look
-from reports.results.overview import Report
+from reports.results import lines, overview
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 
@@ -40,7 +39,7 @@ class Head:
     facts: Sequence[str]
     made: str
     first: str
-    looks: Sequence[Look] = ()
+    looks: Sequence[lines.Look] = ()
 
 
 def page(stored: Stored, matrix: Matrix | None = None) -> str:
@@ -84,7 +83,7 @@ def stability_page(matrix: Matrix) -> str:
     return text if over <= 0 else assembled(head, [lighter(matrix, section, over)])
 
 
-def render(report: Report, sections: Iterable[Section | None]) -> str:
+def render(report: overview.Report, sections: Iterable[Section | None]) -> str:
     """Return a page of some sections of a report."""
     head = Head(
         title="crankcheck report",

@@ -287,7 +287,6 @@ def stretches(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> list[Stretch]
 
 
 def _worst_start(drawn: Sequence[DrawnChannel], first: float, last: float, turn: float) -> float:
-    """Return the start of the turn with the worst place at its middle, within the log."""
     worst = next(
         (x for x in drawn if x.reading is not None and x.reading.channel.kind.order == 0), None
     )
@@ -350,16 +349,13 @@ def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBo
         for reading in judged.log.readings
         if reading.channel.kind.order == 0
     ]
-    placing = Placing(scene, truth, _turned(errors, time_s.size), _angles_out(judged))
+    angles = [row for row in log_rows(judged) if row.error.quantity in ("angle", "drive")]
+    out = frozenset(row.error.body for row in angles if row.verdict == "out")
+    placing = Placing(scene, truth, _turned(errors, time_s.size), out)
     placing.take_points(errors)
     placing.take_sliders(errors)
     placing.take_links()
     return LoggedBodies(scene, tuple(placing.pieces()), placing.turned, placing.origins)
-
-
-def _angles_out(judged: JudgedLog) -> frozenset[str]:
-    angles = [row for row in log_rows(judged) if row.error.quantity in ("angle", "drive")]
-    return frozenset(row.error.body for row in angles if row.verdict == "out")
 
 
 def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:

@@ -158,7 +158,6 @@ def _channels(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool
 
 
 def _option(curve: DrawnChannel) -> str:
-    """Return a channel for the list: its state, its column, and the quantity read from it."""
     head = f"{standing(curve)}: {name_text(curve.column, 40)}"
     return head if curve.column == curve.name else f"{head} ({curve.name})"
 

@@ -10,6 +10,7 @@ from rich.console import Console
 from models.errors import CrankcheckError, listed
 from models.files.reading import find_scenes, parse_scene, scene_texts
 from models.scene import Scene
+from reports.advise import search, table
 from reports.advise.advice import Advice, offers, prices, timings
 from reports.advise.demand import (
     MeasuredStudy,
@@ -19,8 +20,6 @@ from reports.advise.demand import (
     stored_choices,
     stored_scenes,
 )
-from reports.advise.search import SearchResult, search_all
-from reports.advise.table import document, show_advice
 from reports.output.console import say_whole, tell
 from reports.output.write import Outputs, provenance
 from reports.plan.requirements import chosen_engines, chosen_scenes, left_out_note, rigid_alone
@@ -73,15 +72,18 @@ class AdviseRequest:
         wanted = choices(engines, stored_choices(every))
         known = evidence(stored, every, demand, texts, wanted) if stored else MeasuredStudy()
         with progress_bar(progress, "settings", len(wanted)) as advance:
-            found = search_all(demand, wanted, known, self.jobs, lambda _: advance())
-        _refuse_unrun(found)
+            found = search.search_all(demand, wanted, known, self.jobs, lambda _: advance())
+        if all(one.ended is not None and one.ended.status == "unsupported" for one in found):
+            ends = {one.ended.reason: one.choice.label for one in found if one.ended}
+            unrun = [f"{label}: {why}" for why, label in ends.items()]
+            raise CrankcheckError(listed("advise", unrun))
         with progress_bar(progress, "timings", timings(demand, found)) as advance:
             priced = prices(demand, found, advance)
         facts = provenance({name: engine(name).version() for name in engines})
         named = bool(self.scenes or stored)
         advice = Advice(demand, offers(found, priced), priced.noise, known, facts, named)
-        with outputs.written({"--json": lambda: document(advice)}):
-            show_advice(console, advice)
+        with outputs.written({"--json": lambda: table.document(advice)}):
+            table.show_advice(console, advice)
         return 0 if advice.promises else 1
 
 
@@ -94,10 +96,3 @@ def _scenes(
         return [parse_scene(text, f"{stored.folder}: {n}") for n, text in texts.items()], texts
     names = request.scenes or USUAL_SCENES
     return chosen_scenes(names, rigid_alone("advise")), scene_texts(names)
-
-
-def _refuse_unrun(found: Sequence[SearchResult]) -> None:
-    """Raise CrankcheckError where no engine can hold a scene."""
-    if all(one.ended is not None and one.ended.status == "unsupported" for one in found):
-        ends = {one.ended.reason: one.choice.label for one in found if one.ended}
-        raise CrankcheckError(listed("advise", [f"{label}: {why}" for why, label in ends.items()]))

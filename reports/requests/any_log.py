@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from sim.engine import Run
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from reports.own_log.drives import LogDrive
 
 
 LogLike: TypeAlias = "str | PathLike[str] | pd.DataFrame | Mapping[str, Sequence[float]] | Motion"
@@ -76,9 +78,21 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     if isinstance(log, str | PathLike):
         path, worth = path_of(log, "log"), wanted(scene, told, forces=forces)
         # No name for the columns, which take as much memory as all readings.
-        return understood(read_columns(path, told.layout, worth), scene, told, forces=forces)
+        return understood(read_columns(path, told.file, worth), scene, told, forces=forces)
     frame, source = _frame_of(log)
     return understood(columns_of(frame, source), scene, told, forces=forces)
+
+
+def drive_of(name: object, *, forces: object) -> LogDrive:
+    """Return the drive of the reference of that name. Raises CrankcheckError for another, and for
+    ``forces`` where the geometry alone is judged."""
+    drive = one_of(name, "--drive", LOG_DRIVES)
+    if is_true(forces, "forces") and drive == "logged":
+        raise CrankcheckError(
+            "--forces: with --drive logged the geometry alone is judged, and forces take rates; "
+            "use --drive scene or fitted"
+        )
+    return cast("LogDrive", drive)
 
 
 def refuse_run(scene: Scene, run: Run, options: LogOptions) -> None:

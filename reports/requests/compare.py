@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, cast
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.scene import Scene
-from models.scene.driver import driver_unit
+from models.scene import Scene, driver
 from reports.compare import compare as comparing
-from reports.compare.compare import Truth
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.judge.cell import Cell, Checked, check_run
 from reports.judge.tolerance import check_names
-from reports.output.console import grid, say
+from reports.output.console import grid, say, say_each
 from reports.output.numbers import short
 from reports.output.write import provenance
 from reports.plan.requirements import given_of, refuse_giving_way, refuse_unfollowed
@@ -25,22 +23,19 @@ from reports.plan.steps import positive
 from reports.protocol.length import SEGMENTS, GivenAs, Length, Planned
 from reports.protocol.way import laid_out, way_of
 from reports.quantities import QUANTITIES
-from reports.requests import any_log, arguments
-from reports.requests.any_log import LogLike, LogOptions, MapLike
-from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, told_at_the_call
-from reports.requests.shown import Shown
-from reports.requests.solution import drawn
+from reports.requests import any_log, arguments, shown, solution
+from reports.requests.any_log import LogLike, MapLike
+from reports.requests.arguments import SceneLike
 from reports.verify.advised import advised
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison(Shown):
+class Comparison(shown.Shown):
     """Errors of a run or a log against the closed form, for each quantity, body and source.
 
     ``source`` names the run or log.
@@ -55,7 +50,7 @@ class Comparison(Shown):
 
         Raises CrankcheckError for an unknown quantity.
         """
-        return self.errors.worst(one_of(quantity, "quantity", QUANTITIES))
+        return self.errors.worst(arguments.one_of(quantity, "quantity", QUANTITIES))
 
     def frame(self) -> pd.DataFrame:
         """Errors, a row per quantity, body, source and kind; ``unit`` is that of ``maximum``,
@@ -70,10 +65,10 @@ class Comparison(Shown):
         show_errors(console, self.scene, self.source, self.errors)
 
     def _drawn(self) -> str:
-        return drawn(self.scene)
+        return solution.drawn(self.scene)
 
 
-@told_at_the_call
+@arguments.told_at_the_call
 def compare(
     scene: SceneLike,
     what: Run | LogLike,
@@ -110,10 +105,12 @@ def compare(
     CrankcheckError
         A log that can not be read or is of another scene; a run that logged nothing.
     """
-    scene = scene_of(scene)
+    scene = arguments.scene_of(scene)
     check_names(scene)
     if isinstance(what, Run):
-        options = LogOptions(step_s, drive, map, forces=forces, segments=segments, springs=springs)
+        options = any_log.LogOptions(
+            step_s, drive, map, forces=forces, segments=segments, springs=springs
+        )
         any_log.refuse_run(scene, what, options)
         errors = comparing.compare(_truth_of_run(scene, what).beside(what))
         if errors is None:
@@ -123,12 +120,10 @@ def compare(
             )
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.log_beside import beside_truth
-    from reports.own_log.drives import chosen_drive, refuse_geometry_alone
     from reports.own_log.judged import without_times
     from reports.own_log.log_limits import LogRequest, log_kind
 
-    chosen = chosen_drive(one_of(drive, "--drive", any_log.LOG_DRIVES))
-    refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))
+    chosen = any_log.drive_of(drive, forces=forces)
     log = any_log.log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
     given = given_of([scene], segments, springs)
@@ -139,7 +134,7 @@ def compare(
     return Comparison(scene, log.source, without_times(errors, log))
 
 
-def _truth_of_run(scene: Scene, run: Run) -> Truth:
+def _truth_of_run(scene: Scene, run: Run) -> comparing.Truth:
     scene = any_log.scene_of_run(scene, run)
     given = GivenAs(getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain"))
     way, planned = way_of(scene, run.drive), Planned(scene, run.dt_s, run.steps, given)
@@ -158,7 +153,7 @@ PARTS: Mapping[ErrorKind, str] = {
 def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> None:
     """Print the worst body of each quantity, source and kind."""
     names = ("quantity", "", "worst body")
-    numbers = ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver_unit(scene)}")
+    numbers = ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver.driver_unit(scene)}")
     rows = (
         (
             worst.tolerance,
@@ -174,8 +169,7 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
     heads = (*names, *(f"{head}:" for head in numbers))
     console.print(grid(heads, rows, f"{scene.name}: {source}", gap=1, whole=names), "")
     say(console, errors.compared_with(), "dim")
-    for note in errors.notes:
-        say(console, note, "yellow")
+    say_each(console, errors.notes, "yellow")
 
 
 def _driver(error: Error) -> str:
@@ -198,7 +192,7 @@ DRIVES = ("prescribed", "servo")
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class CellVerdict(Shown, Checked):
+class CellVerdict(shown.Shown, Checked):
     """Verdict on a scene in an engine.
 
     ``verdict`` is "within", "out" or "unsupported"; ``findings`` are the answers of all rules,
@@ -225,7 +219,7 @@ class CellVerdict(Shown, Checked):
         show(console, [self], self.facts)
 
     def _drawn(self) -> str:
-        return drawn(self.scene)
+        return solution.drawn(self.scene)
 
 
 @arguments.told_at_the_call

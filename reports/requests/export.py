@@ -12,8 +12,7 @@ from typing import Annotated
 from rich.console import Console
 from rich.text import Text
 
-from analytic.structure.groups import Bridge
-from analytic.structure.mobility import analyse
+from analytic.structure import groups, mobility
 from models.errors import CrankcheckError, StructureError, harmless
 from models.files.reading import KINEMATICS, find_scene, kinds, load_scene, shipped
 from models.mjcf.document import build
@@ -152,8 +151,8 @@ class ScenesRequest:
 def _groups(scene: Scene) -> str:
     """The Assur groups of a scene in solving order, a dash for groups other than dyads."""
     try:
-        parts = analyse(scene).order
-        return " + ".join(part.kind for part in parts if not isinstance(part, Bridge))
+        parts = mobility.analyse(scene).order
+        return " + ".join(part.kind for part in parts if not isinstance(part, groups.Bridge))
     except StructureError:
         return "-"
 

@@ -120,7 +120,6 @@ def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
 
 
 def _chosen(asked: Sequence[str], names: Iterable[str], option: str, noun: str) -> list[str]:
-    """The requested names, each once; all where none was given."""
     every = list(names)
     for name in asked:
         if name not in every:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -11,8 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from rich.console import Console
 
-from analytic.elastic.elastic_motion import ElasticHistory, sampled
-from analytic.elastic.released import ReleasedElasticMotion
+from analytic.elastic import elastic_motion, released
 from analytic.free.free_motion import FreeMotion
 from analytic.free.release import release
 from analytic.free.solved_motion import OPEN
@@ -22,44 +20,14 @@ from models.array import Array, samples
 from models.errors import CrankcheckError, StructureError
 from models.motion import Bound, Motion
 from models.scene import Scene
-from reports.describe import elastic_course
-from reports.describe.elastic_words import (
-    beam_certainty,
-    elastic_facts,
-    elastic_warnings,
-    start_words,
-)
+from reports.describe import elastic_course, elastic_words, force_tables, free_motion, with_forces
 from reports.describe.facts import describe_law
-from reports.describe.force_tables import largest_table, motion_force_tables
-from reports.describe.free_motion import (
-    cleaned,
-    free_columns,
-    free_notes,
-    free_tables,
-    motion_tables,
-)
-from reports.describe.with_forces import (
-    finely_loaded,
-    force_certainty,
-    left_out_notes,
-    undriven,
-    undriven_shown,
-    with_reactions,
-)
-from reports.output.console import say
+from reports.output.console import print_each, say, say_each
 from reports.plan.singular import continued_note
+from reports.requests import solving
 from reports.requests.arguments import is_true
 from reports.requests.options import SolveOptions, given
 from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
-from reports.requests.solving import (
-    ON_SCREEN,
-    Asked,
-    ElasticChoice,
-    Solving,
-    most_samples,
-    refuse_samples,
-    refuse_times,
-)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,13 +62,13 @@ class FreeSolution(Solution):
 
     def frame(self) -> pd.DataFrame:
         """Table of `Solution`, with the energies, the sensitivity and the error beside."""
-        return super().frame().assign(**free_columns(self.free, self.time_s))
+        return super().frame().assign(**free_motion.free_columns(self.free, self.time_s))
 
     def _drawn(self) -> str:
         return drawn(self.scene)
 
     def show(self, console: Console) -> None:
-        acting = self.forces and undriven_shown(self.forces)
+        acting = self.forces and with_forces.undriven_shown(self.forces)
         few = thinned(replace(self, forces=acting), ROWS)
         show_free(console, self.free, few)
         if left := self._left_out(few):
@@ -116,7 +84,9 @@ def free_solution(
     law = scene.driver.law
     free = release(scene, float(np.max(time_s)) if np.max(time_s) > 0.0 else law.period_s)
     motion = free.at(time_s, bound=bound)
-    motion = of_bodies(with_reactions(free, motion, bound=bound) if forces else motion, wanted)
+    motion = of_bodies(
+        with_forces.with_reactions(free, motion, bound=bound) if forces else motion, wanted
+    )
     if motion.bound is not None:
         motion = replace(motion, bound=of_bodies(motion.bound, wanted))
     return FreeSolution(**vars(motion), scene=scene, free=free)
@@ -143,26 +113,29 @@ def show_free(console: Console, whole: FreeMotion, motion: Motion) -> None:
             f"{scene.name}: {scene.source}\nmobility {whole.freedoms}; driver {scene.driver.link}, "
             f"{describe_law(scene)}; by the equations of motion of all bodies\n",
         )
-    shown = cleaned(motion)
-    tables = motion_tables(scene, shown, console.width)
+    shown = free_motion.cleaned(motion)
+    tables = free_motion.motion_tables(scene, shown, console.width)
     if scene.driver.link in motion.links:
-        tables = [*free_tables(whole, shown, console.width), *tables]
-    for table in tables:
-        console.print(table, "")
-    notes = [*free_notes(whole, float(np.max(motion.time_s))), continued_note(scene, motion)]
+        tables = [*free_motion.free_tables(whole, shown, console.width), *tables]
+    notes = [
+        *free_motion.free_notes(whole, float(np.max(motion.time_s))),
+        continued_note(scene, motion),
+    ]
     if motion.forces is not None:
-        acting = undriven_shown(motion.forces)
-        for table in motion_force_tables(scene, shown, acting, console.width):
-            console.print(table, "")
-        fine = finely_loaded(whole)
+        acting = with_forces.undriven_shown(motion.forces)
+        tables += force_tables.motion_force_tables(scene, shown, acting, console.width)
+        fine = with_forces.finely_loaded(whole)
         assert fine.forces is not None
-        console.print(largest_table(scene, fine, fine.forces, "over the motion"), "")
-        notes += [force_certainty(scene, motion.forces), *left_out_notes(scene, motion)]
-    for note in filter(None, notes):
-        say(console, note, "yellow")
+        tables.append(force_tables.largest_table(scene, fine, fine.forces, "over the motion"))
+        notes += [
+            with_forces.force_certainty(scene, motion.forces),
+            *with_forces.left_out_notes(scene, motion),
+        ]
+    print_each(console, tables)
+    say_each(console, filter(None, notes), "yellow")
 
 
-class LetGo(Solving):
+class LetGo(solving.Solving):
     """Solving of free motion, with rigid links or elastic ones."""
 
     def refuse(self, scene: Scene, request: SolveOptions) -> None:
@@ -172,7 +145,7 @@ class LetGo(Solving):
                 f"{option}: {scene.name} is let go, and moves over time as masses and forces have "
                 f"it; leave {option} out, and give --duration and --steps"
             )
-        refuse_samples(request)
+        solving.refuse_samples(request)
 
     def instants(self, scene: Scene, request: SolveOptions) -> Array:
         """Times from 0 to the end, both included [s]. Raises CrankcheckError."""
@@ -181,10 +154,10 @@ class LetGo(Solving):
             raise CrankcheckError(f"--duration {until_s:g}: give seconds above 0")
         steps = request.steps
         if steps is None:
-            steps = ON_SCREEN if request.output is None else LONG_FILE
+            steps = solving.ON_SCREEN if request.output is None else LONG_FILE
         if steps < 1:
             raise CrankcheckError(f"--steps {steps}: give at least 1")
-        most = most_samples(request)
+        most = solving.most_samples(request)
         if steps >= most:
             raise CrankcheckError(f"--steps {steps}: {steps + 1:.7g} samples; at most {most}")
         return np.linspace(0.0, until_s, steps + 1)
@@ -193,7 +166,7 @@ class LetGo(Solving):
 class FreeSolving(LetGo):
     """Solving of free motion, with rigid links."""
 
-    def solution(self, scene: Scene, asked: Asked) -> FreeSolution:
+    def solution(self, scene: Scene, asked: solving.Asked) -> FreeSolution:
         asked.choice.refuse_of_rigid(scene)
         chosen = Selection.of(scene, *asked.wanted)
         bound, forces = is_true(asked.bound, "bound"), is_true(asked.forces, "forces")
@@ -232,7 +205,7 @@ class ElasticSolution(Solution):
     motion (`analytic.elastic.elastic_motion.DrivenElasticMotion`, or `ReleasedElasticMotion`).
     """
 
-    vibration: ElasticHistory
+    vibration: elastic_motion.ElasticHistory
 
     @cached_property
     def rigid(self) -> Motion:
@@ -242,7 +215,7 @@ class ElasticSolution(Solution):
     @cached_property
     def certainty(self) -> list[str]:
         """Possible errors of the motion, in sentences."""
-        return beam_certainty(self.vibration)
+        return elastic_words.beam_certainty(self.vibration)
 
     def frame(self) -> pd.DataFrame:
         """Table of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
@@ -259,9 +232,24 @@ class ElasticSolution(Solution):
 
     def show_at(self, console: Console, time_s: Array) -> None:
         """Print it at times [s], in ascending order."""
-        fine = self._course(elastic_course.closely_sampled(self.scene, self.vibration.until_s))
-        shown, forces = self._course(time_s), self.forces is not None
-        _show(console, self.vibration, shown, fine, self.certainty, forces=forces)
+        motion, scene = self.vibration, self.scene
+        fine = self._course(elastic_course.closely_sampled(scene, motion.until_s))
+        shown = self._course(time_s)
+        facts = elastic_words.elastic_facts(scene, motion.by, stiffened=motion.stiffened)
+        say(console, _heading(scene) + "\n".join(facts) + "\n")
+        tables = elastic_course.elastic_tables(shown, console.width)
+        acting = None if self.forces is None else shown.motion.forces
+        if acting is not None:
+            if scene.is_free:
+                acting = with_forces.undriven_shown(with_forces.undriven(scene, acting))
+            own = free_motion.cleaned(shown.motion)
+            tables += force_tables.motion_force_tables(scene, own, acting, console.width)
+        extremes = elastic_course.extremes_table(scene, elastic_course.extremes(fine))
+        print_each(console, [*tables, extremes])
+        start = elastic_words.start_words(scene, elastic_course.start_of(motion))
+        say_each(console, (start, *self.certainty), "")
+        largest = elastic_course.largest_deflections(fine)
+        say_each(console, elastic_words.elastic_warnings(scene, largest), "yellow")
 
     def _course(self, time_s: Array) -> elastic_course.ElasticCourse:
         return elastic_course.elastic_course(self.vibration, time_s)
@@ -271,7 +259,7 @@ class ElasticSolution(Solution):
 
 
 def elastic_solution(
-    scene: Scene, time_s: Array, wanted: Selection, choice: ElasticChoice, *, forces: bool
+    scene: Scene, time_s: Array, wanted: Selection, choice: solving.ElasticChoice, *, forces: bool
 ) -> ElasticSolution:
     """The motion of a scene with elastic links at times [s] from 0 on; ``wanted`` bodies alone.
 
@@ -285,46 +273,18 @@ def elastic_solution(
             f"time_s: t = {float(np.min(time_s)):g} s, and {scene.name} starts at 0, "
             f"{elastic_course.start_of(vibration)}; give times from there on, or --shape periodic"
         )
-    whole = sampled(vibration, time_s)
+    whole = elastic_motion.sampled(vibration, time_s)
     acting = whole.forces
-    if forces and acting is not None and isinstance(vibration, ReleasedElasticMotion):
+    if forces and acting is not None and isinstance(vibration, released.ReleasedElasticMotion):
         redundant = vibration.dynamics.redundant
         acting = replace(acting, undetermined=OPEN) if redundant else acting
-        acting = undriven(scene, acting) if scene.is_free else acting
+        acting = with_forces.undriven(scene, acting) if scene.is_free else acting
     motion = replace(
         of_bodies(whole, wanted),
         elastic={name: x for name, x in whole.elastic.items() if name in wanted.links},
         forces=acting if forces else None,
     )
     return ElasticSolution(**vars(motion), scene=scene, vibration=vibration)
-
-
-def _show(
-    console: Console,
-    motion: ElasticHistory,
-    shown: elastic_course.ElasticCourse,
-    fine: elastic_course.ElasticCourse,
-    certainty: Sequence[str],
-    *,
-    forces: bool,
-) -> None:
-    """Print the mechanism, the samples that are ``shown``, and the largest values of a motion
-    closely sampled, ``fine``."""
-    scene = motion.scene
-    facts = elastic_facts(scene, motion.by, stiffened=motion.stiffened)
-    say(console, _heading(scene) + "\n".join(facts) + "\n")
-    for table in elastic_course.elastic_tables(shown, console.width):
-        console.print(table, "")
-    if forces and shown.motion.forces is not None:
-        acting = shown.motion.forces
-        acting = undriven_shown(undriven(scene, acting)) if scene.is_free else acting
-        for table in motion_force_tables(scene, cleaned(shown.motion), acting, console.width):
-            console.print(table, "")
-    console.print(elastic_course.extremes_table(scene, elastic_course.extremes(fine)), "")
-    for line in (start_words(scene, elastic_course.start_of(motion)), *certainty):
-        say(console, line)
-    for line in elastic_warnings(scene, elastic_course.largest_deflections(fine)):
-        say(console, line, "yellow")
 
 
 def _heading(scene: Scene) -> str:
@@ -335,25 +295,25 @@ def _heading(scene: Scene) -> str:
         return f"{scene.name}: {scene.source}\ndriver {scene.driver.link}, {describe_law(scene)}\n"
 
 
-class ElasticSolving(Solving):
+class ElasticSolving(solving.Solving):
     """Solving of scenes whose driver follows a law, with links that bend."""
 
     of_links = " with elastic links"
 
-    def solution(self, scene: Scene, asked: Asked) -> ElasticSolution:
+    def solution(self, scene: Scene, asked: solving.Asked) -> ElasticSolution:
         forces, wanted = is_true(asked.forces, "forces"), Selection.of(scene, *asked.wanted)
         time_s = samples(asked.time_s, "time_s")
         return elastic_solution(scene, time_s, wanted, asked.choice, forces=forces)
 
     def refuse(self, scene: Scene, request: SolveOptions) -> None:
-        refuse_times(scene, request)
+        solving.refuse_times(scene, request)
         for option in given(request, "at_deg", "at_m", "clockwise", "along"):
             raise CrankcheckError(
                 f"{option}: {scene.name} has elastic links ({', '.join(scene.elastic)}), whose "
                 f"places depend on how they came there; leave {option} out, and give --turns and "
                 "--steps-per-turn"
             )
-        refuse_samples(request)
+        solving.refuse_samples(request)
 
     def show(self, console: Console, solution: ElasticSolution, request: SolveOptions) -> None:
         solution.show_at(console, solution.time_s)

@@ -10,9 +10,8 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes
-from reports.history import verification
+from reports.history import table, verification
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
-from reports.history.table import page, show, table_text
 from reports.judge.cell import Cell
 from reports.output.console import say_whole
 from reports.output.write import check_folder, provenance, refuse_link, write
@@ -85,7 +84,7 @@ class HistoryRequest:
         try:
             _write(self, results, footer)
         finally:
-            show(console, results, footer)
+            table.show(console, results, footer)
         missing = [result for result in results if not result.cells]
         for result in missing:
             text = f"crankcheck: {self.engine} {result.version}: {result.reason}"
@@ -105,7 +104,6 @@ def _refuse_own(name: str) -> None:
 
 
 def _verification(request: HistoryRequest) -> VerifyRequest:
-    """The verification that is run with each version."""
     same = ("scenes", "profiles", "free", "jobs", *LENGTHS)
     fields = {name: getattr(request, name) for name in same}
     return VerifyRequest(engines=(request.engine,), **fields)
@@ -170,8 +168,8 @@ def _write(
     for result in results:
         for path in sorted(result.folder.iterdir()) if result.folder else ():
             write(request.folder / result.asked.name / path.name, path.read_bytes())
-    write(request.folder / FILES[0], table_text(results))
-    write(request.folder / FILES[1], page(results, footer))
+    write(request.folder / FILES[0], table.table_text(results))
+    write(request.folder / FILES[1], table.page(results, footer))
 
 
 def _footer(

@@ -17,12 +17,11 @@ from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.judge import tolerance
-from reports.logs.map_file import Map, map_text, read_map
+from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.formats import junit
 from reports.output.numbers import finite
 from reports.output.write import Outputs, check_file, provenance, write
-from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log, row_table
 from reports.own_log.log_limits import EVERY, LogRequest
 from reports.own_log.table import markdown, show, suite
@@ -30,7 +29,6 @@ from reports.plan.requirements import given_of
 from reports.plan.steps import positive
 from reports.protocol.way import way_of
 from reports.requests import any_log, arguments, options
-from reports.requests.any_log import LogLike, MapLike
 from reports.requests.compare import CellVerdict, verdict_of_run
 from reports.requests.options import argument, option, output_option, seconds
 from reports.requests.shown import Shown
@@ -48,14 +46,14 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     CrankcheckError for a log that no map alone can mend.
     """
     from reports.logs.columns import read_columns  # pandas, which takes a third of a second
-    from reports.logs.meanings import blank_map, understood, wanted
+    from reports.logs.meanings import blank_map, map_text, understood, wanted
 
     fault: CrankcheckError | None = None
     tried, entries = [map_], dict[str, str]()
     while True:
         blank = None
         try:
-            columns = read_columns(log, map_.layout, wanted(scene, map_))
+            columns = read_columns(log, map_.file, wanted(scene, map_))
             blank = blank_map(columns, scene, map_)
             text = map_text(understood(columns, scene, map_), map_.file)
         except CrankcheckError as error:
@@ -165,12 +163,12 @@ def judge(
 @overload
 def judge(
     scene: arguments.SceneLike,
-    log: LogLike,
+    log: any_log.LogLike,
     *,
     target: Target = None,
     step_s: float | None = None,
     drive: str = "scene",
-    map: MapLike = None,
+    map: any_log.MapLike = None,
     require: str | Iterable[str] = (),
     forces: bool = False,
     free: bool = False,
@@ -182,12 +180,12 @@ def judge(
 @arguments.told_at_the_call
 def judge(
     scene: arguments.SceneLike,
-    log: Run | LogLike,
+    log: Run | any_log.LogLike,
     *,
     target: Target = None,
     step_s: float | None = None,
     drive: str = "scene",
-    map: MapLike = None,
+    map: any_log.MapLike = None,
     require: str | Iterable[str] = (),
     forces: bool = False,
     free: bool = False,
@@ -236,7 +234,7 @@ def judge(
 
 def judged(
     scene: arguments.SceneLike,
-    log: Run | LogLike,
+    log: Run | any_log.LogLike,
     limits: Mapping[str, float],
     asked: any_log.LogOptions,
 ) -> CellVerdict | LogVerdict:
@@ -257,25 +255,20 @@ def judged(
             )
         named = limits if every is None else {name: limits.get(name, every) for name in way.targets}
         return verdict_of_run(scene, log, named)
-    scene = _moving(scene, asked.free)
+    scene = loosened(scene) if asked.free else scene
     _refuse_other_targets(scene, limits)
     given = given_of([scene], asked.segments, asked.springs)
     request = LogRequest(
         target=limits,
         step_s=0.0 if asked.step_s is None else positive("--step", asked.step_s, "seconds"),
-        drive=chosen_drive(arguments.one_of(asked.drive, "--drive", any_log.LOG_DRIVES)),
+        drive=any_log.drive_of(asked.drive, forces=asked.forces),
         require=required,
         segments=given.segments,
         springs=given.springs,
     )
-    refuse_geometry_alone(request.drive, forces=asked.forces)
     found = judge_log(any_log.log_of(scene, log, asked.map, forces=asked.forces), request)
     notes = tuple(arguments.in_python(note) for note in found.notes)
     return LogVerdict(**arguments.parts_in_python(found) | {"notes": notes}, facts=provenance({}))
-
-
-def _moving(scene: Scene, free: bool) -> Scene:
-    return loosened(scene) if free else scene
 
 
 def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
@@ -327,7 +320,8 @@ class JudgeRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
         can not be read and for a faulty request, before anything is written."""
-        scene = _moving(load_scene(self.scene), self.free)
+        scene = load_scene(self.scene)
+        scene = loosened(scene) if self.free else scene
         outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
         asked = _checked(self, scene, outputs)
         tolerance.check_names(scene)
@@ -359,8 +353,7 @@ def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogReques
         check_file(request.output, "-o", (".html",))
     files = {"--write-map": request.write_map, **outputs.files}
     Outputs(files).check((find_scene(request.scene), request.log, request.map))
-    drive = chosen_drive(request.drive)
-    refuse_geometry_alone(drive, forces=request.forces)
+    drive = any_log.drive_of(request.drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
     given = given_of([scene], request.segments, request.springs)

@@ -14,15 +14,12 @@ from models.errors import CrankcheckError
 from models.files.reading import find_scene
 from models.scene import Scene
 from reports.compare.free_truth import released_state
-from reports.output.console import say, say_whole
-from reports.output.formats import ENDINGS, write_frame
-from reports.output.write import check_file
+from reports.output import formats, write
+from reports.output.console import print_each, say, say_each, say_whole
 from reports.plan.requirements import given_of, under_control
 from reports.protocol.length import SEGMENTS, GivenAs, Length, Planned, Springs
 from reports.protocol.way import way, way_of
-from reports.requests import arguments, options
-from reports.requests.shown import Shown
-from reports.requests.solution import ROWS, drawn, thinned
+from reports.requests import arguments, options, shown, solution
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
@@ -34,7 +31,7 @@ DRIVES = ("prescribed", "servo", "free")
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Simulation(Shown, Run):
+class Simulation(shown.Shown, Run):
     """A run of a scene in an engine: its motion, ending and settings (`Run`).
 
     ``mechanism`` is the scene, in free motion where the run was, and ``scene`` its name. Elastic
@@ -69,15 +66,13 @@ class Simulation(Shown, Run):
             f"{self.drive}\ndt {self.dt_s:.4g} s, {length}{logged}\n",
         )
         if self.motion is not None:
-            few = thinned(self.motion, ROWS)
-            for table in motion_tables(self.mechanism, few, console.width):
-                console.print(table, "")
+            few = solution.thinned(self.motion, solution.ROWS)
+            print_each(console, motion_tables(self.mechanism, few, console.width))
             left = f"{few.time_s.size} of {self.motion.time_s.size} logged samples"
             say(console, left, "dim")
         style = "" if self.status == "ok" else "red"
         say(console, self.ending(), style)
-        for warning in self.warnings:
-            say(console, f"warning: {warning}", "yellow")
+        say_each(console, (f"warning: {warning}" for warning in self.warnings), "yellow")
 
     def ending(self) -> str:
         """The ending of the run, in a line."""
@@ -88,7 +83,7 @@ class Simulation(Shown, Run):
         return f"ended {self.status}{at}{reason}{gaps}"
 
     def _drawn(self) -> str:
-        return drawn(self.mechanism, self.motion)
+        return solution.drawn(self.mechanism, self.motion)
 
 
 @dataclass(frozen=True)
@@ -156,7 +151,7 @@ class RunRequest:
         Raises CrankcheckError for a faulty request, and for a scene that the engine can not hold.
         """
         if self.output is not None:
-            check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
+            write.check_file(self.output, "-o", formats.ENDINGS, inputs=[find_scene(self.scene)])
         done = self.answer()
         if done.motion is None:
             raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")
@@ -164,7 +159,7 @@ class RunRequest:
             done.show(console)
             say(console, "All samples: -o log.csv, .parquet or .xlsx", "dim")
         else:
-            write_frame(self.output, done.frame(), "log", _origin(done))
+            formats.write_frame(self.output, done.frame(), "log", _origin(done))
             say_whole(console, _written(self, done))
         return int(done.status != "ok")
 
@@ -256,8 +251,6 @@ def run(
 
 
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
-    """Refuse a length that does not apply to the run: turns of a scene without a law, a duration of
-    a driven scene, or both. Raises CrankcheckError."""
     for name in options.given(request, "turns", "steps_per_turn"):
         if name not in way_of(scene).lengths_by:
             raise CrankcheckError(

@@ -150,7 +150,8 @@ def _cell(cell: object) -> str:
 
 
 def _spans(text: Text) -> str:
-    found = f"<span{_attribute(text.style)}>"
+    css = _css(text.style)
+    found = f'<span style="{css}">' if css else "<span>"
     ends = {0, len(text.plain), *(at for span in text.spans for at in (span.start, span.end))}
     places = sorted(ends)
     for start, end in itertools.pairwise(places):
@@ -159,11 +160,6 @@ def _spans(text: Text) -> str:
         css = "".join(styles)
         found += f'<span style="{css}">{piece}</span>' if css else piece
     return f"{found}</span>"
-
-
-def _attribute(style: Style | str) -> str:
-    css = _css(style)
-    return f' style="{css}"' if css else ""
 
 
 def _css(style: Style | str) -> str:

@@ -16,17 +16,9 @@ from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.scene import Scene
-from models.scene.driver import driver_place
-from reports.describe import force_tables
+from models.scene import Scene, driver
+from reports.describe import force_tables, free_motion
 from reports.describe.facts import describe_law, facts, speed_facts
-from reports.describe.free_motion import (
-    certainty,
-    cleaned,
-    motion_tables,
-    position_tables,
-    speed_table,
-)
 from reports.describe.with_forces import (
     cleaned_forces,
     force_certainty,
@@ -34,7 +26,7 @@ from reports.describe.with_forces import (
     left_out_notes,
     turn_with_forces,
 )
-from reports.output.console import say
+from reports.output.console import print_each, say, say_each
 from reports.plan.singular import continued_note, singular_note
 from reports.requests.shown import Shown
 
@@ -125,7 +117,7 @@ def show_solution(
     speeds = speed_facts(scene, along, clockwise=clockwise)
     say(console, heading(scene, analyse(scene), along))
     if speeds and speeds.rows:
-        console.print(speed_table(speeds), "")
+        console.print(free_motion.speed_table(speeds), "")
     if few is None:
         _show_position(console, scene, motion)
     else:
@@ -135,15 +127,13 @@ def show_solution(
         if acting:
             _show_largest(console, scene)
     if acting:
-        for words in force_tables.friction_words(scene):
-            say(console, words)
+        say_each(console, force_tables.friction_words(scene), "")
     if more:
         say(console, more, "dim")
-    told = driver_place(scene, motion) is not None
+    told = driver.driver_place(scene, motion) is not None
     singular = singular_note(scene, motion) if told else ""
     notes = (continued_note(scene, motion), singular, *force_notes(scene, motion))
-    for note in filter(None, notes):
-        say(console, note, "yellow")
+    say_each(console, filter(None, notes), "yellow")
 
 
 def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> str:
@@ -164,25 +154,21 @@ def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> 
 
 def _show_position(console: Console, scene: Scene, motion: Motion) -> None:
     """Print a single position in full, with its certainty."""
-    for table in position_tables(scene, cleaned(motion)):
-        console.print(table, "")
-    told = [certainty(motion)]
+    print_each(console, free_motion.position_tables(scene, free_motion.cleaned(motion)))
+    told = [free_motion.certainty(motion)]
     if motion.forces is not None:
         told.append(force_certainty(scene, motion.forces))
-        for table in force_tables.position_force_tables(
-            scene, motion, cleaned_forces(motion.forces)
-        ):
-            console.print(table, "")
+        acting = cleaned_forces(motion.forces)
+        print_each(console, force_tables.position_force_tables(scene, motion, acting))
     say(console, "\n".join(filter(None, told)), "dim")
 
 
 def _show_motion(console: Console, scene: Scene, motion: Motion) -> None:
-    for table in motion_tables(scene, cleaned(motion), console.width):
-        console.print(table, "")
+    tables = free_motion.motion_tables(scene, free_motion.cleaned(motion), console.width)
     if motion.forces is not None:
         acting = cleaned_forces(motion.forces)
-        for table in force_tables.motion_force_tables(scene, motion, acting, console.width):
-            console.print(table, "")
+        tables += force_tables.motion_force_tables(scene, motion, acting, console.width)
+    print_each(console, tables)
 
 
 def _show_largest(console: Console, scene: Scene) -> None:
@@ -194,5 +180,4 @@ def _show_largest(console: Console, scene: Scene) -> None:
         return
     assert turn.forces is not None
     console.print(force_tables.largest_table(scene, turn, cleaned_forces(turn.forces)), "")
-    for note in left_out_notes(scene, turn):
-        say(console, note, "yellow")
+    say_each(console, left_out_notes(scene, turn), "yellow")

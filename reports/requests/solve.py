@@ -17,8 +17,7 @@ from models.array import Array
 from models.errors import CrankcheckError, suggestion
 from models.files.reading import find_scene, load_scene
 from models.motion import Motion
-from models.scene import Scene
-from models.scene.laws import MOST_TURNS
+from models.scene import Scene, laws
 from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
 from reports.output.formats import ENDINGS
@@ -92,13 +91,12 @@ def solve(
 
 
 def _refuse_far(scene: Scene, motion: Motion) -> None:
-    """Refuse times so late that the place within a turn is lost. Raises CrankcheckError."""
     far_s = float(np.max(np.abs(motion.time_s), initial=0.0))
     turns = far_s / scene.driver.law.period_s
-    if turns > MOST_TURNS:
+    if turns > laws.MOST_TURNS:
         raise CrankcheckError(
             f"time_s: t = {far_s:.6g} s is {turns:.3g} turns of {scene.name}, and at most "
-            f"{MOST_TURNS:g} leave the digits that tell where in a turn it is; "
+            f"{laws.MOST_TURNS:g} leave the digits that tell where in a turn it is; "
             "give times in seconds"
         )
 
@@ -247,7 +245,6 @@ class DrivenSolving(solving.Solving):
 def _with_forces(
     scene: Scene, motion: Motion, *, forces: bool, by_law: bool = True, bound: bool = True
 ) -> Solution:
-    """The motion, with its forces if requested. Raises CrankcheckError."""
     if is_true(forces, "forces"):
         motion = with_forces(scene, motion, by_law=by_law, bound=bound)
     return Solution(**vars(motion), scene=scene)

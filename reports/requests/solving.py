@@ -14,10 +14,7 @@ from rich.console import Console
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.scene import Scene
-from models.scene.driver import Controlled
-from models.scene.elastic import Shape
-from models.scene.laws import ConstantSpeed, Oscillating
+from models.scene import Scene, driver, elastic, laws
 from reports.output.console import say_whole
 from reports.output.formats import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
@@ -68,7 +65,7 @@ class ElasticChoice:
         from analytic.elastic.discretisation import REFERENCE, Elements, Modes
 
         usual = Modes()
-        gives_way = scene.is_free or isinstance(scene.driver.law, Controlled)
+        gives_way = scene.is_free or isinstance(scene.driver.law, driver.Controlled)
         if self.elements is not None:
             for option, value in (("--modes", self.modes), ("--axial-modes", self.axial_modes)):
                 if value is not None:
@@ -96,12 +93,14 @@ class ElasticChoice:
             else _number(self.axial_modes, "--axial-modes", MOST_MODES),
         )
 
-    def start(self, scene: Scene) -> Shape:
+    def start(self, scene: Scene) -> elastic.Shape:
         """The shape at time 0. Raises CrankcheckError for a periodic shape that can not be."""
         asked = self.shape or scene.start.shape or STARTS_AS
-        chosen = cast(Shape, one_of(asked, "--shape", get_args(Shape)))
+        chosen = cast(elastic.Shape, one_of(asked, "--shape", get_args(elastic.Shape)))
         law = scene.driver.law
-        told = isinstance(law, ConstantSpeed | Oscillating) and not isinstance(law, Controlled)
+        told = isinstance(law, laws.ConstantSpeed | laws.Oscillating) and not isinstance(
+            law, driver.Controlled
+        )
         if chosen == "periodic" and not told:
             words = "is let go" if scene.is_free else "does not come back after a period"
             raise CrankcheckError(

@@ -10,8 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError
-from models.files.assemble import scene_text
-from models.files.reading import every_shipped, load_scene
+from models.files import assemble, reading
 from reports.plan import chosen_study
 from reports.plan.steps import positive
 from reports.plan.study import StudyValue
@@ -74,11 +73,11 @@ def scene_names(scenes: object, kept: ExitStack) -> list[str]:
             names.append(str(arguments.path_of(each, "scenes")))
             continue
         scene = arguments.scene_of(each)
-        if scene.name in every_shipped() and load_scene(scene.name) == scene:
+        if scene.name in reading.every_shipped() and reading.load_scene(scene.name) == scene:
             names.append(scene.name)
             continue
         path = Path(kept.enter_context(TemporaryDirectory())) / f"{scene.name}.toml"
-        path.write_text(scene_text(scene), encoding="utf-8")
+        path.write_text(assemble.scene_text(scene), encoding="utf-8")
         names.append(str(path))
     return names
 
@@ -127,15 +126,9 @@ def command_of(choice: chosen_study.StudyChoice, folder: Path, study: object) ->
         *(("--duration", f"{choice.duration_s:g}") if choice.duration_s is not None else ()),
         *(("--segments", ",".join(map(str, choice.segments))) if choice.segments else ()),
         *(("--springs", ",".join(choice.springs)) if choice.springs else ()),
-        *(
-            word
-            for owner, chosen in choice.overrides.items()
-            for name, values in chosen.items()
-            for word in ("--set", f"{owner}.{name}={','.join(map(str, _listed(values)))}")
-        ),
     ]
+    for owner, chosen in choice.overrides.items():
+        for name, values in chosen.items():
+            told = ",".join(map(str, arguments.each_of(values)))
+            options += ["--set", f"{owner}.{name}={told}"]
     return ["crankcheck", "sweep", "-o", str(folder), *choice.scenes, *map(str, options)]
-
-
-def _listed(values: object) -> Sequence[object]:
-    return values if isinstance(values, list) else [values]

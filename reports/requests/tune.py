@@ -18,19 +18,15 @@ from models.files.reading import find_scenes, read_text
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.console import say_whole
 from reports.output.write import crankcheck_version, provenance
-from reports.plan.grid import MEASURE, digest
-from reports.plan.requirements import chosen_engines, chosen_scenes, left_out_note, rigid_alone
-from reports.plan.singular import refuse_short_tables, refuse_singular
+from reports.plan import grid, requirements, singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
 from reports.requests.options import argument, output_option
 from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row, times
 from reports.tune.search import Plan, attempts, best_of, check_storage, plainer, search, study_in
 from reports.tune.table import Side, footer, show
-from reports.workers.isolated import Limits
+from reports.workers import isolated, signals
 from reports.workers.progress import progress_bar
-from reports.workers.signals import Stopped
-from sim.engine import Settings
-from sim.engine.settings import profile_of, resolved
+from sim.engine import Settings, settings
 from sim.registry import engine, offering
 from sim.registry.offers import SearchSpace, search_space, snippet
 
@@ -55,13 +51,13 @@ class TuneRequest:
         """Answer, and return the exit code: 0 when settings reach the target, 1 when none do.
         Raises CrankcheckError for a faulty request before the search."""
         goal = _goal(self)
-        if note := left_out_note(self.scenes):
+        if note := requirements.left_out_note(self.scenes):
             say_whole(progress, note)
-        base = resolved(profile_of(engine(goal.engine), goal.profile), None)
+        base = settings.resolved(settings.profile_of(engine(goal.engine), goal.profile), None)
         space = search_space(goal.engine).around(base)
         if self.output is not None:
             check_storage(self.output)
-        limits = Limits(self.limit_s)
+        limits = isolated.Limits(self.limit_s)
         works = [space.work(scene, solve(scene, np.zeros(1)).state()) for scene in goal.scenes]
         with closing(Bench(goal, works, limits)) as bench:
             bench.refuse_unsupported(base)
@@ -124,9 +120,9 @@ def _goal(request: TuneRequest) -> Goal:
     if not request.scenes:
         raise CrankcheckError("tune: name a scene or several, such as fourbar-lecture-1")
     positive("--turns", request.turns, "turns; 1 is one period of the driver")
-    name = chosen_engines([request.engine])[0]
+    name = requirements.chosen_engines([request.engine])[0]
     goal = Goal(
-        tuple(chosen_scenes(request.scenes, rigid_alone("tune"))),
+        tuple(requirements.chosen_scenes(request.scenes, requirements.rigid_alone("tune"))),
         name,
         PROFILE,
         target,
@@ -139,22 +135,21 @@ def _goal(request: TuneRequest) -> Goal:
         )
     for scene in goal.scenes:
         duration_s = goal.turns * scene.driver.law.period_s
-        refuse_singular(scene, duration_s)
-        refuse_short_tables(scene, duration_s)
+        singular.refuse_singular(scene, duration_s)
+        singular.refuse_short_tables(scene, duration_s)
     return goal
 
 
 def _searched(
     request: TuneRequest, bench: Bench, space: SearchSpace, base: Settings, progress: Console
 ) -> list[Attempt]:
-    """All trials; an interrupted search says how many are kept."""
     with study_in(request.output, _asked(request, bench, space, base)) as study:
         done = min(len(attempts(study)), request.budget)
         try:
             with progress_bar(progress, "trials", request.budget - done) as advance:
                 plan = Plan(space, base, bench.goal.target, request.budget, request.seed)
                 return search(study, plan, bench.attempt, advance)
-        except Stopped:
+        except signals.Stopped:
             if request.output is not None:
                 say_whole(
                     progress,
@@ -172,7 +167,7 @@ def _asked(
     texts = [read_text(path) for path in find_scenes(request.scenes)]
     return {
         "scene": [scene.name for scene in goal.scenes],
-        "scene text": list(dict.fromkeys(digest(text) for text in texts)),
+        "scene text": list(dict.fromkeys(grid.digest(text) for text in texts)),
         "engine": goal.engine,
         "engine version": engine(goal.engine).version(),
         "crankcheck version": crankcheck_version(),
@@ -185,7 +180,7 @@ def _asked(
         "knobs": {knob.name: list(knob.values) for knob in space.knobs},
         "starts": [dict(start) for start in space.starts],
         "model of cost": [work(base) for work in bench.works],
-        "measure": MEASURE,
+        "measure": grid.MEASURE,
     }
 
 

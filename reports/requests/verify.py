@@ -12,9 +12,8 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes
 from models.scene import Scene
-from reports.judge import tolerance
+from reports.judge import rows, tolerance
 from reports.judge.cell import Cell, Checked
-from reports.judge.rows import cell_frame, cell_row, error_frame
 from reports.output.console import say_whole, tell
 from reports.output.formats import csv, json_text, junit, parquet
 from reports.output.write import Outputs, provenance
@@ -133,7 +132,6 @@ def plan(request: VerifyOptions) -> list[Cell]:
 
 
 def _scenes(request: VerifyOptions) -> list[Scene]:
-    """The scenes: with ``free`` in free motion; else under their controller, if any."""
     if request.free:
         return requirements.scenes_of(request.scenes, free=True)
 
@@ -225,17 +223,17 @@ def contents(
         return junit(suite(checked, facts), diff_suite(diff))
 
     return {
-        "verify.csv": lambda: csv(cell_frame(checked)),
+        "verify.csv": lambda: csv(rows.cell_frame(checked)),
         "verify.json": lambda: _json(checked, facts, digests),
         "verify.junit.xml": suites,
-        "errors.parquet": lambda: parquet(error_frame(checked)),
+        "errors.parquet": lambda: parquet(rows.error_frame(checked)),
     }
 
 
 def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> str:
     """Facts, digests of scenes, and cells with their findings; null for numbers not finite."""
     cells = [
-        cell_row(one)
+        rows.cell_row(one)
         | {
             "settings": dict(one.settings),
             "not_reported": list(one.errors.not_reported) if one.errors else [],

@@ -213,7 +213,6 @@ def _asked(request: VerifyOptions) -> ModelRequest:
 
 
 def _branch_of(texts: Sequence[str]) -> dict[str, int]:
-    """Parse NAME=1 or NAME=-1, each. Raises CrankcheckError."""
     branch = {}
     for text in texts:
         name, equals, sign = text.partition("=")

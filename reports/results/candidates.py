@@ -271,7 +271,6 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
 
 
 def _fault(row: pd.Series | None) -> str:
-    """Say why a cell promises nothing; empty where it does."""
     if row is None:
         return NOT_RUN
     if row["status"] != "ok":

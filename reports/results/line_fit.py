@@ -194,7 +194,6 @@ def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Arra
 
 
 def _on(line: LineFit, fit: tuple[int, ...], curve: ErrorCurve) -> LineFit:
-    """Return the line with a curve, and the points of that curve."""
     used = _mask(fit[: curve.points], len(line.used))
     return replace(line, used=used, curve=curve, scatter=curve.scatter)
 
@@ -287,7 +286,6 @@ def words(fit: LineFit, unit: str, period_s: float, turn: str = "turn") -> str:
 
 
 def _told(fit: LineFit, unit: str) -> str:
-    """Return the verdict on the runs that ended well."""
     if fit.kind == "order":
         return _order(fit)
     if fit.kind == "floor":
@@ -312,7 +310,6 @@ def _order(fit: LineFit) -> str:
 
 
 def _irregular(fit: LineFit, unit: str) -> str:
-    """Say how far an error falls that follows no curve."""
     least, last = min(error for _, error in fit.runs), fit.finest_error
     if least < last:
         return f"irregular: falls to {short(least)} {unit}, then rises to {short(last)}"

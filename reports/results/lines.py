@@ -11,8 +11,7 @@ import numpy as np
 import pandas as pd
 from pydantic import ValidationError
 
-from reports.judge.halving import BEHIND_DRIVE, EXACT_DRIVE
-from reports.judge.three_steps import AT_ROUNDING
+from reports.judge import halving, three_steps
 from reports.plan.study import Study
 from reports.protocol.length import SECONDS, clock_of, common_clock
 from reports.protocol.way import ResultKind, Way, way_of_row
@@ -182,8 +181,8 @@ def _unit(quantity: str, row: Mapping[Any, Any]) -> str:
 def _rounding(rows: pd.DataFrame) -> float:
     """Return the pure error from rounding: of the crank, and of the bodies behind it."""
     drives = rows.get("drive_pure", ())  # a free motion has none
-    drive = max((float(error) for error in drives if error <= EXACT_DRIVE), default=0.0)
-    return max(AT_ROUNDING, BEHIND_DRIVE * drive)
+    drive = max((float(error) for error in drives if error <= halving.EXACT_DRIVE), default=0.0)
+    return max(three_steps.AT_ROUNDING, halving.BEHIND_DRIVE * drive)
 
 
 TIMES = ("us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn")

@@ -258,7 +258,6 @@ def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableT
 def _row(
     one: Recommendation, mark: str, wide: bool, *, steadier: bool = False
 ) -> Sequence[str | Text]:
-    """Return one row, with dashes where nothing reaches the target."""
     best = one.best
     name = Text(("or " if steadier else "") + called(best.variant, best.drive))
     numbers = [
@@ -284,7 +283,6 @@ def short_target(target: float) -> str:
 
 
 def _note(one: Recommendation) -> str:
-    """Return the note on a row; empty where there is none."""
     if one.reason:
         return one.reason
     if one.caution:

@@ -184,7 +184,6 @@ def stored_cell(row: CellRow, facts: Mapping[str, str]) -> StoredCell:
 
 
 def _error(value: object) -> float:
-    """Return an error, infinite where there is no number."""
     found = number(value)
     if found is not None and found < 0.0:
         raise ValueError(f"an error of {found:g}")

@@ -152,7 +152,6 @@ def _cut(rows: Sequence[CellRow], cells: object) -> str:
 
 
 def _texts(value: object) -> dict[str, str]:
-    """Return a mapping of texts, empty where there is none."""
     if not isinstance(value, Mapping):
         return {}
     return {str(key): text(item) for key, item in value.items()}

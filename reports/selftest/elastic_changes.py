@@ -13,9 +13,7 @@ from analytic.elastic.engine_start import node_start, segment_start
 from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion, State
-from models.scene import Scene
-from models.scene.cut_links import CutScene
-from models.scene.cut_scenes import BeamedScene, SegmentedScene
+from models.scene import Scene, cut_links, cut_scenes
 from models.scene.elastic import Beam, Shape
 from reports.compare.elastic_truth import ChainTruth, ElasticTruth
 from reports.judge.cell import Cell
@@ -174,7 +172,7 @@ def of_exact_chain(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
     return _given_back(truth.cut, motion, exact)
 
 
-def _given_back(chain: CutScene, own: Motion, other: Motion) -> Motion:
+def _given_back(chain: cut_links.CutScene, own: Motion, other: Motion) -> Motion:
     """Return the log with the links, the points and the deflections of another motion."""
     links = {**own.links, **{n: each for n, each in other.links.items() if n in own.links}}
     motion = replace(own, links=links, points={**own.points, **other.points})
@@ -251,9 +249,9 @@ def started(shape: Shape) -> Plant:
 
 def _start(given: Scene, shape: Shape) -> State:
     cut = truth_of_given(given).cut
-    if isinstance(cut, BeamedScene):
+    if isinstance(cut, cut_scenes.BeamedScene):
         return node_start(cut, shape)
-    assert isinstance(cut, SegmentedScene)
+    assert isinstance(cut, cut_scenes.SegmentedScene)
     return segment_start(cut, shape)
 
 

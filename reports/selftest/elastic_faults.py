@@ -13,37 +13,12 @@ import numpy as np
 
 from analytic.elastic.engine_start import segment_start
 from models.motion import State
-from models.scene import Link, Scene
-from models.scene.cut_scenes import SegmentedScene
+from models.scene import Link, Scene, cut_scenes, moved
 from models.scene.loads import PinSpring
-from models.scene.moved import of_mass, with_link
-from reports.selftest import engines
-from reports.selftest.elastic_changes import (
-    BENT,
-    ELASTIC_RUNS,
-    LOOSE,
-    at_next_node,
-    bent_by,
-    in_beam,
-    in_chain_log,
-    in_given,
-    of_beam,
-    of_exact_chain,
-    started,
-    stiffer_beam,
-    truth_of_chain,
-)
+from reports.selftest import elastic_changes as elastic
+from reports.selftest import engines, log_faults
+from reports.selftest import free_changes as machine
 from reports.selftest.fault import Fault, Plant, SceneChange, planting
-from reports.selftest.free_changes import (
-    LinkChange,
-    heavier_by,
-    later,
-    of_link,
-    of_load,
-    reversed_load,
-    scaled_points,
-)
-from reports.selftest.log_faults import late
 from sim.engine import Run
 from sim.registry import engine
 from sim.run import run
@@ -57,8 +32,8 @@ def in_elastic_scene(change: SceneChange) -> Plant:
 
     @planting
     def runner(size: float, scene: Scene, _: State, *args: Any, **options: Any) -> Run:
-        right = truth_of_chain(scene)
-        wrong = SegmentedScene(change(right.scene, size), right.chain.count)
+        right = elastic.truth_of_chain(scene)
+        wrong = cut_scenes.SegmentedScene(change(right.scene, size), right.chain.count)
         return run(wrong.rigid, segment_start(wrong, right.theory.shape), *args, **options)
 
     return runner
@@ -81,7 +56,7 @@ def middle_spring(change: SpringChange) -> SceneChange:
 
 def _between(scene: Scene) -> list[str]:
     """Return the springs between segments of the first elastic link, in order."""
-    chain = truth_of_chain(scene).chain
+    chain = elastic.truth_of_chain(scene).chain
     name = next(iter(chain.scene.elastic))
     return list(chain.nodes(name)[1:-1])
 
@@ -114,19 +89,11 @@ def damped(spring: PinSpring, _: int, time_s: float) -> PinSpring:
     return replace(spring, damping=spring.damping + time_s * spring.rate)
 
 
-def prebent(spring: PinSpring, _: int, angle_rad: float) -> PinSpring:
-    return replace(spring, free=spring.free + angle_rad)
-
-
-def reversed_spring(spring: PinSpring, _: int, swap: float) -> PinSpring:
-    return replace(spring, rate=(1.0 - 2.0 * swap) * spring.rate)
-
-
-def segments(change: LinkChange) -> SceneChange:
+def segments(change: machine.LinkChange) -> SceneChange:
     """Change every segment."""
 
     def changed(scene: Scene, size: float) -> Scene:
-        chain = truth_of_chain(scene).chain
+        chain = elastic.truth_of_chain(scene).chain
         names = [part for name in chain.scene.elastic for part in chain.segments(name)]
         own = {name: change(scene.links[name], size) for name in names}
         return replace(scene, links={**scene.links, **own})
@@ -143,7 +110,7 @@ def modulus_and_mass(scene: Scene, share: float) -> Scene:
     """Make an elastic link softer by a share, and as much heavier."""
     name, own = next(iter(scene.elastic.items()))
     soft = replace(own, flexural_n_m2=own.flexural_n_m2 / (1.0 + share))
-    return replace(of_mass(scene, name, 1.0 + share), elastic={**scene.elastic, name: soft})
+    return replace(moved.of_mass(scene, name, 1.0 + share), elastic={**scene.elastic, name: soft})
 
 
 def longer(scene: Scene, share: float) -> Scene:
@@ -151,7 +118,7 @@ def longer(scene: Scene, share: float) -> Scene:
     name, link = next((n, scene.links[n]) for n in scene.elastic)
     more = 1.0 + share
     centre = (more * link.centre_m[0], more * link.centre_m[1])
-    return with_link(scene, name, points=scaled_points(link, more), centre_m=centre)
+    return moved.with_link(scene, name, points=machine.scaled_points(link, more), centre_m=centre)
 
 
 @planting
@@ -160,7 +127,7 @@ def node_moved(share: float, scene: Scene, state: State, *args: Any, **options: 
     they still meet, with the speeds that keep them together."""
     if not share:
         return run(scene, state, *args, **options)
-    chain = truth_of_chain(scene).chain
+    chain = elastic.truth_of_chain(scene).chain
     name = next(iter(chain.scene.elastic))
     parts, nodes = chain.segments(name)[:2], chain.nodes(name)[:3]
     sizes = []
@@ -168,7 +135,9 @@ def node_moved(share: float, scene: Scene, state: State, *args: Any, **options: 
         link = scene.links[part]
         sizes.append(_length(link) * more)
         centre = (more * link.centre_m[0], link.centre_m[1])
-        scene = with_link(scene, part, points=scaled_points(link, more), centre_m=centre)
+        scene = moved.with_link(
+            scene, part, points=machine.scaled_points(link, more), centre_m=centre
+        )
     return run(scene, _met(state, parts, nodes, sizes), *args, **options)
 
 
@@ -214,7 +183,8 @@ def _pair(row: np.ndarray) -> tuple[float, float]:
     return float(row[0]), float(row[1])
 
 
-_STEP_S = (ELASTIC_RUNS[LOOSE].lasts_s or 0.0) / ELASTIC_RUNS[LOOSE].steps
+_LOOSE_RUN = elastic.ELASTIC_RUNS[elastic.LOOSE]
+_STEP_S = (_LOOSE_RUN.lasts_s or 0.0) / _LOOSE_RUN.steps
 
 
 def _fault(
@@ -226,7 +196,7 @@ def _fault(
     unit: str = "",
     *,
     rule: str = "CC132",
-    scene: str = BENT,
+    scene: str = elastic.BENT,
     needs: Callable[[str], bool] = lambda _: True,
     whole: bool = False,
 ) -> Fault:
@@ -239,32 +209,36 @@ _chain = partial(_fault, "segments")
 _inside = partial(_fault, "vibration")
 _log = partial(_fault, "deflection")
 _beam = partial(_fault, "beam", rule="CC131", needs=lambda name: engine(name).applies_beams)
-_loose = partial(_fault, "segments", scene=LOOSE)
+_loose = partial(_fault, "segments", scene=elastic.LOOSE)
 FAULTS = (
     _chain("springs-of-fewer", "springs as of n - 1 segments, not n",
-           in_given(springs(of_as_many_springs))),
+           elastic.in_given(springs(of_as_many_springs))),
     _chain("springs-corrected", "corrected springs, not plain ones",
-           in_given(springs(as_corrected))),
-    _chain("modulus-off", "the modulus is too large", in_given(springs(stiffer)), 1e-2, "of it"),
+           elastic.in_given(springs(as_corrected))),
+    _chain("modulus-off", "the modulus is too large",
+           elastic.in_given(springs(stiffer)), 1e-2, "of it"),
     _chain("spring-missing", "the middle spring is soft, or gone",
-           in_given(middle_spring(lambda one, n, share: stiffer(one, n, -share))), 1.0, "of it"),
-    _chain("bending-reversed", "it pushes the wrong way", in_given(middle_spring(reversed_spring))),
-    _chain("spring-prebent", "it is slack at another angle", in_given(middle_spring(prebent)),
-           1e-3, "rad"),
-    _chain("spring-damping", "the springs damp", in_given(springs(damped)), 1e-3, "s"),
-    _chain("inertia-at-ends", "segments' mass is at their ends", in_given(segments(at_its_ends)),
+           elastic.in_given(middle_spring(lambda one, n, share: stiffer(one, n, -share))),
            1.0, "of it"),
-    _chain("segments-heavy", "segments are too heavy", in_given(segments(heavier_by)),
-           1e-2, "of it"),
-    _chain("rocker-heavy", "what it moves is too heavy", in_given(of_link(heavier_by, -1)),
-           10.0, "of it"),
+    _chain("bending-reversed", "it pushes the wrong way",
+           elastic.in_given(middle_spring(lambda one, n, swap: stiffer(one, n, -2.0 * swap)))),
+    _chain("spring-prebent", "it is slack at another angle",
+           elastic.in_given(middle_spring(lambda one, _, rad: replace(one, free=one.free + rad))),
+           1e-3, "rad"),
+    _chain("spring-damping", "the springs damp", elastic.in_given(springs(damped)), 1e-3, "s"),
+    _chain("inertia-at-ends", "segments' mass is at their ends",
+           elastic.in_given(segments(at_its_ends)), 1.0, "of it"),
+    _chain("segments-heavy", "segments are too heavy",
+           elastic.in_given(segments(machine.heavier_by)), 1e-2, "of it"),
+    _chain("rocker-heavy", "what it moves is too heavy",
+           elastic.in_given(machine.of_link(machine.heavier_by, -1)), 10.0, "of it"),
     _chain("node-moved", "a node is elsewhere on the link", node_moved, 0.1, "of it"),
     _chain("elastic-other", "softer, heavier, moves as it should",
            in_elastic_scene(modulus_and_mass), 1e-2, "of it"),
     _chain("elastic-long", "the elastic link is too long", in_elastic_scene(longer), 1e-2, "of it",
            rule="CC103"),
-    _chain("start-straight", "starts straight, and rings", started("straight")),
-    _chain("start-unswung", "starts as if it did not swing", started("quasi-static")),
+    _chain("start-straight", "starts straight, and rings", elastic.started("straight")),
+    _chain("start-unswung", "starts as if it did not swing", elastic.started("quasi-static")),
     _inside("vibration-damped", "something damps all joints",
             engines.after_look(lambda tools: tools.damp), 1.0, "1/s"),
     _inside("bending-explicit", "explicit steps: it is flung out", engines.explicit, 1.0, "of it"),
@@ -273,40 +247,51 @@ FAULTS = (
     _inside("weight-later", "gravity is switched on in mid-run",
             engines.after_a_third(lambda tools: tools.pull), 1.0, "m/s^2"),
     _log("deflection-sign", "the deflection has the other sign",
-         in_chain_log(bent_by(lambda off, _: np.negative(off)))),
+         elastic.in_chain_log(elastic.bent_by(lambda off, _: np.negative(off)))),
     _log("deflection-scaled", "the deflection is too large",
-         in_chain_log(bent_by(lambda off, share: (1.0 + share) * off)), 1e-2, "of it"),
-    _log("other-node", "the next node's deflection", in_chain_log(at_next_node)),
-    _log("bend-later", "every sample is a later one", late, 1.0, "sample", whole=True,
+         elastic.in_chain_log(elastic.bent_by(lambda off, share: (1.0 + share) * off)),
+         1e-2, "of it"),
+    _log("other-node", "the next node's deflection", elastic.in_chain_log(elastic.at_next_node)),
+    _log("bend-later", "every sample is a later one", log_faults.late, 1.0, "sample", whole=True,
          rule="CC102"),
-    _log("linear-given", "the linear theory, handed in", in_chain_log(of_beam(stiffened=False))),
-    _log("beam-given", "the beam, handed back", in_chain_log(of_beam(stiffened=True))),
-    _log("chain-given", "the exact chain, handed back", in_chain_log(of_exact_chain), rule="CC111"),
-    _beam("beam-modulus", "the modulus is too large", in_beam(stiffer_beam), 1e-2, "of it"),
+    _log("linear-given", "the linear theory, handed in",
+         elastic.in_chain_log(elastic.of_beam(stiffened=False))),
+    _log("beam-given", "the beam, handed back",
+         elastic.in_chain_log(elastic.of_beam(stiffened=True))),
+    _log("chain-given", "the exact chain, handed back",
+         elastic.in_chain_log(elastic.of_exact_chain), rule="CC111"),
+    _beam("beam-modulus", "the modulus is too large",
+          elastic.in_beam(elastic.stiffer_beam), 1e-2, "of it"),
     _beam("beam-mass", "the beam is too heavy",
-          in_beam(lambda one, x: replace(one, density_kg_m=(1.0 + x) * one.density_kg_m)),
+          elastic.in_beam(lambda one, x: replace(one, density_kg_m=(1.0 + x) * one.density_kg_m)),
           1e-2, "of it"),
     _beam("beam-damping", "the beam damps",
-          in_beam(lambda one, time_s: replace(one, damping_s=one.damping_s + time_s)), 1e-3, "s"),
+          elastic.in_beam(lambda one, time_s: replace(one, damping_s=one.damping_s + time_s)),
+          1e-3, "s"),
     _beam("beam-stretches", "EA is that many times too small",
-          in_beam(lambda one, x: replace(one, axial_n=one.axial_n / (1.0 + x))), 1e4, "times"),
-    _beam("beam-straight", "starts straight, and rings", started("straight")),
-    _beam("beam-unswung", "starts as if it did not swing", started("quasi-static")),
+          elastic.in_beam(lambda one, x: replace(one, axial_n=one.axial_n / (1.0 + x))),
+          1e4, "times"),
+    _beam("beam-straight", "starts straight, and rings", elastic.started("straight")),
+    _beam("beam-unswung", "starts as if it did not swing", elastic.started("quasi-static")),
     _beam("beam-bend-scaled", "the deflection is too large",
-          in_chain_log(bent_by(lambda off, share: (1.0 + share) * off)), 1e-2, "of it"),
+          elastic.in_chain_log(elastic.bent_by(lambda off, share: (1.0 + share) * off)),
+          1e-2, "of it"),
     _beam("beam-linear-given", "the linear theory, handed in",
-          in_chain_log(of_beam(stiffened=False))),
-    _beam("beam-theory-given", "the beam, handed back", in_chain_log(of_beam(stiffened=True)),
-          rule="CC111"),
+          elastic.in_chain_log(elastic.of_beam(stiffened=False))),
+    _beam("beam-theory-given", "the beam, handed back",
+          elastic.in_chain_log(elastic.of_beam(stiffened=True)), rule="CC111"),
     _loose("loose-torque-late", "let go: the torque acts late",
-           in_given(of_load("pulse", later(_STEP_S))), 1.0, "steps", rule="CC127"),
+           elastic.in_given(machine.of_load("pulse", machine.later(_STEP_S))),
+           1.0, "steps", rule="CC127"),
     _loose("loose-torque-back", "let go: it turns the other way",
-           in_given(of_load("pulse", reversed_load)), rule="CC127"),
-    _loose("loose-modulus-off", "let go: the modulus is too large", in_given(springs(stiffer)),
-           1e-2, "of it"),
-    _loose("loose-damping", "let go: the springs damp", in_given(springs(damped)), 1e-3, "s"),
+           elastic.in_given(machine.of_load("pulse", machine.reversed_load)), rule="CC127"),
+    _loose("loose-modulus-off", "let go: the modulus is too large",
+           elastic.in_given(springs(stiffer)), 1e-2, "of it"),
+    _loose("loose-damping", "let go: the springs damp",
+           elastic.in_given(springs(damped)), 1e-3, "s"),
     _loose("loose-rocker-heavy", "let go: what it moves is too heavy",
-           in_given(of_link(heavier_by, -1)), 1e-2, "of it", rule="CC127"),
+           elastic.in_given(machine.of_link(machine.heavier_by, -1)), 1e-2, "of it", rule="CC127"),
     _inside("loose-damped", "let go: something damps all joints",
-            engines.after_look(lambda tools: tools.damp), 1.0, "1/s", scene=LOOSE, rule="CC129"),
+            engines.after_look(lambda tools: tools.damp),
+            1.0, "1/s", scene=elastic.LOOSE, rule="CC129"),
 )  # fmt: skip

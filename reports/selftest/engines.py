@@ -62,7 +62,6 @@ def explicit(share: float, scene: Scene, state: Any, name: str, *args: Any, **op
 
 
 def _dropped(turns: float) -> CellRunner:
-    """Open the loop so many turns before the end of one turn."""
     plant = done_to(
         lambda tools: lambda session, _: tools.open_loop(session),
         lambda steps: (steps - round(turns * steps),) if turns else (),

@@ -15,8 +15,7 @@ from analytic.kinematics import solve
 from models.motion import State
 from models.scene import Same, Scene
 from reports.judge.cell import Cell, CellRunner
-from reports.protocol.length import Planned
-from reports.protocol.way import way_of
+from reports.protocol import length, way
 from sim.engine import Run, Session, Settings
 from sim.engine.settings import profile_of, resolved
 from sim.registry import available, engine, offering
@@ -204,8 +203,8 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
 def _healthy(same: Same, name: str, profile: str, settings: Items, options: Items) -> Run:
     """Return a run as the profile says, once for all sizes: at a step, its half and its quarter."""
     given = dict(options)
-    planned = Planned(same.scene, given["dt_s"], given["steps"])
-    start = way_of(same.scene, given.get("drive")).truth(planned).start
+    planned = length.Planned(same.scene, given["dt_s"], given["steps"])
+    start = way.way_of(same.scene, given.get("drive")).truth(planned).start
     return run(same.scene, start, name, profile, settings=dict(settings), **given)
 
 

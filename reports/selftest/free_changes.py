@@ -7,13 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.free.release import release
-from models.scene import Link, Point, Scene
-from models.scene.characteristics import Constant, Pulse
-from models.scene.driver import Released
-from models.scene.joints import line_ends
+from models.scene import Link, Point, Scene, characteristics, driver, joints, tabulated
 from models.scene.loads import LineSpring, Load, SlideSpring
 from models.scene.moved import heavier, with_link
-from models.scene.tabulated import Tabulated
 from reports.selftest.fault import Plant, SceneChange, in_scene
 
 
@@ -104,7 +100,7 @@ def turned_gravity(scene: Scene, angle_rad: float) -> Scene:
 
 def faster_start(scene: Scene, share: float) -> Scene:
     law = scene.driver.law
-    assert isinstance(law, Released)
+    assert isinstance(law, driver.Released)
     faster = replace(law, speed_rad_s=(1.0 + share) * law.speed_rad_s)
     return replace(scene, driver=replace(scene.driver, law=faster))
 
@@ -133,7 +129,7 @@ def lasting(longer_s: float) -> LoadChange:
 
     def changed(_: Scene, load: Load, times: float) -> Load:
         pulse = load.characteristic
-        assert isinstance(pulse, Pulse)
+        assert isinstance(pulse, characteristics.Pulse)
         return replace(load, characteristic=replace(pulse, period=pulse.period + times * longer_s))
 
     return changed
@@ -142,7 +138,7 @@ def lasting(longer_s: float) -> LoadChange:
 def along_lines(_: Scene, load: Load, swap: float) -> Load:
     """Replace the curve of a table by straight lines from row to row."""
     table = load.characteristic
-    assert isinstance(table, Tabulated)
+    assert isinstance(table, tabulated.Tabulated)
     return replace(load, characteristic=replace(table, interpolation="linear")) if swap else load
 
 
@@ -157,16 +153,18 @@ def on_last_link(scene: Scene, load: Load, swap: float) -> Load:
 def held_at_start(scene: Scene, load: Load, swap: float) -> Load:
     """Let a motor keep the torque of the start at any speed."""
     law = scene.driver.law
-    assert isinstance(law, Released)
+    assert isinstance(law, driver.Released)
     first = float(load.magnitude(np.array([law.speed_rad_s]))[0])
-    return replace(load, characteristic=Constant(first), over="time") if swap else load
+    return (
+        replace(load, characteristic=characteristics.Constant(first), over="time") if swap else load
+    )
 
 
 def spring_elsewhere(scene: Scene, off_m: float) -> Scene:
     """Move the first end of a spring between points on its link."""
     spring = next(iter(scene.springs.values()))
     assert isinstance(spring, LineSpring)
-    (name, (x, y)), _ = line_ends(scene, spring)
+    (name, (x, y)), _ = joints.line_ends(scene, spring)
     scene = with_link(scene, name, points={**scene.links[name].points, "moved": (x + off_m, y)})
     other = replace(spring, points=("moved", spring.points[1]))
     return replace(scene, springs={**scene.springs, spring.name: other})

@@ -8,17 +8,8 @@ import numpy as np
 from analytic.kinematics import solve_driven
 from models.scene import Scene
 from reports.compare.free_truth import free_truth
-from reports.selftest import engines
+from reports.selftest import engines, fault
 from reports.selftest import free_changes as change
-from reports.selftest.fault import (
-    REFUSED,
-    Fault,
-    SceneChange,
-    can_set,
-    in_log,
-    in_settings,
-    switched,
-)
 from reports.selftest.log_faults import late, moved, of_output, taken
 from sim.engine import Energy, Run
 
@@ -40,16 +31,18 @@ _STEP_S = FREE_RUNS[PULSE][0]
 def _fault(
     name: str,
     what: str,
-    changed: SceneChange,
+    changed: fault.SceneChange,
     size: float | None = None,
     unit: str = "",
     *,
     scene: str = SWING,
     rule: str = "CC127",
     finer: bool = False,
-) -> Fault:
+) -> fault.Fault:
     plant = change.in_free_scene(changed)
-    return Fault("dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer)
+    return fault.Fault(
+        "dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer
+    )
 
 
 DYNAMICS = (
@@ -101,7 +94,7 @@ DYNAMICS = (
 )  # fmt: skip
 
 
-_stepping = partial(Fault, "stepping", scenes=(SWING,))
+_stepping = partial(fault.Fault, "stepping", scenes=(SWING,))
 STEPPING = (
     _stepping("damping-left-on", "something damps all joints", "CC129",
               engines.after_look(lambda tools: tools.damp), 0.1, "1/s"),
@@ -112,22 +105,22 @@ STEPPING = (
     _stepping("gravity-later", "more gravity in mid-run", "CC127",
               engines.after_a_third(lambda tools: tools.pull), 1.0, "m/s^2"),
     _stepping("start-contradicts", "a link starts at a speed of its own", "CC101",
-              engines.done_to(lambda tools: tools.spin), 1e-3, "rad/s", says=(REFUSED, "turns at")),
+              engines.done_to(lambda tools: tools.spin), 1e-3, "rad/s",
+              says=(fault.REFUSED, "turns at")),
     _stepping("explicit-euler", "explicit steps: energy grows", "CC129", engines.explicit,
               1.0, "of it"),
     _stepping("energy-fed", f"speeds made larger, {engines.TIMES} times", "CC129",
               engines.done_to(lambda tools: tools.quicken, engines.now_and_then), 1e-3, "of it"),
     _stepping("loop-slips", "a joint slips on its link in mid-run", "CC128",
               engines.after_a_third(lambda tools: tools.slip), 1e-3, "m"),
-    _stepping("semi-implicit", "semi-implicit Euler for RK4", "CC127", in_settings("semi-implicit"),
-              needs=can_set("semi-implicit")),
+    _stepping("semi-implicit", "semi-implicit Euler for RK4", "CC127",
+              fault.in_settings("semi-implicit"), needs=fault.can_set("semi-implicit")),
     _stepping("bias-left-on", "gaps closed slowly: first order", "CC129",
-              in_settings("first-order"), needs=can_set("first-order")),
+              fault.in_settings("first-order"), needs=fault.can_set("first-order")),
 )  # fmt: skip
 
 
 def _copied(scene: Scene, done: Run) -> Run:
-    """Put the reference in the engine's place."""
     motion = moved(done)
     true = free_truth(scene, done.steps, done.dt_s).at(motion.time_s)
     return replace(
@@ -157,16 +150,18 @@ def _leaking(_: Scene, done: Run, share: float) -> Run:
     return replace(done, energy=Energy(kinetic, potential - lost))
 
 
-_record = partial(Fault, "record", scenes=(SWING,))
+_record = partial(fault.Fault, "record", scenes=(SWING,))
 RECORD = (
     _record("row-later", "every sample is a later one", "CC127", late, 1.0, "sample", whole=True),
     _record("rate-off", "a logged velocity is too large", "CC106",
-            in_log(of_output("omega", lambda omega, share: (1.0 + share) * omega)), 0.1, "of it"),
-    _record("energy-leaks", "energy that is lost evenly", "CC129", in_log(_leaking), 1e-2, "T"),
+            fault.in_log(of_output("omega", lambda omega, share: (1.0 + share) * omega)),
+            0.1, "of it"),
+    _record("energy-leaks", "energy that is lost evenly", "CC129", fault.in_log(_leaking),
+            1e-2, "T"),
     _record("other-assembly", "the other assembly is logged", "CC101",
-            switched(_in_other_assembly)),
+            fault.switched(_in_other_assembly)),
     _record("energy-missing", "no energy is in the log", "CC109",
-            switched(lambda _, done: replace(done, energy=None))),
-    _record("free-copied", "the reference, handed back", "CC111", switched(_copied),
+            fault.switched(lambda _, done: replace(done, energy=None))),
+    _record("free-copied", "the reference, handed back", "CC111", fault.switched(_copied),
             scenes=(SWING, SPRING)),
 )  # fmt: skip

@@ -225,7 +225,6 @@ START = slice(5, 39)
 
 
 def _angle(change: Distortion, link: Callable[[Scene], str] = last) -> Plant:
-    """Change the angle of the last link, or of another."""
     return in_log(of_output("theta", change, link))
 
 
@@ -240,7 +239,6 @@ def _omega(change: Distortion) -> Plant:
 
 
 def _all_of(change: Callable[[Array], Array]) -> Distortion:
-    """Change the whole series, or leave it for a size of 0."""
     return lambda series, size: change(series) if size else series
 
 
@@ -258,10 +256,6 @@ def _ramp(theta: Array, size: float) -> Array:
 
 def _wrapped(theta: Array) -> Array:
     return np.asarray(np.remainder(theta + np.pi, 2 * np.pi) - np.pi)
-
-
-def _rpm(omega: Array) -> Array:
-    return omega * 30.0 / np.pi
 
 
 _value = partial(Fault, "log")
@@ -284,7 +278,8 @@ VALUES = (
     _value("jump", "an angle jumps, and stays", "CC107", _angle(_at(AFTER)), 1e-4, "rad"),
     _value("velocity-spike", "a velocity is off at one sample", "CC106", _omega(_at(WHEN)),
            1e-2, "w"),
-    _value("rpm", "a velocity in revolutions a minute", "CC106", _omega(_all_of(_rpm))),
+    _value("rpm", "a velocity in revolutions a minute", "CC106",
+           _omega(_all_of(lambda omega: omega * 30.0 / np.pi))),
     _value("wrong-start", "a velocity is off at the start", "CC116", _omega(_at(START)), 5e-2, "w"),
     _value("wild-start", "a velocity of 1e6 rad/s at the start", "CC116",
            in_log(of_output("omega", lambda x, size: spoilt(x, START, 1e6 * size)))),
@@ -292,21 +287,17 @@ VALUES = (
 
 
 def _with(series: str, at: int, value: float) -> Callable[[Scene, Run], Run]:
-    """Add a value to a sample of the last link."""
     change = of_output(series, lambda own, _: spoilt(own, at, value))
     return lambda scene, done: change(scene, done, 1.0)
 
 
-def _without_link(scene: Scene, done: Run) -> Run:
-    motion = moved(done)
-    links = {name: part for name, part in motion.links.items() if name != last(scene)}
-    return replace(done, motion=replace(motion, links=links))
+def _without(bodies: str, name: Callable[[Scene], str]) -> Callable[[Scene, Run], Run]:
+    def changed(scene: Scene, done: Run) -> Run:
+        kept: dict[str, Any] = {bodies: dict(getattr(moved(done), bodies))}
+        kept[bodies].pop(name(scene), None)
+        return replace(done, motion=replace(moved(done), **kept))
 
-
-def _without_point(_: Scene, done: Run) -> Run:
-    motion = moved(done)
-    points = {name: part for name, part in motion.points.items() if name != "C"}
-    return replace(done, motion=replace(motion, points=points))
+    return changed
 
 
 def _silent(scene: Scene, done: Run) -> Run:
@@ -320,8 +311,8 @@ MISSING = tuple(
     for name, what, change in (
         ("nan-at-end", "the last angle is NaN", _with("theta", -1, np.nan)),
         ("infinity", "one velocity is infinite", _with("omega", WHEN, np.inf)),
-        ("link-absent", "a link is not in the log", _without_link),
-        ("point-absent", "a point is not in the log", _without_point),
+        ("link-absent", "a link is not in the log", _without("links", last)),
+        ("point-absent", "a point is not in the log", _without("points", lambda _: "C")),
         ("gaps-absent", "no pin's gap is in the log", lambda _, done: replace(done, gaps={})),
         ("acceleration-nan", "accelerations of one link are NaN", _silent),
     )

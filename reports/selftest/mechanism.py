@@ -10,8 +10,7 @@ import numpy as np
 
 from models.array import Array
 from models.motion import PointMotion
-from models.scene import Link, Scene
-from models.scene.laws import ConstantSpeed
+from models.scene import Link, Scene, laws
 from models.scene.moved import scaled, with_link
 from reports.selftest import fault
 from reports.selftest.free_changes import long_by, of_coupler, scaled_points
@@ -51,7 +50,7 @@ def _length(link: Link) -> float:
 
 def _sped_up(scene: Scene, factor: float) -> Scene:
     law = scene.driver.law
-    assert isinstance(law, ConstantSpeed)
+    assert isinstance(law, laws.ConstantSpeed)
     other = replace(law, speed_rad_s=law.speed_rad_s * factor)
     return replace(scene, driver=replace(scene.driver, law=other))
 
@@ -90,7 +89,6 @@ MECHANISM = (
 
 
 def _links_swapped(_scene: Scene, done: Run) -> Run:
-    """Exchange the columns of the last two links."""
     motion = moved(done)
     one, two = list(motion.links)[-2:]
     links = {**motion.links, one: motion.links[two], two: motion.links[one]}

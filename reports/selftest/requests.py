@@ -31,7 +31,6 @@ def other_engine(name: str) -> str | None:
 
 
 def _wrong(name: str) -> list[WrongSetting]:
-    """Return the settings that an engine can be given by mistake."""
     return list(spoiler(name).wrong_settings) if name in offering("spoiler") else []
 
 
@@ -213,7 +212,6 @@ def _velocity(scene: Scene, done: Run) -> Run:
 
 
 def _speeds(scene: Scene, done: Run) -> Run:
-    """Give all points and sliders the velocities of the closed form, likewise."""
     assert done.velocity_time_s is not None
     own = moved(done)
     true = solve(scene, done.velocity_time_s, bound=False)

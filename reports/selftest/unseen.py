@@ -8,13 +8,11 @@ import numpy as np
 
 from models.scene import Same, Scene
 from reports.compare.compare import truth_of
-from reports.selftest import free_changes
+from reports.selftest import engines, free_changes, requests
 from reports.selftest.elastic_changes import at_quarter, in_chain_log, in_given
 from reports.selftest.elastic_faults import segments, springs, stiffer
-from reports.selftest.engines import after_a_third
 from reports.selftest.fault import Plant, Unseen, in_log, in_scene, planting, switched
 from reports.selftest.log_faults import moved, of_output, taken
-from reports.selftest.requests import other_engine
 from sim.engine import Cost, Energy, Run
 from sim.registry import engine, offering
 from sim.run import run, setup
@@ -26,7 +24,7 @@ def _all_renamed(
 ) -> Run:
     """Run another engine, with every word as in the requested run."""
     asked = setup(scene, state, name, profile, **options)
-    other = other_engine(name)
+    other = requests.other_engine(name)
     if not size or other is None:
         return run(scene, state, name, profile, **options)
     done = run(scene, state, other, profile, **{**options, "settings": None})
@@ -36,12 +34,11 @@ def _all_renamed(
 
 def _as_silent(name: str) -> bool:
     """True if there is another engine that reports what this one does."""
-    other, silent = other_engine(name), not engine(name).reports_accelerations
+    other, silent = requests.other_engine(name), not engine(name).reports_accelerations
     return other is not None and (silent or engine(other).reports_accelerations)
 
 
 def _tenth(scene: Scene, done: Run, size: float) -> Run:
-    """Bring places nearer to the reference, by a factor of ten."""
     own = moved(done)
     true = truth_of(Same(scene)).at(own.time_s)
     kept = 1.0 - 0.9 * size
@@ -72,7 +69,6 @@ def _cheaper(_: Scene, done: Run, size: float) -> Run:
 
 
 def _of_energy(change: Callable[[Energy], Energy]) -> Plant:
-    """Change the energy in the log of a healthy run."""
     return switched(lambda _, done: replace(done, energy=done.energy and change(done.energy)))
 
 
@@ -94,116 +90,70 @@ _NO_FORCES = (
     "the forces, which no rule compares."
 )
 UNSEEN = (
-    Unseen(
-        "mass-other",
-        "the scene that is run has a heavier link",
-        f"{_NO_FORCES} A mass in the engine that is not the scene's is refused (mass-off).",
-        in_scene(free_changes.of_link(free_changes.heavier_by, -1)),
-    ),
-    Unseen(
-        "gravity-midway",
-        "gravity is switched on in mid-run",
-        f"{_NO_FORCES} Gravity at the start is refused (gravity-left-on).",
-        after_a_third(lambda tools: lambda session, size: tools.pull(session, 9.81 * size)),
-        needs=lambda name: name in offering("spoiler"),
-    ),
-    Unseen(
-        "error-tenth",
-        "places with a tenth of their error",
-        "An engine that errs less is a better engine; what is nearer than its order allows is seen "
-        "(too-good).",
-        in_log(_tenth),
-    ),
-    Unseen(
-        "even-taken",
-        "the crank's pin, from the reference",
-        "What moves evenly with the crank comes out right to rounding in an engine as well.",
-        in_log(_even_taken),
-        shows=False,  # where the engine has those very numbers
-    ),
-    Unseen(
-        "gap-shut",
-        "one gap of several is 0, as in truth",
-        "An engine may hold some of its joints exactly, by the coordinates that it has; it is the "
-        "widest gap that is looked at (too-good-gaps).",
-        in_log(_one_shut),
-        shows=False,
-    ),
-    Unseen(
-        "all-renamed",
-        "another engine's run, all its words false",
-        "Numbers within every limit, from a run that says in every word and setting what was asked "
-        "for, are as good as those of that run; one false word is seen (engine-renamed).",
-        _all_renamed,
-        needs=_as_silent,
-    ),
-    Unseen(
-        "turns-counted",
-        "an angle counted from another whole turn",
-        "Engines count turns from where they like; one that is gained or lost on the way is seen "
-        "(whole-turn).",
-        in_log(of_output("theta", lambda theta, size: theta + 2.0 * np.pi * round(size))),
-        shows=False,
-    ),
-    Unseen(
-        "cost-halved",
-        "half the time that the run took",
-        "Times are advice, measured apart, and judged by nothing.",
-        in_log(_cheaper),
-        shows=False,
-    ),
-)
+    Unseen("mass-other", "the scene that is run has a heavier link",
+           f"{_NO_FORCES} A mass in the engine that is not the scene's is refused (mass-off).",
+           in_scene(free_changes.of_link(free_changes.heavier_by, -1))),
+    Unseen("gravity-midway", "gravity is switched on in mid-run",
+           f"{_NO_FORCES} Gravity at the start is refused (gravity-left-on).",
+           engines.after_a_third(lambda tools: lambda session, n: tools.pull(session, 9.81 * n)),
+           needs=lambda name: name in offering("spoiler")),
+    Unseen("error-tenth", "places with a tenth of their error",
+           "An engine that errs less is a better engine; what is nearer than its order allows is "
+           "seen (too-good).",
+           in_log(_tenth)),
+    Unseen("even-taken", "the crank's pin, from the reference",
+           "What moves evenly with the crank comes out right to rounding in an engine as well.",
+           in_log(_even_taken), shows=False),  # where the engine has those very numbers
+    Unseen("gap-shut", "one gap of several is 0, as in truth",
+           "An engine may hold some of its joints exactly, by the coordinates that it has; it is "
+           "the widest gap that is looked at (too-good-gaps).",
+           in_log(_one_shut), shows=False),
+    Unseen("all-renamed", "another engine's run, all its words false",
+           "Numbers within every limit, from a run that says in every word and setting what was "
+           "asked for, are as good as those of that run; one false word is seen (engine-renamed).",
+           _all_renamed, needs=_as_silent),
+    Unseen("turns-counted", "an angle counted from another whole turn",
+           "Engines count turns from where they like; one that is gained or lost on the way is "
+           "seen (whole-turn).",
+           in_log(of_output("theta", lambda theta, size: theta + 2.0 * np.pi * round(size))),
+           shows=False),
+    Unseen("cost-halved", "half the time that the run took",
+           "Times are advice, measured apart, and judged by nothing.",
+           in_log(_cheaper), shows=False),
+)  # fmt: skip
 UNSEEN_FREE = (
-    Unseen(
-        "matter-scaled",
-        "every mass and inertia twice",
-        "Under weight alone a mechanism moves as it does, whatever the factor of all its masses; "
-        "its reactions differ, which --forces plants. One mass of several is seen (mass-wrong).",
-        free_changes.in_free_scene(free_changes.of_all_matter),
-        shows=False,  # of a factor of two not one bit changes in some engines
-    ),
-    Unseen(
-        "energy-even",
-        "the energy of the start at every instant",
-        "The energy is worked out of the logged motion here, and not told by an engine: what "
-        "damps or drives that motion is seen in it (damping-left-on, energy-fed).",
-        _of_energy(_even),
-    ),
-    Unseen(
-        "energy-half-step",
-        "potential energy of half a step before",
-        "The total comes and goes with the motion by as much as a step makes of it, as that of an "
-        "engine does; its drift is judged, and the motion itself.",
-        _of_energy(_half_a_step),
-    ),
-    Unseen(
-        "energy-parts",
-        "kinetic energy told as potential",
-        "The total is judged: both parts are worked out of the logged motion here.",
-        _of_energy(lambda energy: Energy(energy.potential_j, energy.kinetic_j)),
-        shows=False,  # a sum does not know its order
-    ),
-)
+    Unseen("matter-scaled", "every mass and inertia twice",
+           "Under weight alone a mechanism moves as it does, whatever the factor of all its "
+           "masses; its reactions differ, which --forces plants. One mass of several is seen "
+           "(mass-wrong).",
+           free_changes.in_free_scene(free_changes.of_all_matter),
+           shows=False),  # of a factor of two not one bit changes in some engines
+    Unseen("energy-even", "the energy of the start at every instant",
+           "The energy is worked out of the logged motion here, and not told by an engine: what "
+           "damps or drives that motion is seen in it (damping-left-on, energy-fed).",
+           _of_energy(_even)),
+    Unseen("energy-half-step", "potential energy of half a step before",
+           "The total comes and goes with the motion by as much as a step makes of it, as that of "
+           "an engine does; its drift is judged, and the motion itself.",
+           _of_energy(_half_a_step)),
+    Unseen("energy-parts", "kinetic energy told as potential",
+           "The total is judged: both parts are worked out of the logged motion here.",
+           _of_energy(lambda energy: Energy(energy.potential_j, energy.kinetic_j)),
+           shows=False),  # a sum does not know its order
+)  # fmt: skip
 UNSEEN_ELASTIC = (
-    Unseen(
-        "node-elsewhere",
-        "a node away from the middle, 1 % too far out",
-        "How far the middle is from the line between the pins is what is compared; a chain that is "
-        "bent otherwise elsewhere moves otherwise in its middle, too, unless only its log is off.",
-        in_chain_log(lambda truth, motion, size: at_quarter(truth, motion, 1e-2 * size)),
-        shows=False,  # nothing of it is among the errors
-    ),
-    Unseen(
-        "modulus-hardly",
-        "the modulus, by 0.01 %",
-        "Within what an engine may be off by at this step; 1 % is seen (modulus-off).",
-        in_given(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size))),
-    ),
-    Unseen(
-        "turning-inertia",
-        "segments with 1 % less inertia about their centre",
-        "Most of the inertia of a chain is that of its masses across; what rods have about their "
-        "own centre falls as 1/n^2, and three times as much of it is seen (inertia-at-ends).",
-        in_given(segments(lambda link, size: free_changes.turning_light(link, 1e-2 * size))),
-    ),
-)
+    Unseen("node-elsewhere", "a node away from the middle, 1 % too far out",
+           "How far the middle is from the line between the pins is what is compared; a chain that "
+           "is bent otherwise elsewhere moves otherwise in its middle, too, unless only its log is "
+           "off.",
+           in_chain_log(lambda truth, motion, size: at_quarter(truth, motion, 1e-2 * size)),
+           shows=False),  # nothing of it is among the errors
+    Unseen("modulus-hardly", "the modulus, by 0.01 %",
+           "Within what an engine may be off by at this step; 1 % is seen (modulus-off).",
+           in_given(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size)))),
+    Unseen("turning-inertia", "segments with 1 % less inertia about their centre",
+           "Most of the inertia of a chain is that of its masses across; what rods have about "
+           "their own centre falls as 1/n^2, and three times as much of it is seen "
+           "(inertia-at-ends).",
+           in_given(segments(lambda link, size: free_changes.turning_light(link, 1e-2 * size)))),
+)  # fmt: skip

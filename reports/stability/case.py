@@ -124,10 +124,6 @@ class Case(CaseFacts):
         return CaseFacts(**own | {"driver_unit": unit})
 
 
-def _solved_start(trial: Trial) -> State:
-    return trial.start or solve(trial.scene, np.zeros(1)).state()
-
-
 @dataclass(frozen=True)
 class Yardstick:
     """Comparison of a run with its reference, motion of the reference, to be drawn, and their
@@ -137,7 +133,9 @@ class Yardstick:
     error_of: str
     look: Callable[[Trial, Run], ErrorSeries]
     motion: Callable[[Trial, Array], Motion]
-    start: Callable[[Trial], State] = _solved_start
+    start: Callable[[Trial], State] = lambda trial: (
+        trial.start or solve(trial.scene, np.zeros(1)).state()
+    )
     with_forces: bool = False
 
 

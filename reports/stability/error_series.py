@@ -11,7 +11,7 @@ from models.motion import Motion
 from models.scene import Scene
 from models.scene.joints import joints
 from reports.compare.branch import HERE_RAD, departure
-from reports.compare.compare import Beside, Truth, incomplete
+from reports.compare.compare import Truth, incomplete
 from reports.compare.errors import Departure
 from reports.compare.tracks import length
 from sim.engine import Run
@@ -89,7 +89,7 @@ def error_series(scene: Scene, run: Run, settled_turns: float = 0.0) -> ErrorSer
 
     Raises CrankcheckError where the scene has no reference at the times of the run.
     """
-    beside = Beside.of(Truth(scene, bound=False), run)
+    beside = Truth(scene, bound=False).beside(run)
     assert beside is not None
     time_s, driver = beside.motion.time_s, beside.driver_rad
     with np.errstate(over="ignore", invalid="ignore"):  # runs that came apart are judged

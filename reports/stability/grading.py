@@ -12,16 +12,14 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.compare import Beside, Truth
-from reports.compare.whole_errors import force_rows
+from reports.compare import compare, whole_errors
 from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
 from reports.output.numbers import DIGITS, finite
 from reports.protocol.way import own_parts
 from reports.stability.case import Case, Trial, Yardstick, yardsticks
 from reports.stability.grades import outcome
 from reports.stability.matrix import Graded, Outcome, Picture, label
-from sim.engine import Run
-from sim.engine.settings import SettingError
+from sim.engine import Run, settings
 from sim.registry import engine as engine_of
 from sim.run import run
 
@@ -80,7 +78,6 @@ def graded(
 def _graded(
     case: Case, trial: Trial, blank: Graded, yardstick: Yardstick, *, forces: bool
 ) -> tuple[Graded, Run | None]:
-    """Return the grade, and the run where there is one."""
     blank = replace(blank, steps=trial.steps, dt_s=trial.dt_s)
     state = yardstick.start(trial)
     try:
@@ -97,7 +94,7 @@ def _graded(
             open_m=trial.open_m,
             with_forces=forces,
         )
-    except SettingError as error:
+    except settings.SettingError as error:
         return replace(blank, outcome="unsupported", reason=str(error)), None
     if done.motion is None or done.status == "unsupported":
         lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"
@@ -138,9 +135,9 @@ def force_error(scene: Scene, run: Run, settled_turns: float = 0.0) -> float:
     settled = replace(
         run, motion=cut, forces_of="states" if kept.start else run.forces_of
     )  # the start, where steps have no forces, is cut off
-    beside = Beside.of(Truth(scene, bound=False), settled)
+    beside = compare.Truth(scene, bound=False).beside(settled)
     try:
-        rows = force_rows(beside).rows if beside else ()
+        rows = whole_errors.force_rows(beside).rows if beside else ()
     except CrankcheckError:
         return math.nan
     sizes = [row.pure if row.finite else math.inf for row in rows if row.kind != "start"]

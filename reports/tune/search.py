@@ -153,12 +153,10 @@ def _distribution(knob: Knob) -> BaseDistribution:
 
 
 def _place(knob: Knob, value: SettingValue) -> int | str:
-    """Return the value as Optuna knows it."""
     return knob.values.index(value) if knob.ordered else str(value)
 
 
 def _value(knob: Knob, place: int | str) -> SettingValue:
-    """Return the value that Optuna means."""
     return knob.values[place] if isinstance(place, int) else place
 
 
@@ -290,5 +288,4 @@ def _refuse_other(path: Path, earlier: Asked, asked: Asked) -> None:
 
 
 def _short(value: object) -> str:
-    """Return a value of a request in a line."""
     return cut(value if isinstance(value, str) else json.dumps(value))

@@ -12,8 +12,7 @@ from typing import Literal, Protocol
 
 from models.array import Array
 from models.motion import Forces, Motion, State
-from models.scene import Point, Scene
-from models.scene.elastic import Beam
+from models.scene import Point, Scene, elastic
 
 Status = Literal["ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"]
 Drive = Literal["prescribed", "servo", "free"]
@@ -110,7 +109,7 @@ class Facts:
     velocity_shift: float
     acceleration_shift: float
     springs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    beams: Mapping[str, tuple[Beam, ...]] = field(default_factory=dict)
+    beams: Mapping[str, tuple[elastic.Beam, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

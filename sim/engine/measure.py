@@ -8,10 +8,8 @@ import numpy as np
 
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
-from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
+from models.scene import GROUND, KEPT, Point, Same, Scene, Slider, loads
 from models.scene import joints as pairs
-from models.scene.joints import carriers
-from models.scene.loads import LineSpring, PinSpring
 from sim.engine import BodyPose, Energy, Poses
 
 
@@ -143,7 +141,7 @@ def motion(scene: Scene, poses: Poses) -> Motion:
     now, then = _at_now(poses), at_velocities(poses)
     tracks, later = _tracks(scene, now), _tracks(scene, then) if then is not now else None
     points, sliders = {}, {}
-    for name, names in carriers(scene).items():
+    for name, names in pairs.carriers(scene).items():
         if names:
             track = tracks[name][names[0]]
             velocity = (later or tracks)[name][names[0]].velocity
@@ -232,7 +230,7 @@ def _copies(same: Same) -> Mapping[str, Mapping[str, Point]]:
     scene = same.scene
     return {
         point: {body: pairs.local_point(scene, body, point) for body in names}
-        for point, names in carriers(scene).items()
+        for point, names in pairs.carriers(scene).items()
     }
 
 
@@ -242,7 +240,7 @@ def _rider(scene: Scene, slider: Slider) -> str:
         return slider.link
     if pairs.block_name(slider) in pairs.blocks(scene):
         return pairs.block_name(slider)
-    return next(body for body in carriers(scene)[slider.point] if body != slider.on)
+    return next(body for body in pairs.carriers(scene)[slider.point] if body != slider.on)
 
 
 def _guide(slider: Slider, poses: Poses) -> BodyPose:
@@ -261,12 +259,12 @@ def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     """
     paths, lengths = body_paths(poses), dict[str, Array]()
     for name, spring in scene.springs.items():
-        if isinstance(spring, LineSpring):
+        if isinstance(spring, loads.LineSpring):
             a, b = (
                 PointPath(paths[body], at).position for body, at in pairs.line_ends(scene, spring)
             )
             lengths[name] = np.hypot(*(b - a).T)
-        elif isinstance(spring, PinSpring):
+        elif isinstance(spring, loads.PinSpring):
             first, second = (paths[body].pose.theta for body in spring.bodies)
             opened = second - first
             lengths[name] = opened + pairs.whole_turns(spring, float(opened[0]))

@@ -21,7 +21,6 @@ from models.array import Array
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
 from models.scene import joints as pairs
-from models.scene.joints import Prism, Slot
 from sim.engine.measure import across, arms, directions
 from sim.engine.ties import Hinge
 
@@ -86,13 +85,13 @@ def joint_pushes(
         NaN at samples at which the joints are singular.
     """
     slides = pairs.joints(scene).slides
-    prisms = [slide.slider.name for slide in slides if isinstance(slide, Prism)]
+    prisms = [slide.slider.name for slide in slides if isinstance(slide, pairs.Prism)]
     system = _System(gains)
     for hinge in hinges:
         system.hold(scene, hinge)
     lines = {slide.slider.name: system.carry(scene, slide) for slide in slides}
     for slide in slides:
-        if isinstance(slide, Prism):
+        if isinstance(slide, pairs.Prism):
             system.couple(slide.body, slide.slider.on)
     if driven:
         system.drive(scene)
@@ -127,7 +126,7 @@ class _System:
                     arm = self._gains[body].arm(pairs.local_point(scene, body, hinge.point))
                     self._push(column, body, arm, np.tile(sense * axis, (self._samples, 1)))
 
-    def carry(self, scene: Scene, slide: Prism | Slot) -> Array:
+    def carry(self, scene: Scene, slide: pairs.Prism | pairs.Slot) -> Array:
         """Add a line: a force across it, the same on both bodies. Return its direction."""
         direction = across(self._along(slide.slider))
         self._push_on(scene, slide.slider, pairs.riding_body(slide), direction)

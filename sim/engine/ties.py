@@ -5,9 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from models.errors import EngineError
-from models.scene import Scene
+from models.scene import Scene, loads
 from models.scene.joints import End, Prism, Slot, joints, line_ends, local_point, riding_body
-from models.scene.loads import LineSpring, PinSpring, Spring
 
 
 @dataclass(frozen=True)
@@ -33,12 +32,12 @@ def slide_of(scene: Scene, slider: str) -> Prism | Slot:
     return next(slide for slide in joints(scene).slides if slide.slider.name == slider)
 
 
-def spring_ends(scene: Scene, spring: Spring) -> tuple[End, End]:
+def spring_ends(scene: Scene, spring: loads.Spring) -> tuple[End, End]:
     """Return the two bodies of a spring with the places on them [m]: its two points, the two copies
     of its pin, or a place of the line on the guide and the sliding point."""
-    if isinstance(spring, LineSpring):
+    if isinstance(spring, loads.LineSpring):
         return line_ends(scene, spring)
-    if isinstance(spring, PinSpring):
+    if isinstance(spring, loads.PinSpring):
         first, second = ((body, local_point(scene, body, spring.point)) for body in spring.bodies)
         return first, second
     slide = slide_of(scene, spring.slider)

@@ -19,13 +19,11 @@ from models.scene import Scene, Slider
 from models.scene import joints as pairs
 from models.scene.laws import ConstantSpeed, Law
 from models.scene.loads import ConstantFriction, Load, SlideSpring
-from sim.engine import Drive, Poses, Settings
+from sim.engine import Drive, Poses, Settings, momentum_balance
 from sim.engine import drive as drives
 from sim.engine.measure import body_paths, directions, motion
-from sim.engine.momentum_balance import JointPushes, forces_by_body
 from sim.engine.ties import Hinge, refuse_driver_angle
-from sim.exudyn.passive import against, still_rad_s
-from sim.exudyn.solver import Multipliers
+from sim.exudyn import passive, solver
 from sim.exudyn.system import ANGLE, Index, PlaneSystem, items
 
 
@@ -185,7 +183,7 @@ class CrankDrive:
             )
         )
 
-    def torque(self, poses: Poses, lambdas: Array, multipliers: Multipliers) -> Array:
+    def torque(self, poses: Poses, lambdas: Array, multipliers: solver.Multipliers) -> Array:
         """Return the torque on the crank [N m], or the force on a slider along its line [N], at
         states with these multipliers, a row each."""
         if self._constraint is not None:
@@ -203,7 +201,7 @@ class BlockLoads:
         self._scene, self._time_s = scene, poses.time_s
         self._paths = body_paths(poses)
         self._motion = motion(scene, poses)
-        self._still = still_rad_s(scene)
+        self._still = passive.still_rad_s(scene)
 
     def line_rad(self, slider: Slider) -> Array:
         """Return the direction of a line."""
@@ -224,7 +222,7 @@ class BlockLoads:
                 total += self._magnitude(load)[:, None] * directions(angle)
         for friction in self._rubbing(slider.name):
             still = self._still * self._scene.longest_m
-            total += against(friction.size, slid.speed, still)[:, None] * directions(line)
+            total += passive.against(friction.size, slid.speed, still)[:, None] * directions(line)
         for spring in self._scene.springs.values():
             if isinstance(spring, SlideSpring) and spring.slider == slider.name:
                 pull = spring.rate * (slid.displacement - spring.free)
@@ -242,7 +240,7 @@ class BlockLoads:
                 block = pairs.block_name(slider)
                 (other,) = (b for b in pairs.joined_at(self._scene)[slider.point] if b != block)
                 rate = self._omega(slider.on) - self._omega(other)
-                total += against(friction.size, rate, self._still)
+                total += passive.against(friction.size, rate, self._still)
         return total
 
     def _omega(self, body: str) -> Array:
@@ -274,7 +272,7 @@ class BlockLoads:
 
 
 def reactions(
-    made: PlaneSystem, multipliers: Multipliers, lambdas: Array, poses: Poses, torque: Array
+    made: PlaneSystem, multipliers: solver.Multipliers, lambdas: Array, poses: Poses, torque: Array
 ) -> Forces:
     """Return the forces at the states of ``poses``, from the multipliers there, a row each."""
     blocks = BlockLoads(made.scene, poses)
@@ -283,7 +281,7 @@ def reactions(
         slider.name: lambdas[:, multipliers.rows(made.prismatic[slider.name])].T
         for slider in slides
     }
-    pushes = JointPushes(
+    pushes = momentum_balance.JointPushes(
         hinges={
             Hinge(hinge.point, hinge.other, hinge.first): lambdas[:, multipliers.rows(joint)]
             for hinge, joint in made.hinge.items()
@@ -295,4 +293,4 @@ def reactions(
         spare=0,
     )
     on_blocks = {slot.slider.name: blocks.on(slot.slider) for slot in ties.slots}
-    return forces_by_body(made.scene, pushes, on_blocks, {}, poses.time_s)
+    return momentum_balance.forces_by_body(made.scene, pushes, on_blocks, {}, poses.time_s)

@@ -11,12 +11,9 @@ from models.array import Array
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Point, Scene
-from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
-from sim.engine.measure import across, arms
-from sim.exudyn import system
-from sim.exudyn.crank_drive import CrankCourse, CrankDrive, reactions, refuse_undriven
+from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings, measure
+from sim.exudyn import crank_drive, passive, system
 from sim.exudyn.loads import Applied, apply_loads, follows_rates
-from sim.exudyn.passive import Springs, apply_friction
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 
@@ -62,8 +59,8 @@ def body_poses(
 def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
     """Return the frame with the node at ``centre``, from coordinates and their rates."""
     theta, omega, alpha = place[:, 2], rate[:, 2], push[:, 2]
-    arm = arms(theta, centre)
-    turned = across(arm)
+    arm = measure.arms(theta, centre)
+    turned = measure.across(arm)
     return BodyPose(
         origin=place[:, :2] - arm,
         theta=theta,
@@ -107,7 +104,7 @@ class ExudynSession:
                 f"dt: found {dt_s:g} s; exudyn ends a step to 1e-10 s, so it takes "
                 f"{LEAST_DT_S:g} s or more"
             )
-        refuse_undriven(scene, drive)
+        crank_drive.refuse_undriven(scene, drive)
         settings = of_drive(settings, drive)
         self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
         self._start_s, self._done = state.time_s, 0
@@ -118,9 +115,9 @@ class ExudynSession:
             self._looked = dict(self._model.looked)
             self._applied = Applied(self._model)
             apply_loads(self._applied, state.time_s, drive, dt_s)
-            apply_friction(self._applied, drive)
-            self._springs = Springs(self._applied)
-            self._crank = CrankDrive(self._model, settings, drive, state.time_s, dt_s)
+            passive.apply_friction(self._applied, drive)
+            self._springs = passive.Springs(self._applied)
+            self._crank = crank_drive.CrankDrive(self._model, settings, drive, state.time_s, dt_s)
             self._sensors = self._sense()
             self._system.Assemble()
             self._asked = simulation(
@@ -157,7 +154,7 @@ class ExudynSession:
             for level in LEVELS
         ]
 
-    def _set_off(self, course: CrankCourse) -> Array:
+    def _set_off(self, course: crank_drive.CrankCourse) -> Array:
         """Set rates that fit the crank's, and accelerations that fit its own; return their
         multipliers, which exudyn does not compute then.
 
@@ -239,7 +236,7 @@ class ExudynSession:
         at = done + every * np.arange(len(log.poses.time_s), dtype=np.float64)
         lambdas = self._multipliers.at(self._dt * at)
         torque = self._crank.torque(log.poses, lambdas, self._multipliers)
-        forces = reactions(self._model, self._multipliers, lambdas, log.poses, torque)
+        forces = crank_drive.reactions(self._model, self._multipliers, lambdas, log.poses, torque)
         return replace(log, forces=forces)
 
     def read(self) -> Poses:

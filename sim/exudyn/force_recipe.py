@@ -4,11 +4,9 @@ from collections.abc import Iterator
 
 from models.errors import EngineError
 from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Point, Scene, laws
 from models.scene import joints as pairs
-from models.scene.laws import ConstantSpeed
-from sim.engine import Settings
-from sim.engine.ties import hinges
+from sim.engine import Settings, ties
 from sim.exudyn.settings import BY_NEED, NEWTON
 from sim.registry.offers import ForceRecipe, written
 
@@ -128,11 +126,11 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
             ("a driver that is no crank", not scene.driver.is_crank),
             ("springs", scene.springs),
             ("friction", scene.friction),
-            ("a driver whose speed changes", not isinstance(law, ConstantSpeed)),
+            ("a driver whose speed changes", not isinstance(law, laws.ConstantSpeed)),
         )
         if there
     ]
-    if lacking or not isinstance(law, ConstantSpeed):
+    if lacking or not isinstance(law, laws.ConstantSpeed):
         raise EngineError(
             f"{scene.name}: the recipe of exudyn does not cover {' and '.join(lacking)}; take that "
             "out, or use another scene"
@@ -164,7 +162,7 @@ def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
 
 
 def _pins(scene: Scene) -> Iterator[tuple[object, ...]]:
-    for hinge in hinges(scene, GROUND):
+    for hinge in ties.hinges(scene, GROUND):
         start, end = (
             _from_centre(scene, body, pairs.local_point(scene, body, hinge.point))
             for body in (hinge.first, hinge.other)

@@ -7,11 +7,9 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.scene import GROUND, Point, Scene
-from models.scene.joints import joined_at, turned, whole_turns
+from models.scene import GROUND, Point, Scene, joints
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, Spring
-from sim.engine import Drive
-from sim.engine.ties import spring_ends
+from sim.engine import Drive, ties
 from sim.exudyn.loads import Applied, Size
 from sim.exudyn.system import Index, items
 
@@ -40,17 +38,17 @@ class Springs:
         if isinstance(spring, PinSpring):
             turning = [self._applied.turning(body) for body in spring.bodies]
             opened = self._made.start_rad[turning[1]] - self._made.start_rad[turning[0]]
-            ahead = self._ahead[spring.name] = opened + whole_turns(spring, opened)
+            ahead = self._ahead[spring.name] = opened + joints.whole_turns(spring, opened)
             ends = [self._made.coordinate_marker(body) for body in turning]
             return items.ObjectConnectorCoordinateSpringDamper(
                 markerNumbers=ends, offset=spring.free - ahead, **held
             )
-        ends = [self._made.marker_at(*end) for end in spring_ends(self._applied.scene, spring)]
+        ends = [self._made.marker_at(*end) for end in ties.spring_ends(self._applied.scene, spring)]
         if isinstance(spring, LineSpring):
             return items.ObjectConnectorSpringDamper(
                 markerNumbers=ends, referenceLength=spring.free, **held
             )
-        axis = turned((1.0, 0.0), self._applied.scene.sliders[spring.slider].direction_rad)
+        axis = joints.turned((1.0, 0.0), self._applied.scene.sliders[spring.slider].direction_rad)
         return items.ObjectConnectorLinearSpringDamper(
             markerNumbers=ends, offset=spring.free, axisMarker0=[*axis, 0.0], **held
         )
@@ -88,7 +86,7 @@ def apply_friction(applied: Applied, drive: Drive) -> None:
 
 
 def _rub_pin(applied: Applied, friction: ConstantFriction, still: float) -> None:
-    ends, present = joined_at(applied.scene)[friction.joint], applied.present
+    ends, present = joints.joined_at(applied.scene)[friction.joint], applied.present
     turning = [applied.turning(body) for body in ends]
 
     def on(side: int) -> Size:

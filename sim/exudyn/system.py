@@ -21,10 +21,8 @@ from typing import Any
 
 from models.errors import EngineError
 from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Point, Scene, elastic
 from models.scene import joints as pairs
-from models.scene.elastic import Beam
-from models.scene.joints import Frame
 from sim.engine.ties import Hinge, hinges, refuse_massless
 
 SAID = re.compile(r"Python WARNING|Python ERROR")
@@ -143,7 +141,7 @@ class PlaneSystem:
 EPSILON = 2.0**-52
 
 
-def add_node(made: PlaneSystem, name: str, frame: Frame, state: State) -> None:
+def add_node(made: PlaneSystem, name: str, frame: pairs.Frame, state: State) -> None:
     """Add a node of a beam: its place, and its tangent, longer than 1 by the strain there."""
     c, s = math.cos(frame.theta), math.sin(frame.theta)
     long, faster = 1.0 + state.strain.get(name, 0.0), state.strain_rate.get(name, 0.0)
@@ -161,7 +159,7 @@ def add_node(made: PlaneSystem, name: str, frame: Frame, state: State) -> None:
     made.looked[name] = frame.theta
 
 
-def add_elements(made: PlaneSystem, beam: Beam) -> None:
+def add_elements(made: PlaneSystem, beam: elastic.Beam) -> None:
     """Add the elements between the nodes of a beam, straight at rest for any place of these.
 
     An element is a cubic in its own length (absolute nodal coordinates); it bends by EI times the
@@ -188,7 +186,7 @@ def add_elements(made: PlaneSystem, beam: Beam) -> None:
         made.weigh(f"{beam.name} {i}", element)
 
 
-def held_beams(made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]]:
+def held_beams(made: PlaneSystem) -> Mapping[str, tuple[elastic.Beam, ...]]:
     """Return exudyn's values of each beam, by element: a beam of one element each."""
     return {
         name: tuple(
@@ -201,12 +199,12 @@ def held_beams(made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]]:
     }
 
 
-def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> Beam:
+def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> elastic.Beam:
     """Return an element; its damping is NaN where its two dampings differ in time."""
     flexural, axial = float(own["bendingStiffness"]), float(own["axialStiffness"])
     times = float(own["bendingDamping"]) / flexural, float(own["axialDamping"]) / axial
     one = math.isclose(*times, rel_tol=1e-12)
-    return Beam(
+    return elastic.Beam(
         name,
         nodes,
         float(own["length"]),

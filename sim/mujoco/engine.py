@@ -12,16 +12,14 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.mjcf.document import build
+from models.mjcf import document, options
 from models.mjcf.forces import SpringTendon, planned, spring_tendons
-from models.mjcf.options import Writing, has_control
 from models.mjcf.tree import Tree, driven_freedom, plan
 from models.motion import State
 from models.scene import Point, Scene
-from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue
+from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue, tree_poses
 from sim.engine import drive as drives
 from sim.engine.settings import SettingError
-from sim.engine.tree_poses import body_poses
 from sim.mujoco import settings as own
 from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import JointForces, TreeReactions
@@ -41,12 +39,12 @@ class MujocoSession(SteppedModel):
         self._limbs = tree.limbs
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         with heard(self._warnings.append):
-            model = compiled(build(scene, state, chosen, tree))
+            model = compiled(document.build(scene, state, chosen, tree))
         self._weights = model.body_invweight0.copy()
         model.body_invweight0[:] *= own.weight_share(scene, settings, drive)
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
-        self._controlled = has_control(scene, chosen)
+        self._controlled = options.has_control(scene, chosen)
         self._free = chosen.free
         staged = self._free and own.integrator(settings, drive) == "RK4"
         self._loading = Loading(
@@ -156,7 +154,7 @@ class MujocoSession(SteppedModel):
     def _placed(self, states: Array, at: Array, push: Array) -> Poses:
         """Return the poses of states with their joint accelerations (T, nv)."""
         lag = self._shift * self._dt
-        poses = body_poses(self._limbs, *self._joints(states), push, lag)
+        poses = tree_poses.body_poses(self._limbs, *self._joints(states), push, lag)
         return Poses(self._start_s + self._dt * at, poses, lag)
 
     def _control_at(self, at: Array) -> Array | None:
@@ -181,7 +179,7 @@ def _pair(vector: Array) -> Point:
     return float(vector[0]), float(vector[1])
 
 
-def _tree(scene: Scene, state: State, chosen: Writing) -> Tree:
+def _tree(scene: Scene, state: State, chosen: options.Writing) -> Tree:
     """Plan the tree; a fault that only the setting ``close`` causes is a fault of the setting."""
     try:
         return planned(scene, state, chosen)

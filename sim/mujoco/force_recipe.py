@@ -7,10 +7,7 @@ from models.mjcf.document import build
 from models.mjcf.forces import planned
 from models.mjcf.tree import driven_freedom
 from models.motion import State
-from models.scene import Scene
-from models.scene.characteristics import Constant
-from models.scene.joints import joined_at
-from models.scene.laws import ConstantSpeed
+from models.scene import Scene, characteristics, joints, laws
 from sim.engine import Settings
 from sim.mujoco.settings import writing
 from sim.registry.offers import ForceRecipe, written
@@ -116,9 +113,9 @@ def _check_held(scene: Scene) -> None:
     varying = [
         f"loads.{load.name}"
         for load in scene.loads.values()
-        if not isinstance(load.characteristic, Constant) or load.stroke != "both"
+        if not isinstance(load.characteristic, characteristics.Constant) or load.stroke != "both"
     ]
-    if not isinstance(scene.driver.law, ConstantSpeed):
+    if not isinstance(scene.driver.law, laws.ConstantSpeed):
         varying.insert(0, "driver")
     if varying:
         raise EngineError(
@@ -130,7 +127,7 @@ def _check_held(scene: Scene) -> None:
 def _signed(scene: Scene, ties: Iterable[tuple[str, str, str]]) -> dict[str, tuple[str, int]]:
     """Return, by pin and its second body, the names of ties at pins of two bodies, and the sign of
     their force there; a tie is a point, the body that it pushes, and a name."""
-    pins = joined_at(scene)
+    pins = joints.joined_at(scene)
     return {
         f"{point}.{pins[point][1]}": (name, 1 if body == pins[point][1] else -1)
         for point, body, name in ties

@@ -14,8 +14,7 @@ from models.mjcf.tree import Limb, driven_freedom
 from models.scene import Scene
 from models.scene.characteristics import Characteristic, Constant
 from models.scene.loads import Load
-from sim.engine import Drive
-from sim.engine.load_magnitudes import ahead, known_ahead
+from sim.engine import Drive, load_magnitudes
 
 Parts = tuple[float, float, float]
 """Parts of a load, at the begin, the middle and the end of a step."""
@@ -172,7 +171,7 @@ class Loading:
         self.loads = tuple(scene.loads.values())
         self._scene, self._start_s = scene, start_s
         self.first = int(model.nu) - len(self.loads)
-        of_motion = [not known_ahead(load, drive) for load in self.loads]
+        of_motion = [not load_magnitudes.known_ahead(load, drive) for load in self.loads]
         self._of_motion = [k for k, follows in enumerate(of_motion) if follows]
         self._dt = stages_dt_s or 0.0
         self._of_time = [
@@ -207,7 +206,7 @@ class Loading:
             if k not in self._of_motion:
                 # Where a load jumps at a sample, its later value holds there.
                 after = time_s + INSIDE * self._dt if k in self._of_time else time_s
-                columns[:, k] = ahead(self._scene, load, after)
+                columns[:, k] = load_magnitudes.ahead(self._scene, load, after)
         return columns
 
     @contextmanager

@@ -17,10 +17,8 @@ from models.motion import Forces, SliderForces
 from models.scene import Point, Scene, Slider
 from models.scene.joints import block_name, joined_at, local_point
 from models.scene.loads import LineSpring, PinSpring, SlideSpring, Spring
-from sim.engine import Poses
+from sim.engine import Poses, momentum_balance, ties
 from sim.engine.measure import PointPath, body_paths, directions
-from sim.engine.momentum_balance import PinForces
-from sim.engine.ties import spring_ends
 
 
 @dataclass(frozen=True)
@@ -142,7 +140,7 @@ class TreeReactions:
         self._scene, self._tree, self._joint_forces = scene, tree, joint_forces
         self._time_s, self._paths = poses.time_s, body_paths(poses)
         count = len(poses.time_s)
-        self._pins = PinForces(scene, count)
+        self._pins = momentum_balance.PinForces(scene, count)
         self._sliders: dict[str, SliderForces] = {}
         self._torque = np.full(count, np.nan)
         self._loads = [self._load(k) for k in range(len(scene.loads))]
@@ -275,7 +273,7 @@ class TreeReactions:
             place = self._point(second, spring.point)
             couple = JointWrench(np.zeros_like(place), -pull, place)
             return [(first, -couple), (second, couple)]
-        (first, a), (second, b) = spring_ends(self._scene, spring)
+        (first, a), (second, b) = ties.spring_ends(self._scene, spring)
         end = self._place(second, b)
         if isinstance(spring, LineSpring):
             start = self._place(first, a)

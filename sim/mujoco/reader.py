@@ -14,25 +14,12 @@ import numpy as np
 from models.errors import EngineError, suggestion
 from models.motion import State
 from models.scene import Scene
-from sim.engine import Drive, Engine, Poses, Session, Settings
-from sim.engine.measure import gaps
-from sim.engine.tree_poses import body_poses
-from sim.mujoco.own_model import variants
+from sim.engine import Drive, Engine, Poses, Session, Settings, measure, tree_poses
+from sim.mujoco.own_model import disturbing, file, session, variants
 from sim.mujoco.own_model.component import component, loose_joints
-from sim.mujoco.own_model.disturbing import disturbances
-from sim.mujoco.own_model.file import (
-    ModelError,
-    body_name,
-    files,
-    load,
-    name_of,
-    scene_name,
-    text_of,
-)
 from sim.mujoco.own_model.linkage import linkage, nearly
 from sim.mujoco.own_model.planar_model import PlanarModel, limbs_of
 from sim.mujoco.own_model.scene import scene_of
-from sim.mujoco.own_model.session import OwnModelSession, tour
 from sim.mujoco.stepped import VERSION, compiled_file
 from sim.registry.own_models import MOST_TURNS, Advised, Disturbance, Reader, Tour
 
@@ -56,33 +43,27 @@ class ReadModel:
 
     @cached_property
     def _present(self) -> list[Disturbance]:
-        return disturbances(self.planar.linkage)
+        return disturbing.disturbances(self.planar.linkage)
 
     @property
     def disturbances(self) -> list[Disturbance]:
         """Disturbances, with points of a link that may have been meant to be one."""
-        called = self.planar.read.names
-        near = [
-            Disturbance(
-                "near points",
-                f"{called[each.link]}: {each.first} and {each.second} are {each.distance_m:.3g} m "
-                "apart",
-            )
-            for each in nearly(self.planar.read.points, self.planar.linkage)
-        ]
-        return [*self._present, *near]
+        read = self.planar.read
+        near = nearly(read.parts.points, self.planar.linkage)
+        of_links = [Disturbance("near points", f"{read.names[at]}: {text}") for at, text in near]
+        return [*self._present, *of_links]
 
     @property
     def files(self) -> list[Path]:
         """The file, and its included files."""
-        return files(self.path)
+        return file.files(self.path)
 
     def drawn(self) -> Poses:
         """Return the pose of the file: as drawn, or of the keyframe."""
         limbs = self.planar.limbs
         q = self.planar.pose()
         still = np.zeros((1, len(q)))
-        poses = body_poses(limbs.limbs, q[None], still, still)
+        poses = tree_poses.body_poses(limbs.limbs, q[None], still, still)
         return Poses(np.zeros(1), {name: poses[limb] for name, limb in limbs.shown.items()})
 
     def coordinate_rad(self) -> float:
@@ -92,7 +73,7 @@ class ReadModel:
 
     def open_m(self) -> Mapping[str, float]:
         """Return the opening of each joint in that pose [m]."""
-        return {name: float(gap[0]) for name, gap in gaps(self.scene, self.drawn()).items()}
+        return {name: float(gap[0]) for name, gap in measure.gaps(self.scene, self.drawn()).items()}
 
     def loose(self) -> list[str]:
         """List the joints that can still move while the driven joint is fixed."""
@@ -101,13 +82,13 @@ class ReadModel:
     @property
     def notes(self) -> Sequence[str]:
         """What was held, and left out."""
-        return self.planar.linkage.component.loop.notes
+        return self.planar.linkage.component.notes
 
     def welds(self) -> list[str]:
         """List the welds that unite bodies of the linkage."""
         component = self.planar.linkage.component
         return [
-            f"{' and '.join(body_name(component.model, body) for body in each.bodies)}"
+            f"{' and '.join(file.body_name(component.model, body) for body in each.bodies)}"
             for each in component.closures
             if each.kind == "weld"
         ]
@@ -119,9 +100,9 @@ class ReadModel:
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
         """Put the model into states of its closed form."""
         try:
-            return tour(self.planar, scene, states)
-        except ModelError as error:
-            raise ModelError(f"{self.path}: {error}") from None
+            return session.tour(self.planar, scene, states)
+        except file.ModelError as error:
+            raise file.ModelError(f"{self.path}: {error}") from None
 
     def engine(self, advised: Advised) -> Engine:
         """Return MuJoCo with this model, and the lines of its report as profiles."""
@@ -129,7 +110,7 @@ class ReadModel:
         def opened(
             scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
         ) -> Session:
-            return OwnModelSession(self.planar, scene, state, settings, dt_s, drive)
+            return session.OwnModelSession(self.planar, scene, state, settings, dt_s, drive)
 
         present = dict.fromkeys(each.kind for each in self._present if each.kind in variants.OFF)
         lines = variants.profiles(present, advised)
@@ -141,7 +122,7 @@ class ReadModel:
         planar = self.planar
         told = variants.advice(planar.model, dt_s, advised)
         try:
-            raw = text_of(self.path)
+            raw = file.text_of(self.path)
             new = variants.patched(raw, planar.loops, int(planar.model.neq), told)
             found = compiled_file(self.path, new)
             text = variants.diff(self.path, raw, new)
@@ -166,22 +147,24 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name, or a keyframe
         that is not finite, or a hinge that is many turns away.
     """
-    model = load(path)
-    names = [name_of(model, "key", index) for index in range(model.nkey)]
+    model = file.load(path)
+    names = [file.name_of(model, "key", index) for index in range(model.nkey)]
     if key is not None and key not in names:
         there = [name for name in names if name]
         hint = suggestion(key, there, "it has") if there else "the model has none with a name"
-        raise ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
+        raise file.ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
     keyframe = None if key is None else names.index(key)
     if keyframe is not None:
-        _refuse_not_finite(path, model, keyframe)
+        for what in ("qpos", "mpos", "mquat"):
+            if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
+                raise file.ModelError(f"{path}: keyframe {key}: its {what} is not finite")
         model = _moved(model, keyframe)
     try:
         qpos = model.qpos0 if keyframe is None else model.key_qpos[keyframe]
         joined = linkage(component(model, joint, qpos))
-        scene = scene_of(joined, scene_name(path.stem, "model", ()), f"read off {path.name}")
-    except ModelError as error:
-        raise ModelError(f"{path}: {error}") from None
+        scene = scene_of(joined, file.scene_name(path.stem, "model", ()), f"read off {path.name}")
+    except file.ModelError as error:
+        raise file.ModelError(f"{path}: {error}") from None
     planar = PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe)
     _refuse_many_turns(path, planar)
     return ReadModel(path, planar)
@@ -189,21 +172,13 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
 
 def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
     """Refuse hinges with so many turns that the rounding of their angles would be judged."""
-    for body in planar.linkage.component.bodies:
-        for joint in body.joints:
-            turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
-            if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
-                raise ModelError(
-                    f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
-                    f"turns off it, to within {MOST_TURNS}"
-                )
-
-
-def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
-    for what in ("qpos", "mpos", "mquat"):
-        if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
-            name = name_of(model, "key", keyframe)
-            raise ModelError(f"{path}: keyframe {name}: its {what} is not finite")
+    for joint in planar.limbs.joints:
+        turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
+        if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
+            raise file.ModelError(
+                f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
+                f"turns off it, to within {MOST_TURNS}"
+            )
 
 
 def _moved(model: Any, keyframe: int) -> Any:

@@ -5,9 +5,7 @@ from collections.abc import Mapping
 
 from models.mjcf import document, options
 from models.motion import State
-from models.scene import Scene
-from models.scene.joints import inertia_scale
-from models.scene.loads import SegmentSpring
+from models.scene import Scene, joints, loads
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.engine.settings import as_held, checker
 
@@ -139,7 +137,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
     held = holds(settings, dt_s, drive)
     servo = None
     if drive == "servo":
-        scale = inertia_scale(scene) * scene.pace_rad_s
+        scale = joints.inertia_scale(scene) * scene.pace_rad_s
         servo = float(settings["servo_gain"]) * scale
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
     solimp = (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0)
@@ -191,7 +189,7 @@ def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
     damping: their weights go down less.
     """
     asked = float(used(settings, drive).get("free_inverse_weight_share", 1.0))
-    ringing = any(isinstance(spring, SegmentSpring) for spring in scene.springs.values())
+    ringing = any(isinstance(spring, loads.SegmentSpring) for spring in scene.springs.values())
     return max(asked, SEGMENTS_SHARE) if ringing and asked < 1.0 else asked
 
 

@@ -27,17 +27,25 @@ def mujoco_snippet(
     complete = {**asked, **holds(asked, dt_s, drive)}
     connect = _connect(complete, defaults)
     whole = {"timestep": repr(dt_s), "integrator": str(complete["integrator"])}
+    of_step = [
+        "Step and integrator are the whole model's: all that it holds is stepped so.",
+        _how_to_scale(complete, stepping, drive),
+    ]
+    if not float(complete["solref_timeconst_steps"]):
+        of_step.append(
+            f"solref stays {float(complete['solref_timeconst_s']):g} s whatever the speed: errors "
+            "are those of the speeds at which they were measured."
+        )
+    usual = float(defaults["solref_timeconst_s"])
+    if 2.0 * dt_s > usual:
+        of_step.append(
+            f"So long a step makes contacts softer: for their solref of {usual:g} s MuJoCo takes 2 "
+            "timestep."
+        )
     return [
         *_comment([*head, _where(complete, paired=bool(connect))]),
         *connect,
-        *_comment(
-            [
-                "Step and integrator are the whole model's: all that it holds is stepped so.",
-                _how_to_scale(complete, stepping, drive),
-                *_absolute(complete),
-                *_coarse(defaults, dt_s),
-            ]
-        ),
+        *_comment(of_step),
         f"<option{_attributes(whole)}/>",
         *_comment(_alone(complete, defaults) + DRIVES[drive](asked)),
     ]
@@ -89,27 +97,6 @@ def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
         f"A frame of {stepping.frame} is {number} of these steps: mj_step(model, data, "
         f"nstep={number}). {more}: timestep = frame / their number{stiff}"
     )
-
-
-def _absolute(complete: Settings) -> list[str]:
-    """Say which settings do not scale with speed or size, and so limit the measured errors."""
-    if float(complete["solref_timeconst_steps"]):
-        return []
-    return [
-        f"solref stays {float(complete['solref_timeconst_s']):g} s whatever the speed: errors are "
-        "those of the speeds at which they were measured."
-    ]
-
-
-def _coarse(defaults: Settings, dt_s: float) -> list[str]:
-    """Warn of a step that is not short beside the time constant of contacts."""
-    usual = float(defaults["solref_timeconst_s"])
-    if 2.0 * dt_s <= usual:
-        return []
-    return [
-        f"So long a step makes contacts softer: for their solref of {usual:g} s MuJoCo takes 2 "
-        "timestep."
-    ]
 
 
 def _alone(complete: Settings, defaults: Settings) -> list[str]:

@@ -6,12 +6,9 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import mujoco.viewer  # type: ignore[import-untyped]  # as above
 import numpy as np
 
-from models.mjcf.document import build
-from models.mjcf.forces import planned
-from models.mjcf.options import exact, has_control
+from models.mjcf import document, forces, options
 from models.motion import State
-from models.scene import Scene
-from models.scene.laws import Law
+from models.scene import Scene, laws
 from sim.engine import Drive
 from sim.mujoco.loading import Loading
 from sim.registry.offers import Viewer
@@ -23,13 +20,13 @@ def show(scene: Scene, start: State) -> None:
     The motor of the crank, if any, gets the acceleration of the law at every step, and the loads
     their sizes.
     """
-    writing = exact(scene)
-    tree = planned(scene, start, writing)
-    model = mujoco.MjModel.from_xml_string(build(scene, start, writing, tree))
+    writing = options.exact(scene)
+    tree = forces.planned(scene, start, writing)
+    model = mujoco.MjModel.from_xml_string(document.build(scene, start, writing, tree))
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
     if model.nu:
-        law = scene.driver.law if has_control(scene, writing) else None
+        law = scene.driver.law if options.has_control(scene, writing) else None
         drive: Drive = "free" if scene.is_free else "prescribed"
         loading = Loading(scene, model, tree.limbs, drive, 0.0)
         mujoco.set_mjcb_control(_controlled(law, loading))
@@ -39,7 +36,7 @@ def show(scene: Scene, start: State) -> None:
         mujoco.set_mjcb_control(None)
 
 
-def _controlled(law: Law | None, loading: Loading) -> Any:
+def _controlled(law: laws.Law | None, loading: Loading) -> Any:
     """Return the control callback that drives the crank by a law, and sizes the loads."""
 
     def control(_model: Any, data: Any) -> None:

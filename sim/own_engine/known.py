@@ -73,7 +73,6 @@ def _faults_of_placing(made: Engine) -> Iterator[str]:
 
 
 def _faults(given: Mapping[str, Any]) -> Iterator[str]:
-    """Yield attributes of a wrong kind."""
     if not isinstance(given["name"], str) or not NAME.fullmatch(given["name"]):
         yield (
             f"name is {shown(given['name'])}; give letters, digits, - and _, a letter first, "

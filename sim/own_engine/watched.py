@@ -201,8 +201,6 @@ def watched(spelling: str, engine: Engine) -> Engine:
 
 @dataclass(frozen=True)
 class _Place:
-    """The engine that has a fault."""
-
     name: str
     spelling: str
 
@@ -302,7 +300,6 @@ def _pose(pose: object, size: int) -> str:
 
 
 def _facts(facts: Facts) -> Iterator[str]:
-    """Yield facts of a wrong kind."""
     for name in ("mass_kg", "inertia_kg_m2", "centre_m", "settings", "springs"):
         if not isinstance(getattr(facts, name), Mapping):
             yield f"gave {shown(getattr(facts, name))} for {name}, and has to give a dict"
@@ -360,7 +357,6 @@ def _wrong_arrays(forces: Forces, size: int) -> Iterator[str]:
 
 
 def _wrong(what: str, values: object, shape: tuple[int, ...]) -> str:
-    """Return the fault of an array."""
     found = shown(values)
     if isinstance(values, np.ndarray):
         if values.shape == shape and values.dtype == np.float64:

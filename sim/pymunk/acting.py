@@ -14,17 +14,8 @@ from models.scene.joints import Slot, block_name, joints, riding_body, sliding_a
 from models.scene.loads import ConstantFriction, Load
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
-from sim.pymunk.bodies import (
-    ChainSprings,
-    Course,
-    Frames,
-    SliderCourse,
-    SpringSteps,
-    chain_springs,
-    frames_at_end,
-)
+from sim.pymunk import bodies, space
 from sim.pymunk.native import NONE, Pushes
-from sim.pymunk.space import SpaceModel
 
 
 class LoadSteps:
@@ -43,9 +34,9 @@ class LoadSteps:
 
     def __init__(
         self,
-        model: SpaceModel,
+        model: space.SpaceModel,
         slots: Mapping[str, Slot],
-        tracks: Mapping[str, SliderCourse],
+        tracks: Mapping[str, bodies.SliderCourse],
         dt_s: float,
         drive: Drive,
     ) -> None:
@@ -53,7 +44,7 @@ class LoadSteps:
         self._scene = scene = model.scene
         self._slots, self._tracks = slots, tracks
         self._turning = {
-            load.body: Course(model.bodies[load.body].angle, dt_s)
+            load.body: bodies.Course(model.bodies[load.body].angle, dt_s)
             for load in scene.loads.values()
             if load.over == "omega"
         }
@@ -86,7 +77,7 @@ class LoadSteps:
             return np.asarray(sizes + late)
         return sizes
 
-    def push(self, step: int, frames: Frames, pushes: Pushes) -> None:
+    def push(self, step: int, frames: bodies.Frames, pushes: Pushes) -> None:
         """Apply the loads of a step, by its number since the look ahead, from 0 on."""
         for body, course in self._turning.items():
             course.go_on(frames[body].theta)
@@ -117,7 +108,7 @@ class LoadSteps:
         forward = high / (high - low) if turns else float(here > 0.0)
         return forward if load.stroke == "forward" else 1.0 - forward
 
-    def _apply(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:
+    def _apply(self, load: Load, size: float, frames: bodies.Frames, pushes: Pushes) -> None:
         """Apply a load: on a massless block, a force to its pin's body, a torque to its guide."""
         slot = self._slots.get(load.body)
         body, turning, theta = load.body, load.body, 0.0
@@ -177,23 +168,23 @@ def slider_friction(scene: Scene, drive: Drive) -> dict[str, float]:
 class Acting:
     """Loads, springs and friction of sliders in a space."""
 
-    def __init__(self, model: SpaceModel, dt_s: float, drive: Drive) -> None:
+    def __init__(self, model: space.SpaceModel, dt_s: float, drive: Drive) -> None:
         scene = model.scene
         slides = joints(scene).slides
         followed = {load.slider for load in scene.loads.values()}
         followed |= {getattr(one, "slider", None) for one in scene.springs.values()}
         followed |= {*scene.friction}
         tracks = {
-            slide.slider.name: SliderCourse(model, slide, dt_s)
+            slide.slider.name: bodies.SliderCourse(model, slide, dt_s)
             for slide in slides
             if slide.slider.name in followed
         }
         slots = {block_name(slide.slider): slide for slide in slides if isinstance(slide, Slot)}
         self._model, self._dt, self._tracks = model, dt_s, tracks
         self._loads = LoadSteps(model, slots, tracks, dt_s, drive)
-        chained = () if model.springs else chain_springs(scene)
-        self._chain = ChainSprings(model, chained, dt_s) if chained else None
-        self._springs = SpringSteps(model, tracks, dt_s, but=chained)
+        chained = () if model.springs else bodies.chain_springs(scene)
+        self._chain = bodies.ChainSprings(model, chained, dt_s) if chained else None
+        self._springs = bodies.SpringSteps(model, tracks, dt_s, but=chained)
         self._friction = slider_friction(scene, drive)
         self._others = bool(scene.loads or self._springs or self._friction)
         self._bodies = (GROUND, *model.bodies)
@@ -222,7 +213,7 @@ class Acting:
             self._chain.push()
             return
         chain = self._chain.by_body() if self._chain else {}
-        frames = frames_at_end(self._model, self._dt)
+        frames = bodies.frames_at_end(self._model, self._dt)
         for track in self._tracks.values():
             track.follow(frames)
         pushes, self.rubbed = Pushes(self._bodies, self._blocks), {}
@@ -243,7 +234,7 @@ class Acting:
         pushes = Pushes(self._bodies, self._blocks)
         pushes.on_blocks = dict(self.on_blocks)
         if self._model.springs:
-            frames = frames_at_end(self._model, 0.0)
+            frames = bodies.frames_at_end(self._model, 0.0)
             for spring in self._model.springs.values():
                 spring.push(self._dt, frames, pushes)
         return pushes

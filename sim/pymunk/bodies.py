@@ -23,9 +23,7 @@ from models.array import Array
 from models.scene import GROUND, Point, Scene
 from models.scene.joints import FIXED, Frame, Prism, Slot, less, riding_body, turned, whole_turns
 from models.scene.loads import LineSpring, PinSpring, SegmentSpring, SlideSpring, Spring
-from sim.engine import BodyPose
-from sim.engine.measure import across, arms
-from sim.engine.ties import spring_ends
+from sim.engine import BodyPose, measure, ties
 from sim.pymunk.native import Pushes
 from sim.pymunk.space import SpaceModel
 
@@ -59,9 +57,10 @@ def pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
     theta, omega = row[:, 2], row[:, 5]
     none = np.full(len(theta), np.nan)
     return BodyPose(
-        origin=row[:, 0:2] - arms(theta, centre),
+        origin=row[:, 0:2] - measure.arms(theta, centre),
         theta=theta,
-        velocity=row[:, 3:5] - omega[:, None] * across(arms(theta + lag_s * omega, centre)),
+        velocity=row[:, 3:5]
+        - omega[:, None] * measure.across(measure.arms(theta + lag_s * omega, centre)),
         omega=omega,
         origin_acceleration=np.full((len(theta), 2), np.nan),
         alpha=none,
@@ -189,7 +188,7 @@ class _OnLine:
         self.spring = spring
         first, second = (
             (body, less(place, model.centre[body]))
-            for body, place in spring_ends(model.scene, spring)
+            for body, place in ties.spring_ends(model.scene, spring)
         )
         self._ends = first, second
         self._course = Course(self._length(start), dt_s)
@@ -198,7 +197,6 @@ class _OnLine:
         return math.dist(*(frames[body].at(anchor) for body, anchor in self._ends))
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
-        """Apply the spring at the end of the step."""
         length = self._length(frames)
         self._course.go_on(length)
         pushes.pull(*self._ends, frames, self.spring.pull(length, self._course.rate))

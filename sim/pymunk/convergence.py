@@ -26,9 +26,7 @@ from models.array import Array
 from models.errors import EngineError
 from models.scene import Scene
 from sim.engine import Settings
-from sim.pymunk.bodies import chain_springs
-from sim.pymunk.native import moves_freely
-from sim.pymunk.space import SpaceModel
+from sim.pymunk import bodies, native, space
 
 HALVINGS = 3.0
 """Least number of halvings of an error in a step, in the position of the start. One is enough
@@ -43,10 +41,10 @@ REDUNDANT = 1e-12
 def held_by_iterations(scene: Scene, settings: Settings) -> bool:
     """True if a scene has a chain that enough iterations hold: no number of them is enough for a
     bias that corrects little of an error in a step."""
-    return float(settings["error_bias"]) == 0.0 and bool(chain_springs(scene))
+    return float(settings["error_bias"]) == 0.0 and bool(bodies.chain_springs(scene))
 
 
-def iterations(settings: Settings, model: SpaceModel) -> int:
+def iterations(settings: Settings, model: space.SpaceModel) -> int:
     """Return the iterations of the settings, or more where the chain of a scene needs them.
 
     Raises
@@ -67,12 +65,12 @@ def iterations(settings: Settings, model: SpaceModel) -> int:
     return max(asked, needed)
 
 
-def chain_iterations(model: SpaceModel) -> int:
+def chain_iterations(model: space.SpaceModel) -> int:
     """Return the iterations that hold the joints of a space, in its present position."""
     return math.ceil(HALVINGS * math.log(2.0) / -math.log(left_over(model)))
 
 
-def left_over(model: SpaceModel) -> float:
+def left_over(model: space.SpaceModel) -> float:
     """Return rho: the share of the slowest error of its joints after an iteration, which takes them
     in the order of the space. Friction and springs, which yield, do not count."""
     made = {model.motor, *model.hinges.values(), *model.lines.values(), *model.gears.values()}
@@ -88,7 +86,7 @@ def left_over(model: SpaceModel) -> float:
 
 
 def _inverse_masses(body: pymunk.Body) -> Array:
-    if not moves_freely(body):
+    if not native.moves_freely(body):
         return np.zeros(3)
     return 1.0 / np.array([body.mass, body.mass, body.moment])
 

@@ -7,8 +7,7 @@ from typing import Protocol
 import numpy as np
 import pymunk
 
-from models.scene import Point
-from models.scene.joints import turned
+from models.scene import Point, joints
 from sim.engine import Drive
 from sim.pymunk.space import SpaceModel
 
@@ -90,12 +89,12 @@ def driven_joint(model: SpaceModel, dt_s: float, drive: Drive) -> DrivenJoint:
         return ServoMotor(model.motor)
     if driver.slider is not None:
         slider = scene.sliders[driver.slider]
-        along = turned((1.0, 0.0), slider.direction_rad)
+        along = joints.turned((1.0, 0.0), slider.direction_rad)
         # The origin of the body is its centre of mass, at a constant way to the slider's point.
         tip = scene.links[driver.link].points[slider.point] if slider.link else (0.0, 0.0)
         centre = model.centre[driver.link]
         angle = model.crank.angle
-        x, y = turned((centre[0] - tip[0], centre[1] - tip[1]), angle)
+        x, y = joints.turned((centre[0] - tip[0], centre[1] - tip[1]), angle)
         base = slider.through_m[0] + x, slider.through_m[1] + y
         return KinematicSlider(model.crank, base, along)
     if driver.is_inner and model.motor is not None:

@@ -10,8 +10,7 @@ import pymunk.batch
 
 from models.array import Array
 from models.motion import State
-from models.scene import Point, Scene
-from models.scene.laws import ConstantSpeed
+from models.scene import Point, Scene, laws
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
 from sim.engine.settings import as_held
@@ -57,7 +56,7 @@ class PymunkSession:
             constraint.error_bias = float(settings["error_bias"])
         law = scene.driver.law
         inner = scene.driver.is_inner and drive == "prescribed"
-        self._coasts = drive == "free" or (isinstance(law, ConstantSpeed) and not inner)
+        self._coasts = drive == "free" or (isinstance(law, laws.ConstantSpeed) and not inner)
         self._driven = driven_joint(self._model, dt_s, drive)
         if drive != "free":
             self._driven.turn(None, drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
@@ -146,7 +145,6 @@ class PymunkSession:
         self._buffer.clear()
 
     def _log(self) -> None:
-        """Append the current state of all bodies to the buffer."""
         pymunk.batch.get_space_bodies(self._space, FIELDS, self._buffer)
 
     def _advance(self, steps: int, every: int, reactions: Reactions | None = None) -> None:

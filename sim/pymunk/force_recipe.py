@@ -8,9 +8,8 @@ import pymunk
 
 from models.errors import EngineError
 from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Point, Scene, laws
 from models.scene.joints import Slot, bodies, centre_of, joints, less, mass_of, riding_body, turned
-from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.pymunk.engine import VELOCITY_SHIFT
 from sim.pymunk.settings import checked
@@ -48,14 +47,13 @@ def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
 
 
 def _check_covered(scene: Scene) -> None:
-    """Refuse scenes that the program does not cover."""
     acting = {"loads": scene.loads, "springs": scene.springs, "friction": scene.friction}
     extra = [f"{table}.{name}" for table, named in acting.items() for name in named]
     if scene.is_free:
         extra.append("a driver that is let go")
     elif not scene.driver.is_crank:
         extra.append("a driver that is no crank")
-    elif not isinstance(scene.driver.law, ConstantSpeed):
+    elif not isinstance(scene.driver.law, laws.ConstantSpeed):
         extra.append("a driver whose speed is not constant")
     if extra:
         raise EngineError(

@@ -29,7 +29,6 @@ from models.scene.joints import Prism, Slot, less, turned
 from sim.engine import Drive
 from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 from sim.pymunk import native
-from sim.pymunk.native import SpaceBodies, moves_freely
 
 
 @dataclass(frozen=True)
@@ -72,7 +71,7 @@ slider travels much further than any link is long. Chipmunk then rounds at 1e-13
 
 
 @dataclass(frozen=True)
-class SpaceModel(SpaceBodies):
+class SpaceModel(native.SpaceBodies):
     """A space with its bodies and constraints, and the crank.
 
     ``motor`` is the servo, or the motor of an inner pin, if any. Of the constraints, ``hinges``
@@ -154,9 +153,11 @@ def build(
     )
 
 
-def _placed(scene: Scene, state: State, delay_s: float, kinematic: str | None) -> SpaceBodies:
+def _placed(
+    scene: Scene, state: State, delay_s: float, kinematic: str | None
+) -> native.SpaceBodies:
     """Add the bodies of a scene to a new space; one may be ``kinematic``."""
-    placed = SpaceBodies(scene, state, pymunk.Space())
+    placed = native.SpaceBodies(scene, state, pymunk.Space())
     placed.space.gravity = scene.gravity_m_s2
     fixed_angle = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
     where = pairs.frames(scene, state, delay_s)
@@ -175,7 +176,7 @@ def _placed(scene: Scene, state: State, delay_s: float, kinematic: str | None) -
     return placed
 
 
-def _add(placed: SpaceBodies, constraint: pymunk.Constraint | None) -> None:
+def _add(placed: native.SpaceBodies, constraint: pymunk.Constraint | None) -> None:
     """Add a constraint, if there is one, without collision bookkeeping; there are no shapes."""
     if constraint is not None:
         constraint.collide_bodies = False
@@ -210,7 +211,7 @@ def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk
     return pymunk.Body(mass, math.inf if fixed_angle else inertia)
 
 
-def _pins(placed: SpaceBodies, *, pinned: bool) -> dict[Hinge, pymunk.Constraint | None]:
+def _pins(placed: native.SpaceBodies, *, pinned: bool) -> dict[Hinge, pymunk.Constraint | None]:
     """Make all pins; a kinematic crank needs none to the ground and is not ``pinned``."""
     scene, driver = placed.scene, placed.scene.driver
     made: dict[Hinge, pymunk.Constraint | None] = {}
@@ -227,7 +228,7 @@ def _pins(placed: SpaceBodies, *, pinned: bool) -> dict[Hinge, pymunk.Constraint
     return made
 
 
-def _line(placed: SpaceBodies, slide: Prism | Slot, exact_lines: bool) -> pymunk.Constraint:
+def _line(placed: native.SpaceBodies, slide: Prism | Slot, exact_lines: bool) -> pymunk.Constraint:
     scene, slider, rider = placed.scene, slide.slider, pairs.riding_body(slide)
     guide, body = placed.body(slider.on), placed.body(rider)
     anchor = placed.anchor(rider, slider.point)
@@ -242,7 +243,7 @@ def _line(placed: SpaceBodies, slide: Prism | Slot, exact_lines: bool) -> pymunk
     return Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m).joint()
 
 
-def _gear(placed: SpaceBodies, prism: Prism) -> pymunk.Constraint:
+def _gear(placed: native.SpaceBodies, prism: Prism) -> pymunk.Constraint:
     """Make the gear for a sliding body's angle on a moving guide."""
     guide, body = placed.body(prism.slider.on), placed.body(prism.body)
     # A gear counts whole turns, and each of the two bodies comes with some of its own.
@@ -253,7 +254,7 @@ def _gear(placed: SpaceBodies, prism: Prism) -> pymunk.Constraint:
 
 def _firm(body: pymunk.Body) -> bool:
     """True if no push turns the body."""
-    return not moves_freely(body) or math.isinf(body.moment)
+    return not native.moves_freely(body) or math.isinf(body.moment)
 
 
 def _reach(scene: Scene) -> float:
@@ -261,7 +262,7 @@ def _reach(scene: Scene) -> float:
     return FAR * sum(map(span, (scene.ground, *(link.points for link in scene.links.values()))))
 
 
-def _groove(placed: SpaceBodies, slide: Prism | Slot) -> list[Point]:
+def _groove(placed: native.SpaceBodies, slide: Prism | Slot) -> list[Point]:
     """Return the ends of a groove on the guide [m], out of reach of any motion."""
     scene, slider, rider = placed.scene, slide.slider, pairs.riding_body(slide)
     where = pairs.frames(scene, placed.state)

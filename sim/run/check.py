@@ -7,13 +7,10 @@ import numpy as np
 
 from models.errors import EngineError
 from models.motion import State
-from models.scene import Scene
-from models.scene.driver import Controlled
+from models.scene import Scene, driver, loads
 from models.scene.joints import bodies, centre_of, frames, mass_of
-from models.scene.loads import PinSpring
-from sim.engine import Drive, Engine, Facts
+from sim.engine import Drive, Engine, Facts, measure
 from sim.engine.drive import pace, start_speed
-from sim.engine.measure import gaps
 
 SAME = 1e-9
 """Relative difference that counts as none: rounding of a few operations, far below any error."""
@@ -68,7 +65,7 @@ def refuse_unknown_forces(
             "it may be given links that do not stretch as rigid segments with springs between them "
             "(--springs plain)"
         )
-    if isinstance(scene.driver.law, Controlled):
+    if isinstance(scene.driver.law, driver.Controlled):
         raise EngineError(
             f"{scene.name}: its driver is controlled, and {engine.name} is given none that gives "
             'way; take law = "constant", or use the reference alone'
@@ -111,7 +108,7 @@ def _springs(scene: Scene, facts: Facts) -> Iterator[str]:
         if name not in facts.springs:
             yield f"springs.{name} is not there"
             continue
-        turning = isinstance(spring, PinSpring)
+        turning = isinstance(spring, loads.PinSpring)
         length = 1.0 if turning else scene.longest_m
         for what, found, wanted, scale in zip(
             ("rate", "damping", "free"),
@@ -188,6 +185,6 @@ def _gaps(scene: Scene, facts: Facts, open_m: float) -> Iterator[str]:
     """Yield joints that are open at the start by more than ``open_m`` [m]."""
     farthest = max(float(np.abs(facts.start.bodies[link].origin).max()) for link in scene.links)
     limit = SHUT * max(scene.longest_m, farthest)
-    for name, gap in gaps(scene, facts.start).items():
+    for name, gap in measure.gaps(scene, facts.start).items():
         if not gap[0] <= limit + open_m:
             yield f"{name} is open by {gap[0]:.2e} m"

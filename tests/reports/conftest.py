@@ -10,7 +10,7 @@ import pytest
 from analytic.kinematics import solve
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.compare.compare import Beside, Truth, compare
+from reports.compare.compare import Truth, compare
 from reports.compare.errors import Errors
 from sim.engine import Poses, Run
 from sim.run import run
@@ -62,6 +62,6 @@ def disturbed(fake_engine: ModuleType) -> Callable[..., Run]:
 @pytest.fixture(scope="session")
 def errors_of(disturbed: Callable[..., Run]) -> Callable[..., Errors]:
     def find(scene: Scene, *args: object, **options: object) -> Errors:
-        return compare(Beside.of(Truth(scene), disturbed(scene, *args, **options)))
+        return compare(Truth(scene).beside(disturbed(scene, *args, **options)))
 
     return find

@@ -157,16 +157,17 @@ def _told(inquiry: Inquiry, column: str, clock: ClockFault) -> Iterator[Account]
     thin = inquiry.thin
     excerpt = thin.excerpts[column]
 
+    def same_start(numbers: Array) -> ClockFault:
+        return ClockFault(clock.first_s, 0.0, float(numbers[0]))
+
     def residual(numbers: Array) -> Array:
-        tried = ClockFault(clock.first_s, 0.0, float(numbers[0]))
-        return thin.errors(tried.world(thin.world), [column])[column]
+        return thin.errors(same_start(numbers).world(thin.world), [column])[column]
 
     clocks = [(clock, 2)]
     if excerpt.channel.kind.order == 0:
         found = fitted(residual, [clock.gain], [1e-7])
-        same = None if found is None else ClockFault(clock.first_s, 0.0, float(found[0]))
-        if same is not None and same.runs:
-            clocks.append((same, 1))
+        if found is not None and same_start(found).runs:
+            clocks.append((same_start(found), 1))
     for each, numbers in clocks:
         told = _either(inquiry, column, each, CAUSE + NUMBER * numbers)
         if told is not None and inquiry.no_chance(told):
@@ -178,12 +179,8 @@ def _either(inquiry: Inquiry, column: str, clock: ClockFault, cost: float) -> Ac
     both where nothing distinguishes them."""
     time = inquiry.channel(column).time
     among = [c for c in inquiry.excerpts if inquiry.channel(c).time == time]
-    accounts = {
-        paced: inquiry.account_of_world("drift", cost, each.world(inquiry.world), "", among)
-        for paced in (False, True)
-        for each in [replace(clock, paced=paced)]
-    }
-    plain, fast = accounts[False], accounts[True]
+    worlds = [replace(clock, paced=paced).world(inquiry.world) for paced in (False, True)]
+    plain, fast = (inquiry.account_of_world("drift", cost, each, "", among) for each in worlds)
     of_clock, of_driver = _clock_and_driver_text(inquiry, clock)
     if plain is None or (fast is not None and UNLIKE * _left(fast, plain) < _left(plain, fast)):
         words = f"{of_driver}, or {of_clock} and the rates are taken over its time"

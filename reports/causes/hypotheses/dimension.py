@@ -25,7 +25,7 @@ SENSITIVE = 1e-12
 """Sum of squares of the reference's change with a dimension, below which it counts as 0."""
 ROUNDS = 6
 BEST = 2e-3
-"""Remaining part of an error too well explained to look for a dimension."""
+"""Remaining part of the error of a single channel too well explained to look for a dimension."""
 SLIGHT = 1e-6
 """Change by which slopes are taken, over the longest link or in radians."""
 FARTHEST = 1.0
@@ -51,7 +51,8 @@ class DimensionFault:
 def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of the dimensions that explain most, alone or both of a point."""
     columns = list(inquiry.unclaimed)
-    if not columns or (len(columns) == 1 and _told_alone(inquiry, columns[0])):
+    rests = [account.rests.get(columns[0], 1.0) for account in inquiry.accounts if columns]
+    if not columns or (len(columns) == 1 and min(rests, default=1.0) < BEST):
         return
     scene = inquiry.world.scene
     likely = _likely(inquiry, columns, dimensions(scene)[:MOST])
@@ -60,12 +61,6 @@ def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
     both = [tuple(one for one in likely if one.point == point) for point in points]
     pairs = [each for each in both if len(each) == 2][:2]
     yield from (_told(inquiry, columns, chosen) for chosen in (*singles, *pairs))
-
-
-def _told_alone(inquiry: Inquiry, column: str) -> bool:
-    """True if an account with few numbers explains a single channel too well for anything else."""
-    rests = (account.rests.get(column, 1.0) for account in inquiry.accounts)
-    return min(rests, default=1.0) < BEST
 
 
 def dimensions(scene: Scene) -> list[DimensionFault]:
@@ -130,23 +125,20 @@ def _of_slider(slider: Slider) -> Iterator[DimensionFault]:
     sine, cosine = math.sin(slider.direction_rad), math.cos(slider.direction_rad)
     x, y = slider.through_m
 
-    def other(scene: Scene, **changed: Any) -> Scene:
-        return replace(scene, sliders={**scene.sliders, slider.name: replace(slider, **changed)})
+    def other(name: str, scene: Scene, value: Any) -> Scene:
+        changed = replace(slider, **{name: value})
+        return replace(scene, sliders={**scene.sliders, slider.name: changed})
 
     def beside(scene: Scene, value: float) -> Scene:
-        return other(scene, through_m=(x - value * sine, y + value * cosine))
-
-    def turned(scene: Scene, value: float) -> Scene:
-        return other(scene, direction_rad=value)
-
-    def tilted(scene: Scene, value: float) -> Scene:
-        return other(scene, angle_rad=value)
+        return other("through_m", scene, (x - value * sine, y + value * cosine))
 
     where = "" if slider.on == GROUND else f" on {slider.on}"
     yield DimensionFault(f"distance of {line}{where} to its left", 0.0, beside)
-    yield DimensionFault(f"direction of {line}{where}", slider.direction_rad, turned, "rad")
-    if slider.link is not None:
-        yield DimensionFault(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
+    for name, words in (
+        ("direction_rad", f"direction of {line}{where}"),
+        *([("angle_rad", f"angle of {slider.link} to {line}")] if slider.link is not None else []),
+    ):
+        yield DimensionFault(words, getattr(slider, name), partial(other, name), "rad")
 
 
 def _with_axis(place: tuple[float, float], axis: int, value: float) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -58,9 +59,8 @@ def _doubtful(inquiry: Inquiry) -> list[str]:
     """Return the channels within their limits whose error exceeds their last digit's."""
     return [
         column
-        for column in inquiry.healthy
-        if column in inquiry.excerpts
-        and inquiry.excerpts[column].worst > SEEN * resolution(inquiry.excerpts[column])
+        for column, excerpt in inquiry.excerpts.items()
+        if not inquiry.case.excerpts[column].out and excerpt.worst > SEEN * resolution(excerpt)
     ]
 
 
@@ -71,7 +71,6 @@ class Search:
         self.inquiry, self.thin = inquiry, inquiry.thin
         step = max(1, self.thin.rows // SCANNED)
         self.few = self.thin.part(np.arange(0, self.thin.rows, step))
-        self._scans: dict[float, dict[str, Array]] = {}
 
     def delay(self, column: str) -> Delay | None:
         """Return the delay of the readings of a column; None where it cannot be determined."""
@@ -102,34 +101,28 @@ class Search:
 
     def _error(self, excerpt: Excerpt, by_s: float) -> Array:
         """Return the error of readings that belong ``by_s`` later. Raises CrankcheckError."""
-        world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
-        channel = excerpt.channel
+        channel, world = excerpt.channel, self.inquiry.world.later(by_s)
         error = excerpt.beside(channel.expected(world.at(excerpt.instants, [channel])))
         return np.where(_logged(self.inquiry, excerpt, by_s), error, 0.0)
 
     def _scan(self, column: str) -> Sequence[float]:
         """Return the two delays within half a period that leave least of an error."""
-        lefts = []
-        for by_s in np.linspace(-0.5, 0.5, SCAN + 1)[:-1] * self.inquiry.period_s:
-            expected = self._scanned(float(by_s)).get(column)
-            if expected is None:
-                return []
-            error = self.few.excerpts[column].beside(expected)
-            lefts.append((float(error @ error), float(by_s)))
+        lefts = [(float(errors[column] @ errors[column]), by_s) for by_s, errors in self._scans]
         rests = np.array([left for left, _ in lefts])
         least = (rests <= np.roll(rests, 1)) & (rests <= np.roll(rests, -1))
         near = sorted(each for each, good in zip(lefts, least, strict=True) if good)
         return [by_s for _, by_s in near[:2]]
 
-    def _scanned(self, by_s: float) -> dict[str, Array]:
-        """Return the reference of all columns at that delay; empty where there is no mechanism."""
-        if by_s not in self._scans:
-            world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
+    @cached_property
+    def _scans(self) -> Sequence[tuple[float, Mapping[str, Array]]]:
+        """The errors of all columns at each of the delays; none where there is no mechanism."""
+        found = []
+        for by_s in (np.linspace(-0.5, 0.5, SCAN + 1)[:-1] * self.inquiry.period_s).tolist():
             try:
-                self._scans[by_s] = self.few.expected(world)
+                found.append((by_s, self.few.errors(self.inquiry.world.later(by_s))))
             except CrankcheckError:
-                self._scans[by_s] = {}
-        return self._scans[by_s]
+                return ()
+        return found
 
 
 def _logged(inquiry: Inquiry, excerpt: Excerpt, by_s: float) -> Mask:
@@ -160,27 +153,22 @@ def _groups(delays: Sequence[Delay], step_s: float) -> list[list[Delay]]:
 def _delay_account(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
     weights = np.array([1.0 / max(each.doubt_s, 1e-9 * inquiry.step_s) ** 2 for each in group])
     by_s = float(weights @ np.array([each.by_s for each in group]) / weights.sum())
-    world = inquiry.world.stamped(lambda stamps: stamps + by_s)
+    world = inquiry.world.later(by_s)
     try:
         expected = inquiry.expected(world)
     except CrankcheckError:
         return None
     errors = {
-        column: np.where(
-            _logged(inquiry, inquiry.excerpts[column], by_s),
-            inquiry.excerpts[column].beside(each),
-            0.0,
-        )
-        for column, each in expected.items()
+        column: np.where(_logged(inquiry, excerpt, by_s), excerpt.beside(expected[column]), 0.0)
+        for column, excerpt in inquiry.excerpts.items()
     }
-    advised: list[str] = []
-    if abs(by_s) >= LEAST_SAMPLES * inquiry.step_s:
-        advised = [
-            column
-            for column in _doubtful(inquiry)
-            if CLEAR * inquiry.excerpts[column].rest(errors[column]) <= 1.0
-            and inquiry.excerpts[column].moves(expected[column])
-        ]
+    doubtful = _doubtful(inquiry) if abs(by_s) >= LEAST_SAMPLES * inquiry.step_s else ()
+    advised = [
+        column
+        for column in doubtful
+        if CLEAR * inquiry.excerpts[column].rest(errors[column]) <= 1.0
+        and inquiry.excerpts[column].moves(expected[column])
+    ]
     instants, timed = later(by_s, inquiry.step_s), inquiry.case.log.timed
     if not timed:
         driver = inquiry.world.scene.driver
@@ -195,13 +183,13 @@ def _delay_account(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
         expected=expected,
         besides=advised,
     )
-    if told is None or not _everything(inquiry, told.columns, expected, errors):
+    if told is None or not _is_everything(inquiry, told.columns, expected, errors):
         return told
     phrase = f"all that is logged belongs {instants}: {_start_text(inquiry, by_s)}"
     return replace(told, name="start", phrase=phrase, world=world)
 
 
-def _everything(
+def _is_everything(
     inquiry: Inquiry,
     explained: Sequence[str],
     expected: Mapping[str, Array],
@@ -211,11 +199,7 @@ def _everything(
     log itself drives the scene, as it then has no start."""
     if inquiry.world.drive is not None:
         return False
-    shown = [
-        column
-        for column, excerpt in inquiry.excerpts.items()
-        if excerpt.moves(expected[column], excerpt.limit)
-    ]
+    shown = [c for c, each in inquiry.excerpts.items() if each.moves(expected[c], each.limit)]
     late = [column for column in shown if column in explained]
     places = [column for column in late if inquiry.channel(column).kind.order == 0]
     most = len(late) > 1 and 2 * len(late) >= len(shown)

@@ -1,7 +1,7 @@
 """Readings of another quantity than stated: another body or kind, or relative to another link."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -143,31 +143,17 @@ def swapped(inquiry: Inquiry) -> Iterator[Account]:
         for ring in _rings(holds, (first,)):
             pairs = list(pairwise((*ring, first)))
             held = {column: holds[column][other] for column, other in pairs}
+            each = ", ".join(f"{inquiry.channel(other).name} in {c}" for c, other in pairs)
             told = inquiry.account(
                 "swapped",
                 CAUSE + CHOICE,
-                {column: each.error for column, each in held.items()},
-                _swap_phrase(inquiry, pairs),
-                corrections={c: meaning(inquiry.channel(c), held[c].channel) for c in ring},
+                {column: error for column, (_, error) in held.items()},
+                "{who} have each other's readings" + (f": {each}" if len(pairs) > 2 else ""),
+                corrections={c: meaning(inquiry.channel(c), held[c][0]) for c in ring},
                 expected={column: inquiry.excerpts[other].expected for column, other in pairs},
             )
             if told is not None and len(told.columns) == len(ring):
                 yield told
-
-
-@dataclass(frozen=True)
-class ColumnContent:
-    """Content of a column: its actual channel, and the remaining error."""
-
-    channel: Channel
-    error: Array
-
-
-def _swap_phrase(inquiry: Inquiry, pairs: list[tuple[str, str]]) -> str:
-    if len(pairs) == 2:
-        return "{who} have each other's readings"
-    rings = ", ".join(f"{inquiry.channel(other).name} in {column}" for column, other in pairs)
-    return f"{{who}} have each other's readings: {rings}"
 
 
 def meaning(channel: Channel, instead: Channel) -> dict[str, object]:
@@ -193,7 +179,7 @@ def unit_of(channel: Channel, kind: Kind) -> str | None:
 
 
 def _rings(
-    holds: Mapping[str, Mapping[str, ColumnContent]], path: tuple[str, ...]
+    holds: Mapping[str, Collection[str]], path: tuple[str, ...]
 ) -> Iterator[tuple[str, ...]]:
     """Yield the rings of columns, each with the readings of the next; the least comes first."""
     for column in holds[path[-1]]:
@@ -203,8 +189,9 @@ def _rings(
             yield from _rings(holds, (*path, column))
 
 
-def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
-    """Yield the other open columns whose readings a column holds."""
+def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, tuple[Channel, Array]]]:
+    """Yield the other open columns whose readings a column holds, each with the actual channel of
+    the column and the remaining error."""
     own = inquiry.excerpts[column]
     for other in inquiry.open:
         excerpt = inquiry.excerpts[other]
@@ -216,7 +203,7 @@ def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
         for channel, values in _read_as(own.values, own.channel, excerpt.channel):
             error = channel.error(values, excerpt.expected)
             if CauseSize.of(error).largest <= enough:
-                yield other, ColumnContent(channel, error)
+                yield other, (channel, error)
                 break
 
 

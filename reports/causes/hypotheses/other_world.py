@@ -3,7 +3,7 @@
 import cmath
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 
 import numpy as np
@@ -14,16 +14,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed, Law
-from reports.causes.account import (
-    CAUSE,
-    CHOICE,
-    NUMBER,
-    Account,
-    change,
-    fitted_from,
-    later,
-    number,
-)
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, later, number
 from reports.causes.cause import within_half_a_turn
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
@@ -102,6 +93,14 @@ STARTS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 """Angles of the driver, and rotations of the plane, from which a fit starts."""
 
 
+def _fitted_from_starts(residual: Callable[[Array], Array], delta: Sequence[float]) -> Array | None:
+    """Return the angle, and further numbers that start at 0, with the least residual, if any."""
+    zeros = [0.0] * (len(delta) - 1)
+    tried = (fitted(residual, [start, *zeros], delta) for start in STARTS)
+    found = [each for each in tried if each is not None]
+    return min(found, key=lambda each: float(np.sum(residual(each) ** 2)), default=None)
+
+
 def backwards(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of the driver turning the other way from the same start, with rates that show
     it or, as from a sensor of the speed alone, do not."""
@@ -128,7 +127,7 @@ def start_angle(inquiry: Inquiry) -> Iterator[Account | None]:
     def residual(angle: Array) -> Array:
         return thin.misfit(_with_law(thin.world, law.turned(float(angle[0]))), columns)
 
-    found = fitted_from(residual, ([start] for start in STARTS), [1e-6])
+    found = _fitted_from_starts(residual, [1e-6])
     if found is None:
         return
     angle = float(found[0])
@@ -209,7 +208,7 @@ def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | N
         return thin.misfit(thin.world.framed(frame(numbers)), columns)
 
     delta = (1e-6, 1e-6 * longest, 1e-6 * longest)[:count]
-    best = fitted_from(residual, ((turn, 0.0, 0.0)[:count] for turn in STARTS), delta)
+    best = _fitted_from_starts(residual, delta)
     return None if best is None else frame(best)
 
 
@@ -266,7 +265,7 @@ def _or_late(inquiry: Inquiry, told: Account, turn_rad: float) -> Account:
     if inquiry.world.drive is not None or not isinstance(law, ConstantSpeed):
         return told
     by_s = turn_rad / law.speed_rad_s
-    late = inquiry.errors(inquiry.world.stamped(lambda stamps: stamps + by_s), told.columns)
+    late = inquiry.errors(inquiry.world.later(by_s), told.columns)
     if not all(inquiry.excerpts[column].explained(error) for column, error in late.items()):
         return told
     delays = {c: {"delay_s": inquiry.channel(c).delay_s + by_s} for c in told.columns}

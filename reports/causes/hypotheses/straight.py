@@ -9,14 +9,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later, number
-from reports.causes.cause import (
-    BROUGHT_WITHIN,
-    CauseSize,
-    Excerpt,
-    Rows,
-    levelled,
-    within_half_a_turn,
-)
+from reports.causes.cause import BROUGHT_WITHIN, CauseSize, Excerpt, levelled, within_half_a_turn
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
 from reports.logs.kinds import TYPICAL, UNITS, si
@@ -50,18 +43,16 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
     """Yield each line that explains a channel: by sign or unit, by zero, by gain, or by two."""
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
+        known = list(_known(excerpt.channel))
+        zero = [line for line in known if line.name == "offset"]
         if excerpt.nought:
-            yield from _accounts(
-                inquiry, excerpt, [StraightLineFault("offset", CAUSE + NUMBER, 1.0, shifted=True)]
-            )
+            yield from _accounts(inquiry, excerpt, zero)
         elif np.ptp(excerpt.expected) <= excerpt.nothing:
             # A channel that stays: a zero explains whatever is there, and is the last thing to be.
-            plain = [line for line in _known(excerpt.channel) if not line.shifted]
-            told = list(_accounts(inquiry, excerpt, plain))
-            zero = [line for line in _known(excerpt.channel) if line.name == "offset"]
-            yield from told or _accounts(inquiry, excerpt, zero)
+            plain = [line for line in known if not line.shifted]
+            yield from list(_accounts(inquiry, excerpt, plain)) or _accounts(inquiry, excerpt, zero)
         else:
-            yield from _accounts(inquiry, excerpt, [*_known(excerpt.channel), *_fitted(excerpt)])
+            yield from _accounts(inquiry, excerpt, [*known, *_fitted(excerpt)])
 
 
 def _accounts(
@@ -181,7 +172,6 @@ def _steady_rate(excerpt: Excerpt) -> float:
 
 
 def _amount(value: float, unit: str, channel: Channel) -> str:
-    """Return a number in the unit of the log, and in SI where that differs."""
     dimension = channel.kind.dimension
     shown = f"{value / UNITS[dimension][unit]:+.4g} {unit}"
     return shown if unit == si(dimension) else f"{shown} ({value:+.4g} {si(dimension)})"
@@ -224,7 +214,13 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
         return _told_of_turns(inquiry, column, left, ("wrapped", CAUSE, phrase), {"wrapped": True})
     if jumps.size > MOST_JUMPS:
         return None
-    phrase = f"{{who}} lose{{s}} whole turns: {_jumps_text(inquiry, turn, jumps)}"
+    times = inquiry.case.log.time_s
+    each = [
+        f"{int(turn[place] - turn[place - 1]):+d} at sample {place} (t = {times[place]:.6g} s)"
+        for place in jumps
+    ]
+    more = [f"{len(each) - SHOWN} more"] if len(each) > SHOWN else []
+    phrase = f"{{who}} lose{{s}} whole turns: {listed([*each[:SHOWN], *more])}"
     cost = CAUSE + CHOICE * min(jumps.size, 4)
     return _told_of_turns(inquiry, column, left, ("lost turn", cost, phrase), {})
 
@@ -272,16 +268,6 @@ def _told_of_turns(
     name, cost, phrase = said
     over = float(np.max(np.abs(left))) / CauseSize.of(excerpt.error).largest
     return Account(name, cost, {column: rest}, {column: over}, phrase, {column: correction})
-
-
-def _jumps_text(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:
-    times, each = inquiry.case.log.time_s, []
-    for place in jumps[:SHOWN]:
-        by = int(turn[place] - turn[place - 1])
-        each.append(f"{by:+d} at sample {place} (t = {times[place]:.6g} s)")
-    if jumps.size > SHOWN:
-        each.append(f"{jumps.size - SHOWN} more")
-    return listed(each)
 
 
 def _unsigned_account(inquiry: Inquiry, column: str) -> Account | None:

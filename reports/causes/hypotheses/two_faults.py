@@ -19,7 +19,7 @@ from reports.causes.hypotheses.misnamed import misnamed
 from reports.causes.hypotheses.samples import places_text, runs, samples
 from reports.causes.hypotheses.straight import straight, turns
 from reports.causes.inquiry import Inquiry
-from reports.logs.channel import Channel, Reading
+from reports.logs.channel import Reading
 from reports.logs.kinds import TYPICAL, UNITS
 
 MOST = 4
@@ -105,7 +105,10 @@ def _read_otherwise(inquiry: Inquiry, column: str) -> Iterator[First]:
             gain = sign * units[channel.unit] / size
             if gain == 1.0:
                 continue
-            fresh = _reread(excerpt, replace(channel, unit=unit, sign=sign * channel.sign), gain)
+            instead = replace(channel, unit=unit, sign=sign * channel.sign)
+            reading = Reading(instead, excerpt.reading.values / gain, excerpt.reading.instants)
+            fresh = replace(excerpt, reading=reading, values=excerpt.values / gain)
+            fresh = fresh.in_world(excerpt.expected)
             if not _likely(excerpt, fresh):
                 continue
             told = {"unit": unit} if unit != channel.unit else {}
@@ -120,13 +123,6 @@ def _read_otherwise(inquiry: Inquiry, column: str) -> Iterator[First]:
                 replace(inquiry, excerpts={column: fresh}, open=(column,), accounts=()),
                 (turns, samples, late, filtered, misnamed),
             )
-
-
-def _reread(excerpt: Excerpt, channel: Channel, gain: float) -> Excerpt:
-    """Return the readings, which are ``gain`` times too large, as another channel has them."""
-    reading = Reading(channel, excerpt.reading.values / gain, excerpt.reading.instants)
-    fresh = replace(excerpt, reading=reading, values=excerpt.values / gain)
-    return fresh.in_world(excerpt.expected)
 
 
 def _likely(excerpt: Excerpt, fresh: Excerpt) -> bool:

@@ -12,7 +12,7 @@ from models.scene import Same, Scene
 from models.scene.joints import bodies, centre_of
 from models.scene.laws import ConstantSpeed, Oscillating
 from models.scene.moved import mirrored, moved, rotated, scaled
-from reports.compare.compare import Beside, places, truth_of
+from reports.compare.compare import places, truth_of
 from reports.compare.errors import largest
 from reports.contract.oscillators import centres
 from reports.contract.subject import NotTriedError, Subject, clause
@@ -82,7 +82,7 @@ def _shrinking(subject: Subject) -> Iterator[str]:
     errors, unit = [], ""
     for steps in STEPS:
         done = subject.ran(steps, 1.0, every=steps // STEPS[0])
-        rows = places(Beside.of(truth_of(Same(subject.scene)), done))
+        rows = places(truth_of(Same(subject.scene)).beside(done))
         worst = largest(row for row in rows if row.quantity in PLACES)
         if worst is None or done.status != "ok":
             yield f"with {steps} steps a turn the run ended {done.status}: {done.reason}"

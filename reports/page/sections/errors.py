@@ -9,8 +9,7 @@ import pandas as pd
 from reports.output.numbers import count, error_text
 from reports.page.sections.section import Section
 from reports.protocol.way import TARGETS
-from reports.quantities import QUANTITIES
-from reports.quantities.quantity import tolerance_name
+from reports.quantities import QUANTITIES, quantity
 from reports.results.candidates import MEANS, Candidate, Costs, front, front_over_all
 from reports.results.line_fit import LineFit
 from reports.results.lines import Line, lines
@@ -26,7 +25,7 @@ SHARES = {
     "T": "of largest kinetic energy",
 }
 DIAGRAMS = {"place_pure": ("place", "rad, or of longest link")} | {
-    f"{tolerance_name(entry.name, each.source)}_pure".replace("-", "_"): (
+    f"{quantity.tolerance_name(entry.name, each.source)}_pure".replace("-", "_"): (
         each.diagram,
         SHARES.get(entry.share, entry.share),
     )

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from reports.drawing.moving import embedded
 from reports.output.numbers import count, error_text
 from reports.page.sections.section import PageReport, Section, fitting
-from reports.stability.grades import MEANINGS
+from reports.stability import grades, table
 from reports.stability.matrix import OUTCOMES, CaseFacts, Graded, Matrix, Outcome, Picture
 from reports.stability.running import command
-from reports.stability.table import LETTERS
 
 ROOM = 800_000
 """Characters for all moving pictures, where other sections need room as well."""
@@ -33,7 +32,7 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
     chart = heat(matrix, frozenset(shown))
     cases = {case.name: case for case in matrix.cases}
     errors = list(dict.fromkeys(case.error_of for case in matrix.cases))
-    meanings = {str(name): words for name, words in MEANINGS.items()}
+    meanings = {str(name): words for name, words in grades.MEANINGS.items()}
     return Section(
         anchor="hard",
         title="Hard cases",
@@ -157,7 +156,7 @@ def _run(case: CaseFacts | None, run: Graded) -> dict[str, object]:
     }
 
 
-SIGNS: Mapping[str, str] = {str(name): letter for name, letter in LETTERS.items()} | {
+SIGNS: Mapping[str, str] = {str(name): letter for name, letter in table.LETTERS.items()} | {
     "ok": "\N{CHECK MARK}",
     "unsupported": "\N{EN DASH}",
 }

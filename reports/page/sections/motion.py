@@ -14,8 +14,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free_facts import window_means
 from reports.describe.facts import describe_law, facts
-from reports.drawing import moving
-from reports.drawing.shape import true_motion
+from reports.drawing import moving, shape
 from reports.output.numbers import duration, error_text
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.results.error_parts import CurveBody, ErrorParts, Split, split, worst_body
@@ -229,7 +228,7 @@ class FreeCourses:
 
     def _truth(self, time_s: Array) -> Motion | None:
         try:
-            return None if self.scene is None else true_motion(self.scene, time_s)
+            return None if self.scene is None else shape.true_motion(self.scene, time_s)
         except CrankcheckError:
             return None
 
@@ -258,7 +257,7 @@ class FreeCourses:
         curves = run_curves(self.scene, trace)
         off = None
         if self.scene is not None and truth is not None:
-            own = true_motion(self.scene, trace["time_s"])
+            own = shape.true_motion(self.scene, trace["time_s"])
             off = moving.displacements(self.scene, trace, time_s, own)
         return {
             "off": off,

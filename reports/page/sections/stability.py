@@ -64,7 +64,6 @@ def holds(cells: pd.DataFrame) -> Holds:
 
 
 def _step(row: pd.Series) -> str:
-    """Return the step of a cell: steps in a turn, or its time in a free motion."""
     return clock_of(row["drive"]).step(row.to_dict())
 
 

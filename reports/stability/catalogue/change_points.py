@@ -21,16 +21,6 @@ def four_turns(scene: Scene, steps: float) -> Trial:
     return Trial(scene, steps_per_turn=steps, turns=4.0)
 
 
-def _excess(margin_m: float) -> Trial:
-    name = "nearly-parallelogram"
-    return Trial(hard.fourbar(name, 0.1, 0.3, 0.1 + margin_m, 0.3, source=GRASHOF))
-
-
-def _triad_excess(margin_m: float) -> Trial:
-    name, source = "triad-nearly-singular", "scene triad-platform with a longer crank"
-    return Trial(hard.triad_platform(name, TRIAD_CRANK_M - margin_m, source=source))
-
-
 CHANGE_POINTS = (
     Case(
         name="grashof-excess",
@@ -41,7 +31,9 @@ CHANGE_POINTS = (
         parameter="Grashof margin p + q - s - l",
         unit="m",
         values=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
-        trial=_excess,
+        trial=lambda margin_m: Trial(
+            hard.fourbar("nearly-parallelogram", 0.1, 0.3, 0.1 + margin_m, 0.3, source=GRASHOF)
+        ),
     ),
     Case(
         name="triad-excess",
@@ -52,7 +44,13 @@ CHANGE_POINTS = (
         parameter="longest crank that turns, less the crank",
         unit="m",
         values=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
-        trial=_triad_excess,
+        trial=lambda margin_m: Trial(
+            hard.triad_platform(
+                "triad-nearly-singular",
+                TRIAD_CRANK_M - margin_m,
+                source="scene triad-platform with a longer crank",
+            )
+        ),
     ),
     through(
         name="parallelogram",
@@ -78,10 +76,6 @@ CHANGE_POINTS = (
 EXCEL = 'Paper "Phan tich dong hoc co cau tay quay con truot bang phan mem Excel"; carried on to 1'
 
 
-def _short_rod(excess: float) -> Trial:
-    return Trial(hard.slider_crank("short-rod", 0.1, 0.1 * (1.0 + excess), source="L/R runs to 1"))
-
-
 SLIDER_CRANKS = (
     Case(
         name="short-rod",
@@ -91,7 +85,9 @@ SLIDER_CRANKS = (
         expected="stays on its branch",
         parameter="L/R - 1",
         values=(0.25, 0.1, 0.05, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
-        trial=_short_rod,
+        trial=lambda excess: Trial(
+            hard.slider_crank("short-rod", 0.1, 0.1 * (1.0 + excess), source="L/R runs to 1")
+        ),
     ),
     through(
         name="isosceles",

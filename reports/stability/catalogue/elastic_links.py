@@ -5,9 +5,7 @@ from dataclasses import replace
 from functools import cache, partial
 
 from models.files.reading import load_scene
-from models.scene import Scene
-from models.scene.laws import ConstantSpeed
-from models.scene.moved import of_mass
+from models.scene import Scene, laws, moved
 from reports.stability.case import Case, Trial
 
 BENT = "fourbar-elastic"
@@ -27,10 +25,10 @@ def _bent(ratio: float = RATIO, stiffness: float = 1.0, height: float = 1.0) -> 
     name, own = next(iter(scene.elastic.items()))
     stiff = replace(own, flexural_n_m2=own.flexural_n_m2 * stiffness * height**3)
     law = scene.driver.law
-    assert isinstance(law, ConstantSpeed)
+    assert isinstance(law, laws.ConstantSpeed)
     slow = replace(law, speed_rad_s=law.speed_rad_s * RATIO / ratio)
     driver = replace(scene.driver, law=slow)
-    return replace(of_mass(scene, name, height), elastic={name: stiff}, driver=driver)
+    return replace(moved.of_mass(scene, name, height), elastic={name: stiff}, driver=driver)
 
 
 def _run(scene: Scene, steps: float = STEPS, segments: int = SEGMENTS) -> Trial:

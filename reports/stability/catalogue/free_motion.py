@@ -12,11 +12,8 @@ from analytic.free.exact_motions import ToggleBarrier
 from analytic.free.machine import Machine
 from analytic.mechanism.fourbar import FourBar
 from models.files.reading import load_scene
-from models.scene import Scene
-from models.scene.driver import Released
+from models.scene import Scene, driver, loads, moved
 from models.scene.hard import fourbar
-from models.scene.loads import SlideSpring
-from models.scene.moved import of_mass
 from reports.stability.case import Case, Throw, Trial
 
 SWING, SLIDER_CRANK = "fourbar-swing", "slider-crank-spring"
@@ -36,7 +33,7 @@ FREE_RATIOS = (1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6)
 
 def from_rest(scene: Scene, start_rad: float, lasts_s: float, dt_s: float = DT_S) -> Trial:
     """Return a trial of a scene that is released from rest at a driver angle."""
-    law = Released(start_rad, 0.0, lasts_s)
+    law = driver.Released(start_rad, 0.0, lasts_s)
     free = replace(scene, driver=replace(scene.driver, law=law))
     return Trial(free, steps_per_turn=lasts_s / dt_s, turns=1.0, drive="free")
 
@@ -46,8 +43,7 @@ def _swing(scene: Scene, dt_s: float = DT_S) -> Trial:
 
 
 def _heavier(name: str, ratio: float) -> Trial:
-    """Return the swinging four-bar with the mass of one link times ``ratio``, of the same shape."""
-    return _swing(of_mass(load_scene(SWING), name, ratio))
+    return _swing(moved.of_mass(load_scene(SWING), name, ratio))
 
 
 def _stiff(steps: float) -> Trial:
@@ -57,7 +53,7 @@ def _stiff(steps: float) -> Trial:
     ((_, q, rate),) = spring_lengths(scene, machine.chart.unit(slack))
     inertia = float(machine.inertia(slack)[0][0])
     stiffness = inertia * (math.tau / (steps * DT_S * float(rate[0]))) ** 2
-    spring = SlideSpring("back", stiffness, 0.0, float(q[0]), "C")
+    spring = loads.SlideSpring("back", stiffness, 0.0, float(q[0]), "C")
     sprung = replace(scene, springs={"back": spring})
     return from_rest(sprung, SLACK_RAD + PULLED_RAD, PERIODS * steps * DT_S)
 

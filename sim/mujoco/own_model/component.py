@@ -9,15 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from models.array import Array
-from sim.mujoco.own_model.driven_loop import (
-    JOINTS,
-    NOTHING,
-    DrivenLoop,
-    driven_loop,
-    joint_name,
-    rigid,
-    speeds,
-)
+from sim.mujoco.own_model import driven_loop as loops
 from sim.mujoco.own_model.file import ModelClosure, ModelError, body_name
 from sim.mujoco.own_model.held_rods import HeldRod, matrix_of
 
@@ -94,33 +86,17 @@ class RigidBody:
     joints: tuple[PlanarJoint, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Component:
-    """The driven loop without the ground, which has the id 0."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Component(loops.DrivenLoop):
+    """The driven loop in its plane, without the ground, which has the id 0."""
 
-    loop: DrivenLoop
-    data: Any
     plane: Plane
     bodies: tuple[RigidBody, ...]
     rods: tuple[HeldRod, ...]
 
-    @property
-    def model(self) -> Any:
-        """The model; the base of the loop counts as ground."""
-        return self.loop.model
-
-    @property
-    def driven(self) -> int:
-        return self.loop.driven
-
-    @property
-    def closures(self) -> tuple[ModelClosure, ...]:
-        """Equalities that close the loop."""
-        return self.loop.closures
-
     def rigid(self, body: int) -> int:
         """Return the rigid body of a body of the model."""
-        return rigid(self.model, body)
+        return loops.rigid(self.model, body)
 
 
 def component(model: Any, joint: str, qpos: Array) -> Component:
@@ -130,39 +106,40 @@ def component(model: Any, joint: str, qpos: Array) -> Component:
     Raises
     ------
     ModelError
-        See `driven_loop`; a joint off the plane, or of another kind.
+        See `driven_loop.loop_of`; a joint off the plane, or of another kind.
     """
-    loop = driven_loop(model, joint, qpos)
-    data = loop.data
-    plane = Plane.across(data.xaxis[loop.driven])
+    loop = loops.loop_of(model, joint, qpos)
+    plane = Plane.across(loop.data.xaxis[loop.driven])
     rods: list[HeldRod] = []
-    bodies = tuple(_body(loop, plane, body, rods) for body in loop.bodies)
-    return Component(loop, data, plane, bodies, tuple(rods))
+    bodies = tuple(_body(loop, plane, body, rods) for body in loop.ids)
+    return Component(**vars(loop), plane=plane, bodies=bodies, rods=tuple(rods))
 
 
-def _body(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> RigidBody:
+def _body(loop: loops.DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> RigidBody:
     model, data = loop.model, loop.data
     first, count = int(model.body_jntadr[root]), int(model.body_jntnum[root])
-    parent = rigid(model, int(model.body_parentid[root]))
+    parent = loops.rigid(model, int(model.body_parentid[root]))
     joints = _rod(loop, plane, root, rods)
     joints = joints or tuple(_joint(model, data, plane, first + n) for n in range(count))
     return RigidBody(root, body_name(model, root), parent, joints)
 
 
-def _rod(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> tuple[PlanarJoint, ...]:
+def _rod(
+    loop: loops.DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]
+) -> tuple[PlanarJoint, ...]:
     """Return the joints in the plane of a body on a free or ball joint that pins to bodies of the
     plane hold there at two places, and add it to the rods; none for any other body."""
     model, data, index = loop.model, loop.data, int(loop.model.body_jntadr[root])
-    kind = JOINTS[int(model.jnt_type[index])]
-    carries = any(rigid(model, int(model.body_parentid[body])) == root for body in loop.bodies)
+    kind = loops.JOINTS[int(model.jnt_type[index])]
+    carries = any(loops.rigid(model, int(model.body_parentid[body])) == root for body in loop.ids)
     if kind not in ("free", "ball") or carries:
         return ()
     places = [data.xanchor[index]] if kind == "ball" else []
     for each in (each for each in loop.closures if each.kind == "connect"):
         for end, other in ((0, 1), (1, 0)):
-            beside = model.jnt_type[model.jnt_bodyid == rigid(model, each.bodies[other])]
-            planar = all(JOINTS[int(joint)] in ("hinge", "slide") for joint in beside)
-            if rigid(model, each.bodies[end]) == root and planar:
+            beside = model.jnt_type[model.jnt_bodyid == loops.rigid(model, each.bodies[other])]
+            planar = all(loops.JOINTS[int(joint)] in ("hinge", "slide") for joint in beside)
+            if loops.rigid(model, each.bodies[end]) == root and planar:
                 places.append(each.anchors[end])
     line = max((place - places[0] for place in places), key=np.linalg.norm, default=np.zeros(3))
     if not np.any(line):
@@ -175,7 +152,7 @@ def _rod(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> tupl
     before = sum(rod.count for rod in rods)
     rods.append(HeldRod(at, dof, axes, turned, arm, line, np.array(places[0]) if free else None))
     columns = [(model.nq + before + n, model.nv + before + n) for n in range(rods[-1].count)]
-    name, anchor = joint_name(model, index), plane.flat(places[0])
+    name, anchor = loops.joint_name(model, index), plane.flat(places[0])
     hinge = PlanarJoint(index, name, "hinge", anchor, 0j, 1.0, columns[-1])
     ways = zip((1.0 + 0j, 1j), columns[:-1], strict=False)
     return (*(PlanarJoint(index, name, "slide", 0j, way, 1.0, at) for way, at in ways), hinge)
@@ -183,7 +160,7 @@ def _rod(loop: DrivenLoop, plane: Plane, root: int, rods: list[HeldRod]) -> tupl
 
 def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
     """Return a joint in the plane. Raises ModelError for a joint that leaves it."""
-    name, kind = joint_name(model, index), JOINTS[int(model.jnt_type[index])]
+    name, kind = loops.joint_name(model, index), loops.JOINTS[int(model.jnt_type[index])]
     of = f"joint {name} of body {body_name(model, int(model.jnt_bodyid[index]))}"
     if kind not in ("hinge", "slide"):
         raise ModelError(
@@ -226,14 +203,16 @@ def loose_joints(component: Component) -> list[str]:
     if not joints:
         return []
     _, values, directions = np.linalg.svd(np.vstack(rows))
-    held = int(np.count_nonzero(values > NOTHING * (values[0] or 1.0)))
-    moving = np.abs(directions[held:]).max(axis=0, initial=0.0) > NOTHING**0.5
-    return [joint_name(model, joint) for joint, moves in zip(joints, moving, strict=True) if moves]
+    held = int(np.count_nonzero(values > loops.NOTHING * (values[0] or 1.0)))
+    moving = np.abs(directions[held:]).max(axis=0, initial=0.0) > loops.NOTHING**0.5
+    return [
+        loops.joint_name(model, joint) for joint, moves in zip(joints, moving, strict=True) if moves
+    ]
 
 
 def _rows(component: Component, closure: ModelClosure) -> Array:
     """Return the speeds in the plane that a closure forbids, (2 or 3, nv)."""
     model, data, plane = component.model, component.data, component.plane
-    along, about = speeds(model, data, closure)
+    along, about = loops.speeds(model, data, closure)
     rows: Any = np.array([plane.x @ along, plane.y @ along, plane.normal @ about])
     return np.asarray(rows if closure.kind == "weld" else rows[:2])

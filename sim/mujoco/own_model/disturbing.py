@@ -165,7 +165,6 @@ def _actuators(model: Any, ids: set[int]) -> Iterator[Kind]:
 
 
 def _loads(linkage: Linkage) -> Iterator[Kind]:
-    """Yield gravity, and a medium."""
     opt, plane = linkage.component.model.opt, linkage.component.plane
     gravity = np.array(opt.gravity, dtype=np.float64)
     across = plane.height(gravity)

@@ -19,21 +19,12 @@ import numpy as np
 
 from models.array import Array
 from models.errors import few, suggestion
-from sim.mujoco.own_model.file import (
-    IDLE,
-    Coupling,
-    ModelClosure,
-    ModelError,
-    body_name,
-    equalities,
-    name_of,
-)
+from sim.mujoco.own_model import file
 
 JOINTS = {
     kind.value: kind.name.removeprefix("mjJNT_").lower()
     for kind in mujoco.mjtJoint.__members__.values()
 }
-HINGE = mujoco.mjtJoint.mjJNT_HINGE.value
 SHOWN = 6
 WORLD = 0
 NOTHING = 1e-9
@@ -45,7 +36,8 @@ Ties = Mapping[int, set[int]]
 
 @dataclass(frozen=True, eq=False)
 class DrivenLoop:
-    """The rigid bodies that move with the joint ``driven``, and the equalities that close them.
+    """The rigid bodies ``ids`` that move with the joint ``driven``, and the equalities that close
+    them.
 
     ``model`` counts the base as ground, ``data`` is its pose. ``held`` are the freedoms of the base
     [columns of qvel], ``idle`` the equalities that would move it; ``follows`` says that bodies hang
@@ -55,8 +47,8 @@ class DrivenLoop:
     model: Any
     data: Any
     driven: int
-    bodies: tuple[int, ...]
-    closures: tuple[ModelClosure, ...]
+    ids: tuple[int, ...]
+    closures: tuple[file.ModelClosure, ...]
     held: tuple[int, ...] = ()
     idle: tuple[int, ...] = ()
     follows: bool = False
@@ -69,7 +61,7 @@ def rigid(model: Any, body: int) -> int:
     return WORLD if int(model.body_mocapid[root]) >= 0 else root
 
 
-def driven_loop(model: Any, joint: str, qpos: Array) -> DrivenLoop:
+def loop_of(model: Any, joint: str, qpos: Array) -> DrivenLoop:
     """Return the loop of the joint of that name, in the model as drawn, with its base as in
     ``qpos``.
 
@@ -80,7 +72,7 @@ def driven_loop(model: Any, joint: str, qpos: Array) -> DrivenLoop:
         equality that couples its coordinates.
     """
     data = mujoco.MjData(model)
-    driven = _driven(model, joint, _ties(model, equalities(model, data)[0]))
+    driven = _driven(model, joint, _ties(model, file.equalities(model, data)[0]))
     crank = rigid(model, int(model.jnt_bodyid[driven]))
     base = rigid(model, int(model.body_parentid[crank]))
     above = _above(model, base)
@@ -89,7 +81,7 @@ def driven_loop(model: Any, joint: str, qpos: Array) -> DrivenLoop:
         data.qpos[at] = qpos[at]
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
-    closures, couplings = equalities(model, data)
+    closures, couplings = file.equalities(model, data)
     grounded = copy.copy(model)
     grounded.body_weldid[np.isin(model.body_weldid, above)] = WORLD
     ties = _ties(grounded, closures)
@@ -104,13 +96,13 @@ def driven_loop(model: Any, joint: str, qpos: Array) -> DrivenLoop:
     _refuse_open(model, own)
     followers = list(_followers(grounded, couplings, ids))
     notes = [
-        f"left out: {one.name}, by which {body_name(model, body)} follows the loop"
+        f"left out: {one.name}, by which {file.body_name(model, body)} follows the loop"
         for one, body in followers
     ]
     if hung:
-        names = few([body_name(model, body) for body in sorted(hung)], SHOWN)
+        names = few([file.body_name(model, body) for body in sorted(hung)], SHOWN)
         notes.insert(0, f"left out: {names} ({_joints_of(model, hung)}), hanging on the loop")
-    called = body_name(model, base) if base != WORLD else ""
+    called = file.body_name(model, base) if base != WORLD else ""
     if called:
         how = "the motion of the loop against it does not depend on where it is"
         notes.insert(0, f"base: body {called} is held ({_joints_of(model, above)}); {how}")
@@ -145,19 +137,18 @@ def _freedoms(model: Any, bodies: Collection[int]) -> list[int]:
 
 
 def _joints_of(model: Any, bodies: Collection[int]) -> str:
-    """Return the joints of rigid bodies in words."""
     told = [
-        (JOINTS[int(model.jnt_type[joint])], name_of(model, "joint", joint))
+        (JOINTS[int(model.jnt_type[joint])], file.name_of(model, "joint", joint))
         for joint in _joints(model, bodies)
     ]
     return few([f"{kind} {name}" if name else f"a {kind}" for kind, name in told], SHOWN)
 
 
-def _ends(model: Any, closure: ModelClosure) -> set[int]:
+def _ends(model: Any, closure: file.ModelClosure) -> set[int]:
     return {rigid(model, body) for body in closure.bodies}
 
 
-def _ties(model: Any, closures: Sequence[ModelClosure]) -> Ties:
+def _ties(model: Any, closures: Sequence[file.ModelClosure]) -> Ties:
     """Return the ties by joints and closures; joints that leave a body free in the plane tie
     nothing."""
     pairs = [tuple(rigid(model, body) for body in each.bodies) for each in closures]
@@ -193,7 +184,7 @@ def _block(ends: tuple[int, int], ties: Ties) -> set[int]:
     return found
 
 
-def _is_loose(model: Any, data: Any, part: set[int], closures: Sequence[ModelClosure]) -> bool:
+def _is_loose(model: Any, data: Any, part: set[int], closures: Sequence[file.ModelClosure]) -> bool:
     """True if bodies move while the loop that they hang on stands still, or may leave its plane."""
     freedoms = _freedoms(model, part)
     rows = [
@@ -206,7 +197,7 @@ def _is_loose(model: Any, data: Any, part: set[int], closures: Sequence[ModelClo
     return rank < len(freedoms) or len(freedoms) > len(_joints(model, part))
 
 
-def speeds(model: Any, data: Any, closure: ModelClosure) -> tuple[Array, Array]:
+def speeds(model: Any, data: Any, closure: file.ModelClosure) -> tuple[Array, Array]:
     """Return the relative speeds of a closure's ends, and their angular ones, (3, nv) each."""
     ends = []
     for body, anchor in zip(closure.bodies, closure.anchors, strict=True):
@@ -217,8 +208,8 @@ def speeds(model: Any, data: Any, closure: ModelClosure) -> tuple[Array, Array]:
 
 
 def _followers(
-    model: Any, couplings: Sequence[Coupling], ids: set[int]
-) -> Iterator[tuple[Coupling, int]]:
+    model: Any, couplings: Sequence[file.Coupling], ids: set[int]
+) -> Iterator[tuple[file.Coupling, int]]:
     """Yield the couplings by which a body beside the loop follows it, with that body. Raises
     ModelError for one that couples coordinates of the loop, and for a body that follows twice."""
     seen: set[int] = set()
@@ -228,8 +219,8 @@ def _followers(
             continue
         if not beside or seen.intersection(*beside):
             bodies = [body for side in beside or one.sides for body in side]
-            told = [f"{body_name(model, b)} ({_joints_of(model, [b])})" for b in bodies]
-            raise ModelError(
+            told = [f"{file.body_name(model, b)} ({_joints_of(model, [b])})" for b in bodies]
+            raise file.ModelError(
                 f"{one.name}: a <{one.kind}> equality couples coordinates of {few(told, SHOWN)} "
                 f"{'twice with' if beside else 'in'} the loop, of which no closed form is known; "
                 "take it out, and close loops with <connect>"
@@ -240,7 +231,7 @@ def _followers(
 
 def _driven(model: Any, joint: str, ties: Ties) -> int:
     """Return the joint of that name, or refuse it as the driver."""
-    names = [name_of(model, "joint", index) for index in range(model.njnt)]
+    names = [file.name_of(model, "joint", index) for index in range(model.njnt)]
     why = _not_drivable(model, names.index(joint), ties) if joint and joint in names else ""
     if joint and joint in names and not why:
         return names.index(joint)
@@ -249,12 +240,14 @@ def _driven(model: Any, joint: str, ties: Ties) -> int:
     ]
     can = f"drivable: {few(able, SHOWN)}" if able else "no named hinge turns against the ground"
     if not joint:
-        raise ModelError(f"--drive is missing: name the joint that turns the crank; {can}")
+        raise file.ModelError(f"--drive is missing: name the joint that turns the crank; {can}")
     if joint not in names:
         there = [name for name in names if name]
         hint = suggestion(joint, there, "it has") if there else "none of its joints has a name"
-        raise ModelError(f"--drive {joint!r}: the model has no joint of that name; {hint}; {can}")
-    raise ModelError(f"--drive {joint!r}: {why}; {can}")
+        raise file.ModelError(
+            f"--drive {joint!r}: the model has no joint of that name; {hint}; {can}"
+        )
+    raise file.ModelError(f"--drive {joint!r}: {why}; {can}")
 
 
 def _not_drivable(model: Any, index: int, ties: Ties) -> str:
@@ -263,15 +256,15 @@ def _not_drivable(model: Any, index: int, ties: Ties) -> str:
     if kind != "hinge":
         return f"it is a {kind}, and a crank turns on a hinge"
     if int(model.body_jntnum[body]) > 1:
-        return f"body {body_name(model, body)} has {int(model.body_jntnum[body])} joints"
+        return f"body {file.body_name(model, body)} has {int(model.body_jntnum[body])} joints"
     parent = rigid(model, int(model.body_parentid[rigid(model, body)]))
     if parent == WORLD:
         return ""
     block, above = _block((parent, rigid(model, body)), ties), _above(model, parent)
     if len(block) > 2 and not block & {WORLD, *above[1:]}:
         return ""
-    told = f"it turns against body {body_name(model, parent)}, and not against the ground"
-    movers = [b for b in above if any(model.jnt_type[j] != HINGE for j in _joints(model, [b]))]
+    told = f"it turns against body {file.body_name(model, parent)}, and not against the ground"
+    movers = [b for b in above if not all(is_hinge(model, j) for j in _joints(model, [b]))]
     if movers and len(block) > 2:
         told += f", which its loop meets too; hold that body: take out {_joints_of(model, movers)}"
     return told
@@ -289,19 +282,21 @@ def reading(coordinate: float, hinge: bool) -> str:
 
 def joint_name(model: Any, joint: int) -> str:
     """Return the name of a joint, or of its body."""
-    name = name_of(model, "joint", joint)
-    return name or f"a joint of {body_name(model, int(model.jnt_bodyid[joint]))}"
+    name = file.name_of(model, "joint", joint)
+    return name or f"a joint of {file.body_name(model, int(model.jnt_bodyid[joint]))}"
 
 
-def _refuse_open(model: Any, closures: Sequence[ModelClosure]) -> None:
+def _refuse_open(model: Any, closures: Sequence[file.ModelClosure]) -> None:
     if not closures:
         idle = int(model.neq - np.count_nonzero(model.eq_active0))
-        if int(model.opt.disableflags) & IDLE:
-            raise ModelError('no loop: <flag equality="disable"/>, or constraint, lets none close')
+        if int(model.opt.disableflags) & file.IDLE:
+            raise file.ModelError(
+                'no loop: <flag equality="disable"/>, or constraint, lets none close'
+            )
         found = "no equality is active" if idle else "the model has no <equality>"
         if model.neq > idle:
             found = "no equality ties a body that moves with the driven joint"
             found += f" ({idle} of {model.neq} are not active)" if idle else ""
-        raise ModelError(
+        raise file.ModelError(
             f"no loop: {found}; close the loop with <equality><connect .../></equality>"
         )

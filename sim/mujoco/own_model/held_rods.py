@@ -6,7 +6,6 @@ which moves nothing in the plane; so the angle is that of this line, and the pla
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -73,15 +72,6 @@ class HeldRod:
             arm = matrix @ self.arm
             data.qpos[at - 3 : at] = self.place + q[:2] @ self.axes[:2] - arm
             data.qvel[dof - 3 : dof] = rate[:2] @ self.axes[:2] - np.cross(spin, arm)
-
-
-def seen(rods: Sequence[HeldRod], q: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
-    """Return the coordinates and rates with those of rods after them."""
-    rows = [(q, rate, push), *(rod.seen(q, rate, push) for rod in rods)]
-    if not rods:
-        return rows[0]
-    joined = [np.hstack(each) for each in zip(*rows, strict=True)]
-    return joined[0], joined[1], joined[2]
 
 
 def _angle(vector: Array) -> Array:

@@ -172,25 +172,19 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | ModelGuide]:
         )
     if kind == "none":
         return
-    hinge = next((joint for joint in body.joints if joint.kind == "hinge"), None)
-    slide = next((joint for joint in body.joints if joint.kind == "slide"), None)
-    own = bare.placements[body.id][0]
-    on_parent = bare.placements[body.parent]
-    if hinge is not None and slide is None:
+    joints = {joint.kind: joint for joint in body.joints}
+    if kind == "pin":
+        hinge = joints["hinge"]
         marks = bare.mark(body.parent, hinge.anchor), bare.mark(body.id, hinge.anchor)
         yield Pivot(hinge.name, marks)
-    elif slide is not None and hinge is None:
-        link, placement = on_parent
-        direction = placement.turn * slide.direction
-        yield ModelGuide(
-            slide.name,
-            link,
-            own,
-            direction,
-            placement(slide.anchor),
-            meets=placement.after(bare.placements[body.id][1].inverse),
-        )
-    elif slide is not None and hinge is not None:
+    elif kind == "prism":
+        slide, (link, placement) = joints["slide"], bare.placements[body.parent]
+        own, drawn = bare.placements[body.id]
+        direction, through = placement.turn * slide.direction, placement(slide.anchor)
+        meets = placement.after(drawn.inverse)
+        yield ModelGuide(slide.name, link, own, direction, through, meets=meets)
+    else:
+        hinge, slide = joints["hinge"], joints["slide"]
         upper, lower = (body.parent, body.id) if kind == "point on line" else (body.id, body.parent)
         link, placement = bare.placements[upper]
         mark = bare.mark(lower, hinge.anchor)
@@ -218,16 +212,6 @@ class NamedPoint:
         return {mark.link: mark.place for mark in reversed(self.marks)}
 
 
-@dataclass(frozen=True)
-class Near:
-    """Two points of a link that are suspiciously near to one another, by ``distance_m``."""
-
-    link: int
-    first: str
-    second: str
-    distance_m: float
-
-
 def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
     """Return all points of the linkage, in the order of the file."""
     groups: list[tuple[list[str], list[ModelMark]]] = []
@@ -252,15 +236,16 @@ def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
     return named
 
 
-def nearly(found: Sequence[NamedPoint], linkage: Linkage) -> Iterator[Near]:
-    """Yield near points of a link, such as an anchor beside its pin."""
+def nearly(found: Sequence[NamedPoint], linkage: Linkage) -> Iterator[tuple[int, str]]:
+    """Yield links with two points suspiciously near to one another, such as an anchor beside its
+    pin, in words."""
     limit = NEAR * size(linkage)
     for index, one in enumerate(found):
         for other in found[index + 1 :]:
             for link in one.places.keys() & other.places.keys():
                 distance = abs(one.places[link] - other.places[link])
                 if distance < limit:
-                    yield Near(link, one.name, other.name, distance)
+                    yield link, f"{one.name} and {other.name} are {distance:.3g} m apart"
 
 
 def size(linkage: Linkage) -> float:

@@ -19,7 +19,7 @@ BALL = mujoco.mjtGeom.mjGEOM_SPHERE.value
 def misses(linkage: Linkage) -> Iterator[str]:
     """Yield the pins that are near to a mark of their body, and in none."""
     extent = size(linkage)
-    for name, body, place in _pins(linkage.component):
+    for name, body, place, _ in _pins(linkage.component):
         near = [(abs(mark - place), what) for what, mark in _marks(linkage.component, body)]
         distance, what = min(near, default=(0.0, ""))
         if ROUNDED * extent < distance < NEAR * extent:
@@ -27,18 +27,28 @@ def misses(linkage: Linkage) -> Iterator[str]:
             yield f"{name}: its pin is {distance:.3g} m off {what} on body {of}"
 
 
-def _pins(component: Component) -> Iterator[tuple[str, int, complex]]:
-    """Yield name, rigid body and place of each copy of a pin, in the model as drawn."""
+POS = "its pos counts in the frame of that body; give it there"
+ANCHOR = (
+    "the anchor counts in the frame of one body, and MuJoCo puts it on the other where that one "
+    "has it in the pose as drawn; connect two sites, one on each body, or draw the loop shut"
+)
+
+
+def _pins(component: Component) -> Iterator[tuple[str, int, complex, str]]:
+    """Yield name, rigid body and place of each copy of a pin, in the model as drawn, and the cure
+    for a wrong place, "" where it is that of the body or of a site."""
+    model, plane = component.model, component.plane
     for body in component.bodies:
         for joint in body.joints:
             if joint.kind == "hinge":
-                yield from (
-                    (f"joint {joint.name}", b, joint.anchor) for b in (body.parent, body.id)
-                )
+                cure = POS if np.any(model.jnt_pos[joint.index]) else ""
+                yield f"joint {joint.name}", body.parent, joint.anchor, ""
+                yield f"joint {joint.name}", body.id, joint.anchor, cure
     for each in component.closures:
+        cure = ANCHOR if int(model.eq_objtype[each.index]) != SITE else ""
         for end, anchor in zip(each.bodies, each.anchors, strict=True):
             if each.kind == "connect":
-                yield f"loop {each.name}", component.rigid(end), component.plane.flat(anchor)
+                yield f"loop {each.name}", component.rigid(end), plane.flat(anchor), cure
 
 
 def _marks(component: Component, body: int) -> Iterator[tuple[str, complex]]:
@@ -69,11 +79,6 @@ FAR = 3.0
 """Distance of a pin from the middle of its body, over the radius of all that is on the body, from
 which on it can hardly be meant."""
 CORNERS = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T
-POS = "its pos counts in the frame of that body; give it there"
-ANCHOR = (
-    "the anchor counts in the frame of one body, and MuJoCo puts it on the other where that one "
-    "has it in the pose as drawn; connect two sites, one on each body, or draw the loop shut"
-)
 Places = dict[str, list[complex]]
 """Places on a body by the name of what stands there."""
 
@@ -83,20 +88,8 @@ def far_pins(linkage: Linkage) -> Iterator[str]:
     component = linkage.component
     model = component.model
     on = {body.id: _places(component, body.id) for body in component.bodies}
-    pins = [
-        (f"joint {joint.name}", body.id, joint.anchor, POS)
-        for body in component.bodies
-        for joint in body.joints
-        if joint.kind == "hinge" and np.any(model.jnt_pos[joint.index])
-    ]
-    pins += [
-        (f"loop {each.name}", component.rigid(end), component.plane.flat(anchor), ANCHOR)
-        for each in component.closures
-        for end, anchor in zip(each.bodies, each.anchors, strict=True)
-        if each.kind == "connect" and int(model.eq_objtype[each.index]) != SITE
-    ]
-    for name, body, place, cure in pins:
-        if body == WORLD:
+    for name, body, place, cure in _pins(component):
+        if body == WORLD or not cure:
             continue
         middle, reach = _circle(on[body], name)
         geoms = [rigid(model, int(owner)) == body for owner in model.geom_bodyid]

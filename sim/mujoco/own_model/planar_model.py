@@ -4,6 +4,7 @@ import cmath
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,23 +16,17 @@ from models.scene import GROUND, Scene
 from models.scene.joints import blocks, sliding_angle
 from sim.mujoco.own_model.component import PlanarJoint
 from sim.mujoco.own_model.driven_loop import WORLD, reading
-from sim.mujoco.own_model.held_rods import seen
 from sim.mujoco.own_model.linkage import Linkage, Placement, pair, size
 from sim.mujoco.own_model.scene import Matter, SceneRead
 
 
 @dataclass(frozen=True)
 class Limbs:
-    """Limbs, parents before children.
-
-    For each freedom, in their order, the columns of qpos and qvel, and -1 where MuJoCo counts it
-    clockwise. ``shown`` maps a body of the scene to its limb, ``of`` a limb to its body.
-    """
+    """Limbs, parents before children, and the joint of each of their freedoms, in this order;
+    ``shown`` maps a body of the scene to its limb, ``of`` a limb to its body."""
 
     limbs: tuple[Limb, ...]
-    positions: tuple[int, ...]
-    rates: tuple[int, ...]
-    senses: tuple[float, ...]
+    joints: tuple[PlanarJoint, ...]
     shown: Mapping[str, str]
     of: Mapping[str, str]
 
@@ -41,8 +36,7 @@ def limbs_of(linkage: Linkage, read: SceneRead) -> Limbs:
     model = linkage.component.model
     called = {WORLD: GROUND}
     own: dict[int, Placement] = {WORLD: Placement()}
-    limbs, positions, rates, senses = [], [], [], []
-    shown, of = {}, {}
+    limbs, shown, of = [], {}, {}
     for body in linkage.component.bodies:
         link, placement = linkage.placements[body.id]
         first = body.id == link
@@ -54,21 +48,19 @@ def limbs_of(linkage: Linkage, read: SceneRead) -> Limbs:
         mine, base = own[body.id], own[body.parent]
         freedoms = []
         for joint in body.joints:
-            at, dof = joint.columns
+            at = joint.columns[0]
             ref = joint.sense * float(model.qpos0[at]) if at < model.nq else 0.0
             axis = 0.0 if joint.kind == "hinge" else cmath.phase(mine.turn * joint.direction)
             freedoms.append(
                 Freedom(joint.name, joint.kind, pair(mine(joint.anchor)), axis, ref, 0.0)
             )
-            positions.append(at)
-            rates.append(dof)
-            senses.append(joint.sense)
         drawn = -mine.shift / mine.turn
         angle = cmath.phase(base.turn / mine.turn)
         limbs.append(
             Limb(called[body.id], called[body.parent], pair(base(drawn)), angle, tuple(freedoms))
         )
-    return Limbs(tuple(limbs), tuple(positions), tuple(rates), tuple(senses), shown, of)
+    joints = tuple(joint for body in linkage.component.bodies for joint in body.joints)
+    return Limbs(tuple(limbs), joints, shown, of)
 
 
 @dataclass(frozen=True)
@@ -226,27 +218,29 @@ class PlanarModel:
         return max(
             float(model.dof_M0[model.jnt_dofadr[joint.index]])
             * (1.0 if joint.kind == "hinge" else extent**2)
-            for body in self.linkage.component.bodies
-            for joint in body.joints
+            for joint in self.limbs.joints
         )
+
+    @cached_property
+    def _columns(self) -> tuple[list[int], list[int], Array]:
+        """Columns of the freedoms in qpos and in qvel, and -1 where MuJoCo counts clockwise."""
+        positions, rates = zip(*(joint.columns for joint in self.limbs.joints), strict=True)
+        return [*positions], [*rates], np.array([joint.sense for joint in self.limbs.joints])
 
     def seen(self, q: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
         """Return coordinates, rates and accelerations of the freedoms in the senses of the scene,
         (T, n) each, from those of the model, (T, nq) and (T, nv)."""
-        q, rate, push = seen(self.linkage.component.rods, q, rate, push)
-        at, dofs = list(self.limbs.positions), list(self.limbs.rates)
-        senses = np.array(self.limbs.senses)
+        rods = [rod.seen(q, rate, push) for rod in self.linkage.component.rods]
+        q, rate, push = map(np.hstack, zip((q, rate, push), *rods, strict=True))
+        at, dofs, senses = self._columns
         return q[:, at] * senses, rate[:, dofs] * senses, push[:, dofs] * senses
 
     def put(self, data: Any, q: Array, rate: Array) -> None:
         """Set the freedoms of ``data`` to coordinates and rates in the senses of the scene."""
         model = self.model
-        every, rates = (
-            np.append(data.qpos, np.zeros(len(q))),
-            np.append(data.qvel, np.zeros(len(q))),
-        )
-        every[list(self.limbs.positions)] = np.array(self.limbs.senses) * q
-        rates[list(self.limbs.rates)] = np.array(self.limbs.senses) * rate
+        every, rates = (np.append(each, np.zeros(len(q))) for each in (data.qpos, data.qvel))
+        at, dofs, senses = self._columns
+        every[at], rates[dofs] = senses * q, senses * rate
         data.qpos[:], data.qvel[:] = every[: model.nq], rates[: model.nv]
         first = 0
         for rod in self.linkage.component.rods:
@@ -274,7 +268,7 @@ class PlanarModel:
 
     def _ranges(self) -> Iterator[tuple[PlanarJoint, float, float]]:
         """Yield the joint of each freedom with its range, in the sense of the scene."""
-        for joint in (each for body in self.linkage.component.bodies for each in body.joints):
+        for joint in self.limbs.joints:
             limited = self.model.jnt_limited[joint.index] and joint.columns[0] < self.model.nq
             ends = self.model.jnt_range[joint.index] if limited else (-math.inf, math.inf)
             low, high = sorted(joint.sense * float(end) for end in ends)

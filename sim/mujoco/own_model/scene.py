@@ -73,10 +73,6 @@ class SceneParts:
         own = [point for point in self.points if link in point.places]
         return sorted(own, key=lambda point: WORLD not in point.places)
 
-    def point(self, name: str) -> NamedPoint:
-        """Return the point of that name."""
-        return next(point for point in self.points if point.name == name)
-
 
 def parts_of(linkage: Linkage) -> SceneParts:
     """Make the parts of a linkage.
@@ -141,11 +137,6 @@ class SceneRead:
     frames: Mapping[int, Placement]
     names: Mapping[int, str]
     parts: SceneParts
-
-    @property
-    def points(self) -> tuple[NamedPoint, ...]:
-        """Points of the scene, as its links are drawn."""
-        return tuple(self.parts.points)
 
 
 def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
@@ -227,7 +218,8 @@ def _reading(parts: SceneParts, frame: Placement) -> Placement:
 def _block_frame(parts: SceneParts, guide: ModelGuide, slider: Slider, on: Placement) -> Placement:
     """Return the frame of a block: its point is its origin, and its x-axis lies along the line."""
     turn = cmath.exp(-1j * slider.direction_rad) * on.turn * guide.meets.turn
-    return Placement(turn, -turn * parts.point(slider.point).places[guide.rider])
+    point = next(point for point in parts.points if point.name == slider.point)
+    return Placement(turn, -turn * point.places[guide.rider])
 
 
 def _slider(

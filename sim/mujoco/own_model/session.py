@@ -62,7 +62,7 @@ class OwnModelSession(SteppedModel):
         )
         self._own, self._scene = own, scene
         self._settings = held(model, own.loops, settings)
-        loop = own.linkage.component.loop
+        loop = own.linkage.component
         _give_flywheel(model, [int(model.jnt_dofadr[own.driven]), *loop.held], own.inertia_kg_m2)
         model.eq_active0[list(loop.idle)] = 0
         self._hold(model, own.keyframe)
@@ -77,29 +77,27 @@ class OwnModelSession(SteppedModel):
         self._own.put(self._data, q, rate)
         crank = int(self._model.jnt_dofadr[self._own.driven])
         self._data.qvel[crank] = float(scene.driver.law.at(np.array([state.time_s]))[1][0])
-        loop = self._own.linkage.component.loop
+        loop = self._own.linkage.component
         self._data.qvel[list(loop.held)] = 0.0
         if loop.follows:
-            own = np.isin(self._model.dof_bodyid, loop.bodies)
+            own = np.isin(self._model.dof_bodyid, loop.ids)
             _let_follow(self._model, self._data, {*np.flatnonzero(own), *loop.held})
 
     def record(self, steps: int, every: int) -> Log:
         """Advance and log. Raises EngineError where the driven joint has left its course."""
         log = super().record(steps, every)
-        if not log.diverged:
-            self._refuse_lost_drive(log.poses)
-        return log
-
-    def _refuse_lost_drive(self, poses: Poses) -> None:
-        turned = poses.bodies[self._scene.driver.link].theta
-        wanted = self._scene.driver.law.at(poses.time_s)[0]
-        off = float(np.max(np.abs((turned - turned[0]) - (wanted - wanted[0]))))
+        if log.diverged:
+            return log
+        turned = log.poses.bodies[self._scene.driver.link].theta
+        wanted = self._scene.driver.law.at(log.poses.time_s)[0]
+        off = np.max(np.abs((turned - turned[0]) - (wanted - wanted[0])))
         if off > LOST_RAD:
             raise EngineError(
                 f"the driven joint is off by {off:.3g} rad, for all its flywheel, so that the line "
                 "says nothing of the loops; take off what loads that joint (damping, friction), or "
                 "please report it where nothing does"
             )
+        return log
 
     def facts(self) -> Facts:
         """Read the model as MuJoCo holds it now."""
@@ -177,7 +175,7 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
         MuJoCo sees a loop open that is closed in the closed form: the model was misread.
     """
     model, data = own.model, mujoco.MjData(own.model)
-    if own.linkage.component.loop.held:
+    if own.linkage.component.held:
         data.qpos[:] = own.qpos
     touching: dict[tuple[str, str], int] = {}
     low, high = np.full(model.nq, np.inf), np.full(model.nq, -np.inf)
@@ -235,17 +233,13 @@ def _geom(model: Any, geom: int) -> str:
 
 
 def _passed(own: PlanarModel, low: Any, high: Any) -> list[str]:
-    """List the limited joints that pass their limits."""
     model, texts = own.model, []
-    for body in own.linkage.component.bodies:
-        for joint in (each.index for each in body.joints):
-            if not model.jnt_limited[joint]:
-                continue
-            at = int(model.jnt_qposadr[joint])
-            least, most = (float(end) for end in model.jnt_range[joint])
-            past = max(least - float(low[at]), float(high[at]) - most)
-            if past > 0.0:
-                turns = is_hinge(model, joint)
-                far = f"{math.degrees(past):.3g} deg" if turns else f"{past:.3g} m"
-                texts.append(f"joint {joint_name(model, joint)} is led past its limit by {far}")
+    for joint in (each.index for each in own.limbs.joints if model.jnt_limited[each.index]):
+        at = int(model.jnt_qposadr[joint])
+        least, most = (float(end) for end in model.jnt_range[joint])
+        past = max(least - float(low[at]), float(high[at]) - most)
+        if past > 0.0:
+            turns = is_hinge(model, joint)
+            far = f"{math.degrees(past):.3g} deg" if turns else f"{past:.3g} m"
+            texts.append(f"joint {joint_name(model, joint)} is led past its limit by {far}")
     return texts

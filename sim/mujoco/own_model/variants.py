@@ -132,6 +132,8 @@ def _names(settings: Settings) -> list[str]:
 
 
 ATTRIBUTE = re.compile(rb"""([\w:.-]+)(\s*=\s*)("[^"]*"|'[^']*')""")
+LINE = re.compile(r"[^\n]*\n|[^\n]+")
+"""A line with its end; Windows ends stay."""
 
 
 @dataclass(frozen=True)
@@ -208,20 +210,14 @@ def diff(path: Path, raw: bytes, new: bytes) -> str:
     """Return both texts as a unified diff. Without the lines around a change `git apply` refuses
     it, and `patch` changes any other file. Raises EngineError for text that is not UTF-8."""
     try:
-        lines = list(unified_diff(_lines(raw), _lines(new), path.name, path.name, n=3))
+        before, after = (LINE.findall(text.decode()) for text in (raw, new))
+        lines = list(unified_diff(before, after, path.name, path.name, n=3))
     except UnicodeDecodeError:
         raise EngineError("the file is not UTF-8") from None
     # A last line without an end has a remark.
     return "".join(
         line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines
     )
-
-
-def _lines(raw: bytes) -> list[str]:
-    """Split into lines with their ends; Windows ends stay."""
-    return [line + "\n" for line in raw.decode().split("\n")[:-1]] + [
-        line for line in raw.decode().split("\n")[-1:] if line
-    ]
 
 
 def _options(
@@ -254,7 +250,6 @@ def _options(
 
 
 def _tag(name: bytes, attributes: Mapping[str, str]) -> bytes:
-    """Write an element without content."""
     return _set(b"<" + name + b"/>", attributes)
 
 

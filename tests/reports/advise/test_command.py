@@ -11,7 +11,7 @@ from typer.testing import Result
 from models.files.reading import find_scene, load_scene, read_text
 from models.scene import Scene
 from reports.advise.demand import at_speed
-from reports.compare.compare import Beside, Truth, places
+from reports.compare.compare import Truth, places
 from reports.judge.cell import Cell
 from reports.quantities import named
 from sim.run import run
@@ -54,7 +54,7 @@ def place_error(scene: Scene, one: Mapping[str, Any], dt_s: float, turns: float 
     options = {"dt_s": dt_s, "steps": steps, "settings": one["settings"]}
     done = run(scene, truth.start, one["engine"], one["profile"], **options)
     assert done.status == "ok", done.reason
-    errors = [each for each in places(Beside.of(truth, done)) if each.quantity in named("place")]
+    errors = [each for each in places(truth.beside(done)) if each.quantity in named("place")]
     return max(each.pure for each in errors)
 
 

@@ -12,7 +12,7 @@ from models.files.reading import load_scene
 from reports.advise.advice import ROUNDS, Prices, prices, timings
 from reports.advise.demand import Choice, MeasuredSteps, MeasuredStudy, choices, demanded
 from reports.advise.search import WORDS, SearchResult, TriedRun, Worst, _reached, _seen, look
-from reports.compare.compare import Beside, Truth, compare
+from reports.compare.compare import Truth, compare
 from reports.compare.errors import Departure
 from reports.judge.cell import Cell
 from reports.quantities import named
@@ -175,7 +175,7 @@ def test_the_error_of_a_run_is_that_of_a_comparison(choice: Choice) -> None:
     cell, truth = FAST.cell(scene, choice, 2), Truth(scene)
     options = {"dt_s": cell.dt_s, "steps": cell.steps, "settings": choice.settings}
     done = run(scene, truth.start, choice.engine, choice.profile, **options)
-    errors = compare(Beside.of(truth, done))
+    errors = compare(truth.beside(done))
     places = [worst.pure for name in named("place") if (worst := errors.worst(name))]
     assert look(cell).error == pytest.approx(max(places), rel=1e-9)
 

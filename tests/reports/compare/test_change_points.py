@@ -17,7 +17,7 @@ from models.motion import Crossing
 from models.scene import Scene
 from models.scene.hard import fourbar, slider_crank, slotted_lever
 from reports.compare.branch import departure
-from reports.compare.compare import Beside, Truth
+from reports.compare.compare import Truth
 from reports.compare.hardness import WINDOW_RAD, conditioning, near
 from reports.judge.cell import Checked, check
 from reports.judge.rules import judge
@@ -81,7 +81,7 @@ def test_a_run_is_found_in_each_of_the_other_assemblies() -> None:
         for own, told in ((crank, other), (unknown, other), (None, other), (off, False)):
             rest = {n: link for n, link in motion.links.items() if n != name}
             logged = replace(motion, links={**rest, **({name: own} if own else {})})
-            left = departure(Beside.of(truth, replace(shipped_run, motion=logged, gaps=still)))
+            left = departure(truth.beside(replace(shipped_run, motion=logged, gaps=still)))
             assert (left is not None) == told, signs
             assert left is None or left.time_s == 0.0
         seen += 1

@@ -14,7 +14,7 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.motion import LinkMotion
 from models.scene import Scene
-from reports.compare.compare import SETTLING, Beside, Truth, compare, incomplete
+from reports.compare.compare import SETTLING, Truth, compare, incomplete
 from reports.compare.errors import ErrorKind, Errors
 from reports.compare.last_turn import trace
 from reports.compare.tracks import angle_error, length, size
@@ -29,7 +29,7 @@ ROUNDING = 1e-12
 
 
 def compared(scene: Scene, run: Run) -> Errors:
-    return compare(Beside.of(Truth(scene), run))
+    return compare(Truth(scene).beside(run))
 
 
 @pytest.fixture(scope="module")
@@ -289,7 +289,7 @@ def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_r
     np.testing.assert_allclose(found["angle.rocker"], -1e-3, rtol=1e-6)
     for name in ("angle.coupler", "drive"):
         np.testing.assert_allclose(found[name], 0.0, atol=1e-12)
-    worst = compare(Beside.of(Truth(fourbar), run)).worst("gap")
+    worst = compare(Truth(fourbar).beside(run)).worst("gap")
     assert 0.0 < np.max(found["gap"]) <= worst.maximum
 
 

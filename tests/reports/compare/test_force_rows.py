@@ -17,7 +17,7 @@ from models.scene import Scene
 from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.scene.loads import ConstantFriction, Load
 from models.scene.tabulated import Tabulated
-from reports.compare.compare import Beside, Truth, compare
+from reports.compare.compare import Truth, compare
 from reports.compare.errors import Errors
 from reports.compare.hardness import inertia_share, load_slopes, loading
 from reports.compare.whole_errors import NEAR, force_rows, near_jumps
@@ -48,7 +48,7 @@ def _case(name: str) -> Scene:
 
 
 def _errors(done: Run, scene: Scene = FOURBAR) -> Errors:
-    return compare(Beside.of(Truth(scene), done))
+    return compare(Truth(scene).beside(done))
 
 
 def _with(done: Run, change: Callable[[Forces], Forces]) -> Run:
@@ -108,7 +108,7 @@ def test_samples_in_dead_points_are_left_out_and_counted() -> None:
 
     motion = truth.with_forces_at(time_s)
     truth._loaded[time_s.tobytes()] = replace(motion, forces=motion.forces.each_series(dead))
-    found = force_rows(Beside.of(truth, done))
+    found = force_rows(truth.beside(done))
     assert all(row.finite for row in found.rows)
     samples = sum(row.samples for row in found.rows if row.quantity == "torque")
     assert samples == time_s.size - 3

@@ -12,7 +12,7 @@ from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.joints import mass_ratio
 from models.scene.laws import ConstantSpeed, Oscillating
-from reports.compare.compare import SETTLING, Beside, Truth, compare
+from reports.compare.compare import SETTLING, Truth, compare
 from reports.compare.errors import Errors, SceneFacts
 from reports.compare.whole_errors import OF_STEPS, summed
 from reports.judge.cell import check
@@ -198,7 +198,7 @@ def test_the_drive_of_a_long_run_is_within_what_rounding_explains(
     dt_s = LAWS[law].period_s / steps_per_turn
     done = run(scene, state, engine, dt_s=dt_s, steps=steps, every=max(steps // 2000, 1))
     assert done.status == "ok"
-    assert share(scene, compare(Beside.of(Truth(scene), done))) < 0.7
+    assert share(scene, compare(Truth(scene).beside(done))) < 0.7
 
 
 @pytest.mark.parametrize("engine", ENGINES)

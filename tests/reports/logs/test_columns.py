@@ -11,7 +11,7 @@ import pytest
 from models.errors import CrankcheckError
 from reports.logs import text_lines
 from reports.logs.columns import Columns, columns_of, read_columns
-from reports.logs.text_rows import Layout
+from reports.logs.map_file import FileTable
 
 ROWS = [(0.0, 1.5), (0.1, -2.25), (0.2, 3e-7)]
 
@@ -78,9 +78,9 @@ def test_columns_that_spaces_line_up_quotes_and_rows_of_units_are_read(
 
 
 def test_decimal_commas_are_read_and_points_refused_where_the_map_says_so(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "t;a\n0,5;1,25\n"), Layout(decimal=","))
+    found = read_columns(written(tmp_path, "t;a\n0,5;1,25\n"), FileTable(decimal=","))
     assert_rows(found, [(0.5, 1.25)], ["t", "a"])
-    found = read_columns(written(tmp_path, "t;a\n0,5;1.25\n"), Layout(decimal=","))
+    found = read_columns(written(tmp_path, "t;a\n0,5;1.25\n"), FileTable(decimal=","))
     with pytest.raises(CrankcheckError, match=r"row 2, column 'a': found '1\.25', .* comma"):
         found.numbers("a")
 
@@ -125,7 +125,7 @@ def test_decimal_commas_in_text_cells_of_a_sheet_are_read_too(tmp_path: Path) ->
     path = tmp_path / "log.xlsx"
     rows = [["t", "a"], ["s", "deg"], ["0,5", "1,25"], [1.5, 2.5]]
     pd.DataFrame(rows).to_excel(path, index=False, header=False, startrow=2)
-    found = read_columns(path, Layout(decimal=","))
+    found = read_columns(path, FileTable(decimal=","))
     assert found.numbers("a [deg]").tolist() == [1.25, 2.5]
     assert found.at("a [deg]", 0).endswith("row 5, column 'a [deg]'")
 

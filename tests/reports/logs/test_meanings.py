@@ -16,11 +16,11 @@ from reports.compare.compare import Truth
 from reports.describe.free_motion import motion_frame
 from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of, read_columns
+from reports.logs.instants import time_of
 from reports.logs.kinds import KINDS, Meaning
-from reports.logs.map_file import FileTable, map_of, map_text, read_map
-from reports.logs.meanings import time_of, understood
+from reports.logs.map_file import FileTable, map_of, read_map
+from reports.logs.meanings import map_text, understood
 from reports.logs.names import SceneNames, meaning
-from reports.logs.text_rows import Layout
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 1.2, 400)
@@ -153,7 +153,7 @@ def test_times_of_a_clock_are_subtracted_before_they_are_rounded(case: str, tmp_
         else:
             note = {"crank_rad": ["1", *["-"] * 59]} if "words" in case else {}
             frame.assign(**note).to_csv(path, sep=";", index=False)
-        columns = read_columns(path, Layout(decimal=decimal))
+        columns = read_columns(path, FileTable(decimal=decimal))
     told = {
         "time": {"column": "clock", "unit": unit, "zero": "first"},
         "channel": [{"column": c, "ignore": True} for c in columns.raw if c == "crank_rad"],

@@ -60,7 +60,7 @@ def read_back(folder: Path, scene: Scene, drawing: Drawing | None = None) -> Sce
     path.write_text(drawn(scene, start, drawing) if drawing else build(scene, start))
     asked = ModelRequest(path, joint_of(scene), 10.0)
     own = read_model(path, asked.joint)
-    back = assembled(own, asked).scene
+    back = assembled(own, asked)[0]
     motion = solve(back, np.linspace(0.0, 0.01, 3), bound=False)
     own.tour(back, [motion.state(index) for index in range(3)])
     return back

@@ -106,7 +106,7 @@ def started(
 ) -> tuple[OwnModelSession, State]:
     path.write_text(MODEL.format(rocker=ROCKER, **BARE | CRANKS[crank]), encoding="utf-8")
     own = read_model(path, "motor")
-    scene = assembled(own, ModelRequest(path, "motor", 10.0)).scene
+    scene = assembled(own, ModelRequest(path, "motor", 10.0))[0]
     start = solve(scene, np.zeros(1), bound=False).state()
     settings = own.engine(Advised()).profiles["as-written"].values
     settings["integrator"] = integrator

@@ -143,7 +143,7 @@ def chain() -> tuple[Scene, State]:
 def test_they_move_a_chain_as_springs_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, start = chain()
     own = ran(scene, "pymunk", start=start, steps=200)
-    monkeypatch.setattr(acting, "chain_springs", lambda scene: ())
+    monkeypatch.setattr(acting.bodies, "chain_springs", lambda scene: ())
     other = ran(scene, "pymunk", start=start, steps=200)
     for name, link in own.motion.links.items():
         theirs = other.motion.links[name]

@@ -55,7 +55,7 @@ class SheetLog:
                 f"{drawing} are those of rigid links; `crankcheck judge` holds such a log to the "
                 "beam"
             )
-        columns = read_columns(path, map_.layout, wanted(scene, map_))
+        columns = read_columns(path, map_.file, wanted(scene, map_))
         return SheetLog.of_log(understood(columns, scene, map_))
 
     @staticmethod

@@ -2,6 +2,7 @@
 
 import cmath
 import functools
+import itertools
 import math
 from dataclasses import replace
 
@@ -15,7 +16,8 @@ from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks import load_task, shipped_tasks
 from models.lectures.tasks.positions import CouplerTask
 from reports.lectures.design.proof import by_reference, proven
-from tests.worlds.tiers import slowly
+from tests.analytic.lectures.synthesis.random_tasks import TASKS, proofs
+from tests.worlds.tiers import slow, slowly
 
 QUICK = ("three-positions", "by-angle", "isosceles", "slotted-lever", "whitworth",
          "power-4-points", "evans", "peaucellier")  # fmt: skip
@@ -55,6 +57,13 @@ def _hold(one: Examined, task: TaskTable, name: str) -> None:
         assert len(every) == len(exact)
         assert all(met.within for met in every), engine
         assert max(met.off for met in every) > 1e-13, "an engine is not the reference"
+
+
+@slow("five random tasks of each kind in three engines; benchmarks/synthesis.py has fifty")
+@pytest.mark.parametrize("kind", TASKS)
+def test_engines_lead_random_mechanisms_through_their_tasks(kind: str) -> None:
+    off = dict(itertools.islice(proofs(kind), 5))
+    assert max(max(each.values()) for each in off.values()) <= 1.0, off
 
 
 def moved(one: Examined, by: float) -> Examined:

@@ -149,6 +149,7 @@ LEVER = 'mechanism = "slotted-lever"\ntime_ratio = 1.5\nstroke_m = 0.1\nrod_m = 
 IMPOSSIBLE = [
     ("rocker", poses((0.0, 0.0, 10.0), (0.1, 0.2, 10.0)), "pole is at infinity, along 153.4 deg"),
     ("coupler", f"{poses(*SAME)}{MOVING}", "positions 1 and 2 coincide"),
+    ("rocker", poses(*SAME), "positions 1 and 2 coincide"),
     (
         "rocker",
         poses((0.1, 0.0, 0.0), (0.1, 0.0, 90.0)),

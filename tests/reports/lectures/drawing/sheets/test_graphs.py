@@ -15,7 +15,7 @@ from analytic.lectures.drawings.graphical import METHODS, Method
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from reports.figures.style import styled
+from reports.figures.style import SMALL, styled
 from reports.lectures.drawing.sheets.graph_drawing import DrawnGraphs, drawn_graphs, graph_log
 from reports.lectures.drawing.sheets.graph_orders import ErrorLine, graph_errors
 from reports.lectures.drawing.sheets.graph_page import caption, draw_graphs, laid_out
@@ -81,6 +81,10 @@ def test_scales_of_integration_are_those_of_the_problem_book() -> None:
     assert value.scale == pytest.approx(first.pole_mm * sheet.scale_x * first.scale)
     assert math.isnan(value.pole_mm)
     assert "from 4.67615 rad/s on (exact)" in caption(sheet, first)
+    texts = [text for axes in draw_graphs(sheet, "").figure.axes for text in axes.texts]
+    assert SMALL in [
+        text.get_fontsize() for text in texts if text.get_text() == caption(sheet, first)
+    ]
 
 
 @pytest.mark.parametrize("by", METHODS)
