@@ -94,12 +94,13 @@ def _reduced(task: TaskTable) -> Iterator[tuple[str, dict[str, object], int]]:
         if field is not None and getattr(task, key) != field.default:
             yield key, {key: field.default}, -1
     if isinstance(task, PositionsTask):
-        if getattr(task, "fixed_m", None) is not None:
+        also = "fixed_m and " if getattr(task, "fixed_m", None) is not None else ""
+        if also:
             yield "fixed_m", {"fixed_m": None, "moving_m": _pins(task, 0)}, -1
         for k in range(len(task.positions)) if len(task.positions) > 2 else ():
             rest = [each.model_dump() for n, each in enumerate(task.positions) if n != k]
             pins = {"moving_m": _pins(task, 1 if k == 0 else 0)} if len(rest) < 4 else {}
-            yield f"position {k + 1}", {"positions": rest, **pins}, k
+            yield f"{also}position {k + 1}", {"positions": rest, "fixed_m": None, **pins}, k
         return
     points: object = getattr(task, "points", None)
     if isinstance(points, int):

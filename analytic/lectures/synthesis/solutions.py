@@ -203,8 +203,7 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
 def _solved(task: TaskTable, progress: Progress | None, *, few: bool = False) -> Solutions:
     """Return the solutions of a task itself. Raises CrankcheckError for a task without any."""
     proposals, looked = _proposals(task, progress, few=few)
-    examined: list[Examined] = []
-    refused = []
+    examined, refused = list[Examined](), list[str]()
     for number, proposal in enumerate(itertools.chain(proposals, _at_last(task, examined)), 1):
         draft = replace(
             proposal.draft, name=task.name, source=task.source, note=task.note, loads=task.loads
