@@ -148,14 +148,18 @@ FALLEN_BACK = 3
 """Number of examined pairs if all have a defect."""
 
 
-def coupler_proposals(task: CouplerTask, *, few: bool = False) -> tuple[list[Proposal], int]:
+def coupler_proposals(
+    task: CouplerTask, *, few: bool = False, unled: bool = False
+) -> tuple[list[Proposal], int]:
     """Return the four-bars of a task, or ``few`` of very many, and the number of pairs of cranks
-    considered. Raises CrankcheckError for positions that coincide; a point that stays; no crank
-    that holds the body in all positions."""
+    considered; ``unled`` the crank or slider that does what no four-bar can be led through. Raises
+    CrankcheckError for positions that coincide; a point that stays; no crank that holds the body in
+    all positions."""
     poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     body = CarriedBody(task.name, task.source, poses, task.own_points)
     refuse_coinciding(body.poses, body.size)
-    special = special_proposals(body, given_positions(body)) if _is_special(task, body) else []
+    unled = unled or _is_special(task, body)
+    special = special_proposals(body, given_positions(body)) if unled else []
     if special and special[0].allowed <= SURELY:
         return special, len(special)
     try:

@@ -268,10 +268,10 @@ class CarriedBody:
         told = {**(chosen or {}), "driven at": PIVOTS[driven]}
         return Proposal(draft, INPUT, positions, told, tuple(steps))
 
-    def asked(self, driver_rad: float, pose: PlanePose) -> PrecisionPosition:
+    def asked(self, driver_rad: float, pose: PlanePose, link: str = COUPLER) -> PrecisionPosition:
         """Return the requirement of a pose while the driver has an angle [rad]."""
         places = (AskedPlace(point, pose.at(place)) for point, place in self.points.items())
-        return PrecisionPosition(driver_rad, (AskedAngle(COUPLER, pose.angle), *places))
+        return PrecisionPosition(driver_rad, (AskedAngle(link, pose.angle), *places))
 
     def letter(self, moving: complex, which: int) -> str:
         """Return the name of a pin: that of the coincident point of the body, or a free letter."""

@@ -4,8 +4,9 @@ A ram on too short a rod goes beyond the ends of its lever, and turns back at ot
 positions do not show it. The reference follows it over a turn.
 """
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from analytic.lectures.synthesis.coupler import coupler_proposals
@@ -202,8 +203,8 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
 def _solved(task: TaskTable, progress: Progress | None, *, few: bool = False) -> Solutions:
     """Return the solutions of a task itself. Raises CrankcheckError for a task without any."""
     proposals, looked = _proposals(task, progress, few=few)
-    examined, refused = [], []
-    for number, proposal in enumerate(proposals, 1):
+    examined, refused = list[Examined](), list[str]()
+    for number, proposal in enumerate(itertools.chain(proposals, _at_last(task, examined)), 1):
         draft = replace(
             proposal.draft, name=task.name, source=task.source, note=task.note, loads=task.loads
         )
@@ -216,12 +217,20 @@ def _solved(task: TaskTable, progress: Progress | None, *, few: bool = False) ->
                 raise  # of the task's file, and of no mechanism
             refused.append(str(error))
         if progress is not None and not isinstance(task, PathTable):
-            progress(PROPOSED + (1.0 - PROPOSED) * number / len(proposals), math.inf)
+            progress(PROPOSED + (1.0 - PROPOSED) * number / (1 + len(proposals)), math.inf)
     if not examined:
         why = f": {refused[0]}" if refused else ""
         raise CrankcheckError(f"{task.name}: no mechanism does it{why}")
     named = [_named(one, task, number) for number, one in enumerate(ranked(examined), 1)]
     return Solutions(task, tuple(named), looked, tuple(refused))
+
+
+def _at_last(task: TaskTable, examined: Sequence[Examined]) -> Iterator[Proposal]:
+    """Yield the crank or slider of two positions if all examined ones have a defect."""
+    if not isinstance(task, CouplerTask) or task.distances_m or task.driving_dyad:
+        return
+    if len(task.positions) == 2 and all(one.defects for one in examined):
+        yield from coupler_proposals(task, unled=True)[0]
 
 
 def unfulfilled(one: Examined, task: TaskTable) -> list[str]:

@@ -92,16 +92,8 @@ def _about_one_pivot(body: CarriedBody) -> tuple[list[design.Proposal], float]:
     name = PIVOTS[0]
     links = {INPUT: plate({name: own, **shown})}
     draft = Draft(body.name, body.source, {name: pivot}, links, {})
-    positions = tuple(
-        design.PrecisionPosition(
-            pose.angle,
-            (
-                design.AskedAngle(INPUT, pose.angle),
-                *(design.AskedPlace(key, pose.at(at)) for key, at in points.items()),
-            ),
-        )
-        for pose in body.poses
-    )
+    turned = replace(body, points=points)
+    positions = tuple(turned.asked(pose.angle, pose, INPUT) for pose in body.poses)
     dot = design.Dot(pivot, name, "result", fixed=True)
     rays = design.rays(pivot, (pose.at(at) for pose in body.poses for at in shown.values()))
     step = design.DrawingStep(f"all poles are one point: the body turns about {name}", (*rays, dot))
@@ -115,25 +107,18 @@ def _without_turn(body: CarriedBody) -> tuple[list[design.Proposal], float]:
     places = [pose.point for pose in body.poses]
     slide = PoseSlide.of(places, 0j)
     span = max(abs(b - a) for a, b in itertools.combinations(places, 2))
-    if slide.off <= EXACT * span:
-        return [_on_a_line(body, slide)], slide.off
-    if len(places) == 3:
+    if slide.off > EXACT * span and len(places) == 3:
         return [], math.inf
-    three = max(itertools.combinations(places, 3), key=_area)
-    centre = circle_through(*three)
-    if centre is None:
-        return [_on_a_line(body, slide)], slide.off
-    radius = abs(three[0] - centre)
-    off = max(abs(abs(place - centre) - radius) for place in places)
-    if slide.off < off:
-        return [_on_a_line(body, slide)], slide.off
-    # The radius is that of the first place, and may be off by as much the other way.
-    return list(_parallelograms(body, centre - places[0], radius)), 2.0 * off
-
-
-def _area(three: tuple[complex, complex, complex]) -> float:
-    a, b, c = three
-    return abs(((b - a).conjugate() * (c - a)).imag)
+    if slide.off > EXACT * span:
+        triples = itertools.combinations(places, 3)
+        three = max(triples, key=lambda p: abs(((p[1] - p[0]).conjugate() * (p[2] - p[0])).imag))
+        if (centre := circle_through(*three)) is not None:
+            radius = abs(three[0] - centre)
+            off = max(abs(abs(place - centre) - radius) for place in places)
+            if off <= slide.off:
+                # The radius is that of the first place, and may be off by as much the other way.
+                return list(_parallelograms(body, centre - places[0], radius)), 2.0 * off
+    return [_on_a_line(body, slide)], slide.off
 
 
 def _parallelograms(
