@@ -242,6 +242,8 @@ def _why_no_kind(words: Sequence[str], kind: str, unit: str) -> str:
 
 AMBIGUOUS = {"d", "f", "g", "h", "m", "n", "o", *INDICES}
 """Small letters beside an axis that may be no point: a derivative, a force, a unit, an index."""
+OF_POINTS = "(?i:pt|point|joint|jnt|node|marker|pin)?"
+"""Words in front of a point's name in a word: PointC_x."""
 LONG = 5
 """Names of bodies from this length on are looked for within words."""
 SHORT = 2
@@ -335,12 +337,13 @@ class SceneNames:
                     return True
             elif name in self.points:
                 digit = r"\d?" * (not name[-1].isdigit())
-                alone = f"(?:[A-Za-z]?(?i:{own})|[a-z][A-Z]{own}){digit}"
-                axis = rf"(?i:{own}{digit}[va]?[xy]\d?|[va]?[xy]{own}{digit})"
+                alone = f"(?:[A-Za-z]?(?i:{own})|(?:{OF_POINTS}|[a-z][A-Z]){own}(?:pt)?){digit}"
+                moved = f"(?:[A-Za-z]{{0,2}}|{OF_POINTS}){own}{digit}(?i:{_QUANTITIES}|[va]?[xy]|v)"
+                axis = rf"(?i:{own}{digit}[va]?[xy]\d?|[va]?[xy]{own}{digit})|{moved}\d?"
                 for word in re.split(r"[^A-Za-z0-9]+", text):
                     moves = not {*AXES, "v", "a"}.isdisjoint({*words} - {word.lower()})
                     if (moves and re.fullmatch(alone, word)) or (
-                        word != "by" and re.fullmatch(axis, word)
+                        word.lower() not in ("by", "day") and re.fullmatch(axis, word)
                     ):
                         return True
         return False
@@ -365,7 +368,8 @@ def is_named(column: str, named: SceneNames) -> bool:
     """Return whether a column names a link, point or slider, or a quantity that is known."""
     text, unit = kinds.without_unit(column)
     bodies, words = named.found(re.sub(MODEL, " ", text), drivers=False)
-    foreign = not FOREIGN.union(INDICES if text.endswith((")", "]")) else ()).isdisjoint(words)
+    others = INDICES if text.endswith((")", "]")) or words == ["i"] else ()
+    foreign = not FOREIGN.union(others).isdisjoint(words)
     told = QUANTITY_WORDS.intersection(plain_words(words))
     last = rf"(?<![A-Za-z0-9])({'|'.join(map(re.escape, bodies)) or '(?!)'})\W*$"
     if foreign and not told and max(map(len, bodies), default=0) == 1 and re.search(last, text):
