@@ -371,7 +371,7 @@ def is_named(column: str, named: SceneNames) -> bool:
     others = INDICES if text.endswith((")", "]")) or words == ["i"] else ()
     foreign = not FOREIGN.union(others).isdisjoint(words)
     told = QUANTITY_WORDS.intersection(plain_words(words))
-    last = rf"(?<![A-Za-z0-9])({'|'.join(map(re.escape, bodies)) or '(?!)'})\W*$"
+    last = rf"(?<![A-Za-hj-z0-9])({'|'.join(map(re.escape, bodies)) or '(?!)'})\W*$"
     if foreign and not told and max(map(len, bodies), default=0) == 1 and re.search(last, text):
         return False  # a unit, as the C of temperature_C
     if not unit:
