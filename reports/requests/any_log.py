@@ -78,9 +78,8 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     if isinstance(log, str | PathLike):
         path = path_of(log, "log")
         # No name for the columns, which take as much memory as all readings.
-        return understood(
-            columns_worth(path, scene, told, forces=forces), scene, told, forces=forces
-        )
+        took = {"forces": forces}
+        return understood(columns_worth(path, scene, told, **took), scene, told, **took)
     frame, source = _frame_of(log)
     return understood(columns_of(frame, source), scene, told, forces=forces)
 

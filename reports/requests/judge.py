@@ -45,8 +45,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     An entry that a refusal of the log names, such as a decimal comma, is made. Raises
     CrankcheckError for a log that no map alone can mend.
     """
-    # pandas, which takes a third of a second
-    from reports.logs.meanings import blank_map, columns_worth, map_text, understood
+    from reports.logs.meanings import blank_map, columns_worth, map_text, understood  # pandas
 
     fault: CrankcheckError | None = None
     tried, entries = [map_], dict[str, str]()
