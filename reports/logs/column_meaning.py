@@ -1,6 +1,7 @@
 """Meaning of a column: by its name, corrected by the map; and its numbers in SI."""
 
 import math
+import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 
@@ -115,15 +116,21 @@ FLAT = 1e-9
 
 LOOKED_AT = 10_000
 """Rows in which the numbers of a column are looked for."""
+WITH_UNIT = re.compile(
+    r"[-+]?(\d+[.,]?\d*|[.,]\d+)(e[-+]?\d+)?\s*([^\W\d]|[°%/*·^²])+(-?[12])?", re.I
+)
+"""A number with a unit behind it: 218.7 deg."""
 
 
 def has_numbers(cells: Sequence[object]) -> bool:
-    """True if some cell is a finite number; truths are none."""
+    """True if some cell is a finite number, with or without a unit; truths are none."""
     values = np.asarray(cells[:LOOKED_AT])
     if values.dtype.kind in "iuf":
         return bool(np.isfinite(values).any())
     return any(
-        is_number(cell.strip()) if isinstance(cell, str) else _is_finite(cell)
+        is_number(cell.strip()) or bool(WITH_UNIT.fullmatch(cell.strip()))
+        if isinstance(cell, str)
+        else _is_finite(cell)
         for cell in values.tolist()
     )
 

@@ -22,6 +22,7 @@ from models.errors import CrankcheckError, cut, few
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Scene
 from models.scene.joints import joined_at
+from reports.logs.kinds import OF_TIME
 from reports.output.numbers import listed
 
 if TYPE_CHECKING:
@@ -205,6 +206,9 @@ def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, floa
     or mega; None for other columns."""
     for stem, kind, unit in _stems(column):
         place = places.get(stem)
+        if place is None:  # torque in capitals, point b; but not where case tells two apart
+            alike = {where for name, where in places.items() if name.lower() == stem.lower()}
+            place = alike.pop() if len(alike) == 1 else None
         if place and (place[0] in MOMENTS) == (kind == "moment"):
             known = {"": 1.0, **UNITS[kind]}
             return place, known.get(unit, known.get(unit.lower(), math.nan))
@@ -213,7 +217,7 @@ def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, floa
 
 def _stems(column: str) -> Iterator[tuple[str, str, str]]:
     """Yield names without a unit, with the kind of the unit, and its spelling, if any."""
-    bare = re.sub(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", r"_\1", column)
+    bare = re.sub(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", r"_\1", OF_TIME.sub(" ", column).strip())
     words = re.sub(r"[\s._·*]+", "_", bare.strip()).strip("_")
     for kind, units in UNITS.items():
         for unit in units:
@@ -235,7 +239,26 @@ def why_not_judged(column: str, scene: Scene) -> str:
     if names_force(column, scene):
         return A_FORCE
     reasons = _others(scene)
-    return next((reasons[stem] for stem, _, _ in _stems(column) if stem in reasons), "")
+    why = next((reasons[stem] for stem, _, _ in _stems(column) if stem in reasons), "")
+    return why or (UNCLEAR if looks_like_force(column, scene) else "")
+
+
+_JOIN = r"[\s_.·⋅*-]*"
+FORCE_UNIT = re.compile(
+    rf"(?:[\[(]\s*|[\s_.,/]|^)(?:[kmM]?N(?:{_JOIN}[cm]?m)?|(?i:newtons?(?:{_JOIN}[a-z]+)?"
+    rf"|lbf?{_JOIN}(?:in|ft)|(?:in|ft){_JOIN}lbf?|lbf|kgf|ozf|k?n_m|nmm))\s*[\])]?\s*$"
+)
+UNCLEAR = "it may be a force, which is judged by a name such as torque_n_m"
+
+
+def looks_like_force(column: str, scene: Scene) -> bool:
+    """True if a column is one of forces, has a unit of force or torque, or is a letter of force
+    with its place or direction: T (N m), FB, RAx, F12x, Fx."""
+    points = "|".join(re.escape(name) for name in (*scene.ground, *scene.pins) if len(name) < 3)
+    letters = rf"(?:[FRN][xy]?_?(?:{points or '(?!)'})|F_?\d\d)_?[xyXY]?|F_?\d?[xyXY]"
+    stem = re.sub(r"[\s_.]+", "_", re.sub(r"\s*[\[(].*$", "", column.strip()))
+    has_letters = re.fullmatch(letters, stem) is not None
+    return has_letters or bool(FORCE_UNIT.search(column)) or names_force(column, scene)
 
 
 def _others(scene: Scene) -> dict[str, str]:

@@ -14,15 +14,21 @@ from reports.logs.channel import Channel, Reading, is_driver
 from reports.logs.columns import ONE_FILE, SPARSE, Columns
 from reports.logs.kinds import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
+from reports.logs.names import FOREIGN
 
 TIME_NAMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime",
               "simulation time", "elapsed", "elapsed time", "time steps",
               "timesteps"}  # fmt: skip
+LIKELY = {"tout", "uptime", "zeit", "temps", "tiempo", "tempo", "clock", "stamp", "header stamp",
+          "field header stamp", "analysis time", "relative time", "time since start", "run time",
+          "runtime"}  # fmt: skip
+"""Names of times where no other column has one of `TIME_NAMES`."""
 
 
 def time_of(column: str, told: str = "") -> tuple[str, str] | None:
-    """Return kind (``time``, ``velocity time``, ``acceleration time``) and unit, perhaps ``told``,
-    of a column of times; None for others. Raises CrankcheckError for two units."""
+    """Return kind (``time``, ``likely time``, ``velocity time``, ``acceleration time``) and unit,
+    perhaps ``told``, of a column of times; None for others. Raises CrankcheckError for two units.
+    """
     text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", without_unit(column)[0])
     words = [word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", text) if word]
     unit = ""
@@ -31,10 +37,17 @@ def time_of(column: str, told: str = "") -> tuple[str, str] | None:
         if words[-1] == "in":
             words.pop()
     name = " ".join(words)
-    if name not in TIME_NAMES and name not in ("velocity time", "acceleration time"):
+    lone = spelled_unit(name) if len(name) > 1 and name != "min" else ""  # of millis, seconds
+    axis = name == "x axis" and DIMENSION.get(without_unit(column)[1]) == "time"
+    likely = name in LIKELY or re.fullmatch(r"time (plot )?\d+|time\d+", name)
+    if name in TIME_NAMES:
+        name = "time"
+    elif likely or axis or DIMENSION.get(lone) == "time":
+        name, unit = "likely time", unit or lone
+    elif name not in ("velocity time", "acceleration time"):
         return None
     unit = told or one_unit(column, unit) or si("time")
-    return ("time" if name in TIME_NAMES else name, unit) if DIMENSION[unit] == "time" else None
+    return (name, unit) if DIMENSION[unit] == "time" else None
 
 
 def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
@@ -45,6 +58,9 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
     for column in columns.raw:
         if column not in others and (time := time_of(column, map_.time.unit or "")):
             found.setdefault(time[0], []).append(column)
+    likely = found.pop("likely time", [])
+    if likely and "time" not in found:
+        found["time"] = likely
     if map_.time.column is not None:
         columns.require([map_.time.column], "[time] column")
         found["time"] = [map_.time.column]
@@ -158,11 +174,11 @@ def driver_channel(
     forces: bool,
 ) -> Channel:
     """Return the driver's angle, at which a log without times is judged. Raises CrankcheckError
-    where that is not logged, where one of the ``others`` may be the times, and for scenes and
-    ``forces`` that take times."""
+    where that is not logged, where one of the ``others`` may be the times, by its name or as it
+    rises throughout, and for scenes and ``forces`` that take times."""
     crank = next((each for each in channels if is_driver(each, scene)), None)
     cranked = scene.driver.is_crank and not (scene.is_free or scene.elastic or forces)
-    clock = next(filter(may_be_times, others), "")
+    clock = next((n for n in others if may_be_times(n) or _rises(columns, n)), "")
     if crank and cranked and not clock:
         return crank
     cure = ", which forces take" * forces
@@ -180,6 +196,22 @@ def driver_channel(
 
 CLOCKS = {"time", "times", "t", "timestamp", "stamp", "clock", "date", "datetime", "sec", "secs",
           "seconds", "zeit", "temps", "tiempo", "tempo", "tid", "czas"}  # fmt: skip
+
+
+COUNTERS = {"frame", "frames", "index", "idx", "row", "n", "no", "nr", "num", "number", "sample",
+            "samples", "seq", "step", "steps", "iteration", "iter", "id", "i", "k", "unnamed",
+            *FOREIGN}  # fmt: skip
+
+
+def _rises(columns: Columns, name: str) -> bool:
+    """True if a column that counts no rows rises from row to row."""
+    words = re.split(r"[^a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())
+    try:
+        values = columns.numbers(name)
+    except (CrankcheckError, ValueError):
+        return False
+    counts = not COUNTERS.isdisjoint(words) or not any(words)
+    return not counts and values.size > 2 and bool(np.all(np.diff(values) > 0.0))
 
 
 def unit_named(column: str) -> str:

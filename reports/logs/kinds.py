@@ -26,6 +26,7 @@ Dimension = Literal[
 DEG, REV, INCH = math.pi / 180.0, math.tau, 0.0254
 _ANGLES = {"rad": 1.0, "deg": DEG, "mrad": 1e-3, "rev": REV}
 _MOVING = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": INCH, "ft": 12 * INCH}
+_RARE = {"dm": 0.1, "km": 1e3}
 TYPICAL: Mapping[Dimension, Mapping[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
     "angle": _ANGLES,
@@ -39,8 +40,8 @@ TYPICAL: Mapping[Dimension, Mapping[str, float]] = {
 
 
 def _rates(sizes: Mapping[str, float], power: int) -> dict[str, float]:
-    """Return rates of units, over other times as well: deg/min, mm/ms^2."""
-    times = {"s": 1.0, "ms": 1e-3, "min": 60.0}
+    """Return rates of units, over other times as well: deg/min, mm/ms^2, km/h."""
+    times = {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
     return {
         f"{unit}/{time}{'^2' * (power - 1)}": size / each**power
         for time, each in times.items()
@@ -50,12 +51,14 @@ def _rates(sizes: Mapping[str, float], power: int) -> dict[str, float]:
 
 
 UNITS: Mapping[Dimension, Mapping[str, float]] = {
-    **TYPICAL,
+    "time": {**TYPICAL["time"], "h": 3600.0},
+    "angle": {**_ANGLES, "gon": REV / 400.0},
     "angular velocity": {**TYPICAL["angular velocity"], **_rates(_ANGLES, 1)},
     "angular acceleration": {
         **TYPICAL["angular acceleration"], **_rates(_ANGLES, 2), "rpm/s": REV / 60.0},
-    "velocity": _rates(_MOVING, 1),
-    "acceleration": _rates(_MOVING, 2),
+    "length": {**TYPICAL["length"], **_RARE},
+    "velocity": _rates({**_MOVING, **_RARE}, 1),
+    "acceleration": {**_rates({**_MOVING, **_RARE}, 2), "g": 9.80665},
 }  # fmt: skip
 """By dimension: each unit in SI, the SI unit first."""
 
@@ -69,10 +72,11 @@ _WORDS = {
     **dict.fromkeys(("radian", "radians", "rads"), "rad"),
     **dict.fromkeys(("degree", "degrees"), "deg"),
     **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
-    **dict.fromkeys(("msec", "msecs", "millisecond", "milliseconds"), "ms"),
-    **dict.fromkeys(("usec", "microsecond", "microseconds"), "us"),
+    **dict.fromkeys(("msec", "msecs", "millisecond", "milliseconds", "millis"), "ms"),
+    **dict.fromkeys(("usec", "microsecond", "microseconds", "micros"), "us"),
     **dict.fromkeys(("nsec", "nanosecond", "nanoseconds"), "ns"),
-    **dict.fromkeys(("mins", "minute", "minutes"), "min"),
+    **dict.fromkeys(("mins", "minute", "minutes"), "min"), "micron": "um", "microns": "um",
+    **dict.fromkeys(("hour", "hours"), "h"),
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
     **dict.fromkeys(("millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
     **dict.fromkeys(("centimeter", "centimeters", "centimetre", "centimetres"), "cm"),
@@ -81,7 +85,8 @@ _WORDS = {
 }  # fmt: skip
 _WHOLE = {"rads": "rad/s", "radps": "rad/s", "dps": "deg/s", "degps": "deg/s", "mps": "m/s",
           "mmps": "mm/s", "rps": "rev/s", "r/s": "rev/s",
-          **dict.fromkeys(("1/min", "r/min", "u/min", "rev/min"), "rpm")}  # fmt: skip
+          **dict.fromkeys(
+              ("1/min", "r/min", "u/min", "rev/min", "tr/min", "min-1"), "rpm")}  # fmt: skip
 """Spellings that are no product of units."""
 DIMENSION: dict[str, Dimension] = {
     unit: dimension for dimension, units in UNITS.items() for unit in units
@@ -114,6 +119,8 @@ def _key(text: str) -> str:
     return re.sub(r"\s+", " ", text).strip(" .")
 
 
+OF_TIME = re.compile(r"(?<=\w)\s*[\[(]\s*t\s*[\])]")
+"""Sign of a function of time: x_C(t)."""
 LONGEST = 40
 """Characters of a unit."""
 
@@ -143,14 +150,14 @@ def spelled_unit(text: str) -> str:
 
 def without_unit(column: str) -> tuple[str, str]:
     """Return a name without the unit in brackets, and that unit: the last, of several."""
-    column = _over(column)
+    column = _over(OF_TIME.sub(" ", column))
     for hit in reversed(list(BRACKETS.finditer(column))):
         if unit := spelled_unit(hit[1]):
             return f"{column[: hit.start()]} {column[hit.end() :]}".strip(), unit
     return column, ""
 
 
-LAST_ALONE = {"m", "in", "ft", "cm", "min"}
+LAST_ALONE = {"m", "in", "ft", "cm", "min", "g"}
 """Units that have other meanings where they do not stand last."""
 MOST_WORDS = 12
 """Words at the end of a name that are searched for its unit."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
+from pathlib import Path
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from reports.logs import column_meaning, instants, map_file
 from reports.logs.channel import Channel, GapColumn, OwnLog, Reading
-from reports.logs.columns import Columns
+from reports.logs.columns import Columns, read_columns
 from reports.logs.force_columns import TIMES, beside_forces, log_forces, names_force, why_not_judged
 from reports.logs.names import SceneNames, is_named, meaning
 
@@ -61,6 +62,7 @@ def understood(
         base, unit, zero_s = instants.of_rows(columns, main, map_, scene)
     else:
         others = {name for name, reason in unused if reason != map_file.LEFT_OUT} | {*further}
+        others -= {name for name, _ in unjudged}  # which are refused themselves
         angle = instants.driver_channel(columns, scene, channels, others, forces=bool(borne))
         crank = column_meaning.reading(columns, angle, told.get(angle.column), np.empty(0))
         base = instants.turning_s(crank, scene)
@@ -100,18 +102,31 @@ def wanted(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callabl
     return lambda column: is_meant(column) or (column not in ignored and is_named(column, named))
 
 
+def columns_worth(path: Path, scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Columns:
+    """Return the columns of a file that are worth reading; of one without times all, as one of them
+    may be the times. Raises CrankcheckError."""
+    columns = read_columns(path, map_.file, wanted(scene, map_, forces=forces))
+    ignored = {one.column for one in map_.channel if one.ignore}
+    if map_.time.column or _times(columns.raw, ignored):
+        return columns
+    return read_columns(path, map_.file, lambda name: name not in ignored)
+
+
 def _meant(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
     """Return a test of the names of columns with a meaning, but of points of the ground."""
     named = SceneNames(scene)
     told = {one.column: one for one in map_.channel}
+    clocks = {map_.time.column, *(one.time for one in map_.channel)}
 
     def is_wanted(column: str) -> bool:
+        if column in clocks:
+            return True
         if column in told:
             return not told[column].ignore
         if forces and names_force(column, scene):
             return True
         try:
-            if column == map_.time.column or instants.time_of(column):
+            if instants.time_of(column):
                 return True
             found = meaning(column, named)
         except CrankcheckError:
@@ -205,8 +220,10 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     bodies = list(filter(_meant(scene, map_), others))
     if times and bodies:
         return None
+    angle = f', or of = "{scene.driver.link}" and kind = "angle" in a [[channel]]'
+    angle *= scene.driver.is_crank and not scene.is_free
     lacks = [
-        *([] if times else ["the column of the times, in [time]"]),
+        *([] if times else [f"the column of the times, in [time]{angle}"]),
         *([] if bodies else ["of at least one column what it is of, in a [[channel]]"]),
     ]
     named = SceneNames(scene)

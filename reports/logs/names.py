@@ -14,11 +14,13 @@ from typing import Literal
 from models.errors import cut
 from models.scene import GROUND, Scene
 from reports.logs import kinds
+from reports.logs.force_columns import looks_like_force
 
 FILLERS = {"angular", "rotational", "linear", "lin", "translational", "of", "the", "link", "body",
            "point", "joint", "joints", "revolute", "hinge", "pin", "slider", "block", "log", "get",
            "at", "on", "in", "signal", "value", "state", "states", "field", "cm", "mea", "measure",
-           "marker", "xform", "transform", "rigidbody", "global", "world", "sensor"}  # fmt: skip
+           "marker", "xform", "transform", "rigidbody", "global", "world", "sensor", "component",
+           "tf", "translation", "assem"}  # fmt: skip
 AFTER = {"on", "of", "at"}
 """Words that follow a body's name."""
 INDEX = re.compile(r"\[([012])\]")
@@ -51,7 +53,8 @@ def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | s
     if not bodies:
         return "it names no link, point or slider of the scene"
     relative = not RELATIVE.isdisjoint(words)
-    words = plain_words(words)
+    words = [SHORTHAND.get(word, word) for word in plain_words(words)]
+    words = " ".join(words).split()
     if not {"angular", "rotational", "ang"}.isdisjoint(words):
         words = ["angle" if word in ("displacement", "disp") else word for word in words]
     words = [word for word in words if word not in FILLERS | RELATIVE]
@@ -63,8 +66,10 @@ def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | s
         return kinds.Meaning(of, None, True, unit or "m")
     slider = "slider" in re.split(r"[^a-z]+", column.lower())
     kind = kind_of_words(named.kinds_of(of), words, unit, slider=slider)
+    if not told and VOLTS.search(column):
+        return "'V' is no unit that is known, such as deg/s or mm/s^2"
     if isinstance(kind, str):
-        odd = "" if told else _odd_unit(column, named)
+        odd = "" if told else _odd_unit(kinds.OF_TIME.sub("", column), named)
         return f"{cut(odd)!r} is no unit that is known, such as deg/s or mm/s^2" if odd else kind
     if kind.dimension == "angle" and re.search(r"rads\W*$", column, re.IGNORECASE):
         unit = told or "rad"  # more often radians than radians per second
@@ -111,8 +116,8 @@ DERIVATIVES: Mapping[str, Sequence[set[str]]] = {
     "link": (
         {"theta", "angle", "angles", "ang", "phi", "rot", "rotation", "orientation", "q", "rz",
          "euler", "yaw", "heading", *PLACES},
-        {"omega", "w", "dtheta", "qd", *SPEEDS},
-        {"alpha", "b", "qdd", *ACCELERATIONS},
+        {"omega", "w", "dtheta", "qd", "wz", *SPEEDS},
+        {"alpha", "b", "ddtheta", "qdd", "wdtz", *ACCELERATIONS},
     ),
     "slider": (
         {"displacement", "disp", "s", "stroke", "travel", *PLACES}, SPEEDS, ACCELERATIONS),
@@ -131,9 +136,15 @@ VAGUE = {"a", "b", "s", "p", "v", "w", "rate", "place", "location", "total", "si
 QUANTITY_WORDS = {"torque", "force", "moment", "reaction", "deflection", "extension", "angular",
                   *(VOCABULARY - FILLERS - RELATIVE - DRIVERS - VAGUE)}  # fmt: skip
 FOREIGN = {"temperature", "temp", "current", "amps", "voltage", "volts", "volt", "power", "energy",
-           "battery", "pressure", "humidity", "cpu", "memory", "count", "counter",
-           "i", "u", "t"}  # fmt: skip
+           "battery", "pressure", "humidity", "cpu", "memory", "count", "counter"}  # fmt: skip
 """Words of quantities of no mechanism: the C of temperature_C is a unit."""
+INDICES = {"i", "u", "t"}
+"""Letters of an index, a current, a voltage, a temperature: the A of i (A) is a unit."""
+VOLTS = re.compile(r"[\[(]\s*V\s*[\])]\s*$")
+SHORTHAND = {"dt": "dot", "dtdt": "ddot", "dd": "ddot", "vm": "v mag", "vmag": "v mag",
+             "accm": "a mag", "amag": "a mag", "xd": "x dot", "yd": "y dot", "xdd": "x ddot",
+             "ydd": "y ddot"}  # fmt: skip
+"""Words of programs behind a body's name: GetPosDt, VM, ACCM."""
 _JOINABLE = "|".join(sorted({*OF_PLACES, *SPEEDS, *ACCELERATIONS} - VAGUE, key=len, reverse=True))
 JOINED = re.compile(rf"^(ang|angular|lin|linear|rot|rotational|trans)(?=(?:{_JOINABLE})\d*$)")
 DOTTED = re.compile(r"^(theta|phi|q|x|y|s|omega)(d?dot)\d*$")
@@ -229,6 +240,12 @@ def _why_no_kind(words: Sequence[str], kind: str, unit: str) -> str:
     return f"{of} a {kind} has {told[kind]}"
 
 
+AMBIGUOUS = {"d", "f", "g", "h", "m", "n", "o", *INDICES}
+"""Small letters beside an axis that may be no point: a derivative, a force, a unit, an index."""
+OF_POINTS = "(?i:pt|point|joint|jnt|node|marker|pin)?"
+"""Words in front of a point's name in a word: PointC_x."""
+LONG = 5
+"""Names of bodies from this length on are looked for within words."""
 SHORT = 2
 """Names of bodies up to this length depend on case: `a` is an acceleration, `A` a point."""
 
@@ -272,6 +289,8 @@ class SceneNames:
         bodies, words = self._apart(text)
         if not bodies:
             bodies, words = self._apart(self._parted(text))
+        if not bodies:
+            bodies, words = self._apart(self._raised(text))
         if drivers and not bodies and not DRIVERS.isdisjoint(words):
             bodies = [self.scene.driver.name]
             words = [word for word in words if word not in DRIVERS]
@@ -287,11 +306,47 @@ class SceneNames:
         text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
         points = "|".join(re.escape(name) for name in self.bodies if name in self.points)
         links = "|".join(re.escape(name) for name in self.bodies if len(name) > SHORT)
-        quantities = f"(?i:(?:ang|angular|linear)?(?:{_QUANTITIES}))"
+        quantities = f"(?i:(?:ang|angular|linear)?(?:{_QUANTITIES})|deg|degrees|rad|rpm)"
         for names, others in ((points, "[vaVA]?[xyXY]"), (f"(?i:{links})", quantities)):
             for pair in (f"({names})({others})", f"({others})({names})"):
                 text = re.sub(rf"(?<![A-Za-z0-9]){pair}(?![A-Za-z0-9])", r"\1 \2", text)
         return text
+
+    def _raised(self, text: str) -> str:
+        """Return a text with small letters of points as capitals where an axis is named: c_x."""
+        every = (name.lower() for name in self.points if len(name) == 1)
+        letters = f"[{''.join(sorted({*every} - VOCABULARY - AMBIGUOUS))}]"
+        if letters == "[]":
+            return text
+        for pair in (f"({letters})([va]?[xy])", f"([va]?[xy])({letters})"):
+            text = re.sub(rf"(?<![A-Za-z0-9]){pair}(?![A-Za-z0-9])", r"\1 \2", text)
+        if AXES.keys().isdisjoint(re.split(r"[^a-z0-9]+", text.lower())):
+            return text
+        pattern = rf"(?<![A-Za-z0-9]){letters}(?![A-Za-z0-9])"
+        return re.sub(pattern, lambda hit: hit[0].upper(), text)
+
+    def is_glued(self, text: str, words: Iterable[str]) -> bool:
+        """True if a word begins or ends with a body's name, or, for points of one or two letters,
+        is that and a digit or another letter, beside an axis: rockerw, C1_x, OC_x."""
+        for name in self.bodies:
+            own = re.escape(name) + r"(?!\d)" * name[-1].isdigit()
+            if len(name) > SHORT and name != GROUND:
+                rest = f"(?:[a-z]?|degs?|rads?|rpm|{_QUANTITIES})(?![a-z])"
+                part = own if len(name) >= LONG else f"(?<![a-z])[a-z]?{own}{rest}"
+                if re.search(f"(?i:{part})", text):
+                    return True
+            elif name in self.points:
+                digit = r"\d?" * (not name[-1].isdigit())
+                alone = f"(?:[A-Za-z]?(?i:{own})|(?:{OF_POINTS}|[a-z][A-Z]){own}(?:pt)?){digit}"
+                moved = f"(?:[A-Za-z]{{0,2}}|{OF_POINTS}){own}{digit}(?i:{_QUANTITIES}|[va]?[xy]|v)"
+                axis = rf"(?i:{own}{digit}[va]?[xy]\d?|[va]?[xy]{own}{digit})|{moved}\d?"
+                for word in re.split(r"[^A-Za-z0-9]+", text):
+                    moves = not {*AXES, "v", "a"}.isdisjoint({*words} - {word.lower()})
+                    if (moves and re.fullmatch(alone, word)) or (
+                        word.lower() not in ("by", "day") and re.fullmatch(axis, word)
+                    ):
+                        return True
+        return False
 
     def _apart(self, text: str) -> tuple[list[str], list[str]]:
         places: list[tuple[int, str]] = []
@@ -313,15 +368,22 @@ def is_named(column: str, named: SceneNames) -> bool:
     """Return whether a column names a link, point or slider, or a quantity that is known."""
     text, unit = kinds.without_unit(column)
     bodies, words = named.found(re.sub(MODEL, " ", text), drivers=False)
-    foreign = not FOREIGN.isdisjoint(words)
-    if bodies and bodies != [GROUND]:
-        return not (foreign and max(map(len, bodies)) == 1)
+    others = INDICES if text.endswith((")", "]")) or words == ["i"] else ()
+    foreign = not FOREIGN.union(others).isdisjoint(words)
+    told = QUANTITY_WORDS.intersection(plain_words(words))
+    last = rf"(?<![A-Za-hj-z0-9])({'|'.join(map(re.escape, bodies)) or '(?!)'})\W*$"
+    if foreign and not told and max(map(len, bodies), default=0) == 1 and re.search(last, text):
+        return False  # a unit, as the C of temperature_C
     if not unit:
         unit, words = kinds.trailing_unit(words)
         unit = "" if unit in kinds.LAST_ALONE else unit
-    has_unit = kinds.DIMENSION.get(unit, "time") != "time"
+    has_unit = unit != "g" and kinds.DIMENSION.get(unit, "time") != "time"  # a mass in grams
     words = [word for word in plain_words(words) if not word.isdigit()]
     told = QUANTITY_WORDS.intersection(words)
     # A letter is a quantity among words of a mechanism alone: x of marker 2.
-    is_known = any(len(word) > 1 for word in told) or bool(told and VOCABULARY.issuperset(words))
-    return not foreign and (has_unit or is_known)
+    mechanical = VOCABULARY.union(INDICES).issuperset(words)
+    if has_unit or any(len(word) > 1 for word in told) or (told and mechanical):
+        return True
+    if bodies:
+        return bodies != [GROUND]
+    return named.is_glued(text, words) or looks_like_force(column, named.scene)

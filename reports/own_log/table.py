@@ -191,8 +191,9 @@ def verdict_line(judged: JudgedLog) -> Text:
     seen = {*judged.log.besides, *(each.channel.column for each in judged.log.still)}  # and right
     names = [column_text(each) for each, _ in judged.log.unused if each not in seen]
     if judged.beside.geometry_alone:
-        rates = (each.channel for each in judged.log.readings if each.channel.kind.order)
-        names += [column_text(each.column) for each in rates]
+        read = {column for row in rows for column in row.columns}
+        every = (each.channel.column for each in judged.log.readings if each.channel.kind.order)
+        names += [column_text(each) for each in every if each not in read]
     if names:
         what += f"; not judged: {few(names, 6)}"
     if judged.failures:

@@ -72,13 +72,14 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
                 f"the motion is of {log.scene.name}, not of {scene.name}; give the scene of both"
             )
         return log_of_motion(scene, log)
-    from reports.logs.columns import columns_of, read_columns
-    from reports.logs.meanings import understood, wanted
+    from reports.logs.columns import columns_of
+    from reports.logs.meanings import columns_worth, understood
 
     if isinstance(log, str | PathLike):
-        path, worth = path_of(log, "log"), wanted(scene, told, forces=forces)
+        path = path_of(log, "log")
         # No name for the columns, which take as much memory as all readings.
-        return understood(read_columns(path, told.file, worth), scene, told, forces=forces)
+        took = {"forces": forces}
+        return understood(columns_worth(path, scene, told, **took), scene, told, **took)
     frame, source = _frame_of(log)
     return understood(columns_of(frame, source), scene, told, forces=forces)
 

@@ -45,15 +45,14 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     An entry that a refusal of the log names, such as a decimal comma, is made. Raises
     CrankcheckError for a log that no map alone can mend.
     """
-    from reports.logs.columns import read_columns  # pandas, which takes a third of a second
-    from reports.logs.meanings import blank_map, map_text, understood, wanted
+    from reports.logs.meanings import blank_map, columns_worth, map_text, understood  # pandas
 
     fault: CrankcheckError | None = None
     tried, entries = [map_], dict[str, str]()
     while True:
         blank = None
         try:
-            columns = read_columns(log, map_.file, wanted(scene, map_))
+            columns = columns_worth(log, scene, map_)
             blank = blank_map(columns, scene, map_)
             text = map_text(understood(columns, scene, map_), map_.file)
         except CrankcheckError as error:

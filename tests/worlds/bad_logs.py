@@ -59,7 +59,7 @@ TEXTS: dict[str, tuple[bytes, str]] = {
         text(*(row.split(",", 2)[2] for row in ROWS), header=HEADER.split(",", 2)[2]),
         "no column of times; found .*rocker_deg.*time_s.* angle of crank, none are needed"),
     **{f"{name}, which may be the times": (header("time_s", name), f"no column of times; .*{name}")
-       for name in ("stamp", "Zeit", "counter_ms")},
+       for name in ("pulse", "counter_ms")},
     "times that go back": (
         text(*ROWS[:9], ROWS[7], *ROWS[10:]),
         r"row 11, column 'time_s': time goes back, from 0\.08.* s to 0\.07.* s.*sort"),

@@ -21,7 +21,7 @@ from models.motion import Motion
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.logs.channel import Channel
-from reports.logs.kinds import KINDS, UNITS
+from reports.logs.kinds import KINDS, TYPICAL, UNITS
 from tests.worlds.sheets import Sheet, wrapped
 
 T = TypeVar("T")
@@ -191,7 +191,7 @@ def another_unit(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.telling())
     channel = sheet.channels[column]
     units = UNITS[channel.kind.dimension]
-    unit = one(rng, [unit for unit in units if unit != channel.unit])
+    unit = one(rng, [unit for unit in TYPICAL[channel.kind.dimension] if unit != channel.unit])
     return sheet.put({column: sheet.values[column] * units[channel.unit] / units[unit]}), [column]
 
 

@@ -17,7 +17,7 @@ from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitte
 from reports.causes.cause import BROUGHT_WITHIN, Rows, picked
 from reports.causes.inquiry import WELL, Inquiry
 from reports.causes.world import World
-from reports.logs.kinds import UNITS
+from reports.logs.kinds import TYPICAL, UNITS
 from reports.output.numbers import duration
 
 MOST_FITS = 4
@@ -64,7 +64,7 @@ def time_unit(inquiry: Inquiry) -> Iterator[Account | None]:
     """Yield accounts of times in another unit than the map states."""
     column, told = inquiry.case.log.stamp
     size = UNITS["time"].get(told, 1.0)
-    for unit, other in UNITS["time"].items():
+    for unit, other in TYPICAL["time"].items():
         ratio = other / size
         if ratio == 1.0 or inquiry.world.drive is not None:
             continue

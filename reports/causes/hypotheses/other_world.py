@@ -19,7 +19,7 @@ from reports.causes.cause import within_half_a_turn
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
-from reports.logs.kinds import UNITS
+from reports.logs.kinds import TYPICAL, UNITS
 from reports.output.numbers import listed
 
 MOST_CHOICES = 6
@@ -317,7 +317,7 @@ def sized(inquiry: Inquiry) -> Iterator[Account]:
     if len(ratios) < 2:
         return
     size = float(np.median(ratios))
-    lengths = UNITS["length"].values()
+    lengths = TYPICAL["length"].values()
     units = [one / other for one in lengths for other in lengths]
     if not size > 0.0 or any(abs(size / unit - 1.0) < NEAR_UNIT for unit in units if unit != 1.0):
         return

@@ -19,8 +19,9 @@ from reports.logs.columns import columns_of, read_columns
 from reports.logs.instants import time_of
 from reports.logs.kinds import KINDS, Meaning
 from reports.logs.map_file import FileTable, map_of, read_map
-from reports.logs.meanings import map_text, understood
-from reports.logs.names import SceneNames, meaning
+from reports.logs.meanings import columns_worth, map_text, understood
+from reports.logs.names import SceneNames, is_named, meaning
+from tests.worlds.headers import FOREIGN
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 1.2, 400)
@@ -203,23 +204,39 @@ SLIDER_CRANK = SceneNames(load_scene("slider-crank-central"))
 
 SAID: dict[tuple[str, str, str], list[str]] = {
     ("rocker", "angle", "rad"): [
-        "rocker_theta_rad", "theta_rocker", "rocker", ".MODEL_1.rocker.ANGLE", "rocker.rotation.z",
+        "rocker_theta_rad", "theta_rocker", "rocker", "theta(t) of rocker", "rocker-1@Assem1",
+        ".MODEL_1.rocker.ANGLE", "rocker.rotation.z",
     ],
     ("rocker", "angle", "deg"): [
         "rocker_deg", "Rocker (°)", "RockerAngle(deg)", "rocker angle in degrees", "rocker/deg",
-        "rocker angular displacement [deg]",
+        "rocker angular displacement [deg]", "rockerdeg",
     ],
     ("rocker", "angular velocity", "rad/s"): [
         "rocker.omega_rad_s", "omega(rocker)", "rocker_rad_s", "rocker.angular_velocity.z",
         "rocker.angle.velocity.z", "rocker omega/rad/s",
     ],
-    ("rocker", "angular acceleration", "rad/s^2"): [
-        "rocker_alpha_rad_s2", "rocker acceleration [rad/s²]",
+    ("rocker", "angular velocity", "rpm"): [
+        "Rocker Velocity [rpm]", "ROCKERRPM", "rocker (tr/min)", "rocker min^-1",
     ],
-    ("C", "x", "mm"): ["C.x_mm", "xC [mm]", "C_x_mm on coupler"],
+    ("rocker", "angle", "gon"): ["rocker (gon)"],
+    ("C", "vx", "km/h"): ["C vx [km/h]"],
+    ("C", "ax", "g"): ["C ax (g)"],
+    ("C", "y", "um"): ["C.y [micron]"],
+    ("C", "y", "dm"): ["C.y_dm"],
+    ("rocker", "angular velocity", "deg/s"): ["rocker angular velocity (deg/s)"],
+    ("rocker", "angular acceleration", "rad/s^2"): [
+        "rocker_alpha_rad_s2", "rocker acceleration [rad/s²]", "theta_dd_rocker",
+        "ddtheta_rocker",
+    ],
+    ("C", "x", "mm"): ["C.x_mm", "xC [mm]", "C_x_mm on coupler", "C.x(t) [mm]", "c_x_mm"],
+    ("C", "y", "in"): ["C pos y [in]"],
+    ("C", "vx", "m/s"): ["C.vx_m_s", "C_xd", "C.GetPosDt().x", "vx_c"],
+    ("C", "vx", "mm/s"): ["C x velocity [mm/s]"],
     ("C", "ay", "m/s^2"): ["C_ay_m_s2"],
     ("crank", "angle", "deg"): ["driver_deg"],
+    ("C", "x", "m"): ["Cx", "x_C(t)", "xc", "point_c.x", "/tf/C/translation/x"],
     ("C", "vy", "m/s"): ["vyC"],
+    ("C", "v", "m/s"): ["C_v_m_s", "vC(t)", "VM(C)"],
 }  # fmt: skip
 
 
@@ -278,12 +295,51 @@ TIMES = {
           "elapsed_time", "time/s"],
     "ms": ["time_ms", "t [ms]", "time in ms"],
 }  # fmt: skip
+LIKELY = {"s": ["tout", "Zeit", "sec", "Analysis Time", "Time_1", "X-Axis (s)", "header.stamp"],
+          "ms": ["millis", "ms", "uptime_ms"], "us": ["micros"]}  # fmt: skip
+"""Names of times where there is no better one."""
 
 
 def test_a_column_of_times_has_its_unit_and_may_be_that_of_velocities() -> None:
     for unit, columns in TIMES.items():
         assert {time_of(column) for column in columns} == {("time", unit)}
         assert time_of(f"velocity_time_{unit}") == ("velocity time", unit)
+    for unit, columns in LIKELY.items():
+        assert {time_of(column) for column in columns} == {("likely time", unit)}
+    assert log_of({"tout": 2.0 * TIME_S, "t": TIME_S, **ALONE}).stamp == ("t", "s")
+    assert log_of({"tout": TIME_S, **ALONE}).stamp == ("tout", "s")
+
+
+NAMED = ("C_x_i", "C x count", "current angle (deg)", "omega_i (rad/s)", "theta_t", "phi(t) [rad]",
+         "b_x", "dx", "pc_x", "Cx1", "C1_x", "PointC.x", "rCspeed", "OC_x", "r_OC_x", "rocker1",
+         "rockerw", "Body_rockerdegs", "myrocker.2", "xrockerangle", "T (N m)", "FB", "F_B(t)",
+         "F12x", "Fx", "RAx", "load u (N)", "b_fx_n", "fx_a (N)", "newton-mm")  # fmt: skip
+NOT_NAMED = (*FOREIGN, "i (A)", "iB", "T [C]", "dt", "mass (g)", "vec_x", "x temperature")
+
+
+def test_no_column_that_names_a_body_a_quantity_or_a_force_is_passed_over() -> None:
+    assert [name for name in NAMED if not is_named(name, FOURBAR)] == []
+    assert [name for name in NOT_NAMED if is_named(name, FOURBAR)] == []
+    assert isinstance(meaning("rocker angle (V)", FOURBAR), str)
+
+
+def test_a_clock_that_a_channel_names_is_read_and_one_without_a_name_is_asked_about(
+    tmp_path: Path,
+) -> None:
+    path, rocker = tmp_path / "log.csv", "rocker_rad"
+    columns = {"time_s": TIME_S, rocker: ROCKER.theta, "t2_ms": 1e3 * TIME_S}
+    pd.DataFrame(columns).to_csv(path, index=False)
+    map_ = map_of({"channel": [{"column": rocker, "time": "t2_ms"}]}, "the map")
+    assert worst(understood(columns_worth(path, SCENE, map_), SCENE, map_)) < 1e-9
+    for name in ("frame", "pulse"):
+        table = {name: TIME_S, "crank_rad": CRANK.theta, rocker: ROCKER.theta}
+        pd.DataFrame(table).to_csv(path, index=False)
+        read = columns_worth(path, SCENE, map_of({}, "the map"))
+        if name == "frame":
+            assert not understood(read, SCENE).timed
+            continue
+        with pytest.raises(CrankcheckError, match="'pulse' may be it; if not, ignore = true"):
+            understood(read, SCENE)
 
 
 def of_links(names: tuple[str, ...]) -> Scene:

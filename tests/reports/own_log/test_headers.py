@@ -81,6 +81,8 @@ OTHER: list[tuple[dict[str, Array], str]] = [
     ({"rockertheta_filtered": ROCKER.theta}, "rockertheta_filtered"),
     ({"C.position.z": 0.5 + 0.0 * TIME_S, "rocker/twist/angular/x": 0.0 * TIME_S}, "within"),
     ({"rocker/twist/angular/x": TIME_S}, "out of the plane"),
+    ({"rocker foo": np.array([f"{n} deg" for n in TIME_S])}, "'foo' is no kind of reading"),
+    ({"load u (N)": TIME_S}, "it may be a force"),
     (dict.fromkeys(FOREIGN, TIME_S), "within"),
 ]  # fmt: skip
 
@@ -98,6 +100,12 @@ def test_a_column_beside_a_right_one_is_judged_or_refused_with_the_cure(
     assert "ignore = true" in str(refused.value)
     ignored = {"channel": [{"column": name, "ignore": True} for name in columns]}
     assert crankcheck.judge(SCENE, log, target=1e-5, map=ignored).verdict == "within"
+
+
+def test_a_rate_that_is_judged_without_times_is_not_said_to_be_not_judged(judge: Judge) -> None:
+    log = {"crank_rad": MOTION.links["crank"].theta, "rocker_rad_s": 2.0 * ROCKER.omega}
+    said = " ".join(judge(SCENE.name, Dress().text(log), code=1).stdout.split())
+    assert "OUT OF TOLERANCE: 1 of 1 error over 60 samples of fourbar-lecture-1 L" in said
 
 
 def test_what_names_neither_is_on_the_line_of_the_verdict_and_utf_16_is_read(judge: Judge) -> None:

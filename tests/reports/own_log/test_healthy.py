@@ -250,9 +250,9 @@ def filled(form: str, times: str) -> str:
     ("times", "angle", "lacks"),
     [
         ("time_s", "sensor 3", [THING]),
-        ("Zeit", "rocker_deg", [TIMES]),
-        ("Zeit", "sensor 3", [TIMES, THING]),
-        ("Zeit\\t", "the # '[3]'", [TIMES, THING]),
+        ("Uhr", "rocker_deg", [TIMES]),
+        ("Uhr", "sensor 3", [TIMES, THING]),
+        ("Uhr\\t", "the # '[3]'", [TIMES, THING]),
     ],
 )
 def test_the_map_of_names_that_say_nothing_is_a_form_that_reads_the_log(
@@ -271,15 +271,15 @@ def test_what_a_map_says_already_stays(judge: Judge, tmp_path: Path) -> None:
     path = tmp_path / "form.toml"
     told = '[[channel]]\ncolumn = "sensor 3"\nof = "rocker"\nkind = "angle"\nunit = "deg"\n'
     told += 'sign = -1\noffset = 0.5\nwrapped = true\nrelative_to = "coupler"'
-    judge(PLAIN, two("Zeit", "sensor 3"), "--write-map", path, mapped=told)
+    judge(PLAIN, two("Uhr", "sensor 3"), "--write-map", path, mapped=told)
     assert told in path.read_text()
 
 
 @pytest.mark.parametrize(
     ("text", "mapped"),
     [
-        (two("Zeit", "sensor 3"), '[[channel]]\ncolumn = "sensor 4"\nof = "rocker"'),
-        (two("Zeit", "sensor 3"), '[time]\ncolumn = "Zet"'),
+        (two("Uhr", "sensor 3"), '[[channel]]\ncolumn = "sensor 4"\nof = "rocker"'),
+        (two("Uhr", "sensor 3"), '[time]\ncolumn = "Zet"'),
         (b"time_s,rocker_deg\n0,1\n0,2\n", ""),
         (b"", ""),
     ],
