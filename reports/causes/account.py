@@ -183,10 +183,6 @@ def later(by_s: float, step_s: float) -> str:
     return f"{samples:.{digits}f} samples ({duration(abs(by_s))}) {direction}"
 
 
-ROUNDING = 1e-9
-"""Part of the longest link, or angle [rad], below which a fitted number is rounding."""
-
-
 def number(value: float, digits: int = 4) -> str:
     """Return a number with few digits, and 0 for rounding."""
     return f"{round(value, 12) + 0.0:.{digits}g}"

@@ -15,18 +15,8 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed, Law
-from reports.causes.account import (
-    CAUSE,
-    CHOICE,
-    NUMBER,
-    ROUNDING,
-    Account,
-    change,
-    fitted,
-    later,
-    number,
-)
-from reports.causes.cause import picked, within_half_a_turn
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, later, number
+from reports.causes.cause import ROUNDING, picked, within_half_a_turn
 from reports.causes.inquiry import FEW, Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel

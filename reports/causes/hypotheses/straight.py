@@ -85,7 +85,7 @@ def _fitted(excerpt: Excerpt) -> Iterator[StraightLineFault]:
 
 
 def _gain_of_others(inquiry: Inquiry, excerpt: Excerpt) -> list[StraightLineFault]:
-    """Return the gain of a moving channel that one of the same dimension that stays has too."""
+    """Return the gain of another channel of the same dimension that one that stays has too."""
     gain = float(excerpt.values.mean() / excerpt.expected.mean())
     for other in (inquiry.excerpts[column] for column in inquiry.open):
         if other.channel.kind.dimension == excerpt.channel.kind.dimension:
