@@ -184,8 +184,8 @@ def later(by_s: float, step_s: float) -> str:
 
 
 def number(value: float, digits: int = 4) -> str:
-    """Return a number with few digits."""
-    return f"{value:.{digits}g}"
+    """Return a number with few digits, and 0 for rounding."""
+    return f"{round(value, 12) + 0.0:.{digits}g}"
 
 
 def change(now: float, before: float) -> str:

@@ -100,6 +100,8 @@ MOVED = 0.3
 """A hypothesis affects a channel if it changes the reference by this part of its error."""
 BROUGHT_WITHIN = 1.0 / 3.0
 """Part that may be left where the channel is then within its limit."""
+ROUNDING = 1e-9
+"""Part of the longest link, or angle [rad], below which a fitted number is rounding."""
 
 
 @dataclass(frozen=True)

@@ -25,15 +25,13 @@ Drive = Callable[[Array], Orders]
 
 @dataclass(frozen=True)
 class LogFrame:
-    """Frame of a log, or ``of_points`` alone, as a camera's beside encoders: all lengths times
-    ``size``; seen from behind where ``mirrored`` (the y-axis reversed), then rotated by
-    ``turn_rad``, then moved by ``shift_m``."""
+    """Frame of a log: all lengths times ``size``; seen from behind where ``mirrored`` (the y-axis
+    reversed), then rotated by ``turn_rad``, then moved by ``shift_m``."""
 
     mirrored: bool = False
     turn_rad: float = 0.0
     shift_m: tuple[float, float] = (0.0, 0.0)
     size: float = 1.0
-    of_points: bool = False
 
     def seen(self, motion: Motion) -> Motion:
         """Return a motion as seen in this frame."""
@@ -41,13 +39,12 @@ class LogFrame:
         cos, sin = math.cos(self.turn_rad), math.sin(self.turn_rad)
         turned = size * np.array([[cos, sin], [-sign * sin, sign * cos]])
         shift = np.array(self.shift_m)
-        seen = _changed(
+        return _changed(
             motion,
             lambda m: (sign * m.theta + self.turn_rad, sign * m.omega, sign * m.alpha),
             lambda m: (m.position @ turned + shift, m.velocity @ turned, m.acceleration @ turned),
             lambda m: (size * m.displacement, size * m.speed, size * m.acceleration),
         )
-        return replace(motion, points=seen.points) if self.of_points else seen
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed
-from reports.causes.account import CAUSE, NUMBER, Account, fitted, later
+from reports.causes.account import CAUSE, NUMBER, Account, fitted, later, number
 from reports.causes.cause import EXPLAINED, CauseSize, Excerpt
 from reports.causes.hypotheses.samples import resolution
 from reports.causes.inquiry import Inquiry
@@ -212,4 +212,4 @@ def _start_text(inquiry: Inquiry, by_s: float) -> str:
     if not isinstance(law, ConstantSpeed):
         return clock
     now, before = (math.degrees(law.start_rad + law.speed_rad_s * each) for each in (by_s, 0.0))
-    return f"{clock}, or the driver starts at {now:.5g} deg, not at {before:.5g} deg"
+    return f"{clock}, or the driver starts at {number(now, 5)} deg, not at {before:.5g} deg"

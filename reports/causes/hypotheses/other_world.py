@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.kinematics import choices, chosen_groups
 from analytic.structure.groups import Group, Triad
@@ -15,8 +16,8 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed, Law
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, later, number
-from reports.causes.cause import within_half_a_turn
-from reports.causes.inquiry import Inquiry
+from reports.causes.cause import ROUNDING, picked, within_half_a_turn
+from reports.causes.inquiry import FEW, Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
 from reports.logs.kinds import TYPICAL, UNITS
@@ -143,6 +144,11 @@ def _with_law(world: World, law: Law) -> World:
 
 NEAR_UNIT = 1e-3
 """Relative distance within which a scale counts as a ratio of units."""
+DOUBT = 3.0
+"""Standard errors below which a fitted number is none."""
+Vectors = Mapping[str, NDArray[np.complex128]]
+"""Places or rates in the plane (n,), by column."""
+ORDERS = ("places", "velocities", "accelerations")
 
 
 def mirrored(inquiry: Inquiry) -> Iterator[Account]:
@@ -179,7 +185,7 @@ def turned(inquiry: Inquiry) -> Iterator[Account]:
             f"the x-axis of the log lies at {math.degrees(-found.turn_rad):.4g} deg of the scene"
         )
         if count == 3:
-            phrase += f", and {_origin_text(found)}"
+            phrase += f", and {_origin_text(found, ROUNDING * inquiry.world.scene.longest_m)}"
         world = inquiry.world.framed(found)
         told = inquiry.account_of_world("turned", CAUSE + NUMBER * count, world, phrase)
         if told is not None and len(told.columns) > 1:
@@ -213,49 +219,92 @@ def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | N
 
 
 def turned_points(inquiry: Inquiry) -> Iterator[Account]:
-    """Yield accounts of axes of the points that are rotated while those of angles are not; these
-    may be moved, seen from behind, and of another size as well, as of a camera beside encoders."""
-    columns, kinds = _of(inquiry, "point"), {c: inquiry.channel(c).kind for c in inquiry.excerpts}
-    every = [column for column, kind in kinds.items() if kind.body_kind == "point"]
-    if len(columns) < 2 or all(kind.body_kind != "link" for kind in kinds.values()):
+    """Yield accounts of axes of the points, or of their places or rates alone, that are rotated
+    while those of the others and of angles are not; these may be moved, seen from behind, and of
+    another size as well, as of a camera beside encoders."""
+    kinds = {column: inquiry.channel(column).kind for column in inquiry.excerpts}
+    angles = ["the angles"] * any(kind.body_kind == "link" for kind in kinds.values())
+    kinds = {column: kind for column, kind in kinds.items() if kind.body_kind == "point"}
+    orders = sorted({kind.order for kind in kinds.values() if kind.axis is not None})
+    wrong = [column for column in _of(inquiry, "point") if kinds[column].axis is not None]
+    if len(wrong) < 2:
         return
-    for count, mirrored in itertools.product((1, 3, 4), (False, True)):
-        frame = _frame_of_points(inquiry, columns, count, mirrored=mirrored)
-        expected = inquiry.expected(inquiry.world.framed(frame), every)
+    vectors = {}
+    for column, kind in kinds.items():
+        channel, instants = inquiry.channel(column), inquiry.excerpts[column].instants
+        point = inquiry.world.at(instants, [channel]).points[channel.of]
+        vectors[column] = getattr(point, kind.field) @ np.array([1.0, 1.0j])
+    sizes = range(len(orders), 0, -1)
+    for some in (each for size in sizes for each in itertools.combinations(orders, size)):
+        columns = [column for column in wrong if kinds[column].order in some]
+        others = [*angles, *(f"the {ORDERS[order]}" for order in orders if order not in some)]
+        which = f"the {listed([ORDERS[order] for order in some])} of " * (len(some) < len(orders))
+        those = {c: vector for c, vector in vectors.items() if kinds[c].order in some}
+        if len(columns) > 1 and others:
+            yield from _frames(inquiry, columns, those, f"{which}the points", listed(others))
+
+
+def _frames(
+    inquiry: Inquiry, columns: Sequence[str], vectors: Vectors, these: str, others: str
+) -> Iterator[Account]:
+    """Yield the accounts of frames of all these vectors, fitted to some columns."""
+    for count, sign in itertools.product((1, 2, 3, 4), (1.0, -1.0)):
+        frame, doubt = _frame_of_points(inquiry, columns, vectors, count, sign)
+        expected, turn = {}, cmath.rect(frame.size, frame.turn_rad)
+        for column, vector in vectors.items():
+            kind = inquiry.channel(column).kind
+            seen = turn * (vector.conj() if frame.mirrored else vector)
+            seen += complex(*frame.shift_m) * (kind.order == 0)
+            expected[column] = {None: np.abs(seen), 0: seen.real, 1: seen.imag}[kind.axis]
         errors = {c: inquiry.excerpts[c].beside(each) for c, each in expected.items()}
-        angle = number(math.degrees(frame.turn_rad * (1.0 if mirrored else -1.0)))
-        phrase = (
-            f"the x-axis of the points lies at {angle} deg of the scene, not that of the angles"
-        )
-        phrase += ", their y-axis to the other side" * mirrored
-        phrase += f", and {_origin_text(frame)}" * (count > 1)
-        phrase += f", and lengths are {number(frame.size, 6)} times the scene's" * (count > 3)
-        cost = CAUSE + NUMBER * count + CHOICE * mirrored
-        told = inquiry.account("turned", cost, errors, phrase, expected=expected)
-        if told is None or len(told.columns) < 2 or inquiry.spoilt(errors):
+        healthy = dict.fromkeys(inquiry.channel(column).of for column in inquiry.spoilt(errors))
+        errors = {c: each for c, each in errors.items() if inquiry.channel(c).of not in healthy}
+        those = these + f" other than {listed([*healthy])}" * bool(healthy)
+        turned, sized = (abs(each) > doubt[0] for each in (frame.turn_rad, frame.size - 1.0))
+        moved = np.max(np.abs(frame.shift_m)) > doubt[1]
+        name, phrase = "turned", f"{those} have another frame than {others}"
+        if turned:
+            angle = number(math.degrees(-sign * frame.turn_rad))
+            phrase = f"the x-axis of {those} lies at {angle} deg of the scene, not that of {others}"
+        phrase += ", their y-axis to the other side" * frame.mirrored
+        phrase += f", and {_origin_text(frame, doubt[1])}" * bool(moved)
+        phrase += f", and lengths are {number(frame.size, 6)} times the scene's" * sized
+        if not (turned or moved or frame.mirrored):
+            if not sized or _of_units(frame.size) or these == "the points":
+                continue  # all of another size is another hypothesis
+            gain = f"{number(frame.size, 5)} times as much ({change(frame.size, 1.0)})"
+            name, phrase = "scaled", f"{{who}} read{{s}} {gain}"
+        cost = CAUSE + NUMBER * count + CHOICE * (frame.mirrored + len(healthy))
+        told = inquiry.account(name, cost, errors, phrase, expected=expected)
+        points = {inquiry.channel(column).of for column in told.columns} if told else set()
+        if told is None or len(told.columns) < 2 or 0 < len(healthy) >= len(points):
             continue
         if count == 1 or all(inquiry.excerpts[c].told_apart(errors[c]) for c in told.columns):
-            yield told if count > 1 or mirrored else _or_late(inquiry, told, frame.turn_rad)
+            yield told if count > 1 or frame.mirrored else _or_late(inquiry, told, frame.turn_rad)
 
 
 def _frame_of_points(
-    inquiry: Inquiry, columns: Sequence[str], count: int, *, mirrored: bool
-) -> LogFrame:
-    """Return the frame of least squares: rotated, from 3 numbers on moved, with 4 of any size.
-    Raises CrankcheckError where there is no mechanism."""
-    rows, readings, sign = [], [], -1.0 if mirrored else 1.0
+    inquiry: Inquiry, columns: Sequence[str], vectors: Vectors, count: int, sign: float
+) -> tuple[LogFrame, tuple[float, float]]:
+    """Return the frame of least squares: rotated, with 2 numbers of any size instead, with 3 moved
+    as well, with 4 all three; and the doubt of its angle [rad] or size, and of its origin [m]."""
+    rows, readings, thin = [], [], picked(inquiry.rows, most=FEW)
     for column in columns:
         excerpt = inquiry.thin.excerpts[column]
         kind, rms = excerpt.channel.kind, excerpt.size.rms
-        motion = inquiry.world.at(excerpt.instants, [excerpt.channel])
-        x, y = getattr(motion.points[excerpt.channel.of], kind.field).T
-        shift = np.full((2, x.size), 0.0)
-        shift[kind.axis] = float(kind.order == 0 and count > 1)
-        rows.append(np.stack([*((sign * y, x) if kind.axis else (x, -sign * y)), *shift]) / rms)
+        z = vectors[column][thin].conj() if sign < 0.0 else vectors[column][thin]
+        one = np.full(z.shape, float(kind.order == 0 and count > 2))
+        basis = np.stack([z, 1j * z * (count != 2), one, 1j * one]) / rms
+        rows.append(basis.imag if kind.axis else basis.real)
         readings.append((excerpt.expected + excerpt.error) / rms)
-    cos, sin, *moved = np.linalg.lstsq(np.hstack(rows).T, np.concatenate(readings))[0].tolist()
-    size = math.hypot(cos, sin) if count > 3 else 1.0
-    return LogFrame(mirrored, math.atan2(sin, cos), (moved[0], moved[1]), size, of_points=True)
+    factors, wanted = np.hstack(rows).T, np.concatenate(readings)
+    numbers = np.linalg.lstsq(factors, wanted)[0]
+    left = float(np.sqrt(np.mean((factors @ numbers - wanted) ** 2)))
+    doubts = DOUBT * left * np.sqrt(np.diag(np.linalg.pinv(factors.T @ factors)))
+    cos, sin, *moved = numbers.tolist()
+    size, rounding_m = math.hypot(cos, sin), ROUNDING * inquiry.world.scene.longest_m
+    frame = LogFrame(sign < 0.0, math.atan2(sin, cos), tuple(moved), 1.0 if count % 2 else size)
+    return frame, (max(math.hypot(*doubts[:2]) / size, ROUNDING), max(*doubts[2:], rounding_m))
 
 
 def _or_late(inquiry: Inquiry, told: Account, turn_rad: float) -> Account:
@@ -283,7 +332,7 @@ def moved(inquiry: Inquiry) -> Iterator[Account]:
         frame = LogFrame(shift_m=(x, y))
         cost = CAUSE + NUMBER * len(axes)
         world = inquiry.world.framed(frame)
-        told = inquiry.account_of_world("moved", cost, world, _origin_text(frame))
+        told = inquiry.account_of_world("moved", cost, world, _origin_text(frame, 0.0))
         if told is not None and len(told.columns) > 1:
             yield told
 
@@ -298,10 +347,10 @@ def _shift(inquiry: Inquiry, axis: int) -> float:
     return float(np.median([error.mean() for error in coordinates])) if coordinates else 0.0
 
 
-def _origin_text(frame: LogFrame) -> str:
+def _origin_text(frame: LogFrame, doubt_m: float) -> str:
     origin = -complex(*frame.shift_m) * cmath.rect(1.0 / frame.size, -frame.turn_rad)
     y = -origin.imag if frame.mirrored else origin.imag
-    place = ", ".join(map(number, (origin.real, y)))
+    place = ", ".join(number(each if abs(each) > doubt_m else 0.0) for each in (origin.real, y))
     return f"the origin of the log lies at ({place}) m of the scene"
 
 
@@ -317,12 +366,19 @@ def sized(inquiry: Inquiry) -> Iterator[Account]:
     if len(ratios) < 2:
         return
     size = float(np.median(ratios))
-    lengths = TYPICAL["length"].values()
-    units = [one / other for one in lengths for other in lengths]
-    if not size > 0.0 or any(abs(size / unit - 1.0) < NEAR_UNIT for unit in units if unit != 1.0):
+    if not size > 0.0 or _of_units(size):
         return
     world = inquiry.world.framed(LogFrame(size=size))
     phrase = f"every length is {number(size, 6)} times the scene's ({change(size, 1.0)})"
     told = inquiry.account_of_world("size", CAUSE + NUMBER, world, phrase, missing=0.0)
     if told is not None and len(told.columns) > 1:
         yield told
+
+
+_LENGTHS = TYPICAL["length"].values()
+RATIOS = [one / two for one in _LENGTHS for two in _LENGTHS]
+
+
+def _of_units(size: float) -> bool:
+    """True if a ratio is that of two units of length."""
+    return any(abs(size / unit - 1.0) < NEAR_UNIT for unit in RATIOS if unit != 1.0)

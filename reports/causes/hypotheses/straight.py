@@ -49,7 +49,7 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
             yield from _accounts(inquiry, excerpt, zero)
         elif np.ptp(excerpt.expected) <= excerpt.nothing:
             # A channel that stays: a zero explains whatever is there, and is the last thing to be.
-            plain = [line for line in known if not line.shifted]
+            plain = [line for line in known if not line.shifted] + _gain_of_others(inquiry, excerpt)
             yield from list(_accounts(inquiry, excerpt, plain)) or _accounts(inquiry, excerpt, zero)
         else:
             yield from _accounts(inquiry, excerpt, [*known, *_fitted(excerpt)])
@@ -82,6 +82,18 @@ def _fitted(excerpt: Excerpt) -> Iterator[StraightLineFault]:
         if abs(gain) > LEAST_GAIN and abs(gain - 1.0) > NO_GAIN:
             cost = CAUSE + NUMBER * (2 if shifted else 1) + even
             yield StraightLineFault("scaled", cost, gain, shifted=shifted)
+
+
+def _gain_of_others(inquiry: Inquiry, excerpt: Excerpt) -> list[StraightLineFault]:
+    """Return the gain of another channel of the same dimension that one that stays has too."""
+    gain = float(excerpt.values.mean() / excerpt.expected.mean())
+    for other in (inquiry.excerpts[column] for column in inquiry.open):
+        if other.channel.kind.dimension == excerpt.channel.kind.dimension:
+            for line in _fitted(other):
+                alike = abs(gain - line.gain) < TIGHT * abs(line.gain - 1.0)
+                if alike and not line.shifted and other is not excerpt:
+                    return [line] if _told(inquiry, other, line) else []
+    return []
 
 
 def _gains(excerpt: Excerpt) -> Iterable[tuple[float, bool]]:

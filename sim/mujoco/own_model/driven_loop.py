@@ -276,7 +276,8 @@ def is_hinge(model: Any, joint: int) -> bool:
 
 
 def reading(coordinate: float, hinge: bool) -> str:
-    """Return a joint coordinate in words."""
+    """Return a joint coordinate in words, without its rounding."""
+    coordinate = round(coordinate, 12) + 0.0
     return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
 
 

@@ -232,14 +232,18 @@ def _geom(model: Any, geom: int) -> str:
     return name or f"a geom of {body_name(model, int(model.geom_bodyid[geom]))}"
 
 
+ROUNDING = 1e-9
+"""Distance beyond a limit [rad], or over the size of the linkage, that is rounding."""
+
+
 def _passed(own: PlanarModel, low: Any, high: Any) -> list[str]:
     model, texts = own.model, []
     for joint in (each.index for each in own.limbs.joints if model.jnt_limited[each.index]):
         at = int(model.jnt_qposadr[joint])
         least, most = (float(end) for end in model.jnt_range[joint])
         past = max(least - float(low[at]), float(high[at]) - most)
-        if past > 0.0:
-            turns = is_hinge(model, joint)
+        turns = is_hinge(model, joint)
+        if past > ROUNDING * (1.0 if turns else size(own.linkage)):
             far = f"{math.degrees(past):.3g} deg" if turns else f"{past:.3g} m"
             texts.append(f"joint {joint_name(model, joint)} is led past its limit by {far}")
     return texts

@@ -150,14 +150,19 @@ def test_a_model_whose_axis_is_rounded_is_within_and_one_whose_axis_is_off_is_re
 FAR = {
     "a body far from the pin that it gets": (
         ('pos="0.3 0 0"', 'pos="3 0 0"'),
-        "m off the middle of body rocker, whose geoms and other joints reach 0.1",
+        "m away from all else on body rocker, whose geoms and other joints reach 0.1",
     ),
     "an anchor in the frame of the world": (
-        (OFF, 'anchor="1.3'), "loop C: its pin is 1.18 m off the middle of body coupler"
+        (OFF, 'anchor="1.3'), "loop C: its pin is 1.06 m away from all else on body coupler"
+    ),
+    "a near anchor in the frame of the world": (
+        ('0.08870312"/>\n  </eq', '0.18870312"/>\n  </eq'),
+        "in the frame of the world the same numbers lie on both bodies, and the file may give it "
+        "in that: it is 0.23373 0 0.088703 in the frame of coupler",
     ),
     "a hinge in the frame of the world": (
         ('<joint name="B"/>', '<joint name="B" pos="1 0 0"/>'),
-        "m off the middle of body coupler, whose geoms and other joints reach 0.129 m; its pos",
+        "m away from all else on body coupler, whose geoms and other joints reach 0.129 m; its pos",
     ),
     "a pin far off a body that has no geom": (
         (f'<geom name="rocker-bar" fromto="{TIP}"/>', INERTIAL, 'pos="0.3 0 0"', 'pos="3 0 0"'),

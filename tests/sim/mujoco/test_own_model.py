@@ -32,7 +32,7 @@ from sim.mujoco.own_model.variants import (
 from sim.mujoco.reader import ReadModel, read_model
 from sim.mujoco.settings import INTEGRATORS
 from sim.registry.own_models import Advised, Tour
-from tests.worlds.own_four_bar import CLOSED, HEALTHY, planted
+from tests.worlds.own_four_bar import CLOSED, HEALTHY, planted, rocker
 
 
 def held(own: ReadModel, scene: Scene) -> Tour:
@@ -51,6 +51,13 @@ def test_a_model_that_was_misread_is_not_run(tmp_path: Path) -> None:
     other = replace(own.scene, links={**own.scene.links, "coupler": longer})
     with pytest.raises(ModelError, match=r"model.xml: loop C: closed in the .* misread"):
         held(own, other)
+
+
+def test_a_limit_is_passed_beyond_rounding_alone(tmp_path: Path) -> None:
+    (tmp_path / "model.xml").write_text(planted(*rocker('limited="true" range="-1 1"')))
+    own, end = read_model(tmp_path / "model.xml", "A").planar, np.ones(3)
+    assert not session._passed(own, -end, end + 1e-12)
+    assert session._passed(own, -end, end + 1e-6)
 
 
 BALL = (
