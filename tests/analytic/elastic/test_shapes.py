@@ -138,7 +138,7 @@ def test_the_sag_under_an_even_load(own: Body, off: float, most: float) -> None:
 
 
 @pytest.mark.parametrize("kind", SHAPES)
-def test_slopes_and_curvatures_are_derivatives_and_the_ends_are_held(kind: str) -> None:
+def test_shapes_have_their_slopes_and_shortening_and_are_held_at_both_ends(kind: str) -> None:
     shapes = SHAPES[kind]
     ends = np.array([0.0, LENGTH_M])
     assert np.abs(shapes.deflections(ends, 0)).max() < 1e-12
@@ -147,11 +147,7 @@ def test_slopes_and_curvatures_are_derivatives_and_the_ends_are_held(kind: str) 
     for own, order in ((shapes.deflections, 0), (shapes.deflections, 1), (shapes.extensions, 0)):
         slope = (own(x + by, order) - own(x - by, order)) / (2.0 * by)
         assert own(x, order + 1) == pytest.approx(slope, abs=1e-7 * np.abs(slope).max())
-
-
-@pytest.mark.parametrize("kind", SHAPES)
-def test_a_bent_link_is_shorter_by_half_the_squares_of_its_slopes(kind: str) -> None:
-    shapes = SHAPES[kind]
+    # Shorter by half the squares of its slopes.
     q = np.random.default_rng(3).standard_normal(shapes.across)
     x = np.array([0.0, 0.21, 0.5 * LENGTH_M, LENGTH_M])
     fine = np.linspace(0.0, LENGTH_M, 20001)

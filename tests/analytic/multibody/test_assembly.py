@@ -63,14 +63,11 @@ def test_derivatives_are_those_of_the_equations(name: str) -> None:
     assert slope(lambda side: side.velocity) == pytest.approx(now.drift, abs=1e-8)
 
 
-def test_angles_read_off_a_drawing_lead_to_the_assembly() -> None:
+def test_angles_off_a_drawing_and_one_that_leads_to_the_others_give_the_assembly() -> None:
     theta = start_state(scene(THESIS)).theta
     told = [math.degrees(theta[name]) for name in ("coupler", "rocker", "crank")]
     assert told[:2] == pytest.approx([39.083, 123.855], abs=1e-3)
     assert told[2] == pytest.approx(90.0, abs=1e-12)
-
-
-def test_one_named_angle_is_enough_where_it_leads_to_the_others() -> None:
     whole, named = (scene(THESIS.replace(cut, "")) for cut in ("", ", rocker = 124.0"))
     assert start_state(named).theta == pytest.approx(start_state(whole).theta, abs=1e-12)
     slid = SLIDER_CRANK + "start_deg = 30.0\n[start]\ndisplacements_m = { C = 0.383 }\n"
