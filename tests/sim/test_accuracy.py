@@ -58,8 +58,6 @@ speed_rad_s = 10.0
 SOLVED = 1e-10
 """rad, or of the longest link: where Newton's method ends."""
 TURNING_ROUND = Accelerating(1.57, 4.0, -6.0)
-
-
 ran = partial(runs.ran, per_turn=200 * np.pi, turns=1.6)
 """A run with the step given as steps per turn; 200 pi per turn is 1e-3 s at 10 rad/s."""
 

@@ -207,8 +207,6 @@ CUBE = SQUARE.replace("[0.0", "[0.0, 0.0")
 ROTOR_LOST_S = 0.2
 """omega' = c omega^2 has 1 / omega = 1 / 5 - c t, here with c = 1; omega' = c omega^3 has
 1 / omega^2 = 1 / 25 - 2 c t, here with c = 0.1."""
-
-
 LetGo = Callable[[Scene, float], FreeMotion | MultibodyMotion]
 
 

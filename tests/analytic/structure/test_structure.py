@@ -69,8 +69,6 @@ def test_groups_stand_in_solving_order_whatever_that_of_the_file() -> None:
 SIX = {"crank": "AB", "plate1": "CEF", "plate2": "FKL", "leg1": "BC", "leg2": "DE", "leg3": "GK"}
 SIX |= {"leg4": "HL"}
 """Two plates pinned to each other, each on two legs."""
-
-
 SLIDES = "".join(
     f'[sliders.S{i}]\non = "ground"\nlink = "leg{i}"\npoint = "{p}"\n'
     f'[sliders.T{i}]\non = "leg{i}"\nlink = "platform"\npoint = "{q}"\ndirection_deg = 50.0\n'
