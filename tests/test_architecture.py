@@ -320,7 +320,7 @@ def test_a_loose_file_an_unplanned_room_and_a_lost_one_are_seen(house: Path) -> 
     }
 
 
-def test_a_name_of_an_engine_is_seen(house: Path) -> None:
+def test_engines_and_tables_outside_their_rooms_are_seen_by_name_and_import(house: Path) -> None:
     (house / "reports" / "page" / "a.py").write_text(
         '"""About MuJoCo."""\nif name == "mujoco":\n    from sim import pymunk\n    pymunk_work()\n'
     )
@@ -328,9 +328,6 @@ def test_a_name_of_an_engine_is_seen(house: Path) -> None:
     (house / "sim" / "pymunk" / "a.py").write_text('name = "pymunk"\n')
     seen = [fault.partition(" ")[0] for fault in namings(house) if " names " in fault]
     assert seen == [*(f"reports/page/a.py:{n}" for n in (2, 3, 4)), "reports/requests/sweep.py:2"]
-
-
-def test_an_engine_and_a_table_outside_their_rooms_are_seen(house: Path) -> None:
     (house / "sim" / "mujoco" / "a.py").write_text("import mujoco\n")
     (house / "reports" / "page" / "a.py").write_text("import mujoco, pandas\n")
     (house / "analytic" / "dyads" / "a.py").write_text("def f():\n    import pandas\n")

@@ -415,7 +415,8 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "slow one is off": (
         "EC41", "is not that of its places", meddling(record_=of_log(_slow_one))),
     "lag unsaid": (
-        "EC41", "Poses.lag_s is 0 steps", of_facts(lambda f: {"start": replace(f.start, lag_s=0.0)})),
+        "EC41", "Poses.lag_s is 0 steps",
+        of_facts(lambda f: {"start": replace(f.start, lag_s=0.0)})),
     "zero accelerations": (
         "EC42", "are not all NaN",
         turning(lambda b: {"alpha": 0.0 * b.omega, "origin_acceleration": 0.0 * b.velocity})),

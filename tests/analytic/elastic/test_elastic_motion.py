@@ -233,7 +233,7 @@ def test_a_straight_start_rings_as_by_a_library() -> None:
     assert rates == pytest.approx(expected[form.size :], abs=1e-7 * np.abs(rates).max())
 
 
-def test_windows_end_at_kinks_and_in_between_the_motion_is_smooth() -> None:
+def test_windows_end_at_kinks_with_smooth_motion_in_between_and_are_halved_if_too_long() -> None:
     scene = following(fourbar(), FromRest(fourbar().driver.law.offset_rad, 8.0, 0.31))
     motion = DrivenElasticMotion(scene, 0.6, Polynomials(5), "straight", stiffened=True)
     assert 0.31 in motion.history.edges_s
@@ -241,6 +241,12 @@ def test_windows_end_at_kinks_and_in_between_the_motion_is_smooth() -> None:
     time_s = np.linspace(0.0, 0.6, 41)
     largest = np.abs(motion.at(time_s).elastic["coupler"].middle).max()
     assert motion.doubt(time_s).middle_m["coupler"].max() < 1e-5 * largest
+    form = form_of(turning(1.3), Modes(1, 0))
+    still = np.zeros(form.size)
+    long, short = (vibrate(form, still, still, form.period_s, count) for count in (2, 30))
+    middle = np.array([0.5 * form.period_s])
+    assert len(long.edges_s) > 3
+    assert long.at(middle)[0][0, 0] == pytest.approx(short.at(middle)[0][0, 0], rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -281,15 +287,6 @@ def test_what_bends_too_far_is_refused_and_what_hardly_does_takes_few_windows() 
     middle = motion.at(np.linspace(0.0, 0.01, 5)).elastic["coupler"].middle
     assert 0.0 < np.abs(middle).max() < 1e-13
     assert len(motion.history.z) < 30
-
-
-def test_a_window_that_is_too_long_is_halved() -> None:
-    form = form_of(turning(1.3), Modes(1, 0))
-    still = np.zeros(form.size)
-    long, short = (vibrate(form, still, still, form.period_s, count) for count in (2, 30))
-    middle = np.array([0.5 * form.period_s])
-    assert len(long.edges_s) > 3
-    assert long.at(middle)[0][0, 0] == pytest.approx(short.at(middle)[0][0, 0], rel=1e-3)
 
 
 @pytest.mark.parametrize("turns", [0.1, slowly(2.0, reason="errors that grow with the turns")])

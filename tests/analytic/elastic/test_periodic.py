@@ -170,15 +170,11 @@ def test_the_bounds_of_mathieus_equation() -> None:
     assert stability(mathieu(0.5 * (mathieu_a(1, q) + mathieu_b(2, q)), q), math.pi).is_stable
 
 
-def about(form: ReducedForm) -> LinearForm:
-    """The equations next to the periodic motion."""
-    found = periodic_motion(form)
-    return linearise(form, found.time_s, 1e-2 * np.abs(found.z).max(), found.at(found.time_s))
-
-
 def test_damping_takes_what_liouville_says() -> None:
     form = form_of(turning(3.5, damping_s=1e-3), ONE)
-    linear = about(form)
+    motion = periodic_motion(form)
+    near = 1e-2 * np.abs(motion.z).max(), motion.at(motion.time_s)
+    linear = linearise(form, motion.time_s, *near)
     found = by_collocation(linear, form.period_s, 64)
     assert np.abs(found.multipliers).max() < 1.0
     rates = np.trace(np.linalg.solve(linear.mass, linear.damping), axis1=1, axis2=2)
@@ -198,12 +194,6 @@ def deviated(form: ReducedForm, turns: int, share: float, windows: int) -> tuple
     return np.repeat([by, 0.0], form.size), 0.5 * (ends[0] - ends[1])
 
 
-def apart_from(expected: Array, end: Array) -> float:
-    """Over the largest, of y, and of y' over the frequency that it is of."""
-    scale = np.repeat([1.0, 77.37], len(end) // 2)
-    return float(np.abs((end - expected) / scale).max() / np.abs(expected / scale).max())
-
-
 @slow("a second: the multipliers are held by what Liouville says")
 def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
     form = form_of(turning(4.15, rocker=30.0), ONE)
@@ -212,7 +202,8 @@ def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
     assert not found.is_stable
     assert found.deviations[0].order == 3.5  # twice that is 7: it feeds on the turning
     start, end = deviated(form, 1, 1e-6, windows=16)
-    assert apart_from(found.monodromy.matrix @ start, end) < 1e-6
+    expected, scale = found.monodromy.matrix @ start, [1.0, 77.37]  # of y, and of y'
+    assert np.abs((end - expected) / scale).max() < 1e-6 * np.abs(expected / scale).max()
 
 
 BY = Modes(2, 0)

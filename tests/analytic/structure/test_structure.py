@@ -64,6 +64,12 @@ def test_groups_stand_in_solving_order_whatever_that_of_the_file() -> None:
     order = analyse(build(bars, "ADGH")).order
     kinds = [(part.kind, part.bodies[0]) for part in order if not isinstance(part, Bridge)]
     assert kinds == [("RRR", "coupler"), ("RR-RR-RR", "platform"), ("RRR", "rod")]
+    # Coupler, rocker and rod all at C, two pairs: the second dyad hangs on the pin of the first.
+    scene = build(FOURBAR | {"rod": "CF", "lever": "GF"}, "ADG")
+    structure = analyse(scene)
+    assert structure.pins["C"] == ("coupler", "rocker", "rod")
+    assert (structure.pairs, structure.mobility) == (7, 1)
+    assert [g.branch_key for g in structure.groups] == ["C", "F"]
 
 
 SIX = {"crank": "AB", "plate1": "CEF", "plate2": "FKL", "leg1": "BC", "leg2": "DE", "leg3": "GK"}
@@ -152,15 +158,6 @@ def test_what_hangs_on_a_driver_in_too_many_ways_is_not_searched_for_a_group() -
     said = str(raised.value)
     assert " and 352 more do not hang on the driver" in said
     assert len(said) < 300
-
-
-def test_three_links_at_one_pin_are_two_pairs() -> None:
-    """Coupler, rocker and rod all at C: the second dyad hangs on the pin of the first."""
-    scene = build(FOURBAR | {"rod": "CF", "lever": "GF"}, "ADG")
-    structure = analyse(scene)
-    assert structure.pins["C"] == ("coupler", "rocker", "rod")
-    assert (structure.pairs, structure.mobility) == (7, 1)
-    assert [g.branch_key for g in structure.groups] == ["C", "F"]
 
 
 def classes(scene: Scene) -> dict[str, StructureByDriver]:

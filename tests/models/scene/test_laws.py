@@ -21,7 +21,7 @@ STEP = 1e-5
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
-def test_rates_are_derivatives(law: Law) -> None:
+def test_rates_are_derivatives_and_transformed_laws_follow_the_transformation(law: Law) -> None:
     t = np.linspace(0.01, 0.7, 101)
     theta, omega, alpha = law.at(t)
     ahead, behind = law.at(t + STEP), law.at(t - STEP)
@@ -29,10 +29,6 @@ def test_rates_are_derivatives(law: Law) -> None:
     assert np.allclose((ahead[0] - behind[0]) / (2 * STEP), omega, rtol=0, atol=5e-8)
     assert np.allclose((ahead[1] - behind[1]) / (2 * STEP), alpha, rtol=0, atol=5e-6)
     assert theta.shape == omega.shape == alpha.shape == t.shape
-
-
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
-def test_transformed_laws_follow_the_transformation(law: Law) -> None:
     t = np.linspace(0.0, 0.7, 11)
     theta, omega, alpha = law.at(t)
     assert np.allclose(law.turned(0.7).at(t)[0], theta + 0.7)

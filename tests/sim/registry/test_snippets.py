@@ -58,15 +58,12 @@ def settings_of(name: str) -> Iterator[Settings]:
                 yield space.settings(tuned, {**start, knob.name: value})
 
 
-def test_every_engine_that_writes_snippets_is_looked_at() -> None:
-    assert set(DISTURBANCE) == set(ENGINES)
-
-
 @pytest.mark.parametrize(("steps", "every"), STEPS)
 @pytest.mark.parametrize("name", ENGINES)
 def test_box_and_free_body_do_beside_a_snippet_what_they_did(
     name: str, steps: float, every: int
 ) -> None:
+    assert set(DISTURBANCE) == set(ENGINES)
     texts = {
         snippet(name, settings, steps, drive=drive)
         for settings in settings_of(name)
