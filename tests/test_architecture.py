@@ -104,13 +104,9 @@ def parsed(text: str) -> ast.Module:
     return ast.parse(text)
 
 
-def name_of(path: Path, root: Path = ROOT) -> str:
-    return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
-
-
 def imports(path: Path, root: Path = ROOT) -> Iterator[Import]:
     """What a file imports, also inside functions, and where only a type checker does."""
-    by = name_of(path, root)
+    by = ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
     for node in _import_statements(parsed(path.read_text(encoding="utf-8"))):
         assert getattr(node, "level", 0) == 0, f"{path}: import by full name"
         for alias in node.names:

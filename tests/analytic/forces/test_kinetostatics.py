@@ -168,15 +168,10 @@ FAST = Load("pull", "rod", "B", Polynomial((0.0,) * 19 + (1e15,)))
          r"t = 1e\+20 s\): forces are larger than numbers go"),
         (STILL, [0.0], "no link or slider has a mass and nothing loads"),
     ],
-    ids=["dead point", "end of a range", "beyond all numbers", "without mass"],
 )  # fmt: skip
 def test_what_has_no_forces_is_told(scene: Scene, when: object, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         forces(scene, when)  # type: ignore[arg-type]
-
-
-def lost(motion: Motion) -> Motion:
-    return replace(motion.each_series(lambda a: np.full_like(a, np.nan)), conditioning={})
 
 
 @pytest.mark.parametrize(
@@ -185,7 +180,10 @@ def lost(motion: Motion) -> Motion:
         (lambda m: replace(m, points={}), "point A is not in it; solve it without a choice"),
         (lambda m: replace(m, sliders={}), "slider C is not in it"),
         (lambda m: replace(m, bound=None), "carries no bounds"),
-        (lost, "no acceleration of link crank"),
+        (
+            lambda m: replace(m.each_series(lambda a: np.full_like(a, np.nan)), conditioning={}),
+            "no acceleration of link crank",
+        ),
     ],
 )
 def test_a_motion_that_lacks_something_is_refused(

@@ -67,7 +67,6 @@ def of_torque(course: Characteristic, time_s: Array) -> tuple[Array, Array]:
         (SAW, 1e-6),
         (Pulse(1.0, 0.171, 0.033), 1e-5),
     ],
-    ids=["jumps at samples", "jumps between them", "saw", "pulse"],
 )
 def test_a_rod_turns_as_its_torque_says(course: Characteristic, within: float) -> None:
     """Jumps and kinks between the samples are as exact as the sum that they are held to."""
