@@ -104,13 +104,9 @@ def parsed(text: str) -> ast.Module:
     return ast.parse(text)
 
 
-def name_of(path: Path, root: Path = ROOT) -> str:
-    return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
-
-
 def imports(path: Path, root: Path = ROOT) -> Iterator[Import]:
     """What a file imports, also inside functions, and where only a type checker does."""
-    by = name_of(path, root)
+    by = ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
     for node in _import_statements(parsed(path.read_text(encoding="utf-8"))):
         assert getattr(node, "level", 0) == 0, f"{path}: import by full name"
         for alias in node.names:
@@ -320,7 +316,7 @@ def test_a_loose_file_an_unplanned_room_and_a_lost_one_are_seen(house: Path) -> 
     }
 
 
-def test_a_name_of_an_engine_is_seen(house: Path) -> None:
+def test_engines_and_tables_outside_their_rooms_are_seen_by_name_and_import(house: Path) -> None:
     (house / "reports" / "page" / "a.py").write_text(
         '"""About MuJoCo."""\nif name == "mujoco":\n    from sim import pymunk\n    pymunk_work()\n'
     )
@@ -328,9 +324,6 @@ def test_a_name_of_an_engine_is_seen(house: Path) -> None:
     (house / "sim" / "pymunk" / "a.py").write_text('name = "pymunk"\n')
     seen = [fault.partition(" ")[0] for fault in namings(house) if " names " in fault]
     assert seen == [*(f"reports/page/a.py:{n}" for n in (2, 3, 4)), "reports/requests/sweep.py:2"]
-
-
-def test_an_engine_and_a_table_outside_their_rooms_are_seen(house: Path) -> None:
     (house / "sim" / "mujoco" / "a.py").write_text("import mujoco\n")
     (house / "reports" / "page" / "a.py").write_text("import mujoco, pandas\n")
     (house / "analytic" / "dyads" / "a.py").write_text("def f():\n    import pandas\n")

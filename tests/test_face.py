@@ -15,7 +15,6 @@ import crankcheck
 from crankcheck import testing as crankcheck_testing
 from tests.worlds.command import COMMAND, PYTHON
 
-ENGINES_AND_TABLES = ("mujoco", "pymunk", "pandas")
 FIRST = """
 import json, sys
 before, calls = set(sys.modules), 0
@@ -33,27 +32,23 @@ def printed(*command: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
 
-def test_importing_it_loads_nothing_else_and_hardly_runs_anything() -> None:
+def test_importing_it_or_one_request_loads_hardly_anything() -> None:
     loaded, calls = json.loads(printed(PYTHON, "-P", "-c", FIRST))
     assert loaded == ["crankcheck"]
     assert calls < 1000  # 193; what numpy or typer take is a hundred thousand
-
-
-def test_verify_loads_no_lectures_and_nothing_of_scipy() -> None:
+    # Verifying loads no lectures and nothing of scipy.
     code = (
         "import sys\nimport reports.requests.verify\n"
         "print([name for name in sys.modules if name == 'scipy' or '.lectures' in name])"
     )
     assert printed(PYTHON, "-P", "-c", code) == "[]\n"
-
-
-def test_every_name_is_there_and_with_asserting_loads_no_engine_and_no_table() -> None:
+    # Every name is there, and loads no engine and no table, with asserting too.
     code = (
         "import sys\nfrom crankcheck import *\nimport crankcheck\n"
         "assert set(crankcheck.__all__) <= set(globals())\n"
         "assert dir(crankcheck) == sorted(crankcheck.__all__)\n"
         "from crankcheck.testing import assert_within\n"
-        f"print([name for name in {ENGINES_AND_TABLES} if name in sys.modules])"
+        "print([name for name in ('mujoco', 'pymunk', 'pandas') if name in sys.modules])"
     )
     assert printed(PYTHON, "-P", "-c", code) == "[]\n"
 
@@ -67,15 +62,12 @@ def test_every_function_says_what_its_arguments_are() -> None:
         assert "Raises" in text
 
 
-def test_a_type_checker_sees_what_is_there() -> None:
+def test_a_type_checker_sees_what_is_there_and_a_name_that_is_not_is_no_attribute() -> None:
     tree = ast.parse(Path(crankcheck.__file__).read_text(encoding="utf-8"))
     blocks = (node for node in tree.body if isinstance(node, ast.If))
     (shown,) = (node for node in blocks if ast.unparse(node.test) == "TYPE_CHECKING")
     names = {node.name for node in ast.walk(shown) if isinstance(node, ast.alias)}
     assert names | {"__version__"} == set(crankcheck.__all__)
-
-
-def test_a_name_that_is_not_there_is_no_attribute() -> None:
     with pytest.raises(AttributeError, match="'crankcheck' has no attribute 'solv'"):
         crankcheck.solv  # noqa: B018 - that is what is tested
 

@@ -54,11 +54,13 @@ def test_installed_it_is_listed_checked_swept_and_shown(
     assert "penalty_engine" not in summary
 
 
-def test_it_is_out_of_tolerance_by_its_own_name() -> None:
+def test_it_is_out_of_tolerance_by_its_own_name_where_faults_are_planted_too() -> None:
     own = "--engine penalty_engine:ENGINE --profile tuned --turns 1"
     said = told(f"verify fourbar-lecture-1 {own}", code=1)
     assert "OUT  fourbar-lecture-1, penalty, tuned" in said
     assert "order 2.0" in said
+    engine("penalty_engine:ENGINE")
+    assert sites([FAULTS["row-lost"]], ["penalty"]) == [("fourbar-lecture-1", "penalty")]
 
 
 @pytest.mark.parametrize(
@@ -72,8 +74,3 @@ def test_it_is_out_of_tolerance_by_its_own_name() -> None:
 )
 def test_what_it_has_not_is_said(line: str, words: str) -> None:
     assert words in flat(told(line.replace("X", "penalty_engine:ENGINE"), code=2))
-
-
-def test_faults_are_planted_where_it_holds_the_scene() -> None:
-    engine("penalty_engine:ENGINE")
-    assert sites([FAULTS["row-lost"]], ["penalty"]) == [("fourbar-lecture-1", "penalty")]

@@ -10,8 +10,6 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-import pytest
-
 HERE = Path(__file__)
 TESTS = HERE.parent
 CLOCKS = re.compile(
@@ -49,21 +47,15 @@ def test_no_test_reads_a_clock_or_ends_a_child_in_seconds() -> None:
     assert set(READING) <= seen
 
 
-@pytest.mark.parametrize(
-    ("text", "fault"),
-    [
+def test_a_clock_is_seen_and_dates_counts_and_limits_of_minutes_are_none() -> None:
+    for text, fault in (
         ("began = time.process_time()\nassert time.process_time() - began < 1.0", "1: process_"),
         ("from time import perf_counter_ns as now", "1: perf_counter_ns"),
         ("SCRIPT = '''\nimport time\nprint(time.monotonic())\n'''", "3: monotonic"),
         ("assert psutil.Process().cpu_times().user < 2", "1: cpu_times"),
         ("done = subprocess.run(command, timeout=5)", "1: a limit of 5 s; give minutes"),
-    ],
-)
-def test_a_clock_is_seen(text: str, fault: str) -> None:
-    assert next(faults_of(text)).startswith(fault)
-
-
-def test_dates_counts_and_limits_of_minutes_are_none() -> None:
+    ):
+        assert next(faults_of(text)).startswith(fault)
     text = "import datetime\ndone.communicate(timeout=300)\nLock(path, timeout=0)\ntime_s = 3.0"
     assert not list(faults_of(text))
 

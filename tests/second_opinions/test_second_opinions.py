@@ -192,7 +192,6 @@ CORIOLIS, GAMMA, LEVER = MovingLine.acceleration, Constraints.gamma, "slotted-le
         (MovingLine, "acceleration", lambda line, s, v: CORIOLIS(line, s, -v), "tangent", 1e6),
         (Constraints, "gamma", lambda s, q, v, a: GAMMA(s, q, v * (1 + 1e-6), a), LEVER, 1e3),
     ],
-    ids=["in the closed form", "in Newton"],
 )
 def test_a_planted_fault_makes_them_disagree(
     owner: type, method: str, wrong: object, name: str, least: float, monkeypatch

@@ -58,8 +58,6 @@ speed_rad_s = 10.0
 SOLVED = 1e-10
 """rad, or of the longest link: where Newton's method ends."""
 TURNING_ROUND = Accelerating(1.57, 4.0, -6.0)
-
-
 ran = partial(runs.ran, per_turn=200 * np.pi, turns=1.6)
 """A run with the step given as steps per turn; 200 pi per turn is 1e-3 s at 10 rad/s."""
 
@@ -177,7 +175,7 @@ def test_another_law_is_exact_at_the_samples(engine: str, profile: str) -> None:
         assert falls(engine, coarse, fine)
 
 
-def test_a_servo_of_mujoco_lags_by_an_angle_that_does_not_shrink() -> None:
+def test_servos_lag_by_an_angle_that_stays_in_mujoco_and_shrinks_in_pymunk() -> None:
     scene = driven_by(TURNING_ROUND)
     lags = [
         drive_error(scene, ran(scene, "mujoco", per_turn=n * np.pi, drive="servo"))
@@ -187,9 +185,7 @@ def test_a_servo_of_mujoco_lags_by_an_angle_that_does_not_shrink() -> None:
     assert 1e-6 < lags[1] < 1e-3
     soft = ran(scene, "mujoco", per_turn=400 * np.pi, drive="servo", settings={"servo_gain": 100.0})
     assert drive_error(scene, soft) == pytest.approx(10.0 * lags[1], rel=0.2)
-
-
-def test_the_motor_of_pymunk_is_a_servo_without_lag_but_with_an_error_of_second_order() -> None:
+    # That of pymunk has no lag, but an error of second order.
     scene = load_scene(FOURBAR)
     lags = [drive_error(scene, ran(scene, "pymunk", per_turn=n, drive="servo")) for n in (200, 800)]
     assert lags[1] < lags[0] / 4**1.8

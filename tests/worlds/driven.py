@@ -40,16 +40,7 @@ from reports.quantities.limits import DEFAULTS
 from sim.pymunk.convergence import left_over
 from sim.pymunk.settings import TUNED
 from sim.pymunk.space import build
-from tests.worlds.strategies import (
-    FORMS,
-    MARGIN,
-    Designed,
-    Layout,
-    least_sine,
-    swing_times,
-    swinging,
-    with_dyads,
-)
+from tests.worlds import strategies
 
 POSITIONS = 16
 
@@ -61,9 +52,9 @@ def contraction(scene: Scene) -> float:
     return max(left_over(build(scene, motion.state(k))) for k in range(POSITIONS))
 
 
-CROSSED = tuple(form for form in FORMS if form.startswith("PRP"))
+CROSSED = tuple(form for form in strategies.FORMS if form.startswith("PRP"))
 """Two lines that may not become parallel: not one of the crank with one of the ground."""
-BASES = tuple(f for f in FORMS if f not in CROSSED and not f.endswith("on guide"))
+BASES = tuple(f for f in strategies.FORMS if f not in CROSSED and not f.endswith("on guide"))
 """What they may ride on: something that does not turn with the crank."""
 TRIES, MOST_TRIES = 40, 200
 LOOKS = 181
@@ -83,7 +74,7 @@ class Range:
     ``arm`` lengths of their link (0: no such points), what pymunk's iterations leave (infinite: not
     looked at), and powers of ten of speed [rad/s] and scale."""
 
-    margin: float = MARGIN
+    margin: float = strategies.MARGIN
     density: float = DENSITY
     arm: float = 0.0
     least_left: float = 0.0
@@ -114,7 +105,7 @@ class Driven:
 @st.composite
 def recipes(draw: st.DrawFn) -> tuple[tuple[str, ...], int]:
     """Forms of one or two dyads, and a seed for the rest: what `made` makes a mechanism of."""
-    forms = draw(st.lists(st.sampled_from(FORMS), min_size=1, max_size=2))
+    forms = draw(st.lists(st.sampled_from(strategies.FORMS), min_size=1, max_size=2))
     if forms[0] in CROSSED:
         forms = [draw(st.sampled_from(BASES)), forms[0]]
     return tuple(forms), draw(st.integers(0, 2**64 - 1))
@@ -131,8 +122,8 @@ def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven
         designed = _laid_out(chance, forms, speed)
         turns_round = stuck < TRIES
         if not turns_round:
-            designed = swinging(designed, abs(speed), within.margin)
-        elif least_sine(designed.scene, LOOKS) < within.margin:
+            designed = strategies.swinging(designed, abs(speed), within.margin)
+        elif strategies.least_sine(designed.scene, LOOKS) < within.margin:
             stuck += 1
             continue
         scene = _weighed(chance, _with_arms(chance, designed.scene, within.arm), within.density)
@@ -149,16 +140,16 @@ def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven
     return Driven(parse_scene(text, name), text, designed.forms, steps, turns_round, left)
 
 
-def _laid_out(chance: random.Random, forms: Sequence[str], speed: float) -> Designed:
+def _laid_out(chance: random.Random, forms: Sequence[str], speed: float) -> strategies.Designed:
     """A crank with the dyads of the forms, anywhere."""
-    at = Layout(chance.uniform, chance.choice)
+    at = strategies.Layout(chance.uniform, chance.choice)
     crank = at.crank(comes_round=True)
-    return with_dyads(at, forms, crank, ConstantSpeed(at.frames[crank][1], speed))
+    return strategies.with_dyads(at, forms, crank, ConstantSpeed(at.frames[crank][1], speed))
 
 
 def _fewest_steps(scene: Scene) -> float:
     """Steps a turn from which on no cap of a tolerance is in force, `LEAST_STEPS` at least."""
-    motion = solve(scene, swing_times(scene, LOOKS), bound=False)
+    motion = solve(scene, strategies.swing_times(scene, LOOKS), bound=False)
     sine = min(float(sine.min()) for sine in motion.conditioning.values())
     bend, law = curvature(scene, motion), scene.driver.law
     longest = min(
@@ -209,7 +200,7 @@ def _weighed(chance: random.Random, scene: Scene, most: float) -> Scene:
 
 def _carried(scene: Scene) -> Mapping[str, list[Point]]:
     """What each link has to reach, in its frame [m]: its pins, and where others slide on it."""
-    motion = solve(scene, swing_times(scene, LOOKS), links=(), points=(), bound=False)
+    motion = solve(scene, strategies.swing_times(scene, LOOKS), links=(), points=(), bound=False)
     found = {
         name: [place for point, place in link.points.items() if not point.startswith(TRACED)]
         for name, link in scene.links.items()

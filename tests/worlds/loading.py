@@ -11,55 +11,41 @@ import numpy as np
 from analytic.kinematics import reach
 from analytic.structure.mobility import analyse
 from models.scene import GROUND, Driver, Point, Scene
+from models.scene import loads as acting
 from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.scene.joints import block_name
 from models.scene.laws import Accelerating, Oscillating
-from models.scene.loads import (
-    ConstantFriction,
-    CoulombFriction,
-    Friction,
-    LineSpring,
-    Load,
-    Over,
-    PinSpring,
-    SlideSpring,
-    Spring,
-)
 from models.scene.tabulated import Interpolation, Tabulated
-from tests.worlds.strategies import (
-    KINDS,
-    SWINGS,
-    Designed,
-    Layout,
-    some_forms,
-    swinging,
-    with_dyads,
-)
+from tests.worlds import strategies
 
 TRIES = 8
-OVER: tuple[Over, ...] = ("time", "angle", "displacement")
+OVER: tuple[acting.Over, ...] = ("time", "angle", "displacement")
 
 
 def loaded_mechanism(number: int) -> tuple[Scene, bool]:
     """The mechanism of a number, the kinds of its first dyad taking turns, and whether it stands
     near a dead point at time 0: where the number is odd, but for some whose driver turns round."""
     chance = random.Random(number)
-    kind = KINDS[number // 2 % len(KINDS)]
+    kind = strategies.KINDS[number // 2 % len(strategies.KINDS)]
     for _ in range(TRIES):
-        forms = some_forms(kind, chance)
+        forms = strategies.some_forms(kind, chance)
         designed = _laid_out(chance, forms)
         if number % 2 == 0:
-            return loaded(swinging(designed, chance.uniform(0.5, 20.0)).scene, chance), False
+            return loaded(
+                strategies.swinging(designed, chance.uniform(0.5, 20.0)).scene, chance
+            ), False
         near = near_dead_point(designed.scene, chance)
         if near is not None:
             return loaded(near, chance), True
-    return loaded(swinging(designed, 1.0).scene, chance), False
+    return loaded(strategies.swinging(designed, 1.0).scene, chance), False
 
 
-def _laid_out(chance: random.Random, forms: list[str]) -> Designed:
-    at = Layout(chance.uniform, chance.choice)
+def _laid_out(chance: random.Random, forms: list[str]) -> strategies.Designed:
+    at = strategies.Layout(chance.uniform, chance.choice)
     crank = at.crank()
-    return with_dyads(at, forms, crank, Oscillating(at.frames[crank][1], SWINGS[0], 1.0))
+    return strategies.with_dyads(
+        at, forms, crank, Oscillating(at.frames[crank][1], strategies.SWINGS[0], 1.0)
+    )
 
 
 def near_dead_point(scene: Scene, chance: random.Random) -> Scene | None:
@@ -112,7 +98,7 @@ def loaded(scene: Scene, chance: random.Random) -> Scene:
     return replace(heavy, loads={name: _load(heavy, name, chance) for name in names})
 
 
-def _load(scene: Scene, name: str, chance: random.Random) -> Load:
+def _load(scene: Scene, name: str, chance: random.Random) -> acting.Load:
     targets: list[tuple[str, str]] = [
         (link.name, point) for link in scene.links.values() for point in link.points
     ]
@@ -128,7 +114,7 @@ def _load(scene: Scene, name: str, chance: random.Random) -> Load:
     if over != "displacement" and stroke == "both":
         slider = None
     torque = chance.random() < 0.3
-    return Load(
+    return acting.Load(
         name,
         body,
         None if torque else point,
@@ -141,7 +127,7 @@ def _load(scene: Scene, name: str, chance: random.Random) -> Load:
     )
 
 
-def characteristic(over: Over, chance: random.Random) -> Characteristic:
+def characteristic(over: acting.Over, chance: random.Random) -> Characteristic:
     """Of any kind; tables are wide enough for every stroke, or repeat with a turn."""
     size = 10 ** chance.uniform(0.0, 2.0)
     kind = chance.choice(("constant", "sine", "polynomial", "table"))
@@ -165,13 +151,13 @@ def rubbed(scene: Scene, chance: random.Random, mu: float = 0.3) -> Scene:
     names = [p for p, held in analyse(scene).pins.items() if len(held) == 2]
     joints = [*(name for name in names if name not in scene.sliders), *scene.sliders]
     chosen = chance.sample(joints, chance.randint(1, min(4, len(joints))))
-    friction: dict[str, Friction] = {}
+    friction: dict[str, acting.Friction] = {}
     for joint in chosen:
         if chance.random() < 0.25:
-            friction[joint] = ConstantFriction(joint, chance.uniform(0.1, 3.0))
+            friction[joint] = acting.ConstantFriction(joint, chance.uniform(0.1, 3.0))
         else:
             radius = 0.0 if joint in scene.sliders else chance.uniform(0.005, 0.1)
-            friction[joint] = CoulombFriction(joint, chance.uniform(0.0, mu), radius)
+            friction[joint] = acting.CoulombFriction(joint, chance.uniform(0.0, mu), radius)
     return replace(scene, friction=friction)
 
 
@@ -181,7 +167,7 @@ def with_names_for_sliders(scene: Scene) -> Scene:
     names = {name: f"line {name}" for name in scene.sliders}
     bodies = {f"block {name}": f"block {new}" for name, new in names.items()}
 
-    def load(old: Load) -> Load:
+    def load(old: acting.Load) -> acting.Load:
         slider = None if old.slider is None else names[old.slider]
         return replace(old, body=bodies.get(old.body, old.body), slider=slider)
 
@@ -202,11 +188,11 @@ def rubbed_mechanism(number: int) -> tuple[Scene, bool]:
 def sprung(scene: Scene, chance: random.Random) -> Scene:
     """The scene with a spring of each kind that it has room for, one of them without a rate or
     without a damper now and then; between points it may be slack at length 0."""
-    springs: dict[str, Spring] = {}
+    springs: dict[str, acting.Spring] = {}
     points = list(analyse(scene).pins)
     a, b = chance.sample(points, 2)
     if not {a, b} <= set(scene.ground):
-        springs["line"] = LineSpring(
+        springs["line"] = acting.LineSpring(
             "line", *_sizes(chance, 300.0), chance.choice((0.0, 0.3)), (a, b)
         )
     pins = {
@@ -216,12 +202,12 @@ def sprung(scene: Scene, chance: random.Random) -> Scene:
     meeting = [point for point, held in pins.items() if len(held) > 1]
     point = chance.choice(meeting)
     first, second = chance.sample(pins[point], 2)
-    springs["pin"] = PinSpring(
+    springs["pin"] = acting.PinSpring(
         "pin", *_sizes(chance, 30.0), chance.uniform(-2.0, 2.0), point, (first, second)
     )
     if scene.sliders:
         slider = chance.choice(list(scene.sliders))
-        springs["slide"] = SlideSpring(
+        springs["slide"] = acting.SlideSpring(
             "slide", *_sizes(chance, 300.0), chance.uniform(-0.5, 0.5), slider
         )
     return replace(scene, springs=springs)

@@ -5,16 +5,7 @@ import numpy as np
 from analytic.forces import kinetostatics
 from models.array import Array
 from models.motion import Forces
-from models.scene import GROUND, Scene
-from models.scene.joints import (
-    block_name,
-    centre_of,
-    joints,
-    line_ends,
-    local_point,
-    mass_of,
-    riding_body,
-)
+from models.scene import GROUND, Scene, joints
 from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from reports.contract.clauses.reactions import named
 from sim.engine import BodyPose, Log
@@ -58,13 +49,16 @@ def left_over(scene: Scene, log: Log) -> tuple[float, float]:
     for point, by_body in forces.pins.items():
         for body, force in by_body.items():
             if body in poses:
-                ends.append((body, force, place(body, local_point(scene, body, point))))
-    for slide in joints(scene).slides:
-        slider, rider = slide.slider, riding_body(slide)
+                ends.append((body, force, place(body, joints.local_point(scene, body, point))))
+    for slide in joints.joints(scene).slides:
+        slider, rider = slide.slider, joints.riding_body(slide)
         line = theta[slider.on] + slider.direction_rad
         along = np.stack([np.cos(line), np.sin(line)], axis=-1)
         across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-        own, at = forces.sliders[slider.name], place(rider, local_point(scene, rider, slider.point))
+        own, at = (
+            forces.sliders[slider.name],
+            place(rider, joints.local_point(scene, rider, slider.point)),
+        )
         pulled = [
             pull[name]
             for name, spring in scene.springs.items()
@@ -72,11 +66,11 @@ def left_over(scene: Scene, log: Log) -> tuple[float, float]:
         ]
         push = own.normal[:, None] * across
         back = sum(pulled, np.zeros_like(line))[:, None] * along
-        if rider == (slider.link or block_name(slider)):
+        if rider == (slider.link or joints.block_name(slider)):
             ends.append((rider, push - back, at))
             couples.append((rider, own.moment))
         else:  # a block without mass hands on to its pin what it is given
-            on_block = forces.pins[slider.point][block_name(slider)] + push - back
+            on_block = forces.pins[slider.point][joints.block_name(slider)] + push - back
             left.append(float(np.abs(on_block).max()))
         ends.append((slider.on, back - push, at))
         couples.append((slider.on, -own.moment))
@@ -84,13 +78,13 @@ def left_over(scene: Scene, log: Log) -> tuple[float, float]:
         if isinstance(spring, PinSpring):
             couples += [(spring.bodies[0], pull[name]), (spring.bodies[1], -pull[name])]
         elif isinstance(spring, LineSpring):
-            (a, at), (b, to) = line_ends(scene, spring)
+            (a, at), (b, to) = joints.line_ends(scene, spring)
             way = place(b, to) - place(a, at)
             force = pull[name][:, None] * way / np.hypot(*way.T)[:, None]
             ends += [(a, force, place(a, at)), (b, -force, place(b, to))]
     for body, pose in poses.items():
-        mass, inertia = mass_of(scene, body)
-        arm = turned(pose, centre_of(scene, body))
+        mass, inertia = joints.mass_of(scene, body)
+        arm = turned(pose, joints.centre_of(scene, body))
         push = pose.origin_acceleration - arm * (pose.omega**2)[:, None]
         push = push + np.stack([-pose.alpha * arm[:, 1], pose.alpha * arm[:, 0]], axis=-1)
         force = mass * (np.array(scene.gravity_m_s2) - push)

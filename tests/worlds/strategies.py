@@ -248,8 +248,6 @@ LAYOUTS: dict[str, Callable[[Layout], None]] = {
         for outer in ("link", "guide")
     },
 }
-
-
 MARGIN = 0.25
 SWINGS = [0.6 * 0.5**k for k in range(8)]
 """Amplitudes of the driver [rad] that are tried, the largest first."""

@@ -97,6 +97,10 @@ def of_bodies(change: Callable[[BodyPose], BodyPose]) -> Callable[..., Log]:
     return of_log(lambda poses: poses.changed(change))
 
 
+def turning(change: Callable[[BodyPose], dict[str, Array]]) -> Fault:
+    return meddling(record_=of_bodies(lambda body: replace(body, **change(body))))
+
+
 def _own(sound: Engine) -> Settings:
     return {name: each.value for name, each in sound.profiles["tuned"].settings.items()}
 
@@ -148,24 +152,8 @@ def _deaf(sound: Engine) -> Engine:
     return meddled(sound, deaf, facts_=_told_settings)
 
 
-def _another_setting(_: Asked, facts: Facts) -> Facts:
-    return replace(facts, settings={**facts.settings, "iterations": 7})
-
-
-def _heavier(_: Asked, facts: Facts) -> Facts:
-    return replace(facts, mass_kg={name: 1.01 * mass for name, mass in facts.mass_kg.items()})
-
-
-def _no_lag(_: Asked, facts: Facts) -> Facts:
-    return replace(facts, start=replace(facts.start, lag_s=0.0))
-
-
-def _from_zero(asked: Asked) -> Asked:
-    return asked._replace(state=replace(asked.state, time_s=0.0))
-
-
-def _thin_count(_: Meddled, log: Log, every: int) -> Log:
-    return replace(log, steps_done=log.steps_done // every)
+def of_facts(change: Callable[[Facts], dict[str, Any]]) -> Fault:
+    return meddling(facts_=lambda _, facts: replace(facts, **change(facts)))
 
 
 def _restarts(self: Meddled, log: Log, every: int) -> Log:
@@ -197,14 +185,6 @@ def _shared(self: Meddled, log: Log, every: int) -> Log:
 NOISE = np.random.default_rng(1)
 
 
-def _noisy(body: BodyPose) -> BodyPose:
-    return replace(body, omega=body.omega + 1e-14 * NOISE.random(body.omega.shape))
-
-
-def _wrapped(body: BodyPose) -> BodyPose:
-    return replace(body, theta=np.remainder(body.theta, 2 * np.pi))
-
-
 def _prints(self: Meddled, steps: int) -> int:
     os.write(1, b"stepping\n")
     return steps
@@ -219,10 +199,6 @@ def _late(series: Array) -> Array:
     return np.concatenate([series[:1], series[:-1]])
 
 
-def _late_rates(body: BodyPose) -> BodyPose:
-    return replace(body, omega=_late(body.omega))
-
-
 def _turned(poses: Poses, name: str, **changes: Array) -> Poses:
     return replace(poses, bodies={**poses.bodies, name: replace(poses.bodies[name], **changes)})
 
@@ -231,10 +207,6 @@ def _slow_one(poses: Poses) -> Poses:
     """The speed of the body that turns least, times a number."""
     slow = min(poses.bodies, key=lambda name: float(np.abs(poses.bodies[name].omega).max()))
     return _turned(poses, slow, omega=1.08 * poses.bodies[slow].omega)
-
-
-def _zero_accelerations(body: BodyPose) -> BodyPose:
-    return replace(body, alpha=0.0 * body.omega, origin_acceleration=0.0 * body.velocity)
 
 
 def _a_little_fast(asked: Asked) -> Asked:
@@ -332,7 +304,7 @@ def _half_a_step_late(forces: Forces) -> Forces:
 
 def _shaken(_: Meddled, log: Log) -> Log:
     """To read forces it steps once more, from which it does not come back."""
-    return replace(log, poses=log.poses.changed(_late_rates))
+    return replace(log, poses=log.poses.changed(lambda b: replace(b, omega=_late(b.omega))))
 
 
 def _with_scene(change: Callable[[Scene], Scene]) -> Opens:
@@ -412,30 +384,42 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "takes every count": ("EC13", "iterations takes each of 0, -1, 0.5", _boundless),
     "deaf": ("EC14", "differ in iterations, error_bias", _deaf),
     "other setting held": (
-        "EC14", "iterations is asked to be 150, held 7", meddling(facts_=_another_setting)),
-    "heavier": ("EC21", "has mass_kg", meddling(facts_=_heavier)),
-    "from zero": ("EC22", "the samples are at", meddling(_from_zero)),
+        "EC14", "iterations is asked to be 150, held 7",
+        of_facts(lambda f: {"settings": {**f.settings, "iterations": 7}})),
+    "heavier": (
+        "EC21", "has mass_kg",
+        of_facts(lambda f: {"mass_kg": {name: 1.01 * m for name, m in f.mass_kg.items()}})),
+    "from zero": (
+        "EC22", "the samples are at",
+        meddling(lambda asked: asked._replace(state=replace(asked.state, time_s=0.0)))),
     "one step more": (
         "EC31", "after 60 steps step and record differ by",
         meddling(step_=lambda self, steps: steps + 1)),
-    "counts samples": ("EC32", "record(40, 8) says 5 steps done", meddling(record_=_thin_count)),
+    "counts samples": (
+        "EC32", "record(40, 8) says 5 steps done",
+        meddling(record_=lambda _, log, every: replace(log, steps_done=log.steps_done // every))),
     "restarts": ("EC33", "the second begins at 0 s", meddling(record_=_restarts)),
     "lends its memory": (
         "EC34", "what read gave changes", meddling(read_=_lent, step_=_overwritten)),
     "shared state": ("EC35", "it differs by", meddling(record_=_shared)),
-    "noise": ("EC36", "100 steps twice differ by", meddling(record_=of_bodies(_noisy))),
-    "wrapped": ("EC37", "jumps by", meddling(record_=of_bodies(_wrapped))),
+    "noise": (
+        "EC36", "100 steps twice differ by",
+        turning(lambda b: {"omega": b.omega + 1e-14 * NOISE.random(b.omega.shape)})),
+    "wrapped": ("EC37", "jumps by", turning(lambda b: {"theta": np.remainder(b.theta, 2 * np.pi)})),
     "talks": ("EC38", "writes to the terminal: 'stepping'", meddling(step_=_prints)),
     "leaves files": (
         "EC38", "leaves files in the working folder: ENGINE_LOG.TXT", meddling(read_=_litters)),
     "velocities late": (
         "EC41", "is that of -0.50 steps, and velocity_shift says +0.50",
-        meddling(record_=of_bodies(_late_rates))),
+        turning(lambda b: {"omega": _late(b.omega)})),
     "slow one is off": (
         "EC41", "is not that of its places", meddling(record_=of_log(_slow_one))),
-    "lag unsaid": ("EC41", "Poses.lag_s is 0 steps", meddling(facts_=_no_lag)),
+    "lag unsaid": (
+        "EC41", "Poses.lag_s is 0 steps",
+        of_facts(lambda f: {"start": replace(f.start, lag_s=0.0)})),
     "zero accelerations": (
-        "EC42", "are not all NaN", meddling(record_=of_bodies(_zero_accelerations))),
+        "EC42", "are not all NaN",
+        turning(lambda b: {"alpha": 0.0 * b.omega, "origin_acceleration": 0.0 * b.velocity})),
     "a little fast": ("EC51", "the crank is off by", meddling(_a_little_fast)),
     "third order": ("EC52", "shrink as dt^2.0, and order is 3", lambda e: replace(e, order=3)),
     "handed back": (

@@ -196,16 +196,7 @@ def test_a_limit_between_parallel_guides_counts_twice_at_each_place() -> None:
     assert counted(*lines, CircleRow((0, 0), (0, 5), 5)) == [(half, 0.0, 0.0, 4)]
 
 
-def test_an_angle_at_which_all_lines_are_parallel_and_apart_is_none() -> None:
-    first, second = ThroughRow(UP, (0, 0), (2, 1)), ThroughRow(UP, (0, 1), (5, 3))
-    rows = LineRow((0, 0), UP, (0, 0)), first, second
-    # 2 cos phi - 3 sin phi = 1, by the difference of the last two
-    middle, off = math.atan2(-3, 2), math.acos(1 / math.sqrt(13))
-    angles = [one.angle_rad for one in assemblies(rows)]
-    assert angles == pytest.approx([middle - off, middle + off], rel=1e-15)
-
-
-def test_parallel_guides_and_an_angle_leave_the_link_loose_or_hold_it_nowhere() -> None:
+def test_parallel_guides_leave_a_link_loose_or_hold_it_nowhere() -> None:
     guides = LineRow((0, 0), UP, (0, 0)), LineRow((1, 0), UP, (0, 0))
     assert counted(*guides, LineRow((0, 1), UP, (0, 5))) == []
     with pytest.raises(ContinuumError, match="can move while"):
@@ -214,17 +205,21 @@ def test_parallel_guides_and_an_angle_leave_the_link_loose_or_hold_it_nowhere() 
     with pytest.raises(ContinuumError):
         counted(along, guides[0], other)
     assert counted(along, guides[0], replace(other, through=(0, 3))) == []
+    # An angle at which all lines are parallel and apart is none.
+    first, second = ThroughRow(UP, (0, 0), (2, 1)), ThroughRow(UP, (0, 1), (5, 3))
+    rows = LineRow((0, 0), UP, (0, 0)), first, second
+    # 2 cos phi - 3 sin phi = 1, by the difference of the last two
+    middle, off = math.atan2(-3, 2), math.acos(1 / math.sqrt(13))
+    angles = [one.angle_rad for one in assemblies(rows)]
+    assert angles == pytest.approx([middle - off, middle + off], rel=1e-15)
 
 
-def test_a_parallelogram_moves_and_with_unequal_legs_it_does_not() -> None:
+def test_legs_alike_let_a_platform_move_and_otherwise_it_stands_or_is_nowhere() -> None:
     points = [(0.0, 0.0), (2.0, 0.0), (1.0, 3.0)]
     pins = [(4.0, 0.0), (6.0, 0.0), (5.0, 3.0)]
     with pytest.raises(ContinuumError):
         counted(*circles(points, pins, [2, 2, 2]))
     assert len(assemblies(circles(points, pins, [2, 2.5, 2.25]))) == 4
-
-
-def test_one_leg_twice_moves_and_two_lengths_between_the_same_pins_are_none() -> None:
     one, two = CircleRow((1, 0), (3, 0), 2), CircleRow((0, 1), (0, 4), 3)
     with pytest.raises(ContinuumError):
         counted(one, one, two)

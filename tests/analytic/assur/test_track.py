@@ -37,14 +37,11 @@ def step_of(scene: Scene) -> AssurStep:
     return step
 
 
-def start_of(scene: Scene) -> float:
-    return float(scene.driver.law.at(np.zeros(1))[0][0])
-
-
 @functools.cache
 def as_drawn(kinds: tuple[str, str, str], seed: int) -> Scene:
     scene, angle = triad(kinds, seed)
-    found = [one.angle_rad for one in step_of(scene).assemblies(start_of(scene), {})]
+    start = float(scene.driver.law.at(np.zeros(1))[0][0])
+    found = [one.angle_rad for one in step_of(scene).assemblies(start, {})]
     apart = [abs(math.remainder(one - angle, math.tau)) for one in found]
     assert min(apart) < 1e-6, "the assembly that was drawn is one of all"
     return on_branch(scene, 1 + int(np.argmin(apart)))
@@ -66,7 +63,7 @@ def test_error_stays_below_the_bound_in_every_kind_of_triad(
         assert np.median(found[0]) > 1e-4, "a bound of ten thousand errors says little"
 
 
-def test_bounds_are_infinite_beside_a_limit_position_and_never_nan() -> None:
+def test_beside_a_limit_position_bounds_are_infinite_and_beyond_it_two_assemblies_gone() -> None:
     scene = as_drawn(("RR", "RR", "RR"), 0)
     low, high = (end.theta for end in step_of(scene).track({}).ends)
     law = ConstantSpeed(0.5 * (low + high), 1.0)
@@ -79,6 +76,12 @@ def test_bounds_are_infinite_beside_a_limit_position_and_never_nan() -> None:
     platform = bounds["platform"]
     assert np.isfinite(platform.alpha[:2]).all()
     assert platform.omega[2] > 1e3 * platform.omega[1] > 1e3 * platform.omega[0]
+    step = step_of(triad(("RR", "RR", "RR"), 0, crank_m=0.6)[0])
+    ends = step.track({}).ends
+    assert all(end is not None and end.kind == "limit position" for end in ends)
+    for end, way in zip(ends, (-1.0, 1.0), strict=True):
+        counts = [len(step.assemblies(end.theta - way * off, {})) for off in (1e-9, -1e-9)]
+        assert counts[0] == counts[1] + 2
 
 
 def test_error_stays_below_the_bound_a_million_lengths_away() -> None:
@@ -128,15 +131,6 @@ def test_what_is_followed_is_an_assembly_all_along_and_moves_at_its_rate(
         led = 0.5 * (rates[1:] + rates[:-1]) * np.diff(fine)
         gain = np.abs(np.diff(angle) - led)
         assert (gain <= 0.05 * np.abs(led) + 0.02).all()
-
-
-def test_two_assemblies_are_gone_beyond_a_limit_position() -> None:
-    step = step_of(triad(("RR", "RR", "RR"), 0, crank_m=0.6)[0])
-    ends = step.track({}).ends
-    assert all(end is not None and end.kind == "limit position" for end in ends)
-    for end, way in zip(ends, (-1.0, 1.0), strict=True):
-        counts = [len(step.assemblies(end.theta - way * off, {})) for off in (1e-9, -1e-9)]
-        assert counts[0] == counts[1] + 2
 
 
 LENGTHS = {"usual": (0.1, 0.25, 0.2, 0.3), "parallelogram": (0.1, 0.3, 0.1, 0.3)}

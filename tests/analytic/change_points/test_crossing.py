@@ -306,15 +306,12 @@ def test_a_rod_that_is_longer_by_little_keeps_its_side(power: int) -> None:
     held(motion, exact, math.inf)
 
 
-def test_only_what_is_passed_is_told() -> None:
+def test_what_is_passed_and_what_cannot_be_continued_is_told_and_only_there() -> None:
     scene = fourbar(0.1, 0.3, 0.1, 0.3)  # stands at 60 deg at time 0
     ways = [driven(scene, np.radians([to])).crossings for to in (60.0, 179.0, 180.0, -1.0, 400.0)]
     degrees = [tuple(round(math.degrees(c.driver_rad)) for c in each) for each in ways]
     assert set(degrees) == {(), (180,), (0,), (0, 180)}
-
-
-def test_what_cannot_be_continued_is_named_and_only_there() -> None:
-    """All but a rhombus, contrary: its rocker overtakes the crank a thousand times as fast."""
+    # All but a rhombus, contrary: its rocker overtakes the crank a thousand times as fast.
     scene = fourbar(1.0, 1.0 + 2**-10, 1.0, 1.0 + 2**-10, -1)
     with pytest.raises(CrankcheckError, match=r"four-bar: at crank 0 deg the dyad of C is in a"):
         driven(scene, np.array([1.0, 0.0]))

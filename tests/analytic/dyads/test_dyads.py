@@ -142,7 +142,7 @@ def test_bound_covers_inputs_that_are_wrong_by_their_stated_error(kind: str, cou
     assert np.median(found.bound[known] / found.error[known]) < 50.0
 
 
-def test_open_dyad_raises_with_its_shortage() -> None:
+def test_a_dyad_that_is_open_raises_with_its_shortage_and_by_rounding_alone_closes() -> None:
     at, l1, l2 = fixed_point((0.3, -0.2)), 0.4, 0.7
     for apart, short in ((1.35, 0.25), (0.1, 0.2)):
         place = Vec(0.3 + np.array([0.5, apart]), -0.2)  # the first one closes
@@ -150,9 +150,6 @@ def test_open_dyad_raises_with_its_shortage() -> None:
         with pytest.raises(OpenError) as opened:
             rrr.solve(at, other, l1, l2, 1)
         assert opened.value.short_m[1] == pytest.approx(short, abs=1e-15)
-
-
-def test_dyad_open_by_rounding_alone_closes_in_toggle() -> None:
     at, l1, l2 = fixed_point((0.0, 0.0)), 0.4, 0.7
     apart = np.array([l1 + l2, math.nextafter(l1 + l2, 2.0), (l1 + l2) * (1 + 8 * EPS)])
     other = PointKinematics(Vec(apart, 0.0 * apart), ZERO, ZERO, at.error)

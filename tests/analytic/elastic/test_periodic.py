@@ -109,7 +109,6 @@ def test_sensitivity_is_the_change_with_the_stiffness() -> None:
         (turning(1.1), r"bend too far for a beam.*take a lower speed"),
         (following(turning(), FromRest(1.0, 7.4, 0.3)), "what moves them is not the same"),
     ],
-    ids=["another branch", "too soft", "a drive that does not repeat"],
 )
 def test_what_has_no_periodic_motion_is_refused(scene: Scene, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
@@ -171,15 +170,11 @@ def test_the_bounds_of_mathieus_equation() -> None:
     assert stability(mathieu(0.5 * (mathieu_a(1, q) + mathieu_b(2, q)), q), math.pi).is_stable
 
 
-def about(form: ReducedForm) -> LinearForm:
-    """The equations next to the periodic motion."""
-    found = periodic_motion(form)
-    return linearise(form, found.time_s, 1e-2 * np.abs(found.z).max(), found.at(found.time_s))
-
-
 def test_damping_takes_what_liouville_says() -> None:
     form = form_of(turning(3.5, damping_s=1e-3), ONE)
-    linear = about(form)
+    motion = periodic_motion(form)
+    near = 1e-2 * np.abs(motion.z).max(), motion.at(motion.time_s)
+    linear = linearise(form, motion.time_s, *near)
     found = by_collocation(linear, form.period_s, 64)
     assert np.abs(found.multipliers).max() < 1.0
     rates = np.trace(np.linalg.solve(linear.mass, linear.damping), axis1=1, axis2=2)
@@ -199,12 +194,6 @@ def deviated(form: ReducedForm, turns: int, share: float, windows: int) -> tuple
     return np.repeat([by, 0.0], form.size), 0.5 * (ends[0] - ends[1])
 
 
-def apart_from(expected: Array, end: Array) -> float:
-    """Over the largest, of y, and of y' over the frequency that it is of."""
-    scale = np.repeat([1.0, 77.37], len(end) // 2)
-    return float(np.abs((end - expected) / scale).max() / np.abs(expected / scale).max())
-
-
 @slow("a second: the multipliers are held by what Liouville says")
 def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
     form = form_of(turning(4.15, rocker=30.0), ONE)
@@ -213,32 +202,22 @@ def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
     assert not found.is_stable
     assert found.deviations[0].order == 3.5  # twice that is 7: it feeds on the turning
     start, end = deviated(form, 1, 1e-6, windows=16)
-    assert apart_from(found.monodromy.matrix @ start, end) < 1e-6
+    expected, scale = found.monodromy.matrix @ start, [1.0, 77.37]  # of y, and of y'
+    assert np.abs((end - expected) / scale).max() < 1e-6 * np.abs(expected / scale).max()
 
 
 BY = Modes(2, 0)
 
 
-def off(scene: Scene, speed: float) -> float:
-    """What the linearised equations at a speed are off those that are made there."""
-    found = AnySpeed(scene, BY, 5.0, 40.0).linear(speed)
-    return apart(found, linearise(form_of(at_speed(scene, speed), BY), found.time_s, 1e-4))
-
-
-def test_the_linearised_equations_are_polynomials_of_the_speed() -> None:
-    scene = replace(turning(damping_s=1e-3), gravity_m_s2=(0.0, -9.81))
-    assert AnySpeed(scene, BY, 5.0, 40.0)._series is not None
-    assert off(scene, 11.0) < 1e-7
-
-
-def test_a_load_that_goes_with_the_speed_otherwise_is_met_as_well() -> None:
+def test_at_any_speed_the_linearised_equations_are_those_made_there() -> None:
+    """Polynomials of the speed, but with a load that goes with it otherwise."""
+    heavy = replace(turning(damping_s=1e-3), gravity_m_s2=(0.0, -9.81))
     drag = Load("drag", "rocker", None, Polynomial((0.0, 0.0, 0.0, -1e-3)), over="omega")
-    scene = replace(turning(), loads={"drag": drag})
-    assert AnySpeed(scene, BY, 5.0, 40.0)._series is None
-    assert off(scene, 11.0) < 1e-7
-
-
-def test_laws_without_a_constant_speed_are_refused() -> None:
+    for scene, polynomials in ((heavy, True), (replace(turning(), loads={"drag": drag}), False)):
+        any_speed = AnySpeed(scene, BY, 5.0, 40.0)
+        assert (any_speed._series is not None) == polynomials
+        found, there = any_speed.linear(11.0), form_of(at_speed(scene, 11.0), BY)
+        assert apart(found, linearise(there, found.time_s, 1e-4)) < 1e-7
     with pytest.raises(CrankcheckError, match="at a constant one; found another law"):
         at_speed(following(turning(), FromRest(0.0, 10.0, 0.2)), 10.0)
 
@@ -255,15 +234,12 @@ def over() -> OverSpeeds:
     return over_speeds(turning(), FEW, np.linspace(11.0, 24.0, 9))
 
 
-def test_critical_speeds_are_those_next_to_whole_ratios(over: OverSpeeds) -> None:
+def test_next_to_whole_ratios_are_critical_bands_of_no_motion(over: OverSpeeds) -> None:
     strong = {each.order: each for each in over.critical if each.mode == 1}
     assert sorted(strong) == [4, 5, 6, 7]
     for order, each in strong.items():
         assert each.ratio == pytest.approx(order, rel=2e-3)
     assert strong[4].band > strong[5].band > strong[6].band > strong[7].band > 1e-4
-
-
-def test_motions_are_refused_within_the_band_and_not_outside(over: OverSpeeds) -> None:
     five = next(each for each in over.critical if each.order == 5)
     for share, refused in ((0.3, True), (3.0, False)):
         form = form_of(at_speed(over.scene, (1.0 + share * five.band) * five.speed_rad_s))
@@ -272,14 +248,11 @@ def test_motions_are_refused_within_the_band_and_not_outside(over: OverSpeeds) -
             periodic_motion(form)
 
 
-def test_a_point_is_the_linear_theory_at_its_speed(over: OverSpeeds) -> None:
+def test_a_point_and_its_spectrum_are_those_of_its_speed(over: OverSpeeds) -> None:
     point = over.points[1]
     vibration = steady_vibration(at_speed(over.scene, point.speed_rad_s), FEW)
     assert point.share == pytest.approx(vibration.theories["linear"]["coupler"].share, rel=1e-6)
     assert point.ratio == pytest.approx(lowest_rad_s(over.scene) / point.speed_rad_s)
-
-
-def test_spectra_hold_the_whole_deflection(over: OverSpeeds) -> None:
     wave = np.cos(2.0 * np.pi * 3.0 * np.arange(65) / 65)
     assert spectrum(2.0 + 0.5 * wave)[[0, 3, 4]] == pytest.approx([2.0, 0.5, 0.0], abs=1e-12)
     amplitudes = spectra(over, "coupler")

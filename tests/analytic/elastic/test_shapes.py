@@ -93,16 +93,14 @@ BENDING = (np.arange(1, 5) * math.pi / LENGTH_M) ** 2 * math.sqrt(FLEXURAL_N_M2 
 AXIAL = (np.arange(1, 4) - 0.5) * math.pi / LENGTH_M * math.sqrt(AXIAL_N / DENSITY_KG_M)
 
 
-def test_modes_have_the_frequencies_of_a_beam_between_pins_and_of_a_rod() -> None:
+def test_modes_have_the_frequencies_of_beam_and_rod_and_others_come_to_them() -> None:
     own = beam(SineModes(LENGTH_M, 4, 3))
     assert across_rad_s(own) == pytest.approx(BENDING, rel=1e-12)
     assert along_rad_s(own) == pytest.approx(AXIAL, rel=1e-12)
     told = [LINK.bending_rad_s(LENGTH_M, DENSITY_KG_M, i) for i in (1, 2)]
     assert told == pytest.approx(BENDING[:2])
     assert LINK.axial_rad_s(LENGTH_M, DENSITY_KG_M, 2) == pytest.approx(AXIAL[1])
-
-
-def test_polynomials_come_to_them_within_a_millionth_and_elements_with_order_4_and_2() -> None:
+    # Polynomials come to them within a millionth, and elements with order 4 and 2.
     own = beam(LegendrePolynomials(LENGTH_M, 8, 7))
     assert across_rad_s(own)[:2] == pytest.approx(BENDING[:2], rel=1e-6)
     assert along_rad_s(own)[:2] == pytest.approx(AXIAL[:2], rel=1e-6)
@@ -138,7 +136,7 @@ def test_the_sag_under_an_even_load(own: Body, off: float, most: float) -> None:
 
 
 @pytest.mark.parametrize("kind", SHAPES)
-def test_slopes_and_curvatures_are_derivatives_and_the_ends_are_held(kind: str) -> None:
+def test_shapes_have_their_slopes_and_shortening_and_are_held_at_both_ends(kind: str) -> None:
     shapes = SHAPES[kind]
     ends = np.array([0.0, LENGTH_M])
     assert np.abs(shapes.deflections(ends, 0)).max() < 1e-12
@@ -147,11 +145,7 @@ def test_slopes_and_curvatures_are_derivatives_and_the_ends_are_held(kind: str) 
     for own, order in ((shapes.deflections, 0), (shapes.deflections, 1), (shapes.extensions, 0)):
         slope = (own(x + by, order) - own(x - by, order)) / (2.0 * by)
         assert own(x, order + 1) == pytest.approx(slope, abs=1e-7 * np.abs(slope).max())
-
-
-@pytest.mark.parametrize("kind", SHAPES)
-def test_a_bent_link_is_shorter_by_half_the_squares_of_its_slopes(kind: str) -> None:
-    shapes = SHAPES[kind]
+    # Shorter by half the squares of its slopes.
     q = np.random.default_rng(3).standard_normal(shapes.across)
     x = np.array([0.0, 0.21, 0.5 * LENGTH_M, LENGTH_M])
     fine = np.linspace(0.0, LENGTH_M, 20001)

@@ -21,14 +21,7 @@ from tests.analytic.chain import Chain, coordinates
 from tests.analytic.forces.beside import series
 from tests.analytic.forces.exact_forces import ExactForces, exact_forces, exact_rubbed, value_of
 from tests.analytic.test_bounds import SIX
-from tests.worlds.loading import (
-    OVER,
-    characteristic,
-    loaded,
-    loaded_mechanism,
-    rubbed_mechanism,
-    sprung,
-)
+from tests.worlds import loading
 from tests.worlds.tiers import few, slowly
 from tests.worlds.wide_angles import made, times
 
@@ -91,14 +84,6 @@ def test_errors_stay_below_their_bounds_in_every_scene(name: str) -> None:
     assert np.median([row.loose for row in rows if row.error > 0.0]) < LOOSE
 
 
-def hold(number: int, springs: bool = False) -> list[Held]:
-    """The mechanism of a number at one time, no bound of its forces broken."""
-    scene, near = loaded_mechanism(number)
-    if springs:
-        scene = sprung(scene, random.Random(number))
-    return beside(scene, _at(scene, number, near), f"mechanism {number}")
-
-
 @pytest.mark.parametrize(
     ("count", "springs"),
     [
@@ -110,8 +95,12 @@ def hold(number: int, springs: bool = False) -> list[Held]:
 )
 def test_errors_stay_below_their_bounds_in_random_mechanisms(count: int, springs: bool) -> None:
     """Of all dyads, on fixed and moving guides."""
-    rows = [row for number in range(count) for row in hold(number, springs)]
-    assert sum(loaded_mechanism(number)[1] for number in range(1, count, 2)) >= 0.4 * count
+    rows = []
+    for number in range(count):
+        scene, near = loading.loaded_mechanism(number)
+        scene = loading.sprung(scene, random.Random(number)) if springs else scene
+        rows += beside(scene, _at(scene, number, near), f"mechanism {number}")
+    assert sum(loading.loaded_mechanism(number)[1] for number in range(1, count, 2)) >= 0.4 * count
     finite = [row.loose for row in rows if row.error > 0.0 and row.bound < np.inf]
     assert len(finite) > 0.8 * len(rows), "bounds that are not finite say nothing"
     assert np.median(finite) < LOOSE
@@ -120,7 +109,7 @@ def test_errors_stay_below_their_bounds_in_random_mechanisms(count: int, springs
 @pytest.mark.parametrize("number", few(range(10), range(4), "random mechanisms"))
 def test_errors_stay_below_their_bounds_where_angles_hold_many_turns(number: int) -> None:
     """And far from the origin, at times of up to a million turns."""
-    scene = loaded(moved(made(number).scene, (1e4, -3e4)), random.Random(number))
+    scene = loading.loaded(moved(made(number).scene, (1e4, -3e4)), random.Random(number))
     beside(scene, times(scene, number, 3), f"mechanism {number}")
 
 
@@ -129,7 +118,7 @@ def test_bounds_hold_where_a_stiff_spring_is_all_but_slack(rate: float, damping:
     """After thousands of swings: then what its length, or its speed, may be wrong by is all of the
     error."""
     for number in range(0, 8, 2):
-        scene = sprung(loaded_mechanism(number)[0], random.Random(number))
+        scene = loading.sprung(loading.loaded_mechanism(number)[0], random.Random(number))
         time_s = np.array([3.1e4 * scene.driver.law.period_s])
         _, chunk = next(iter(chunks(scene, time_s, bound=False)))
         for spring, q, speed in spring_lengths(scene, chunk, counted=True):
@@ -141,7 +130,7 @@ def test_bounds_hold_where_a_stiff_spring_is_all_but_slack(rate: float, damping:
 def test_magnitudes_of_loads_are_rounded_by_no_more_than_they_say() -> None:
     chance = random.Random(4)
     for _ in range(60):
-        own = characteristic(chance.choice(OVER), chance)
+        own = loading.characteristic(chance.choice(loading.OVER), chance)
         x = np.array([chance.uniform(-30.0, 30.0), chance.uniform(-1.0, 1.0)])
         for at, found, most in zip(x, own.at(x), own.rounding(x) + np.zeros(2), strict=True):
             assert _apart(found, value_of(own, mpf(float(at)))) <= most, own
@@ -150,7 +139,7 @@ def test_magnitudes_of_loads_are_rounded_by_no_more_than_they_say() -> None:
 def rubbing(number: int) -> tuple[int, int, float]:
     """How many forces of a mechanism with friction have a finite bound, of how many, and how loose
     these are; no bound is broken."""
-    scene, near = rubbed_mechanism(number)
+    scene, near = loading.rubbed_mechanism(number)
     time_s = _at(scene, number, near)
     found = forces(scene, time_s, skip_dead_points=True)
     if not np.isfinite(found.bound.torque[0]):

@@ -77,7 +77,7 @@ def test_three_computations_agree_with_friction(name: str) -> None:
     assert any(np.any(np.abs(each) > 0.0) for each in found.friction.values())
 
 
-def test_a_joint_that_does_not_move_may_rub_either_way() -> None:
+def test_a_joint_at_rest_but_for_rounding_may_rub_either_way() -> None:
     """At the inner dead centre the piston stands: its friction is taken as 0, bounded by mu N."""
     scene = press(piston=ConstantFriction("piston", 50.0))
     found = kinetostatics.forces(scene, at(scene, 0.0, 1.0))
@@ -85,10 +85,7 @@ def test_a_joint_that_does_not_move_may_rub_either_way() -> None:
     assert found.bound.friction["piston"][0] >= 50.0
     assert found.bound.friction["piston"][1] < 1e-9
     assert found.bound.pins["B"]["rod"][0] >= 50.0
-
-
-def test_rounding_is_no_motion() -> None:
-    """In the outer dead centre the piston moves at 1e-17 m/s, because pi is no float."""
+    # In the outer dead centre it moves at 1e-17 m/s, because pi is no float.
     scene = replace(press(piston=CoulombFriction("piston", 0.2)), gravity_m_s2=(0.0, -9.81))
     heavy = replace(scene.sliders["piston"], mass_kg=10.0)
     motion = at(scene, math.pi)

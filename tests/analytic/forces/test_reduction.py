@@ -67,7 +67,7 @@ def of_steps(every: int) -> LateImpulses:
     return late_impulses(ROTOR, solve(ROTOR, times), DT_S, 0.3)
 
 
-def test_a_body_that_turns_evenly_has_late_accelerations_of_its_centre_alone() -> None:
+def test_impulses_are_late_by_accelerations_of_centres_in_the_first_or_the_last_while() -> None:
     """T = (m r^2 + I) w^2 / 2 = 2 J; S = m r^2 w^4 / 2 = 6 J/s^2; and the acceleration turns by
     w dt in a step, so that over 3 s its differences make m r^2 w^6 / 2 dt^2 3000 = 24 dt^2 3000.
     A log of every tenth step says the same."""
@@ -76,9 +76,7 @@ def test_a_body_that_turns_evenly_has_late_accelerations_of_its_centre_alone() -
     assert (late.offset, tenth.offset) == pytest.approx((late.start, late.start))
     assert late.loss == pytest.approx(2.0 * 24.0 * DT_S**4 * 3000 / 2.0, rel=1e-5)
     assert tenth.loss == pytest.approx(late.loss, rel=1e-4)
-
-
-def test_what_comes_and_goes_is_late_by_its_mean_over_the_first_or_the_last_while() -> None:
+    # What comes and goes is late by its mean over the first or the last while.
     times = DT_S * np.arange(1001)
     even = solve(ROTOR, times)
     crank = even.links["crank"]

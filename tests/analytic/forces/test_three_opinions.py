@@ -47,8 +47,6 @@ frequency_rad_s = 10.0
 """
 DRIVEN = {name: load_scene(name) for name in shipped("structure")}
 DRIVEN["cylinder in a leg"] = parse_scene(CYLINDER, "test")
-
-
 SCENES = few([*shipped(), *shipped("forces")], [*SIX, *shipped("forces")], "the same dyads")
 
 

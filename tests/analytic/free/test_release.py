@@ -111,16 +111,13 @@ def test_where_a_stroke_lets_it_go_both_ways_it_goes_where_it_is_pushed_without(
     assert bodies.links["crank"].theta[0] == pytest.approx(at.links["crank"].theta[0], abs=1e-11)
 
 
-def test_a_kink_may_come_with_the_end() -> None:
+def test_a_kink_may_come_with_the_end_and_be_foretold_beyond_the_reach() -> None:
     """A rotor comes to a row of a table within rounding of the end of its time."""
     scene = replace(fourbar(start_deg=0.0, speed_rad_s=30.0), loads=torque(TABLE, "angle"))
     edge = release(scene, 0.05).edges_s[0]
     for end in (edge, math.nextafter(edge, 1.0), edge + 1e-14):
         assert release(scene, end).until_s == end
-
-
-def test_a_kink_is_foretold_beyond_the_reach_without_harm() -> None:
-    """A stiff damper brakes at first by so much that the tangent of the start leaves the range."""
+    # A stiff damper brakes by so much that the tangent of the start leaves the range.
     damper = PinSpring("damper", 0.0, 2e3, 0.0, "A", ("ground", "crank"))
     scene = past_limits(start_deg=60.0, speed_rad_s=100.0)
     free = release(replace(scene, loads=torque(TABLE, "angle"), springs={"damper": damper}), 1.0)
@@ -219,12 +216,20 @@ def pendulum(request: pytest.FixtureRequest) -> FreeMotion:
     return release(parsed(DOUBLE_PENDULUM), request.param)
 
 
-def test_several_freedoms_go_by_all_bodies_and_one_by_its_driver(pendulum: FreeMotion) -> None:
+def test_several_freedoms_go_by_all_bodies_and_err_as_told(pendulum: FreeMotion) -> None:
     assert isinstance(pendulum, BodiesMotion)
     assert (pendulum.freedoms, pendulum.by_dyads, pendulum.passages) == (2, False, ())
     assert isinstance(release(load_scene("fourbar-chain"), 0.01), MachineMotion)
-    energy = pendulum.energy(np.linspace(0.0, pendulum.until_s, 31))
+    time_s = np.linspace(0.0, pendulum.until_s, 31)
+    energy = pendulum.energy(time_s)
     assert np.ptp(energy.balance) < 1e-11 * energy.kinetic.max()
+    rough = replace(pendulum, method=Projection(1e-10))
+    own, other = rough.at(time_s), pendulum.at(time_s)
+    for name, link in own.links.items():
+        off = np.abs(link.theta - other.links[name].theta)
+        assert np.all(off <= own.bound.links[name].theta)
+        assert np.all(own.bound.links[name].theta <= rough.error_rad(time_s))
+    assert float(pendulum.error_rad(time_s).max()) < 1e-10
 
 
 def test_beside_a_run_both_its_angles_stay_and_its_pins_are_closed(pendulum: FreeMotion) -> None:
@@ -252,18 +257,6 @@ def test_what_leads_to_their_start_goes_on_through_it(pendulum: FreeMotion) -> N
         # A central difference is off by the third derivative, some 1e4 rad/s^4.
         steady = (link.omega[1] - before[name].omega[0]) / (2.0 * h)
         assert steady == pytest.approx(link.alpha[0], abs=1e-2)
-
-
-def test_their_error_covers_a_coarser_motion(pendulum: FreeMotion) -> None:
-    assert isinstance(pendulum, BodiesMotion)
-    rough = replace(pendulum, method=Projection(1e-10))
-    time_s = np.linspace(0.0, pendulum.until_s, 31)
-    own, other = rough.at(time_s), pendulum.at(time_s)
-    for name, link in own.links.items():
-        off = np.abs(link.theta - other.links[name].theta)
-        assert np.all(off <= own.bound.links[name].theta)
-        assert np.all(own.bound.links[name].theta <= rough.error_rad(time_s))
-    assert float(pendulum.error_rad(time_s).max()) < 1e-10
 
 
 def test_several_freedoms_without_a_start_are_told_both_ways() -> None:

@@ -63,14 +63,11 @@ def test_derivatives_are_those_of_the_equations(name: str) -> None:
     assert slope(lambda side: side.velocity) == pytest.approx(now.drift, abs=1e-8)
 
 
-def test_angles_read_off_a_drawing_lead_to_the_assembly() -> None:
+def test_angles_off_a_drawing_and_one_that_leads_to_the_others_give_the_assembly() -> None:
     theta = start_state(scene(THESIS)).theta
     told = [math.degrees(theta[name]) for name in ("coupler", "rocker", "crank")]
     assert told[:2] == pytest.approx([39.083, 123.855], abs=1e-3)
     assert told[2] == pytest.approx(90.0, abs=1e-12)
-
-
-def test_one_named_angle_is_enough_where_it_leads_to_the_others() -> None:
     whole, named = (scene(THESIS.replace(cut, "")) for cut in ("", ", rocker = 124.0"))
     assert start_state(named).theta == pytest.approx(start_state(whole).theta, abs=1e-12)
     slid = SLIDER_CRANK + "start_deg = 30.0\n[start]\ndisplacements_m = { C = 0.383 }\n"
@@ -185,6 +182,10 @@ SWING = scene(THESIS.replace("start_deg", "speed_rad_s = 6.0\nstart_deg"))
 
 
 def test_the_table_shows_the_order_the_best_and_where_it_fails() -> None:
+    """Numbers that let nothing decay are refused."""
+    for wrong in ((-1.0, 0.0, None), (1.0, 1.0, 0.0), (math.nan, 0.0, 1e-3)):
+        with pytest.raises(CrankcheckError, match=r"give rates .* of 0 or more, and a step"):
+            Baumgarte(*wrong)
     step_s = 4e-3
     rows = baumgarte_table(SWING, 0.3, (0.0, 20.0, 800.0), (2 * step_s, step_s))
     errors = {(row.alpha, row.step_s): row.error for row in rows}
@@ -196,12 +197,6 @@ def test_the_table_shows_the_order_the_best_and_where_it_fails() -> None:
         assert math.isinf(row.error) == (not row.stable)
 
 
-@pytest.mark.parametrize("wrong", [(-1.0, 0.0, None), (1.0, 1.0, 0.0), (math.nan, 0.0, 1e-3)])
-def test_numbers_that_let_nothing_decay_are_refused(wrong: tuple[float, float, float]) -> None:
-    with pytest.raises(CrankcheckError, match=r"give rates .* of 0 or more, and a step"):
-        Baumgarte(*wrong)
-
-
 SQUARE = (
     "start_deg = 60.0\nspeed_rad_s = 5.0\n"
     '[loads.motor]\nlink = "{}"\nlaw = "polynomial"\nover = "omega"\ntorque_n_m = [0.0, 0.0, {}]\n'
@@ -210,8 +205,6 @@ CUBE = SQUARE.replace("[0.0", "[0.0, 0.0")
 ROTOR_LOST_S = 0.2
 """omega' = c omega^2 has 1 / omega = 1 / 5 - c t, here with c = 1; omega' = c omega^3 has
 1 / omega^2 = 1 / 25 - 2 c t, here with c = 0.1."""
-
-
 LetGo = Callable[[Scene, float], FreeMotion | MultibodyMotion]
 
 

@@ -50,7 +50,7 @@ def test_shipped_scene_has_mobility_one_and_its_groups_in_order(name: str) -> No
     assert known == {"ground", *structure.bodies}
 
 
-def test_groups_do_not_depend_on_the_order_of_the_file() -> None:
+def test_groups_stand_in_solving_order_whatever_that_of_the_file() -> None:
     bars = {"lever": "GF", "rod": "EF", **dict(reversed(FOURBAR.items())), "rocker": "DCE"}
     groups = analyse(build(bars, "ADG")).groups
     assert [group.branch_key for group in groups] == ["C", "F"]
@@ -58,21 +58,23 @@ def test_groups_do_not_depend_on_the_order_of_the_file() -> None:
         ("rocker", "coupler"),
         ("lever", "rod"),
     ]
-
-
-SIX = {"crank": "AB", "plate1": "CEF", "plate2": "FKL", "leg1": "BC", "leg2": "DE", "leg3": "GK"}
-SIX |= {"leg4": "HL"}
-"""Two plates pinned to each other, each on two legs."""
-
-
-def test_dyads_stand_before_and_after_a_triad() -> None:
+    # Dyads before and after a triad.
     bars = FOURBAR | {"rocker": "DCI", "platform": "EFJK", "leg1": "IE", "leg2": "GF", "leg3": "HJ"}
     bars |= {"rod": "KL", "lever": "GL"}
     order = analyse(build(bars, "ADGH")).order
     kinds = [(part.kind, part.bodies[0]) for part in order if not isinstance(part, Bridge)]
     assert kinds == [("RRR", "coupler"), ("RR-RR-RR", "platform"), ("RRR", "rod")]
+    # Coupler, rocker and rod all at C, two pairs: the second dyad hangs on the pin of the first.
+    scene = build(FOURBAR | {"rod": "CF", "lever": "GF"}, "ADG")
+    structure = analyse(scene)
+    assert structure.pins["C"] == ("coupler", "rocker", "rod")
+    assert (structure.pairs, structure.mobility) == (7, 1)
+    assert [g.branch_key for g in structure.groups] == ["C", "F"]
 
 
+SIX = {"crank": "AB", "plate1": "CEF", "plate2": "FKL", "leg1": "BC", "leg2": "DE", "leg3": "GK"}
+SIX |= {"leg4": "HL"}
+"""Two plates pinned to each other, each on two legs."""
 SLIDES = "".join(
     f'[sliders.S{i}]\non = "ground"\nlink = "leg{i}"\npoint = "{p}"\n'
     f'[sliders.T{i}]\non = "leg{i}"\nlink = "platform"\npoint = "{q}"\ndirection_deg = 50.0\n'
@@ -158,20 +160,11 @@ def test_what_hangs_on_a_driver_in_too_many_ways_is_not_searched_for_a_group() -
     assert len(said) < 300
 
 
-def test_three_links_at_one_pin_are_two_pairs() -> None:
-    """Coupler, rocker and rod all at C: the second dyad hangs on the pin of the first."""
-    scene = build(FOURBAR | {"rod": "CF", "lever": "GF"}, "ADG")
-    structure = analyse(scene)
-    assert structure.pins["C"] == ("coupler", "rocker", "rod")
-    assert (structure.pairs, structure.mobility) == (7, 1)
-    assert [g.branch_key for g in structure.groups] == ["C", "F"]
-
-
 def classes(scene: Scene) -> dict[str, StructureByDriver]:
     return {one.joint.words: one for one in by_drivers(scene, analyse(scene))}
 
 
-def test_a_stephenson_six_bar_is_of_class_three_by_its_far_joints() -> None:
+def test_joints_of_a_six_bar_and_a_slider_in_a_ring_of_four_have_their_classes() -> None:
     found = {
         words: one.class_number for words, one in classes(load_scene("sixbar-stephenson")).items()
     }
@@ -179,26 +172,20 @@ def test_a_stephenson_six_bar_is_of_class_three_by_its_far_joints() -> None:
     second |= {"D of ground and rocker"}
     third = {"E of coupler and rod", "F of rod and lever", "G of ground and lever"}
     assert found == {f"pin {words}": 2 if words in second else 3 for words in second | third}
+    bars = {"crank": "AB", "bar": "BC", "plate": "CEK", "swing": "DK"}
+    ring = classes(build(bars, sliders='[sliders.E]\non = "crank"\ndirection_deg = 20.0'))
+    (group,) = ring["pin D of ground and swing"].groups
+    assert (group.class_number, group.order) == (4, 2)
+    assert set(group.links) == {"crank", "bar", "plate", "block E"}
 
 
-@pytest.mark.parametrize("name", ["shaper", "sixbar-watt"])
-def test_one_joint_is_the_scenes_own_and_has_its_groups(name: str) -> None:
-    scene = load_scene(name)
-    (own,) = (one for one in classes(scene).values() if one.is_own)
-    assert [group.links for group in own.groups] == [one.bodies for one in analyse(scene).groups]
-
-
-def test_groups_by_a_slider_are_those_of_a_scene_that_it_drives() -> None:
+def test_groups_by_a_joint_are_those_of_the_scene_that_it_drives() -> None:
+    for name in ("shaper", "sixbar-watt"):
+        scene = load_scene(name)
+        (own,) = (one for one in classes(scene).values() if one.is_own)
+        assert [each.links for each in own.groups] == [one.bodies for one in analyse(scene).groups]
     scene = load_scene("slider-crank-central")
     found = next(one for one in classes(scene).values() if one.joint.slider == "C")
     driver = Driver("block C", scene.driver.law, slider="C")
     driven = replace(scene, driver=driver, branch={})
     assert [one.links for one in found.groups] == [one.bodies for one in analyse(driven).groups]
-
-
-def test_a_slider_closes_a_ring_of_four_bodies_of_class_four() -> None:
-    bars = {"crank": "AB", "bar": "BC", "plate": "CEK", "swing": "DK"}
-    found = classes(build(bars, sliders='[sliders.E]\non = "crank"\ndirection_deg = 20.0'))
-    (group,) = found["pin D of ground and swing"].groups
-    assert (group.class_number, group.order) == (4, 2)
-    assert set(group.links) == {"crank", "bar", "plate", "block E"}

@@ -42,13 +42,12 @@ start_deg = 90.0
 """
 
 
-def test_a_kind_has_a_name_of_its_own_that_means_all_its_scenes() -> None:
+def test_kinds_have_names_of_their_own_and_mean_their_scenes_but_those_run_where_named() -> None:
     names = [name for kind in kinds() for name in shipped(kind)]
     assert len(set(names)) == len(names)
     assert not set(kinds()) & set(names)
     assert kinds()[0] == "kinematics"
     assert len(shipped()) >= 18
-
     several = ["shaper", "forces", "toggle-press", "shaper"]
     engines_are_given = [n for n in shipped("forces") if n not in run_where_named("forces")]
     assert names_of_scenes(several) == ["shaper", *engines_are_given]
@@ -56,9 +55,6 @@ def test_a_kind_has_a_name_of_its_own_that_means_all_its_scenes() -> None:
     assert scene_texts(()).keys() == scene_texts("kinematics").keys() == shipped().keys()
     assert list(scene_texts("forces")) == engines_are_given
     assert [path.stem for path in find_scenes("forces")] == engines_are_given
-
-
-def test_what_no_engine_is_given_and_what_takes_long_is_run_where_it_is_named() -> None:
     assert run_where_named("kinematics") == []
     assert run_where_named("forces") == reference_alone("forces") == ["slider-crank-self-locking"]
     assert run_where_named("elastic") == ["fourbar-elastic-controlled", "fourbar-elastic-pulse"]
@@ -79,7 +75,7 @@ def test_what_is_short_or_left_out_is_filled_in() -> None:
     assert (theta, omega) == (math.pi / 2, 10.0)
 
 
-def test_all_faults_of_a_file_are_reported_at_once() -> None:
+def test_all_faults_of_a_file_are_reported_at_once_and_very_many_counted() -> None:
     text = GOOD.replace("length_m = 0.25", "length_m = -1").replace("start_deg", "start")
     text = text.replace('link = "crank"', 'link = "krank"') + "[branch]\nZ = 1\n"
     with pytest.raises(SceneError) as error:
@@ -90,6 +86,12 @@ def test_all_faults_of_a_file_are_reported_at_once() -> None:
         "driver.start: unknown key; did you mean start_deg",
     ):  # fmt: skip
         assert part in str(error.value)
+    text = GOOD + "".join(f"x{i} = 1\n" for i in range(1000))
+    with pytest.raises(SceneError) as error:
+        parse_scene(text, "file.toml")
+    assert len(error.value.faults) == 1000
+    assert str(error.value).endswith("driver.x19: unknown key; known: link, pin, links, law, "
+                                     "speed_rad_s, start_deg\n  and 980 more")  # fmt: skip
 
 
 @pytest.mark.parametrize("table", [
@@ -115,15 +117,6 @@ def test_a_file_without_a_deep_key_is_looked_through_at_once(text: str) -> None:
     """A search that went back over them would be at it for minutes or for ever."""
     with pytest.raises(SceneError, match="not valid TOML"):
         parse_scene(text, "file.toml")
-
-
-def test_very_many_faults_are_counted() -> None:
-    text = GOOD + "".join(f"x{i} = 1\n" for i in range(1000))
-    with pytest.raises(SceneError) as error:
-        parse_scene(text, "file.toml")
-    assert len(error.value.faults) == 1000
-    assert str(error.value).endswith("driver.x19: unknown key; known: link, pin, links, law, "
-                                     "speed_rad_s, start_deg\n  and 980 more")  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -171,21 +164,8 @@ def test_a_name_of_no_scene_suggests_the_near_ones_or_the_list(name: str, words:
     assert len(str(error.value)) < 300
 
 
-def test_refused_read_is_reported_with_its_reason(
+def test_a_file_that_can_not_be_read_says_why(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    with pytest.raises(SceneError, match="a folder; name a plain text file"):
-        load_scene(str(tmp_path))
-    path = tmp_path / "scene.toml"
-    path.write_text(GOOD)
-    refuse = mock.Mock(side_effect=PermissionError(13, "Permission denied"))
-    monkeypatch.setattr(os, "open", refuse)
-    with pytest.raises(SceneError, match="can not be read: Permission denied"):
-        read_scene(path)
-
-
-def test_file_that_is_no_text_of_a_scene_is_refused_and_a_byte_order_mark_is_none(
-    tmp_path: Path,
 ) -> None:
     path = tmp_path / "scene.toml"
     for raw, words in (
@@ -197,6 +177,12 @@ def test_file_that_is_no_text_of_a_scene_is_refused_and_a_byte_order_mark_is_non
             read_scene(path)
     path.write_text(GOOD, encoding="utf-8-sig")
     assert read_scene(path).name == "good"
+    with pytest.raises(SceneError, match="a folder; name a plain text file"):
+        load_scene(str(tmp_path))
+    refuse = mock.Mock(side_effect=PermissionError(13, "Permission denied"))
+    monkeypatch.setattr(os, "open", refuse)
+    with pytest.raises(SceneError, match="can not be read: Permission denied"):
+        read_scene(path)
 
 
 def test_whole_turns_in_a_file_take_no_digits_off_its_angles() -> None:

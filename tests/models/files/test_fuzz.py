@@ -26,17 +26,6 @@ from hypothesis import strategies as st
 
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds import fuzzing
-from tests.worlds.fuzzing import (
-    COMMANDS,
-    ELASTIC,
-    ELASTIC_QUICK,
-    LET_GO,
-    QUICK,
-    VERIFY,
-    Ended,
-    attempt,
-    fitting,
-)
 from tests.worlds.in_process import Here
 from tests.worlds.mutation import mutant, retied, stretched
 from tests.worlds.scene_files import Tree, elastic_mechanisms, free_mechanisms, scene_files
@@ -58,14 +47,14 @@ HOME = Path(tempfile.gettempdir()) / f"crankcheck-misdeed-{os.getpid()}"
 class Bench:
     """A process that files are tried in, this one or one apart, and what came of them."""
 
-    def __init__(self, apart: Isolated[Ended] | Here[Ended]) -> None:
+    def __init__(self, apart: Isolated[fuzzing.Ended] | Here[fuzzing.Ended]) -> None:
         self.apart = apart
         self.ends: Counter[str] = Counter()
         self.held: int | None = None
 
     def try_out(self, raw: bytes, command: str) -> list[str]:
         """The faults that a file brings about."""
-        ended = self.apart.call(attempt, raw, *command.split())
+        ended = self.apart.call(fuzzing.attempt, raw, *command.split())
         if isinstance(ended, Lost):
             return [f"{ended.status}: {ended.reason}"]
         self.ends[f"exit {ended.code}"] += 1
@@ -86,10 +75,10 @@ def bench() -> Iterator[Bench]:
 
 
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], st.SearchStrategy[Tree] | None]] = {
-    "made": (QUICK, COMMANDS, None),
-    "free": (LET_GO, LET_GO, free_mechanisms()),
-    "elastic": (ELASTIC_QUICK, ELASTIC, elastic_mechanisms()),
-    "changed": (QUICK, COMMANDS, None),
+    "made": (fuzzing.QUICK, fuzzing.COMMANDS, None),
+    "free": (fuzzing.LET_GO, fuzzing.LET_GO, free_mechanisms()),
+    "elastic": (fuzzing.ELASTIC_QUICK, fuzzing.ELASTIC, elastic_mechanisms()),
+    "changed": (fuzzing.QUICK, fuzzing.COMMANDS, None),
 }
 """Files made from nothing, of driven mechanisms, of those that are let go and of those with elastic
 links, and shipped files with something done to them: with which commands they are tried, in a
@@ -103,7 +92,7 @@ def try_files(bench: Bench, kind: str, number: int, count: int, *, quickly: bool
     if kind == "changed":
         for one in range(number, number + count):
             raw = mutant(one)
-            command = fitting(raw, commands[one % len(commands)])
+            command = fuzzing.fitting(raw, commands[one % len(commands)])
             faults = bench.try_out(raw, command)
             assert not faults, f"{faults}: {command} of mutant({one}):\n{raw[:3000]!r}"
         return
@@ -158,7 +147,10 @@ def test_ten_thousand_files_run_or_are_refused(
 ])  # fmt: skip
 @pytest.mark.parametrize(
     ("changed", "commands"),
-    [(retied, ("solve FILE", VERIFY, "view FILE -o OUT.png")), (stretched, (VERIFY,))],
+    [
+        (retied, ("solve FILE", fuzzing.VERIFY, "view FILE -o OUT.png")),
+        (stretched, (fuzzing.VERIFY,)),
+    ],
 )
 def test_each_name_and_each_number_in_place_of_another(
     changed: Callable[[], Iterator[tuple[str, bytes]]],
@@ -168,7 +160,7 @@ def test_each_name_and_each_number_in_place_of_another(
     bench: Bench,
 ) -> None:
     for done, raw in itertools.islice(changed(), part, None, parts):
-        for command in dict.fromkeys(fitting(raw, each) for each in commands):
+        for command in dict.fromkeys(fuzzing.fitting(raw, each) for each in commands):
             faults = bench.try_out(raw, command)
             assert not faults, f"{faults}: {command} of {done}"
     assert bench.ends["exit 0"] > 120 / parts, bench.ends
@@ -190,8 +182,8 @@ def rods_and_rockers(count: int) -> bytes:
 def test_the_calls_for_a_crank_with_many_rods_grow_as_the_rods_do(count: int) -> None:
     """What twice as many add is twice what the others added; by their square it were four times."""
     asked = ("solve", "FILE", "--at-deg", "90")
-    attempt(rods_and_rockers(1), *asked)  # all is imported then
-    ended = [attempt(rods_and_rockers(k * count), *asked, counted=True) for k in (1, 2, 4)]
+    fuzzing.attempt(rods_and_rockers(1), *asked)  # all is imported then
+    ended = [fuzzing.attempt(rods_and_rockers(k * count), *asked, counted=True) for k in (1, 2, 4)]
     assert {(one.code, *one.faults) for one in ended} == {(0,)}
     calls = [one.calls for one in ended]
     assert calls[2] - calls[1] < 2.5 * (calls[1] - calls[0])
@@ -212,7 +204,7 @@ def test_a_misdeed_is_seen(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     misdeed, fault = MISDEEDS[name]
     monkeypatch.setattr(fuzzing, "_command", lambda: lambda _: misdeed())
     try:
-        faults = attempt(b"").faults
+        faults = fuzzing.attempt(b"").faults
     finally:
         HOME.unlink(missing_ok=True)
     assert any(re.search(fault, one) for one in faults), faults

@@ -65,6 +65,16 @@ def test_times_of_a_motion_are_its_own(taking: str) -> None:
     np.testing.assert_array_equal(motion.time_s, kept)
 
 
+def test_a_law_or_a_step_of_what_is_no_number_is_refused() -> None:
+    for number in ("1", None, np.timedelta64(1, "s"), 10**400, float("nan")):
+        with pytest.raises(ValueError, match=r"speed_rad_s is .*: a law of motion needs fin"):
+            ConstantSpeed(0.0, number)
+    asked = {"dt_s": 1e-3, "steps": 9}
+    for wrong in ({"dt_s": "1e-3"}, {"steps": "9"}, {"every": None}):
+        with pytest.raises(EngineError, match=r"found .*; it takes a number"):
+            run(SCENE, START, "pymunk", **asked | wrong)
+
+
 def test_numbers_of_any_kind_are_taken() -> None:
     single = np.array([0, 1], np.float32)
     for values in ([0, 1], ["0", " 1.0"], single, range(2), pd.Series([0, 1])):
@@ -85,19 +95,6 @@ def test_rates_of_another_number_are_refused(name: str) -> None:
         solve_driven(SCENE, TIMES, **given | {name: ["x"] * 3})
 
 
-@pytest.mark.parametrize("number", ["1", None, np.timedelta64(1, "s"), 10**400, float("nan")])
-def test_a_law_of_what_is_no_number_is_refused(number: object) -> None:
-    with pytest.raises(ValueError, match=r"speed_rad_s is .*: a law of motion needs fin"):
-        ConstantSpeed(0.0, number)
-
-
-@pytest.mark.parametrize("wrong", [{"dt_s": "1e-3"}, {"steps": "9"}, {"every": None}])
-def test_a_step_that_is_no_number_is_refused(wrong: dict[str, object]) -> None:
-    asked = {"dt_s": 1e-3, "steps": 9, **wrong}
-    with pytest.raises(EngineError, match=r"found .*; it takes a number"):
-        run(SCENE, START, "pymunk", **asked)
-
-
 SHAPER = load_scene("shaper")
 
 
@@ -112,13 +109,7 @@ def test_one_name_is_one_body_and_several_are_several(given: dict[str, str]) -> 
     assert (list(motion.links), list(motion.points), list(motion.sliders)) == (["crank"], [], ["F"])
 
 
-def test_a_pin_to_close_a_loop_at_may_have_a_long_name() -> None:
-    assert build(SCENE, START, Writing(close="C")) == build(SCENE, START, Writing(close=("C",)))
-    with pytest.raises(CrankcheckError, match="CD"):
-        build(SCENE, START, Writing(close="CD"))
-
-
-def test_one_scene_engine_or_profile_is_one() -> None:
+def test_one_name_is_one_scene_engine_profile_or_pin() -> None:
     assert list(scene_texts("shaper")) == ["shaper"]
     assert [scene.name for scene in chosen_scenes("shaper")] == ["shaper"]
     assert chosen_engines("pymunk") == ["pymunk"]
@@ -127,6 +118,9 @@ def test_one_scene_engine_or_profile_is_one() -> None:
     for given in (1, None, [1], ["a", None]):
         with pytest.raises(CrankcheckError, match=words):
             names_in(given, "links")
+    assert build(SCENE, START, Writing(close="C")) == build(SCENE, START, Writing(close=("C",)))
+    with pytest.raises(CrankcheckError, match="CD"):
+        build(SCENE, START, Writing(close="CD"))
 
 
 LATER = np.linspace(0.0, 0.3, 7)
@@ -157,7 +151,6 @@ def test_what_a_part_lacks_is_left_out_and_change_points_of_all_are_kept_once() 
         assert (joined.points, joined.conditioning) == ({}, {})
         assert joined.bound is joined.forces is None
         assert joined.links["crank"].theta.shape == (14,)
-
     one, other = Crossing("C", 0.1), Crossing("C", 3.2)
     parts = [replace(motion, crossings=seen) for seen in ((one,), (one, other), ())]
     assert Motion.joined(parts).crossings == (one, other)

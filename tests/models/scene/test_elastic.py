@@ -59,7 +59,7 @@ def scene() -> Scene:
     return load_scene("fourbar-elastic")
 
 
-def test_a_link_becomes_nodes_that_have_its_mass(scene: Scene) -> None:
+def test_a_link_becomes_nodes_that_have_its_mass_and_carry_its_points(scene: Scene) -> None:
     given = BeamedScene(scene, 4).given
     beam = given.beams["coupler"]
     assert not given.elastic
@@ -70,11 +70,16 @@ def test_a_link_becomes_nodes_that_have_its_mass(scene: Scene) -> None:
     assert given.pins["B"] == ("crank", "coupler-node-0")
     assert given.pins["C"] == ("coupler-node-4", "rocker")
     assert beam.element_m == pytest.approx(0.75 / 4)
+    coupler = scene.links["coupler"]
+    points = {**coupler.points, "M": (0.375, 0.02)}
+    marked = replace(scene, links={**scene.links, "coupler": replace(coupler, points=points)})
+    carried = BeamedScene(marked, 4).given.links["coupler-node-2"].points
+    assert carried["M"] == pytest.approx((0.0, 0.02))
+    with pytest.raises(CrankcheckError, match=r"a point 0\.375 m .* no node of 3 elements"):
+        assert BeamedScene(marked, 3).given
 
 
-def test_a_link_that_does_not_stretch_hardly_does_and_one_has_to_bend(
-    scene: Scene,
-) -> None:
+def test_what_does_not_stretch_hardly_does_and_a_beam_has_to_bend(scene: Scene) -> None:
     own = scene.elastic["coupler"]
     beam = BeamedScene(scene, 4).given.beams["coupler"]
     assert beam.axial_n == pytest.approx(HARDLY * own.flexural_n_m2 / 0.75**2)
@@ -83,16 +88,6 @@ def test_a_link_that_does_not_stretch_hardly_does_and_one_has_to_bend(
     alone = replace(own, flexural_n_m2=math.inf, axial_n=1e5)
     with pytest.raises(CrankcheckError, match="stretches and does not bend"):
         BeamedScene(replace(scene, elastic={"coupler": alone}), 4)
-
-
-def test_a_point_has_to_be_at_a_node(scene: Scene) -> None:
-    coupler = scene.links["coupler"]
-    points = {**coupler.points, "M": (0.375, 0.02)}
-    marked = replace(scene, links={**scene.links, "coupler": replace(coupler, points=points)})
-    carried = BeamedScene(marked, 4).given.links["coupler-node-2"].points
-    assert carried["M"] == pytest.approx((0.0, 0.02))
-    with pytest.raises(CrankcheckError, match=r"a point 0\.375 m .* no node of 3 elements"):
-        assert BeamedScene(marked, 3).given
 
 
 def test_the_middle_of_an_odd_number_of_elements_is_that_of_the_curve(scene: Scene) -> None:

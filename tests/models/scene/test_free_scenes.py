@@ -38,27 +38,21 @@ def test_what_a_free_scene_says_is_read_and_reads_back_as_itself() -> None:
     assert again == scene
 
 
-def test_free_scenes_ship_and_all_of_them_are_let_go() -> None:
+def test_free_scenes_ship_and_all_are_let_go_and_the_chain_is_the_one_that_is_made() -> None:
     assert len(shipped("free")) >= 8
     free = {*shipped("free"), "fourbar-elastic-pulse"}
     for name in every_shipped():
         assert load_scene(name).is_free == (name in free)
-
-
-def test_the_shipped_chain_is_the_one_that_is_made() -> None:
     made, read = WindowChain(2).scene(), load_scene("fourbar-chain")
     assert read.driver == Driver("rocker0", Released(math.pi / 2, -1.0, 10.0))
     words = {key: getattr(read, key) for key in ("name", "source", "note", "driver")}
     assert replace(made, **words) == read
 
 
-def test_a_driven_scene_has_no_start() -> None:
+def test_what_is_driven_has_no_start_and_what_has_no_mass_is_not_let_go() -> None:
     driven = FREE.replace('law = "free"', 'law = "constant"').replace("duration_s = 4.0\n", "")
     with pytest.raises(SceneError, match='start: it goes with law = "free"; a driven mechanism'):
         parse_scene(driven, "file")
-
-
-def test_what_has_no_mass_is_not_let_go() -> None:
     light = FREE.replace(", flywheel_kg_m2 = 0.01", "").replace("mass_kg = 0.5", "")
     light = light.replace("length_m = 0.1 }", "length_m = 0.1, mass_kg = 0.0 }")
     light = light.replace("length_m = 0.3 }", "length_m = 0.3, mass_kg = 0.0 }")
@@ -67,19 +61,16 @@ def test_what_has_no_mass_is_not_let_go() -> None:
     assert len(error.value.faults) == 1
 
 
-@pytest.mark.parametrize("name", ["fourbar-lecture-1", "fourbar-double-rocker", "slotted-lever"])
-def test_it_begins_where_the_law_is_and_lasts_ten_of_its_turns(name: str) -> None:
-    scene = load_scene(name)
-    law, free = scene.driver.law, let_go(scene)
-    assert free.is_free
-    began, speed, _ = law.at(0.0)
-    expected = Released(float(began), float(speed), 10.0 * law.period_s)
-    assert vars(free.driver.law) == pytest.approx(vars(expected))
-    for one in ("links", "branch", "driver.link"):
-        assert attrgetter(one)(free) == attrgetter(one)(scene)
-
-
-def test_what_is_let_go_already_stays_as_it_is_but_for_a_time_that_is_given() -> None:
+def test_let_go_it_begins_where_the_law_is_for_ten_of_its_turns_or_a_time_that_is_given() -> None:
+    for name in ("fourbar-lecture-1", "fourbar-double-rocker", "slotted-lever"):
+        scene = load_scene(name)
+        law, free = scene.driver.law, let_go(scene)
+        assert free.is_free
+        began, speed, _ = law.at(0.0)
+        expected = Released(float(began), float(speed), 10.0 * law.period_s)
+        assert vars(free.driver.law) == pytest.approx(vars(expected))
+        for one in ("links", "branch", "driver.link"):
+            assert attrgetter(one)(free) == attrgetter(one)(scene)
     scene = load_scene("fourbar-swing")
     assert let_go(scene) is scene
     longer = let_go(scene, 12.0)

@@ -21,7 +21,7 @@ STEP = 1e-5
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
-def test_rates_are_derivatives(law: Law) -> None:
+def test_rates_are_derivatives_and_transformed_laws_follow_the_transformation(law: Law) -> None:
     t = np.linspace(0.01, 0.7, 101)
     theta, omega, alpha = law.at(t)
     ahead, behind = law.at(t + STEP), law.at(t - STEP)
@@ -29,10 +29,6 @@ def test_rates_are_derivatives(law: Law) -> None:
     assert np.allclose((ahead[0] - behind[0]) / (2 * STEP), omega, rtol=0, atol=5e-8)
     assert np.allclose((ahead[1] - behind[1]) / (2 * STEP), alpha, rtol=0, atol=5e-6)
     assert theta.shape == omega.shape == alpha.shape == t.shape
-
-
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
-def test_transformed_laws_follow_the_transformation(law: Law) -> None:
     t = np.linspace(0.0, 0.7, 11)
     theta, omega, alpha = law.at(t)
     assert np.allclose(law.turned(0.7).at(t)[0], theta + 0.7)
@@ -43,7 +39,7 @@ def test_transformed_laws_follow_the_transformation(law: Law) -> None:
     assert fast.peak_speed_rad_s == pytest.approx(law.peak_speed_rad_s * 3.0)
 
 
-def test_start_from_rest_joins_constant_speed_smoothly() -> None:
+def test_changes_of_speed_are_smooth_or_two_straight_lines() -> None:
     law = FromRest(0.1, 12.0, 0.4)
     theta, omega, alpha = law.at(np.array([0.0, 0.4, 1.0]))
     assert (theta[0], omega[0], alpha[0]) == (0.1, 0.0, 0.0)
@@ -54,9 +50,7 @@ def test_start_from_rest_joins_constant_speed_smoothly() -> None:
     t = np.linspace(0.0, 1.0, 50)
     late = SpeedChange(0.1, 0.0, 12.0, 0.2, 0.4).at(t + 0.2)
     assert np.allclose(late, law.at(t), rtol=0, atol=1e-13)
-
-
-def test_jump_of_speed_is_two_straight_lines() -> None:
+    # A jump of the speed is two straight lines.
     law = SpeedChange(0.2, 5.0, -3.0, 0.5, 0.0)
     theta, omega, alpha = law.at(np.array([0.0, 0.5, 1.5]))
     assert theta == pytest.approx([0.2, 2.7, -0.3], rel=1e-14)

@@ -68,7 +68,7 @@ torque_n_m = [1.0, -0.5, 0.25]
 """
 
 
-def test_every_law_of_a_load_is_read_and_reads_back_as_itself() -> None:
+def test_every_law_of_a_load_is_read_and_reads_back_as_itself_and_no_other_has_words() -> None:
     scene = parse_scene(PRESS, "press")
     again, loads = parse_scene(scene_text(scene), "again"), scene.loads
     assert (again, list(again.loads)) == (scene, list(loads))
@@ -86,8 +86,6 @@ def test_every_law_of_a_load_is_read_and_reads_back_as_itself() -> None:
     light = parse_scene(PRESS.replace("mass_kg = 0.5", ""), "press")  # of a block without mass
     assert parse_scene(scene_text(light), "press").loads == loads
 
-
-def test_a_characteristic_of_another_kind_has_no_words() -> None:
     class Own(Characteristic):
         at = steepest = rounding = carried = lambda *_: 0.0  # type: ignore[assignment]
 
@@ -143,7 +141,7 @@ def test_one_value_past_the_end_of_a_table_is_refused_as_in_an_array() -> None:
         load.size(0.0, -1.0, {}, 0.0)
 
 
-def test_interpolation_without_overshoot_worked_by_hand() -> None:
+def test_interpolation_without_overshoot_worked_by_hand_and_of_any_table() -> None:
     """Steps 1, 1, 2 and chords 1, 3, 0: (3 + 3) / (3/1 + 3/3) = 3/2, flat where a chord is, and at
     the first row the parabola's (3 1 - 1 3) / 2 = 0."""
     x, y = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 1.0, 4.0, 4.0])
@@ -156,9 +154,7 @@ def test_interpolation_without_overshoot_worked_by_hand() -> None:
     assert slopes(x, y, closed=True)[[0, -1]].tolist() == [1.0, 1.0]  # it goes on smoothly
     assert slopes(x, y, closed=False) == pytest.approx([2.5, 0.0, 0.0, 2.5])  # (3 1 + 2) / 2
     assert slopes(x, np.array([0.0, 1.0, -4.0, 0.0]), closed=False)[0] == 3.0  # (3 1 + 5) / 2 is 4
-
-
-def test_interpolation_rises_only_where_its_table_rises() -> None:
+    # It rises only where its table rises.
     rng = np.random.default_rng(5)
     for _ in range(20):
         x, y = np.cumsum(rng.uniform(0.1, 3.0, 8)), rng.uniform(-1.0, 1.0, 8)

@@ -118,8 +118,6 @@ def test_velocities_that_lag_are_those_of_their_own_instant(
 
 
 DT_S = 1e-3
-
-
 FOURBAR = acted_on(
     load_scene("fourbar-lecture-1"),
     LineSpring("across", 100.0, 1.0, 0.05, ("A", "C")),
@@ -155,17 +153,7 @@ def test_lengths_are_those_of_the_reference(scene: Scene, fake_engine: ModuleTyp
     assert list(found) == list(scene.springs)
 
 
-def test_a_spring_in_a_pin_is_wound_up_and_not_let_go_after_half_a_turn(
-    fake_engine: ModuleType,
-) -> None:
-    q = spring_lengths(FOURBAR, poses_of(fake_engine, FOURBAR))["crank"]
-    assert abs(q[0]) <= np.pi
-    assert q[-1] - q[0] == pytest.approx(2.4 * np.pi)
-    spring = PinSpring("turned", 1.0, 0.0, 4.0, "A", (GROUND, "crank"))
-    assert 0.5 + whole_turns(spring, 0.5) == pytest.approx(0.5 + 2.0 * np.pi)
-
-
-def test_springs_add_what_they_keep_at_the_instants_of_the_velocities(
+def test_springs_are_wound_up_and_keep_their_energy_as_the_velocities_are(
     fake_engine: ModuleType,
 ) -> None:
     late, crank = poses_of(fake_engine, FOURBAR, 0.5), FOURBAR.springs["crank"]
@@ -173,6 +161,12 @@ def test_springs_add_what_they_keep_at_the_instants_of_the_velocities(
     shift = energy(alone, late).potential_j - energy(bare, late).potential_j
     moved = spring_lengths(FOURBAR, late)["crank"] + 0.5 * DT_S * late.bodies["crank"].omega
     np.testing.assert_allclose(shift, 0.05 * moved**2, rtol=1e-12)
+    # Wound up, and not let go after half a turn.
+    q = spring_lengths(FOURBAR, poses_of(fake_engine, FOURBAR))["crank"]
+    assert abs(q[0]) <= np.pi
+    assert q[-1] - q[0] == pytest.approx(2.4 * np.pi)
+    spring = PinSpring("turned", 1.0, 0.0, 4.0, "A", (GROUND, "crank"))
+    assert 0.5 + whole_turns(spring, 0.5) == pytest.approx(0.5 + 2.0 * np.pi)
 
 
 DRIVEN = {
@@ -199,7 +193,9 @@ def test_springs_of_a_driven_mechanism_are_borne_by_its_drive(where: str, engine
         assert np.abs(forces.torque - exact)[4:].max() < within * np.abs(exact).max()
 
 
-def test_what_the_engine_holds_of_a_spring_is_held_to_the_scene(fake_engine: ModuleType) -> None:
+def test_what_the_engine_holds_of_a_spring_and_its_ends_is_the_scenes(
+    fake_engine: ModuleType,
+) -> None:
     fake = fake_engine.FakeEngine(solve)
     state = start_of(FOURBAR)
     facts = fake.open(FOURBAR, state, {}, DT_S, "prescribed").facts()
@@ -216,9 +212,6 @@ def test_what_the_engine_holds_of_a_spring_is_held_to_the_scene(fake_engine: Mod
     ):
         with pytest.raises(EngineError, match=words):
             refuse_other_model(FOURBAR, state, replace(facts, springs=springs), DT_S, "prescribed")
-
-
-def test_the_end_of_a_spring_is_on_a_body_that_carries_its_point() -> None:
     across = FOURBAR.springs["across"]
     (ground, place), (body, at) = line_ends(FOURBAR, across)
     assert (ground, place) == (GROUND, FOURBAR.ground["A"])

@@ -98,22 +98,14 @@ def test_nothing_is_said_written_or_left_running(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_redundant_joints_are_found_and_taken_by_tuned_alone() -> None:
+def test_redundant_joints_are_found_and_taken_by_tuned_alone_others_are_told_in_its_words() -> None:
     assert session_of(REDUNDANT).facts().settings["linear_solver_used"] == "EigenDense"
     assert session_of().facts().settings["linear_solver_used"] == "EXUdense"
     refused = turned(REDUNDANT, "as-shipped")
     assert refused.reason.startswith("stopped after 0 s: ")
     assert off_by(REDUNDANT, turned(REDUNDANT), "third", "theta").max() < 1e-9
-
-
-def test_stepping_where_exudyn_goes_no_further_is_an_error_in_its_words() -> None:
     with pytest.raises(EngineError, match=r"exudyn: .*(singular|factorized)"):
         session_of(REDUNDANT, "as-shipped").step(10)
-
-
-def test_a_step_too_short_for_its_clock_is_refused() -> None:
-    with pytest.raises(EngineError, match=r"dt: found 1e-10 s; exudyn .* takes 1e-09 s or"):
-        runs.opened(FOURBAR, ENGINE, dt_s=1e-10)
 
 
 @pytest.mark.parametrize(("law", "settings"), [("oscillating", TRAPEZOIDAL), ("from rest", {})])
@@ -155,9 +147,7 @@ def test_a_servo_lags_by_what_its_gain_leaves() -> None:
 MASSLESS = load_scene("slider-crank-excel-210")
 SETTLED = 40
 """Samples after which nothing of the start is left in forces."""
-WITHIN: Mapping[str, float] = {
-    "slider-crank-excel-210": 9e-4,
-}
+WITHIN: Mapping[str, float] = {"slider-crank-excel-210": 9e-4}
 """Of the largest force, and of the largest torque, where it is not 2.5e-4: what generalised alpha
 leaves of accelerations at 720 steps a turn. It shrinks as the step squared."""
 KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slotted-lever")
@@ -256,9 +246,8 @@ def test_what_it_can_not_be_given_is_refused_with_the_reason() -> None:
         opened(acted_on(FOURBAR, CoulombFriction("C", 0.1, 0.01)))
     with pytest.raises(EngineError, match=r"loads.l: found body wheel; use one of crank, coupler"):
         opened(acted_on(FOURBAR, Load("l", "wheel", None, WAVE)))
-
-
-def test_a_table_that_ends_too_soon_is_told_without_exudyns_words_about_it() -> None:
+    with pytest.raises(EngineError, match=r"dt: found 1e-10 s; exudyn .* takes 1e-09 s or"):
+        runs.opened(FOURBAR, ENGINE, dt_s=1e-10)
     table = "loads.short: over the time [s] the table"
     for from_s, until_s, status, said in (
         (0.0, 0.05, "diverged", f"stopped after 0.05 s: {table}"),

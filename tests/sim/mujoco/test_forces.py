@@ -35,8 +35,6 @@ WITHIN: Mapping[str, float] = {
 """Of the largest reaction, and torque of the largest torque, where it is not 1e-4."""
 
 KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slotted-lever")
-
-
 opened = partial(runs.opened, own="mujoco", steps=STEPS)
 
 
@@ -84,10 +82,13 @@ def test_loads_on_a_block_without_mass_go_where_they_belong(load: Load) -> None:
     assert off(acted_on(massless(load_scene(name)), load)) < 2e-4
 
 
-def test_a_load_along_a_guide_that_moves_asks_for_a_mass() -> None:
+def test_what_the_text_has_no_words_for_is_refused() -> None:
     load = Load("along", "block B", "B", Constant(5.0), frame="body")
     with pytest.raises(EngineError, match=r"loads.along: .* give sliders.B a mass_kg above 0"):
         opened(acted_on(load_scene("slotted-lever"), load))
+    scene = replace(FOURBAR, friction={"B": CoulombFriction("B", 0.1, 0.01)})
+    with pytest.raises(EngineError, match=r"friction.B: .*constant friction alone"):
+        build(scene, start_of(FOURBAR))
 
 
 def test_a_slider_past_the_end_of_a_table_feels_its_last_row_and_leaves_no_callback() -> None:
@@ -161,12 +162,6 @@ def test_loops_close_at_a_pin_that_does_not_rub_or_the_scene_is_not_held() -> No
     done = run(rubbing(FOURBAR, B=0.1, C=0.1, D=0.1), state, "mujoco", dt_s=1e-3, steps=10)
     assert done.status == "unsupported"
     assert "friction.C asks for it; leave a pin of that loop without" in done.reason
-
-
-def test_friction_that_grows_with_the_reaction_has_no_text() -> None:
-    scene = replace(FOURBAR, friction={"B": CoulombFriction("B", 0.1, 0.01)})
-    with pytest.raises(EngineError, match=r"friction.B: .*constant friction alone"):
-        build(scene, start_of(FOURBAR))
 
 
 def test_a_free_rod_slows_down_at_its_rate_and_then_stands() -> None:

@@ -3,6 +3,7 @@ which the slider of a stroke turns back has its share; what springs do to motion
 what the file says of them.
 """
 
+import itertools
 from dataclasses import replace
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
@@ -66,7 +67,6 @@ def of_torque(course: Characteristic, time_s: Array) -> tuple[Array, Array]:
         (SAW, 1e-6),
         (Pulse(1.0, 0.171, 0.033), 1e-5),
     ],
-    ids=["jumps at samples", "jumps between them", "saw", "pulse"],
 )
 def test_a_rod_turns_as_its_torque_says(course: Characteristic, within: float) -> None:
     """Jumps and kinks between the samples are as exact as the sum that they are held to."""
@@ -82,16 +82,13 @@ def test_a_rod_turns_as_its_torque_says(course: Characteristic, within: float) -
     assert mujoco.get_mjcb_control() is None
 
 
-def test_where_a_load_jumps_at_a_sample_the_acceleration_is_that_after_it() -> None:
+def test_a_jump_is_at_its_step_with_the_acceleration_after_it_however_late() -> None:
     log = rod(Staircase((0.1, 0.2), (1.0, 0.0))).record(30, 1)
     alpha = log.poses.bodies["rocker0"].alpha * INERTIA
     expected = np.zeros(31)
     expected[10:20] = 1.0
     np.testing.assert_allclose(alpha, expected, atol=1e-12)
-
-
-def test_a_jump_is_at_its_step_however_long_the_clock_has_added_up_rounding() -> None:
-    """At 30 s the sum of steps of 0.1 ms is off by 1e-11 s."""
+    # At 30 s the sum of steps of 0.1 ms is off by 1e-11 s.
     load = Load("on", "crank", None, Staircase((30.0,), (1.0,)))
     clock = float(np.cumsum(np.full(300_000, 1e-4))[-1])
     assert abs(clock - 30.0) > 1e-12
@@ -100,14 +97,7 @@ def test_a_jump_is_at_its_step_however_long_the_clock_has_added_up_rounding() ->
     assert seen == [0.0] * 4 + [1.0] * 4
 
 
-def test_other_integrators_are_given_the_load_of_each_step() -> None:
-    session = rod(Sine(1.0, 0.3, 0.4), "implicitfast")
-    omega = session.record(30, 1).poses.bodies["rocker0"].omega
-    speed, _ = of_torque(Sine(1.0, 0.3, 0.4), DT_S * np.arange(31))
-    assert np.abs(omega - omega[0] - speed).max() < 0.03
-
-
-def test_stages_keep_the_order_that_a_load_of_a_step_loses() -> None:
+def test_stages_keep_the_order_that_the_one_load_of_a_step_loses() -> None:
     """With loops whose stiffness is not the step's; with one load a step it would be 2."""
     own = {"free_timeconst_steps": 0, "solref_timeconst_steps": 0, "solref_timeconst_s": 0.005}
     scene = acted_on(FOURBAR, Load("torque", "rocker", None, Sine(0.5, 0.3, 0.7)))
@@ -118,6 +108,11 @@ def test_stages_keep_the_order_that_a_load_of_a_step_loses() -> None:
         for n in (600, 1200, 4800)
     )
     assert np.log2((rough - exact) / (fine - exact)) == pytest.approx(4.0, abs=0.5)
+    # Other integrators are given the load of each step.
+    session = rod(Sine(1.0, 0.3, 0.4), "implicitfast")
+    omega = session.record(30, 1).poses.bodies["rocker0"].omega
+    speed, _ = of_torque(Sine(1.0, 0.3, 0.4), DT_S * np.arange(31))
+    assert np.abs(omega - omega[0] - speed).max() < 0.03
 
 
 TURNING = scene_of(
@@ -130,24 +125,18 @@ TURNING = scene_of(
 )
 
 
-@pytest.mark.parametrize("speed", [2.0, -2.0])
-@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
-def test_a_step_that_turns_back_keeps_impulse_and_lever(speed: float, share: float) -> None:
+def test_a_step_that_turns_back_keeps_impulse_and_lever_and_any_other_is_whole() -> None:
     """As Simpson's rule adds the parts up, to what is forward of 1, of time and of its square."""
-    parts = np.array(forward_parts(speed, -speed / share))
     stages, weights = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6.0
-    for k in range(3):
+    for speed, share, k in itertools.product((2.0, -2.0), (0.1, 0.5, 0.9), range(3)):
+        parts = np.array(forward_parts(speed, -speed / share))
         until = share ** (k + 1) / (k + 1)
         forward = until if speed > 0.0 else 1.0 / (k + 1) - until
         assert weights @ (parts * stages**k) == pytest.approx(forward, abs=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("speed", "change", "whole"),
-    [(2.0, 1.0, 1.0), (-2.0, -1.0, 0.0), (0.0, 1.0, 1.0), (0.0, -1.0, 0.0), (0.0, 0.0, 0.0)],
-)
-def test_a_step_that_does_not_turn_back_is_whole(speed: float, change: float, whole: float) -> None:
-    assert forward_parts(speed, change) == (whole, whole, whole)
+    for speed, change in ((2.0, 1.0), (0.0, 1.0)):
+        assert forward_parts(speed, change) == (1.0, 1.0, 1.0)
+    for speed, change in ((-2.0, -1.0), (0.0, -1.0), (0.0, 0.0)):
+        assert forward_parts(speed, change) == (0.0, 0.0, 0.0)
 
 
 def test_steps_keep_their_order_where_a_slider_turns_back() -> None:

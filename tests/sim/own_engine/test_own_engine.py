@@ -41,7 +41,7 @@ def wrong(folder: Path, old: str, new: str) -> str:
     return "faulty_penalty:ENGINE"
 
 
-def test_one_in_the_working_folder_is_known_by_its_own_name(folder: Path) -> None:
+def test_one_in_the_working_folder_is_known_by_name_and_has_its_adapter_alone(folder: Path) -> None:
     found = engine("penalty_engine:ENGINE")
     assert found.name == "penalty"
     assert engine("penalty") is found is engine("penalty_engine:ENGINE")
@@ -49,19 +49,15 @@ def test_one_in_the_working_folder_is_known_by_its_own_name(folder: Path) -> Non
     assert sys.path[-1] == str(folder)
     assert sys.path[0] != str(folder)
     assert known.spellings() == {"penalty": "penalty_engine:ENGINE"}
+    assert declaration("penalty").offers == ()
+    assert "penalty" not in registry.usual()
+    with pytest.raises(EngineError, match="penalty: it has no knobs; use mujoco or pymunk"):
+        capability("penalty", "knobs")
 
 
 def test_a_process_that_is_told_the_spelling_finds_it_by_name(folder: Path) -> None:
     known.told({"penalty": "penalty_engine:ENGINE"})
     assert engine("penalty").version() == "1.0"
-
-
-def test_it_has_its_adapter_alone(folder: Path) -> None:
-    engine("penalty_engine:ENGINE")
-    assert declaration("penalty").offers == ()
-    assert "penalty" not in registry.usual()
-    with pytest.raises(EngineError, match="penalty: it has no knobs; use mujoco or pymunk"):
-        capability("penalty", "knobs")
 
 
 @pytest.mark.parametrize(("text", "words"), [

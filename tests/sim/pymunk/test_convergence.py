@@ -156,15 +156,12 @@ def in_pins(**bodies: tuple[str, str]) -> dict[str, Spring]:
     return {pin: PinSpring(pin, 1.0, 0.01, 0.3, pin, pair) for pin, pair in bodies.items()}
 
 
-def test_a_spring_in_a_ground_pin_acts_beside_a_chain() -> None:
+def test_chains_alone_have_springs_of_their_own_and_users_springs_act_beside_them() -> None:
     scene = load_scene("fourbar-elastic")
     own = SegmentedScene(replace(scene, springs=in_pins(D=(GROUND, "rocker"))), 4)
     assert len(chain_springs(own.rigid)) == 3
     done = ran(own.rigid, "pymunk", start=segment_start(own, "straight"), steps=200)
     assert max(float(gap.max()) for gap in done.gaps.values()) < 1e-5
-
-
-def test_springs_alone_make_no_chain() -> None:
     assert len(chain_springs(chain()[0])) == 3
     assert chain_springs(load_scene("slider-crank-spring")) == ()
     of_links = in_pins(B=("crank", "coupler"), C=("coupler", "rocker"))

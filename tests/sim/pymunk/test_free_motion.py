@@ -60,13 +60,10 @@ def of_second_order(scene: Scene, exact: Callable[[Array], Array], most: float) 
     assert 13.0 < rough / fine < 19.0
 
 
-def test_a_motor_pulls_by_the_speed_of_the_end_of_the_step() -> None:
+def test_a_motor_pulls_by_the_speed_of_the_end_of_the_step_past_its_table_by_the_last_row() -> None:
     """Torque 2 - 0.7 omega; by the speed of half a step before errors are of first order."""
     tau, motor = INERTIA / 0.7, Load("motor", "rocker0", None, Polynomial((2.0, -0.7)), "omega")
     of_second_order(rod(motor), lambda t: 2.0 / 0.7 * (t + tau * np.expm1(-t / tau)), 3e-6)
-
-
-def test_a_motor_past_the_end_of_its_table_keeps_the_last_torque() -> None:
     table = Load("m", "rocker0", None, Tabulated((0.0, 1.0), (2.0, 1.0)), over="omega")
     theta = angle(let_go(rod(table), 1e-3))
     assert np.diff(theta, 2)[-1] == pytest.approx(1e-6 * 1.0 / INERTIA, rel=1e-4)

@@ -46,7 +46,10 @@ def test_a_capability_that_is_lacking_is_named_with_who_has_it(
         ask()
 
 
-def test_what_nobody_has_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_declared_is_there_or_said_to_be_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in registry.ENGINES:
+        for what in registry.declaration(name).offers:
+            assert registry.capability(name, what)
     monkeypatch.setattr(registry, "ENGINES", {"fake": "tests.worlds.fake"})
     with pytest.raises(EngineError, match="it has no viewer; no engine has one"):
         registry.capability("fake", "viewer")
@@ -98,12 +101,6 @@ def test_a_package_that_can_not_be_imported_is_no_missing_one(
     assert words in entry.broken
 
 
-@pytest.mark.parametrize("name", registry.ENGINES)
-def test_what_is_declared_is_there(name: str) -> None:
-    for what in registry.declaration(name).offers:
-        assert registry.capability(name, what)
-
-
 def test_a_snippet_is_made_where_the_engine_is_not_installed() -> None:
     code = (
         "import sys; sys.modules.update(mujoco=None, pymunk=None, exudyn=None)\n"
@@ -146,12 +143,9 @@ def test_the_engine_takes_the_values_and_holds_them(name: str) -> None:
             )
 
 
-def test_a_knob_goes_through_values_that_it_has_not() -> None:
+def test_a_knob_goes_through_values_that_it_has_not_and_rungs_are_round() -> None:
     assert Knob("n", (1, 5, 9)).through(7, 5).values == (1, 5, 7, 9)
     assert Knob("word", ("b", "a")).through("c").values == ("b", "a", "c")
-
-
-def test_rungs_are_round_and_about_as_far_apart_as_asked() -> None:
     found = rungs(2.0, 20.0, 1.06)
     assert (found[0], found[-1]) == (2.0, 20.0)
     assert all(value == float(f"{value:.2g}") for value in found)
@@ -165,20 +159,16 @@ def works(knobs: ModuleType, *names: str) -> list[Work]:
     return [knobs.work(scene, start(scene)) for scene in map(load_scene, names)]
 
 
-def test_more_evaluations_bodies_and_loops_cost_more() -> None:
+def test_work_costs_by_evaluations_bodies_loops_rails_and_matrices() -> None:
     assert set(EVALUATIONS) == set(INTEGRATORS)
     four, six = works(mujoco_knobs, "fourbar-lecture-1", "sixbar-watt")
     assert six(MUJOCO) > four(MUJOCO) > 3.0 * four({**MUJOCO, "integrator": "implicitfast"})
-
-
-def test_a_rail_costs_its_own_and_only_where_there_is_one() -> None:
+    # A rail costs its own, and only where there is one.
     exact, groove = ({**PYMUNK, "iterations": 1, "lines": each} for each in ("exact", "groove"))
     fourbar, massless = works(pymunk_knobs, "fourbar-lecture-1", "slider-crank-excel-210")
     assert fourbar(exact) == fourbar(groove)
     assert massless(exact) - massless(groove) == pytest.approx(RAIL_US, rel=0.01)
-
-
-def test_a_matrix_and_an_iteration_cost_as_much_as_the_mechanism_is_large() -> None:
+    # A matrix and an iteration cost as much as the mechanism is large.
     four, six = works(exudyn_knobs, "fourbar-lecture-1", "sixbar-watt")
     assert four(EXUDYN) < four({**EXUDYN, "jacobian": "each-iteration"})
     assert four({**EXUDYN, "relative_tolerance": 1e-4}) < four(EXUDYN)

@@ -58,15 +58,12 @@ def settings_of(name: str) -> Iterator[Settings]:
                 yield space.settings(tuned, {**start, knob.name: value})
 
 
-def test_every_engine_that_writes_snippets_is_looked_at() -> None:
-    assert set(DISTURBANCE) == set(ENGINES)
-
-
 @pytest.mark.parametrize(("steps", "every"), STEPS)
 @pytest.mark.parametrize("name", ENGINES)
 def test_box_and_free_body_do_beside_a_snippet_what_they_did(
     name: str, steps: float, every: int
 ) -> None:
+    assert set(DISTURBANCE) == set(ENGINES)
     texts = {
         snippet(name, settings, steps, drive=drive)
         for settings in settings_of(name)
@@ -100,12 +97,6 @@ def test_what_would_change_them_is_seen(harm: str) -> None:
     text = snippet(name, settings, 360.0)
     assert change(text) != text
     assert DISTURBANCE[name](change(text)).worst > 1e2 * SAME
-
-
-def test_a_space_never_gets_fewer_passes_than_it_has() -> None:
-    text = snippet("pymunk", {"iterations": 20}, 360.0)
-    assert "max(space.iterations, 20)" in text
-    assert "space.iterations" not in snippet("pymunk", {"iterations": 10}, 360.0)
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -148,8 +139,11 @@ def test_what_redundant_joints_need_is_said_where_the_solver_is_chosen_by_need()
         assert (words in text) == said
 
 
-def test_a_step_that_softens_contacts_is_said_to() -> None:
+def test_a_snippet_says_what_softens_contacts_and_takes_no_passes_away() -> None:
     """MuJoCo takes two steps at least for the time constant of any constraint (refsafe)."""
     assert "softer" in snippet("mujoco", {}, 62.0)
     assert "softer" not in snippet("mujoco", {}, 63.0)
     assert mujoco_disturbance(snippet("mujoco", {}, 50.0)).lasting > SAME
+    text = snippet("pymunk", {"iterations": 20}, 360.0)
+    assert "max(space.iterations, 20)" in text
+    assert "space.iterations" not in snippet("pymunk", {"iterations": 10}, 360.0)

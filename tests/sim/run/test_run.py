@@ -126,7 +126,9 @@ def test_a_run_that_ends_too_early_says_when_and_why(
     assert result.reason == reason if apart_s is None else result.reason.startswith(reason)
 
 
-def test_an_engine_that_raises_or_refuses_is_a_row_with_a_reason(fake_engine: ModuleType) -> None:
+def test_an_engine_that_raises_or_refuses_is_a_row_but_another_model(
+    fake_engine: ModuleType,
+) -> None:
     result = ran(engine=fake_engine.FakeEngine(solve, fails_after=5000), steps=9000)
     assert result.status == "crashed"
     assert "RuntimeError: the fake engine fails" in result.reason
@@ -135,6 +137,12 @@ def test_an_engine_that_raises_or_refuses_is_a_row_with_a_reason(fake_engine: Mo
     refused = ran(engine=fake_engine.FakeEngine(solve, refuses="no such joint here"))
     assert (refused.status, refused.reason) == ("unsupported", "no such joint here")
     assert refused.motion is None
+
+    def heavier(facts: Facts) -> Facts:
+        return replace(facts, mass_kg={**facts.mass_kg, "rocker": 1.0})
+
+    with pytest.raises(EngineError, match=r"does not hold fourbar-lecture-1: rocker has mass_kg 1"):
+        ran(engine=fake_engine.FakeEngine(solve, changes=heavier))
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -158,14 +166,6 @@ def test_a_point_that_only_massless_blocks_share_is_named(name: str) -> None:
     result = ran(massless(load_scene("tangent")), name)
     assert result.status == "unsupported"
     assert "mass_kg" in result.reason
-
-
-def test_a_model_that_is_not_the_scene_raises(fake_engine: ModuleType) -> None:
-    def heavier(facts: Facts) -> Facts:
-        return replace(facts, mass_kg={**facts.mass_kg, "rocker": 1.0})
-
-    with pytest.raises(EngineError, match=r"does not hold fourbar-lecture-1: rocker has mass_kg 1"):
-        ran(engine=fake_engine.FakeEngine(solve, changes=heavier))
 
 
 @pytest.mark.parametrize(("given", "message"), [

@@ -35,23 +35,21 @@ def test_as_many_chains_are_found_as_are_published(sizes: tuple[int, int]) -> No
     assert {chain.mobility for chain in every} == {sizes[1]}
 
 
-def test_chains_in_any_order_of_their_links_are_the_same() -> None:
+def test_chains_of_eight_links_are_the_same_in_any_order_and_of_three_assortments() -> None:
     draw = np.random.default_rng(3)
     for chain in chains(8):
         order = draw.permutation(8)
         other = Chain.of(8, [(int(order[a]), int(order[b])) for a, b in chain.joints])
         assert other.relabelled() == chain
-
-
-def test_assortments_of_eight_links() -> None:
     assert assortments(8, 1) == [(4, 4), (5, 2, 1), (6, 0, 2)]
     many = [sum(chain.assortment == one for chain in chains(8)) for one in assortments(8, 1)]
     assert many == [9, 5, 2]
 
 
-@pytest.mark.parametrize(("links", "mobility"), [(7, 1), (12, 1), (6, -1)])
-def test_what_has_no_chain_is_refused(links: int, mobility: int) -> None:
-    says = {7: "4, 6, 8, 10 links", 12: "3 to 10", 6: "0 to 7"}[links]
+@pytest.mark.parametrize(("links", "mobility", "says"), [
+    (7, 1, "4, 6, 8, 10 links"), (12, 1, "3 to 10"), (6, -1, "0 to 7"),
+])  # fmt: skip
+def test_what_has_no_chain_is_refused(links: int, mobility: int, says: str) -> None:
     with pytest.raises(CrankcheckError, match=says):
         chains(links, mobility)
 
@@ -89,12 +87,10 @@ def test_all_eight_bars_are_found_and_their_groups_have_no_freedom() -> None:
                 assert 3 * len(group.links) == 2 * (len(group.inner) + group.order)
 
 
-def test_four_bars_with_sliders() -> None:
+def test_four_bars_with_sliders_and_which_of_their_pins_turn() -> None:
     found = {type_in_letters(one): len(inversions(one, "")) for one in types(chains(4)[0], 4)}
     assert found == {"RRRR": 1, "RRRP": 2, "RRPP": 3, "RPRP": 1}
-
-
-def test_a_pin_among_three_sliders_does_not_turn_and_those_of_pins_alone_do() -> None:
+    # A pin among three sliders does not turn.
     assert all(every_joint_moves(chain) for chain in chains(8))
     ring = [(0, 1), (1, 2), (2, 3), (0, 3)]
     assert every_joint_moves(Chain.of(4, ring, ring[:2]))

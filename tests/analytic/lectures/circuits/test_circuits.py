@@ -65,7 +65,9 @@ def test_range_of_random_fourbars_is_that_of_the_closed_form(count: int) -> None
     assert len(kinds) >= 3, "full turns, two ranges, and ranges that hold 0 or pi"
 
 
-def test_ends_of_the_range_can_be_solved_and_what_is_beyond_cannot() -> None:
+def test_a_crank_turns_fully_or_to_ends_that_can_be_solved_and_beyond_can_not() -> None:
+    for name in ("whitworth", "sixbar-watt", "triad-platform"):
+        assert reach(load_scene(name)) == WHOLE
     for lengths in SWINGING:
         scene, wanted = fourbar(*lengths), closed_form(FourBar(*lengths))
         assert np.array(reach(scene)) == pytest.approx(np.array(wanted), abs=1e-7)
@@ -111,11 +113,6 @@ OUT = {
 def test_what_is_out_of_reach_says_by_how_much_or_where_it_is_not(said: str) -> None:
     with pytest.raises(ReachError, match=said):
         solve(OUT[said], np.zeros(1))
-
-
-@pytest.mark.parametrize("name", ["whitworth", "sixbar-watt", "triad-platform"])
-def test_crank_that_turns_fully_has_the_whole_turn(name: str) -> None:
-    assert reach(load_scene(name)) == WHOLE
 
 
 def test_a_triad_that_goes_on_for_more_than_a_turn_and_ends_is_told_with_both_ends() -> None:

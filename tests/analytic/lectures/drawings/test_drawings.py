@@ -112,7 +112,7 @@ def test_where_omega_is_0_but_for_rounding_the_image_of_velocities_is_one_point(
     assert not similarity(drawn, "crank", "velocity").is_point
 
 
-def test_lecture_1_at_90_degrees() -> None:
+def test_lecture_1_at_90_degrees_and_coriolis_as_the_sliding_turned_by_omega() -> None:
     drawn = draw_polygons(load_scene("fourbar-lecture-1"), DriverState(math.pi / 2, 10.0))
     named = vectors(drawn)
     assert named["v_BA"].size == pytest.approx(1.0)
@@ -121,19 +121,17 @@ def test_lecture_1_at_90_degrees() -> None:
     assert named["v_BA"].value == pytest.approx([-1.0, 0.0], abs=1e-15)
     assert named["v_CD"].size == pytest.approx(0.2 * abs(drawn.rates["rocker"].omega))
     assert named["a^n_CD"].size == pytest.approx(0.2 * drawn.rates["rocker"].omega ** 2)
-
-
-def vectors(drawn: DrawnPolygons) -> dict[str, Vector]:
-    both = (*drawn.velocity.vectors, *drawn.acceleration.vectors)
-    return {vector.name: vector for vector in both}
-
-
-def test_coriolis_component_is_the_sliding_turned_in_the_sense_of_omega() -> None:
+    # Of Coriolis: the sliding, turned in the sense of omega.
     drawn = draw_polygons(load_scene("slotted-lever"), DriverState(0.8, OMEGA))
     named = vectors(drawn)
     sliding = named["v_B(lever)B"].value @ (1.0, 1j)
     coriolis = named["a^k_B(lever)B"].value @ (1.0, 1j)
     assert coriolis == pytest.approx(2.0 * drawn.rates["lever"].omega * 1j * sliding)
+
+
+def vectors(drawn: DrawnPolygons) -> dict[str, Vector]:
+    both = (*drawn.velocity.vectors, *drawn.acceleration.vectors)
+    return {vector.name: vector for vector in both}
 
 
 def test_what_is_not_determined_is_named_and_the_rest_is_drawn() -> None:
@@ -145,23 +143,14 @@ def test_what_is_not_determined_is_named_and_the_rest_is_drawn() -> None:
     assert [step.title for step in drawn.velocity.steps] == ["driver driver"]
 
 
-@pytest.mark.parametrize(
-    ("size", "room", "scale"),
-    [(1.0, 100.0, 0.01), (1.01, 100.0, 0.02), (0.3, 10.0, 0.05), (7e-4, 7.0, 1e-4)],
-)
-def test_scales_are_one_two_five_times_a_power_of_ten(
-    size: float, room: float, scale: float
-) -> None:
-    assert round_scale(size, room) == pytest.approx(scale, rel=1e-12)
-
-
-def test_a_scale_of_nothing_or_on_no_paper_is_refused() -> None:
+def test_scales_are_one_two_five_times_a_power_of_ten_and_of_nothing_there_is_none() -> None:
+    for size, room, scale in (
+        (1.0, 100.0, 0.01), (1.01, 100.0, 0.02), (0.3, 10.0, 0.05), (7e-4, 7.0, 1e-4),
+    ):  # fmt: skip
+        assert round_scale(size, room) == pytest.approx(scale, rel=1e-12)
     for sizes in ((0.0, 10.0), (1.0, 0.0), (math.nan, 10.0)):
         with pytest.raises(ValueError, match="both above 0"):
             round_scale(*sizes)
-
-
-ANGLES = (0.31, 1.07, 2.2)
 
 
 def drawn_at(name: str, theta: float, alpha: float = 0.0) -> DrawnPolygons:
@@ -170,7 +159,7 @@ def drawn_at(name: str, theta: float, alpha: float = 0.0) -> DrawnPolygons:
 
 @pytest.mark.parametrize("name", [n for n in shipped() if "double-rocker" not in n])
 def test_in_an_instant_centre_both_bodies_have_one_velocity(name: str) -> None:
-    for theta in ANGLES:
+    for theta in (0.31, 1.07, 2.2):
         drawn = drawn_at(name, theta)
         centres = instant_centres(drawn.placement)
         bodies = len(drawn.placement.structure.bodies) + 1

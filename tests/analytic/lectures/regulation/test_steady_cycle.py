@@ -5,7 +5,6 @@ by hand, as extremes of the potential energy, and as motion has them."""
 import itertools
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -29,17 +28,10 @@ from analytic.structure.mobility import sides_of
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene import GROUND, Driver, Scene
+from models.scene import loads as acting
 from models.scene.characteristics import Constant, Polynomial, Sine
 from models.scene.driver import Released
 from models.scene.laws import Accelerating, ConstantSpeed
-from models.scene.loads import (
-    ConstantFriction,
-    CoulombFriction,
-    LineSpring,
-    Load,
-    PinSpring,
-    SlideSpring,
-)
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
 from tests.analytic.lectures.regulation.worked import shaft, yoke
@@ -53,7 +45,7 @@ def cycle(scene: Scene, flywheel: float = 0.0) -> SteadyCycle:
     return steady_cycle(TurningMachine.of(scene), flywheel)
 
 
-def test_a_shaft_under_a_sine_by_hand() -> None:
+def test_a_shaft_under_a_sine_by_hand_long_or_short() -> None:
     """J 2 kg m^2, M = 20 sin u N m beside a drive that has nothing to close: W = 20 (1 - cos u),
     largest at 180 deg, smallest at 0: 40 J of surplus. J w dw: J mean (w_max - w_min) = 40, so
     delta = 40 / (2 10^2) = 0.2, w from 9 to 11 rad/s."""
@@ -65,6 +57,9 @@ def test_a_shaft_under_a_sine_by_hand() -> None:
     assert math.remainder(found.slowest, math.tau) == pytest.approx(0.0, abs=1e-12)
     assert found.surplus_j == pytest.approx(40.0, rel=1e-13)
     assert found.inertia_range == pytest.approx((2.0, 2.0))
+    # J w^2 / 2 = T(0) + A (1 - cos(k u)) / k: 2 A / k = J mean (w_max - w_min).
+    short = cycle(shaft({"pull": (Sine(2000.0, math.tau / 120), "angle")}))
+    assert short.delta == pytest.approx(2.0 * 2000.0 / 120 / (2.0 * 10.0**2), rel=1e-9)
 
 
 def test_a_press_by_hand() -> None:
@@ -124,7 +119,7 @@ def test_a_push_that_begins_next_to_a_dead_centre_by_hand() -> None:
     push_n, radius, begin = 1e7, 0.2, 0.2 - 1e-6
     table = Tabulated((-0.3, begin, begin + 1e-15, 0.3), (0.0, 0.0, push_n, push_n))
     scene = yoke(mass_kg=1e-30, radius_m=radius)
-    load = Load("push", "yoke", "Y", table, "displacement", slider="Y", stroke="forward")
+    load = acting.Load("push", "yoke", "Y", table, "displacement", slider="Y", stroke="forward")
     driver = Driver("crank", ConstantSpeed(0.3017, 8.0))
     found = cycle(replace(scene, loads={"push": load}, driver=driver))
     drive = push_n * (radius - begin) / math.tau
@@ -189,10 +184,10 @@ def driven_by_a_motor() -> Scene:
     table = Tabulated((0.0, 140.0, 160.0, 300.0), (60.0, 40.0, 0.0, -90.0))
     motor = shaft({"motor": (table, "omega")}, free=True, speed=150.0)
     springs = {
-        "damper": SlideSpring("damper", 0.0, 5.0, 0.0, "C"),
-        "spring": LineSpring("spring", 900.0, 2.0, 0.05, ("A", "C")),
+        "damper": acting.SlideSpring("damper", 0.0, 5.0, 0.0, "C"),
+        "spring": acting.LineSpring("spring", 900.0, 2.0, 0.05, ("A", "C")),
     }
-    friction = {"C": ConstantFriction("C", 12.0), "B": ConstantFriction("B", 0.1)}
+    friction = {"C": acting.ConstantFriction("C", 12.0), "B": acting.ConstantFriction("B", 0.1)}
     loads = {**scene.loads, **motor.loads}
     return replace(scene, loads=loads, springs=springs, friction=friction, driver=motor.driver)
 
@@ -221,12 +216,6 @@ def test_a_steep_motor_is_followed_after_each_kink() -> None:
     free = release(let_go, found.period_s)
     theta, omega, _ = free.law.at(np.linspace(0.0, found.period_s, 2000))
     assert np.abs(found.solution.speed_at(theta) - omega).max() < 1e-8
-
-
-def test_a_load_of_short_waves_by_hand() -> None:
-    """J w^2 / 2 = T(0) + A (1 - cos(k u)) / k: 2 A / k = J mean (w_max - w_min)."""
-    found = cycle(shaft({"pull": (Sine(2000.0, math.tau / 120), "angle")}))
-    assert found.delta == pytest.approx(2.0 * 2000.0 / 120 / (2.0 * 10.0**2), rel=1e-9)
 
 
 @pytest.mark.parametrize("backward", [False, True])
@@ -271,7 +260,7 @@ def test_from_rest_a_machine_turns_to_the_side_that_its_motor_drives_it_to() -> 
 
 
 ROCKING = load_scene("fourbar-double-rocker")
-SPRUNG = PinSpring("main", 1.0, 0.0, 0.0, "A", (GROUND, "crank"))
+SPRUNG = acting.PinSpring("main", 1.0, 0.0, 0.0, "A", (GROUND, "crank"))
 TWO = {"one": (Sine(1.0, 2.0), "angle"), "other": (Sine(1.0, 3.0), "angle")}
 REFUSED = {
     "no balance": (shaft({"pull": (Constant(3.0), "time")}, free=True),
@@ -298,7 +287,7 @@ REFUSED = {
     "no turn": (ROCKING, "swings or speeds up"),
     "no law": (replace(shaft({}), driver=Driver("crank", Accelerating(0.0, 1.0, 1.0))),
                "swings or speeds up"),
-    "Coulomb": (replace(shaft({}), friction={"C": CoulombFriction("C", 0.1)}), "friction.C"),
+    "Coulomb": (replace(shaft({}), friction={"C": acting.CoulombFriction("C", 0.1)}), "friction.C"),
     "a stop": (shaft({"pull": (Sine(300.0, math.tau), "angle")}), "put a flywheel on"),
     "no mass": (shaft({"pull": (Sine(3.0, math.tau), "angle")}, inertia=0.0), "no mass moves"),
     "elastic links": (load_scene("fourbar-elastic"), "coupler is elastic"),
@@ -329,12 +318,7 @@ def wanted(scene: Scene, delta: float) -> WantedFlywheel:
     return wanted_flywheel(TurningMachine.of(scene), delta)
 
 
-@cache
-def evened_compressor() -> WantedFlywheel:
-    return wanted(load_scene("compressor"), 0.02)
-
-
-def test_the_flywheel_of_a_shaft_by_hand() -> None:
+def test_the_flywheel_of_a_shaft_by_hand_also_where_it_is_all_that_moves() -> None:
     """40 J at 10 rad/s for 0.02: J = 40 / (0.02 100) = 20 kg m^2, of which the shaft has 2. All
     ways agree: its own moment of inertia is constant."""
     found = wanted(shaft(PULL), 0.02)
@@ -344,6 +328,10 @@ def test_the_flywheel_of_a_shaft_by_hand() -> None:
         assert other == pytest.approx(18.0, rel=1e-7)
     assert found.bare.delta == pytest.approx(0.2)
     assert found.slopes == pytest.approx((0.5 * 10.1**2, 0.5 * 9.9**2))
+    # Without masses there is no cycle; 40 J at 10 rad/s for 0.1 take 4 kg m^2.
+    alone = wanted(shaft(PULL, inertia=0.0), 0.1)
+    assert alone.bare is None
+    assert alone.inertia_kg_m2 == pytest.approx(4.0, rel=1e-11)
 
 
 def test_the_flywheel_of_a_yoke_without_loads_by_hand() -> None:
@@ -363,10 +351,10 @@ def test_the_flywheel_of_a_yoke_without_loads_by_hand() -> None:
     assert near.by_tangents == pytest.approx(tangents, rel=1e-6)
 
 
-def test_the_scene_with_the_flywheel_has_the_coefficient() -> None:
+def test_a_machine_with_its_flywheel_has_the_coefficient_let_go_or_driven() -> None:
     """As a scene of its own, and tangents of the exact slopes say the same: no torque follows the
     speed."""
-    found = evened_compressor()
+    found = wanted(load_scene("compressor"), 0.02)
     again = cycle(with_flywheel(load_scene("compressor"), found.inertia_kg_m2))
     assert again.delta == pytest.approx(0.02, rel=1e-11)
     (above, _), (_, below) = map(found.cycle.heights, found.slopes)
@@ -377,6 +365,17 @@ def test_the_scene_with_the_flywheel_has_the_coefficient() -> None:
         assert other == pytest.approx(found.inertia_kg_m2, rel=0.2)
     # What the drawn tangents leave out is delta^2 / 4 of the slopes.
     assert near.by_tangents == pytest.approx(found.inertia_kg_m2, rel=1e-4)
+    # Let go in its cycle.
+    scene = cycle_scene(found.cycle, cycles=3.0)
+    law, mean = scene.driver.law, found.cycle.mean_rad_s
+    assert isinstance(law, Released)
+    assert law.duration_s == pytest.approx(3.0 * found.cycle.period_s)
+    assert law.speed_rad_s == pytest.approx(mean, rel=0.01 * 1.001)
+    assert set(scene.loads) == {"compression", "expansion", "drive"}
+    # Its loads balance, and its start is the mean speed that is asked of it.
+    freely = cycle(replace(scene, driver=Driver("crank", replace(law, speed_rad_s=mean))))
+    assert freely.delta == pytest.approx(0.02, rel=1e-9)
+    assert freely.drive_n_m == pytest.approx(0.0, abs=1e-9)
 
 
 def test_with_a_motor_the_flywheel_is_that_of_its_own_cycle() -> None:
@@ -390,31 +389,10 @@ def test_with_a_motor_the_flywheel_is_that_of_its_own_cycle() -> None:
     assert again.delta == pytest.approx(0.01, rel=1e-10)
 
 
-def test_a_machine_is_let_go_in_its_cycle() -> None:
-    found = evened_compressor()
-    scene = cycle_scene(found.cycle, cycles=3.0)
-    law, mean = scene.driver.law, found.cycle.mean_rad_s
-    assert isinstance(law, Released)
-    assert law.duration_s == pytest.approx(3.0 * found.cycle.period_s)
-    assert law.speed_rad_s == pytest.approx(mean, rel=0.01 * 1.001)
-    assert set(scene.loads) == {"compression", "expansion", "drive"}
-    # Its loads balance, and its start is the mean speed that is asked of it.
-    again = cycle(replace(scene, driver=Driver("crank", replace(law, speed_rad_s=mean))))
-    assert again.delta == pytest.approx(0.02, rel=1e-9)
-    assert again.drive_n_m == pytest.approx(0.0, abs=1e-9)
-
-
 @pytest.mark.parametrize("delta", [0.0, -0.1, 9e-7, 2.0, math.nan, math.inf])
 def test_a_coefficient_that_is_none_is_refused(delta: float) -> None:
     with pytest.raises(CrankcheckError, match=rf"^delta {delta:g}: .*(0\.02|0\.2|1e-06 or more)"):
         wanted(shaft(PULL), delta)
-
-
-def test_a_flywheel_alone_may_be_all_that_moves() -> None:
-    """Without masses there is no cycle; 40 J at 10 rad/s for 0.1 take 4 kg m^2."""
-    found = wanted(shaft(PULL, inertia=0.0), 0.1)
-    assert found.bare is None
-    assert found.inertia_kg_m2 == pytest.approx(4.0, rel=1e-11)
 
 
 @pytest.mark.parametrize("rate", [0.0, 3.0])
@@ -422,7 +400,7 @@ def test_a_pendulum_by_hand(rate: float) -> None:
     """J theta'' = -m g l cos(theta) - k (theta - free), m g l = 0.981 N m, J = 2 + m l^2."""
     scene = shaft({})
     crank = replace(scene.links["crank"], centre_m=(0.1, 0.0))
-    springs = {"s": PinSpring("s", rate, 0.0, 0.3, "A", (GROUND, "crank"))} if rate else {}
+    springs = {"s": acting.PinSpring("s", rate, 0.0, 0.3, "A", (GROUND, "crank"))} if rate else {}
     scene = replace(
         scene, links={**scene.links, "crank": crank}, springs=springs, gravity_m_s2=(0.0, -9.81)
     )

@@ -14,17 +14,6 @@ from analytic.lectures.schemes import screws
 from analytic.lectures.schemes.joint_chains import analyse_joint, chain_of, replaced, teeth_centres
 from analytic.lectures.schemes.scheme_loops import IN_PLANE, DrawingFrame, Loops, settled
 from analytic.lectures.schemes.scheme_mobility import SchemeMobility, effect_of, scheme_mobility
-from analytic.lectures.schemes.screws import (
-    axis_in_words,
-    carried,
-    displaced,
-    gap,
-    names_of_freedoms,
-    rank,
-    reciprocal,
-    rotation,
-    translation,
-)
 from models.errors import StructureError
 from models.lectures.scheme import HIGHER, Place, Scheme, SchemeJoint
 from models.lectures.scheme_files import load_scheme, scheme_text, shipped_schemes
@@ -67,14 +56,14 @@ def by_bodies(scheme: Scheme) -> int:
     rows = [np.zeros((0, size * len(scheme.links)))]
     for joint in scheme.joints:
         twists = loops.joint_twists(np.zeros(loops.freedoms))[joint.name][columns]
-        loads = reciprocal(twists)  # of three numbers in the plane, of six in space
+        loads = screws.reciprocal(twists)  # of three numbers in the plane, of six in space
         block = np.zeros((len(loads), size * len(scheme.links)))
         for body, sign in zip(joint.between, (-1.0, 1.0), strict=True):
             if body != GROUND:
                 first = size * scheme.links.index(body)
                 block[:, first : first + size] = sign * loads
         rows.append(block)
-    return size * len(scheme.links) - rank(np.vstack(rows))
+    return size * len(scheme.links) - screws.rank(np.vstack(rows))
 
 
 @pytest.mark.parametrize("name", SCHEMES)
@@ -119,15 +108,12 @@ def test_what_is_passive_and_idle_is_named() -> None:
     assert [each.links for each in legs] == [(f"cylinder-{k}", f"piston-{k}") for k in range(1, 7)]
 
 
-def test_a_shaft_in_two_bearings_has_one_that_is_passive_and_no_idle_turn() -> None:
+def test_of_two_bearings_or_ball_ended_rods_one_is_passive_and_a_rod_alone_turns_idly() -> None:
     one = SchemeJoint("A", "revolute", (GROUND, "shaft"), (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0),))
     bearings = (one, replace(one, name="B", at=(0.3, 0.0, 0.0)))
     mobility = scheme_mobility(Scheme("shaft", "spatial", "", ("shaft",), bearings))
     assert (mobility.scheme.count, mobility.real, mobility.idle_count) == (-4, 1, 0)
     assert mobility.passive.joints == ("B",)
-
-
-def test_a_spare_rod_between_balls_is_redundant_and_has_an_idle_turn() -> None:
     four_bar = load_scheme("four-bar-in-space")
     across = {"C": (0.36, 0.08, 0.0), "D": (0.3, 0.0, 0.0)}  # a parallelogram
     joints = [replace(each, at=across.get(each.name, each.at)) for each in four_bar.joints]
@@ -140,21 +126,11 @@ def test_a_spare_rod_between_balls_is_redundant_and_has_an_idle_turn() -> None:
     assert len(mobility.passive.single) == 3
 
 
-def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
+def test_momentary_motions_and_lengths_a_little_off_are_told() -> None:
     flat, shaky = known("parallelogram-flat"), known("stretched-bars")
     assert (flat.near.is_singular, shaky.near.is_singular) == (True, False)
     assert (flat.near.here, flat.real, flat.yielding) == (2, 1, 0)
     assert (shaky.near.here, shaky.real, shaky.yielding) == (1, 0, 1)
-
-
-def test_a_twist_of_the_frame_is_one_about_the_drawings_origin() -> None:
-    frame = DrawingFrame((1.0, 2.0, 3.0), 0.5)
-    axis, place = (0.0, 0.6, 0.8), (1.5, 1.0, 2.0)
-    there = frame.in_drawing(rotation(frame.at(place), axis))
-    assert np.allclose(there, rotation(place, axis))
-
-
-def test_lengths_that_are_a_little_off_are_told() -> None:
     scheme = load_scheme("bennett")
     joints = {joint.name: joint for joint in scheme.joints}
     x, y, z = joints["A"].at
@@ -196,7 +172,7 @@ def test_the_count_and_the_velocities_stay(name: str) -> None:
     assert fewer.count == scheme.count
     assert not HIGHER & {joint.kind for joint in fewer.joints}
     before, after = motions(scheme, scheme.links), motions(fewer, scheme.links)
-    assert rank(np.vstack([before, after])) == rank(before) == rank(after)
+    assert screws.rank(np.vstack([before, after])) == screws.rank(before) == screws.rank(after)
     if name != "planetary-three-planets":  # whose passive teeth hold in this position alone
         assert scheme_mobility(fewer).real == scheme.mobility
 
@@ -232,18 +208,15 @@ def test_teeth_have_their_centres_on_the_base_circles(
     assert ends == pytest.approx(tuple(bases))
 
 
-def test_a_spatial_scheme_is_refused() -> None:
-    with pytest.raises(StructureError, match="spatial"):
-        replaced(load_scheme("three-ball-table"))
-
-
-def test_the_new_link_has_a_name_of_its_own() -> None:
+def test_new_links_have_names_of_their_own_and_a_spatial_scheme_gets_none() -> None:
     scheme = load_scheme("cam-flat-follower")
     renamed = [tuple({"cam": "B-link"}.get(end, end) for end in j.between) for j in scheme.joints]
     pairs = zip(scheme.joints, renamed, strict=True)
     joints = tuple(replace(joint, between=own) for joint, own in pairs)
     taken = replace(scheme, links=("B-link", "follower"), joints=joints)
     assert replaced(taken).links == ("B-link", "follower", "B-link-2")
+    with pytest.raises(StructureError, match="spatial"):
+        replaced(load_scheme("three-ball-table"))
 
 
 def matrix(twist: np.ndarray) -> np.ndarray:
@@ -258,27 +231,42 @@ def test_a_finite_motion_is_the_exponential_of_its_twist(size: float) -> None:
     for twist in np.random.default_rng(1).standard_normal((5, 6)):
         with mpmath.workdps(40):
             exact = mpmath.expm(mpmath.matrix((size * matrix(twist)).tolist())).tolist()
-        assert np.allclose(displaced(twist, size), np.array(exact, float), atol=4e-15, rtol=0)
+        assert np.allclose(
+            screws.displaced(twist, size), np.array(exact, float), atol=4e-15, rtol=0
+        )
 
 
-def test_a_carried_axis_turns_as_its_body_and_the_gap_of_a_small_motion_is_its_twist() -> None:
+def test_a_carried_axis_turns_as_its_body_or_frame_and_a_small_gap_is_its_twist() -> None:
     for twist, way in np.random.default_rng(2).standard_normal((5, 2, 6)):
-        move = displaced(way, 1.0)
+        move = screws.displaced(way, 1.0)
         there = move @ matrix(twist) @ np.linalg.inv(move)
-        assert np.allclose(matrix(carried(move, twist)), there, atol=1e-13)
-        assert np.allclose(gap(displaced(twist, 1e-7)) / 1e-7, twist, atol=1e-6)
+        assert np.allclose(matrix(screws.carried(move, twist)), there, atol=1e-13)
+        assert np.allclose(screws.gap(screws.displaced(twist, 1e-7)) / 1e-7, twist, atol=1e-6)
+    frame = DrawingFrame((1.0, 2.0, 3.0), 0.5)
+    axis, place = (0.0, 0.6, 0.8), (1.5, 1.0, 2.0)
+    drawn = frame.in_drawing(screws.rotation(frame.at(place), axis))
+    assert np.allclose(drawn, screws.rotation(place, axis))
 
 
 def test_freedoms_have_names_where_axes_of_the_frame_do_and_places_else() -> None:
     at = (0.1, 0.0, 0.0)
-    pair = np.array([rotation(at, (0, 0, 1)) + translation((1, 0, 0)), translation((1, 0, 0))]).T
-    assert names_of_freedoms(pair, at) == ["Qz", "Tx"]
-    skew = rotation((0.5, 0.0, 0.0), (0.0, 0.0, 1.0))[:, None]
-    assert names_of_freedoms(skew, at) == ["turn about (0, 0, 1) through (0.5, 0, 0) m"]
-    assert axis_in_words(translation((0.0, 3.0, 4.0))) == "slide along (0, 0.6, 0.8)"
-    thread = rotation((0.0, 0.2, 0.0), (1.0, 0.0, 0.0), 0.006 / (2 * np.pi))
+    pair = np.array(
+        [
+            screws.rotation(at, (0, 0, 1)) + screws.translation((1, 0, 0)),
+            screws.translation((1, 0, 0)),
+        ]
+    ).T
+    assert screws.names_of_freedoms(pair, at) == ["Qz", "Tx"]
+    skew = screws.rotation((0.5, 0.0, 0.0), (0.0, 0.0, 1.0))[:, None]
+    assert screws.names_of_freedoms(skew, at) == ["turn about (0, 0, 1) through (0.5, 0, 0) m"]
+    assert screws.axis_in_words(screws.translation((0.0, 3.0, 4.0))) == "slide along (0, 0.6, 0.8)"
+    thread = screws.rotation((0.0, 0.2, 0.0), (1.0, 0.0, 0.0), 0.006 / (2 * np.pi))
     words = "screw about (1, 0, 0) through (0, 0.2, 0) m, 0.006 m in a turn"
-    assert axis_in_words(thread) == words
+    assert screws.axis_in_words(thread) == words
+    screwed = contact("thread", (0.5, 0.2, 0.0), lead=0.01)
+    joint = analyse_joint(Touching("", "", (0.0, 0.1, 0.0), (screwed,)))
+    screw = "screw about (0, 0, 1) through (0.5, 0.2, 0) m, 0.01 m in a turn"
+    assert joint.alone.freedoms == (screw,)
 
 
 def contact(kind: str, at: Place = (0.0, 0.0, 0.0), **given: object) -> Contact:
@@ -357,10 +345,3 @@ def test_form_keeps_what_no_motion_opens_and_a_force_the_rest() -> None:
     joints = [Touching(name, "", (0.0, 0.0, 0.0), held) for name, held in either.items()]
     kept = [joint.name for joint in joints if analyse_joint(joint).kept]
     assert kept == ["between two planes", "kept both ways"]
-
-
-def test_freedoms_have_their_place_where_they_are_not_about_the_joints_point() -> None:
-    thread = contact("thread", (0.5, 0.2, 0.0), lead=0.01)
-    joint = analyse_joint(Touching("", "", (0.0, 0.1, 0.0), (thread,)))
-    screw = "screw about (0, 0, 1) through (0.5, 0.2, 0) m, 0.01 m in a turn"
-    assert joint.alone.freedoms == (screw,)
