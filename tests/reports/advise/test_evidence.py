@@ -179,9 +179,7 @@ def test_a_speed_takes_the_place_of_the_scenes_own_and_frames_are_counted_in_its
 @pytest.mark.parametrize(
     ("frame_s", "least"), [(1e-5, 1), (math.tau / 80, 1), (math.tau / 79, 2), (1.0, 13)]
 )
-def test_the_least_sub_steps_are_steps_enough_for_a_turn_and_twice_the_most_are_still_run(
-    frame_s: float, least: int
-) -> None:
+def test_least_sub_steps_do_for_a_turn_and_twice_the_most_run(frame_s: float, least: int) -> None:
     demand = asked(frame_s=frame_s, turns=1.0)
     assert demand.least == least
     assert demand.steps_per_turn(least) > LEAST_STEPS_PER_TURN * (1 - 1e-9)

@@ -113,9 +113,7 @@ def test_a_fault_of_crankcheck_asks_to_be_reported(
 
 
 @pytest.mark.parametrize("value", ["9" * 5000, "\u00b2", "1000000000", "0", "-80", ""])
-def test_a_size_of_the_terminal_that_is_none_is_left_out(
-    value: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_odd_size_of_a_terminal_is_left_out(value: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", value)
     monkeypatch.setenv("LINES", "24")
     forget_odd_sizes()

@@ -145,9 +145,7 @@ def started(module: str, number: int, program: str, start: Start) -> tuple[int, 
     ],
     ids=["before the command line", "in it", "after it", "as a module"],
 )
-def test_ctrl_c_during_an_import_ends_in_one_line(
-    module: str, program: str, programs: Start
-) -> None:
+def test_ctrl_c_in_an_import_ends_in_one_line(module: str, program: str, programs: Start) -> None:
     assert started(module, 1, program, programs) == (130, "crankcheck: interrupted\n")
 
 

@@ -86,9 +86,7 @@ def test_what_a_slider_drives_is_logged_in_newtons(tmp_path: Path) -> None:
     ("ending", "begins"),
     [(".xlsx", b"PK"), (".html", b"<!doctype html>"), (".svg", b"<?xml"), (".pdf", b"%PDF")],
 )
-def test_the_ending_says_what_is_written_of_a_family(
-    ending: str, begins: bytes, tmp_path: Path
-) -> None:
+def test_an_ending_says_how_a_family_is_written(ending: str, begins: bytes, tmp_path: Path) -> None:
     file = tmp_path / f"family{ending}"
     line = "solve slotted-lever --family R=0.1,0.12 --steps-per-turn 8 --turns 1.5 -o"
     assert told(line, file).strip() == f"{file}: 2 members of slotted-lever, 13 rows"

@@ -103,9 +103,7 @@ OF_JOINTS = [
 
 
 @pytest.mark.parametrize(("text", "says"), [*OF_SCHEMES, *OF_JOINTS])
-def test_a_faulty_scheme_or_joint_is_refused_with_one_message(
-    tmp_path: Path, text: str, says: str
-) -> None:
+def test_a_faulty_scheme_or_joint_has_a_short_message(tmp_path: Path, text: str, says: str) -> None:
     path = tmp_path / "faulty.toml"
     path.write_text(text, encoding="utf-8")
     result = crank("joint" if (text, says) in OF_JOINTS else "mobility", path)

@@ -253,9 +253,7 @@ def _beside(turns: list[int]) -> list[int]:
     return sorted(k + by for k in turns for by in range(1 - NEAR, 1 + NEAR))
 
 
-def test_friction_jumps_where_its_joint_turns_back_and_a_load_of_a_stroke_where_it_is_not_0() -> (
-    None
-):
+def test_friction_jumps_where_its_joint_turns_and_a_load_of_a_stroke_where_it_is_not_0() -> None:
     assert _near(SLIDER) == _near(_pushed(Constant(1.0))) == []
     scene = replace(SLIDER, friction={"C": ConstantFriction("C", 0.5)})
     assert len(TURNS) == 2

@@ -103,9 +103,7 @@ def test_errors_at_one_time_are_over_the_growth_of_that_time(truth: FreeTruth, d
         assert plain.worst(name, kind=kind) == over.worst(name, kind=kind), name
 
 
-def test_samples_that_the_truth_does_not_know_well_enough_are_left_out_and_counted(
-    truth: FreeTruth, done: Run
-) -> None:
+def test_samples_of_uncertain_truth_are_left_out_and_counted(truth: FreeTruth, done: Run) -> None:
     unsure = _Changed(truth.free, error_rad=lambda time_s: np.where(time_s < 0.1 - 1e-9, 0.0, 1.0))
     errors = found(replace(truth, free=unsure), done)
     assert errors.of_motion.until_s == pytest.approx(0.099)

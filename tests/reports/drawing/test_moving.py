@@ -217,9 +217,7 @@ def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
             12.0: "12.0 s", None: NONE, math.inf: NONE}.items()],
     ],
 )  # fmt: skip
-def test_numbers_have_no_needless_exponent_errors_two_digits_and_times_three(
-    way: str, value: float | None, text: str
-) -> None:
+def test_numbers_are_written_by_their_kind(way: str, value: float | None, text: str) -> None:
     assert getattr(numbers, way)(value) == text
 
 

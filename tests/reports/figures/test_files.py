@@ -242,9 +242,7 @@ def figure_of(report: Report, name: str, scene: str | None) -> Figure | None:
 
 
 @pytest.mark.parametrize("shown", few(SHOWN, QUICK, OTHER), ids=str)
-def test_words_keep_off_each_other_and_the_edge(
-    report: Report, shown: tuple[str, str | None]
-) -> None:
+def test_words_keep_off_others_and_the_edge(report: Report, shown: tuple[str, str | None]) -> None:
     if shown in EMPTY:
         assert figure_of(report, *shown) is None
     else:

@@ -64,9 +64,7 @@ def test_versions_are_taken_once_and_the_oldest_first_and_no_other_text() -> Non
             wanted("mujoco", ["3.6.0", text])
 
 
-def test_uv_makes_the_environment_or_else_pip_and_what_is_not_there_is_an_end(
-    tmp_path: Path,
-) -> None:
+def test_uv_makes_the_environment_or_else_pip_and_what_is_missing_ends_it(tmp_path: Path) -> None:
     env, python = str(tmp_path / "env"), str(python_of(tmp_path / "env"))
     make, install = commands("/bin/uv", tmp_path / "env", ONE, tmp_path / "held.txt")
     assert (make[:2], make[-1]) == (["/bin/uv", "venv"], env)

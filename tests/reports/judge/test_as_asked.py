@@ -154,9 +154,7 @@ def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(each: str) -> No
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])
-def test_a_widest_gap_that_no_step_leaves_is_too_good_where_something_moves_unevenly(
-    share: float,
-) -> None:
+def test_a_widest_gap_that_no_step_leaves_is_too_good_of_uneven_motion(share: float) -> None:
     errors = examined(of_turns(FOURBAR))[0].errors
     least = LEAST * errors.of_scene.step_rad**2 * max(errors.of_scene.uneven.values())
     gaps = (row for row in errors.rows if row.quantity == "gap")

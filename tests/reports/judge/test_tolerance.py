@@ -33,9 +33,7 @@ def numbers(scene: Scene, **changed: float) -> dict[str, float]:
     }
 
 
-def test_defaults_shrink_with_the_square_of_the_step_and_grow_with_the_conditioning(
-    fourbar: Scene,
-) -> None:
+def test_defaults_go_with_the_square_of_the_step_and_the_conditioning(fourbar: Scene) -> None:
     coarse, fine = (numbers(fourbar, step_rad=step) for step in (0.02, 0.01))
     for name in ("angle", "displacement", "position", "gap", "velocity"):
         assert coarse[name] / fine[name] == pytest.approx(4.0, rel=0.02)
@@ -198,9 +196,7 @@ def test_a_hundred_turns_are_within_tolerance_as_one_turn_is(engine: str, fourba
     assert found.limits["drive"].number > 1e-10
 
 
-def test_the_sum_grows_with_the_square_of_the_steps_and_again_for_a_law_that_is_no_line(
-    fourbar: Scene,
-) -> None:
+def test_the_sum_goes_with_the_square_of_the_steps_and_more_if_no_line(fourbar: Scene) -> None:
     short, long = (summed(LAWS["constant"], 1e-3, steps) for steps in (10_000, 100_000))
     assert long / short == pytest.approx(100.0, rel=0.03)
     swing = LAWS["oscillating"]

@@ -167,9 +167,7 @@ def test_settings_are_recommended_by_the_deflection(small: Stored, bent: Stored)
     assert "/ D" in both
 
 
-def test_the_section_draws_on_a_phone_and_keeps_within_its_window(
-    phone: Tab, bent_path: Path
-) -> None:
+def test_the_section_draws_on_a_phone_within_its_window(phone: Tab, bent_path: Path) -> None:
     seen = phone.open(bent_path, "elastic").page
     seen.locator("#elastic-course").select_option("error")
     seen.locator("#elastic-error").select_option("segments_pure")

@@ -146,9 +146,7 @@ def test_a_straight_start_rings() -> None:
     ("name", "asked"),
     [(ELASTIC, {"elements": 1, "shape": "straight"}), ("fourbar-elastic-pulse", {"modes": 1})],
 )
-def test_the_coarsest_description_is_not_held_to_itself(
-    name: str, asked: dict[str, object]
-) -> None:
+def test_the_coarsest_description_is_no_own_witness(name: str, asked: dict[str, object]) -> None:
     (told,) = crankcheck.solve(name, [0.0, 0.02], **asked).certainty
     found = re.search(r"next finer description.*deflections are off by about (\S+) of", told)
     assert found, told

@@ -25,9 +25,7 @@ Group = Callable[..., StoredRun]
 
 
 @pytest.mark.parametrize("quantity", COMPARED)
-def test_growth_past_the_factor_is_worse_and_below_it_is_not(
-    quantity: str, cell: Make, run: Group
-) -> None:
+def test_growth_is_worse_past_the_factor_alone(quantity: str, cell: Make, run: Group) -> None:
     old = run(cell("a", **{quantity: 1e-3}), cell("b", **{quantity: 1e-3}))
     for growth, word in ((1.2, "worse"), (1.05, "equal"), (1 / 1.2, "better")):
         new = run(cell("a", **{quantity: 1e-3 * growth}), cell("b", **{quantity: 1e-3}))
@@ -55,9 +53,7 @@ def test_noise_of_the_size_of_rounding_is_no_alarm(
         assert compare(far, before).those("better"), "and it does in both directions"
 
 
-def test_what_fails_is_worse_and_what_one_run_alone_knows_is_not_compared(
-    cell: Make, run: Group
-) -> None:
+def test_what_fails_is_worse_and_what_one_run_knows_is_left_out(cell: Make, run: Group) -> None:
     number, none = run(cell(angle=1e-3, gap=1e-3)), run(cell(angle=math.inf, gap=1e-3))
     (pair,) = compare(number, none).pairs
     assert (pair.word, pair.worst.quantity) == ("worse", "angle")
@@ -87,9 +83,7 @@ def test_the_worst_quantity_and_the_worst_cell_are_told_first(cell: Make, run: G
     assert told == [("c", ""), ("b", "angle"), ("a", "gap")]
 
 
-def test_missing_cells_and_changed_scenes_count_only_when_one_is_strict(
-    cell: Make, run: Group
-) -> None:
+def test_missing_cells_and_changed_scenes_count_if_one_is_strict(cell: Make, run: Group) -> None:
     old, new = run(cell("a", angle=1e-3), cell("b", angle=1e-3)), run(cell("a", angle=1e-3))
     diff = compare(old, new)
     assert [c.name.scene for c in diff.missing] == ["b"]
@@ -147,9 +141,7 @@ Copy = Callable[..., Path]
 Change = Callable[[Path], None]
 
 
-def test_a_verification_is_read_with_every_number(
-    stored: Copy, verified: tuple[pd.DataFrame, object]
-) -> None:
+def test_a_verification_is_read_whole(stored: Copy, verified: tuple[pd.DataFrame, object]) -> None:
     found = read_run(stored("old"))
     frame = verified[0]
     names = [(cell.name.engine, cell.name.variant) for cell in found.cells.values()]

@@ -66,7 +66,7 @@ def test_the_matrix_is_printed_and_each_run_stored_with_its_command_and_failures
     assert json.loads((folder / "stability.json").read_text(encoding="utf-8"))["format"] == 1
 
 
-def test_a_second_run_takes_the_place_of_the_first_but_never_of_more_cases(
+def test_a_second_run_replaces_the_first_but_never_more_cases(
     tmp_path: Path, stored: Result, folder: Path
 ) -> None:
     for _ in range(2):
@@ -166,9 +166,7 @@ DAMAGED: dict[str, Callable[[str], str]] = {
 
 
 @pytest.mark.parametrize("damage", DAMAGED)
-def test_a_damaged_matrix_is_refused_with_the_cure(
-    matrix: Matrix, tmp_path: Path, damage: str
-) -> None:
+def test_a_damaged_matrix_is_told_its_cure(matrix: Matrix, tmp_path: Path, damage: str) -> None:
     with pytest.raises(CrankcheckError, match=r"no stability\.json .* makes one"):
         read_matrix(tmp_path)
     (tmp_path / FILE).write_text(DAMAGED[damage](to_json(matrix)), encoding="utf-8")

@@ -67,9 +67,7 @@ def test_the_error_is_the_worst_of_the_scenes_and_the_cost_their_sum(two: Bench)
     assert max(errors(two, math.floor(found.steps_per_turn / 1.03))) > 1e-4, "at a coarser step"
 
 
-def test_settings_with_a_floor_reach_nothing_and_say_how_far_they_are(
-    two: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_floor_reaches_nothing_and_is_told(two: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 8000)
     soft = {**SETTINGS, "solref_timeconst_steps": 0.0, "solimp_dmin": 0.9, "solimp_dmax": 0.9}
     found = two.attempt(soft, None)

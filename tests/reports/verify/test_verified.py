@@ -59,9 +59,7 @@ def test_where_nothing_helps_all_that_was_tried_is_named_and_half_the_step_told(
 
 
 @pytest.mark.parametrize("asked", [{}, {"profile": "as-shipped"}, {"drive": "servo"}])
-def test_nothing_is_run_again_that_is_within_or_has_another_cure(
-    runs: list[Cell], asked: dict[str, str]
-) -> None:
+def test_what_is_within_or_cured_is_not_run_again(runs: list[Cell], asked: dict[str, str]) -> None:
     advised(of_turns("fourbar-lecture-1", **asked))
     assert len(runs) == 1
 

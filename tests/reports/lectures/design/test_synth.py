@@ -38,9 +38,7 @@ def test_kinds_and_shipped_tasks_are_listed() -> None:
     assert "coupler" not in synth("stroke").output
 
 
-def test_solutions_and_their_proof_are_written_and_what_an_earlier_run_left_is_told(
-    tmp_path: Path,
-) -> None:
+def test_solutions_and_proof_are_written_and_what_was_left_there_is_told(tmp_path: Path) -> None:
     left = ("construction-3.html", "construction-3.svg", "solution-3.toml")
     for name in (*left, "mine.toml"):
         (tmp_path / name).write_text("x = 1\n", encoding="utf-8")
@@ -82,9 +80,7 @@ def test_what_an_engine_misses_or_only_defects_answer_is_an_exit_code(tmp_path: 
         assert [part for part in words if part not in flat(result.output)] == []
 
 
-def test_tolerances_are_told_but_no_slopes_next_to_a_change_point(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_tolerances_are_told_but_not_near_a_change_point(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command, "SAMPLES", 50)
     result = synth("stroke", "central", "--best", "1", "--vary", "1e-5")
     assert "of 50 mechanisms meet the task" in result.output

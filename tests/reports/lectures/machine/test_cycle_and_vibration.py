@@ -22,9 +22,7 @@ from tests.worlds.without_pdf import without_pdf
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_with_the_shaft_of_40_j(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[None]:
+def _beside_a_shaft_of_40_j(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
     scene = shaft({"pull": (Sine(20.0, math.tau), "angle")})
     Path("shaft.toml").write_text(scene_text(scene), encoding="utf-8")

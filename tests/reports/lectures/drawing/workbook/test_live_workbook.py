@@ -109,9 +109,7 @@ def test_a_row_at_a_change_point_is_not_called_open() -> None:
     assert columns["state"][0] == "rates not determined"
 
 
-def test_a_motion_that_goes_over_to_the_other_branch_and_other_mechanisms_have_no_formulas() -> (
-    None
-):
+def test_a_motion_over_to_the_other_branch_and_other_mechanisms_have_no_formulas() -> None:
     folds = scene_of("fourbar-lecture-1", inputs_of(live("fourbar-lecture-1")[1]) | PARALLELOGRAM)
     for scene in (folds, load_scene("shaper"), load_scene("scotch-yoke")):
         assert formulas_of(scene, 3, 1.0) is None
@@ -147,9 +145,7 @@ def test_formulas_have_common_functions_alone_and_no_text_is_one(book: openpyxl.
     assert book["source"]["B2"].data_type == "s"
 
 
-def test_inputs_alone_can_be_changed_and_have_names_that_no_cell_has(
-    book: openpyxl.Workbook,
-) -> None:
+def test_inputs_alone_can_be_changed_and_have_names_of_no_cell(book: openpyxl.Workbook) -> None:
     inputs, table = book["inputs"], book["live"]
     rows = range(2, 2 + len(book.defined_names))
     for row in rows:
@@ -330,9 +326,7 @@ def by_library(table: FormulaTable, file: Path) -> Mapping[str, np.ndarray]:
 
 @slow("seconds of each kind: each formula anew, which `evaluated` does as well")
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_library_recalculates_what_was_changed_and_says_what_is_open(
-    kind: str, tmp_path: Path
-) -> None:
+def test_a_library_recalculates_changes_and_says_what_is_open(kind: str, tmp_path: Path) -> None:
     table, file = live(kind)[1], tmp_path / "live.xlsx"
     inputs = inputs_of(table) | ALL_CHANGED[kind]
     write_changed(table, inputs, file)
