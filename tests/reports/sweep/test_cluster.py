@@ -69,7 +69,9 @@ def dask(monkeypatch: pytest.MonkeyPatch, cluster: Cluster, error: Exception | N
     monkeypatch.setitem(sys.modules, "distributed", module)
 
 
-def test_outcomes_come_as_they_end_from_a_child_of_each_limit(monkeypatch: pytest.MonkeyPatch, fourbar: Scene) -> None:
+def test_outcomes_come_as_they_end_from_a_child_of_each_limit(
+    monkeypatch: pytest.MonkeyPatch, fourbar: Scene
+) -> None:
     children: list[Child] = []
 
     class Child(Here[object]):
