@@ -166,16 +166,6 @@ def test_another_drive_is_another_choice_and_named() -> None:
     assert found.reason.startswith("nearest is x, servo drive at 90 steps a turn: ")
 
 
-STUDY = {
-    "scenes": ["b", "a"],
-    "variants": [
-        {"engine": "pymunk", "profile": "tuned"},
-        {"engine": "mujoco", "profile": "tuned", "settings": {"iterations": [1, 2]}},
-    ],
-    "steps_per_turn": [90],
-}
-
-
 def test_a_line_is_fitted_from_coarse_to_fine() -> None:
     steps = (360, 90, 720, 180)  # as they come out of a pool
     (line,) = lines(stored(cell("a", "x", n, 1e-3 * (90 / n) ** 2, 1.0) for n in steps))
@@ -184,9 +174,7 @@ def test_a_line_is_fitted_from_coarse_to_fine() -> None:
     assert line.words == "order 2.0, no floor seen"
     assert line.period_s == pytest.approx(PERIOD_S)
     assert line.settings == {"name": "x"}
-
-
-def test_a_line_of_another_quantity_is_that_of_its_column() -> None:
+    # Of another quantity it is that of its column.
     rows = [cell("a", "x", n, 1e-9, 1.0, pin_gap_m=7e-4) for n in (90, 180, 360, 720, 1440)]
     (line,) = lines(stored(rows), "pin_gap_m")
     assert line.words == "converges to the wrong answer: floor 7.0e-4 m"
@@ -211,13 +199,18 @@ def test_the_newest_version_stands_however_it_is_spelled_on_each_scene_by_itself
 
 
 def test_lines_come_in_the_order_of_the_study() -> None:
+    tuned = [
+        {"engine": "pymunk", "profile": "tuned"},
+        {"engine": "mujoco", "profile": "tuned", "settings": {"iterations": [1, 2]}},
+    ]
+    study = {"scenes": ["b", "a"], "variants": tuned, "steps_per_turn": [90]}
     names = [("mujoco", "tuned, iterations=2"), ("mujoco", "tuned, iterations=1")]
     rows = [
         cell(scene, variant, 90, 1e-3, 1.0, engine=engine)
         for engine, variant in [*names, ("pymunk", "tuned"), ("pymunk", "other")]
         for scene in ("c", "a", "b")
     ]
-    found = lines(stored(rows, scenes=("b", "a"), runs=({"study": STUDY}, {"study": {"old": 1}})))
+    found = lines(stored(rows, scenes=("b", "a"), runs=({"study": study}, {"study": {"old": 1}})))
     assert [line.scene for line in found] == ["b"] * 4 + ["a"] * 4 + ["c"] * 4
     in_order = [("pymunk", "tuned"), *reversed(names), ("pymunk", "other")]
     assert [(line.engine, line.variant) for line in found[:4]] == in_order
@@ -259,9 +252,7 @@ def test_noise_is_what_95_of_100_pairs_stay_below() -> None:
     assert candidates.noise(stored(rows)) == pytest.approx(0.095)
     swapped = [r | {"us_per_step_a": r["us_per_step_b"], "us_per_step_b": 1.0} for r in rows]
     assert candidates.noise(stored(swapped)) == pytest.approx(0.095)
-
-
-def test_noise_is_that_of_the_machine_whose_times_are_compared() -> None:
+    # Of a machine whose times are compared.
     rows = [
         cell("a", "x", 90, 1e-3, 1.0, us_per_step_b=2.0, processor="old", made="2025-01-01"),
         cell("a", "x", 180, 1e-3, 1.0, us_per_step_b=1.01),
@@ -315,9 +306,7 @@ def test_the_front_is_what_nothing_beats_in_both() -> None:
     chosen = cells.set_index("key").loc[candidates.front(cells)]
     found = list(zip(chosen["variant"], chosen["steps_per_turn"], strict=True))
     assert found == [("exact", 90), ("x", 180), ("x", 90)]
-
-
-def test_within_the_noise_a_saving_is_none() -> None:
+    # A saving within the noise is none.
     cells = stored(table("a x 90 1e-3 1, a y 90 1e-4 1.02")).cells
     variants = cells.set_index("key")["variant"]
     for noises, chosen in (((), ["y", "x"]), ((0.05,), ["y"]), ((math.nan,), ["y", "x"])):
