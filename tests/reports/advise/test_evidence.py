@@ -65,7 +65,7 @@ def test_at_its_speed_it_says_what_was_measured_or_is_between(study: Study) -> N
         for steps in STEPS:
             wanted = pytest.approx(study.error(choice, steps), rel=1e-6)
             assert known.error(FOURBAR, choice, steps) == wanted
-    assert known.turns == pytest.approx(2.0)
+    assert known.turns == pytest.approx(1.0)
     assert known.refusals == ()
     middle = known.error(FOURBAR, STIFF, math.sqrt(180 * 360))
     wanted = math.sqrt(study.error(STIFF, 180) * study.error(STIFF, 360))

@@ -173,9 +173,7 @@ def exactly(scene: Scene, state: Any, _: str, *rest: Any, **asked: Any) -> Run:
     return run(scene, state, FakeEngine(), *rest, **asked)
 
 
-def test_rounding_is_no_fault_where_joints_are_solved(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_rounding_is_no_fault_where_joints_are_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = verdict_of(exactly)
     assert "what is integrated is off by step^2" in seen["CC111"]
     monkeypatch.setattr("reports.judge.cell.engine", lambda _: FakeEngine())

@@ -234,9 +234,7 @@ def test_limits_grow_with_late_impulses_and_with_what_lasts_and_drifts() -> None
     assert lasted(curvature=4.0) == pytest.approx(8.0 * lasted(curvature=1.0))
 
 
-def test_no_order_is_graded_where_a_start_grows_much(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_no_order_is_graded_where_a_start_grows_much(monkeypatch: pytest.MonkeyPatch) -> None:
     assert check(cell(converge=True)).convergence is not None
     monkeypatch.setattr(free_facts, "MOST_GROWTH", 0.5)
     assert check(cell(converge=True)).convergence is None

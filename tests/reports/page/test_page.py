@@ -101,7 +101,6 @@ def test_a_file_that_can_not_be_written_is_refused_before_the_store_is_read(
     assert not list(tmp_path.iterdir())
 
 
-LIMIT = 60_000
 JUDGED: Row = {"gated": False, "verdict": "within", "reason": "", "failed_rules": "",
                "crankcheck": "0.0.0", "turns": 2.0}  # fmt: skip
 
@@ -122,7 +121,7 @@ def tables(text: str) -> list[list[str]]:
 
 
 def assert_whole(text: str) -> None:
-    assert len(text.encode()) < LIMIT
+    assert len(text.encode()) < 60_000
     assert tables(text)
     for rows in tables(text):
         cells = {len(re.split(r"(?<!\\)\|", row)) for row in rows}

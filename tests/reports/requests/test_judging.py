@@ -12,10 +12,9 @@ from crankcheck import Error, Errors
 from crankcheck.testing import assert_within
 
 SCENE = "fourbar-lecture-1"
-Key = tuple[str, str, str, str, str]
 
 
-def by_key(errors: Errors) -> dict[Key, Error]:
+def by_key(errors: Errors) -> dict[tuple[str, ...], Error]:
     return {(x.quantity, x.body_kind, x.body, x.source, x.kind): x for x in errors.rows}
 
 
