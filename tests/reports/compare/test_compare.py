@@ -269,9 +269,7 @@ def traced(run: Run, scene: Scene) -> dict[str, Array]:
     return trace(Truth(scene, bound=False), run)
 
 
-def test_the_last_turn_is_at_equal_parts_or_what_there_is(
-    fourbar: Scene, disturbed: Callable[..., Run]
-) -> None:
+def test_the_last_turn_is_at_equal_parts(fourbar: Scene, disturbed: Callable[..., Run]) -> None:
     found = traced(disturbed(fourbar, steps=1440), fourbar)
     assert found["time_s"].size == 91
     turns = np.diff(found["driver_rad"]) * 90 / math.tau
@@ -283,9 +281,7 @@ def test_the_last_turn_is_at_equal_parts_or_what_there_is(
     assert traced(replace(disturbed(fourbar), motion=None), fourbar) == {}
 
 
-def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_run(
-    fourbar: Scene, disturbed: Callable[..., Run]
-) -> None:
+def test_errors_of_the_last_turn_keep_signs(fourbar: Scene, disturbed: Callable[..., Run]) -> None:
     run = disturbed(fourbar, turned_link("rocker", lambda _: -1e-3))
     found = traced(run, fourbar)
     np.testing.assert_allclose(found["angle.rocker"], -1e-3, rtol=1e-6)

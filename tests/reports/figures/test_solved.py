@@ -100,7 +100,6 @@ def test_a_locked_turn_has_no_forces_and_driving_loads_no_efficiency(fourbar: Sc
     left = {name for name, draw in FORCE_FIGURES.draws.items() if draw(turn) is not None}
     assert left == {"reduced", "efficiency"}
     assert "within 5 deg of it are not drawn, which is all of the turn" in turn.notes[-1]
-
     assert FORCE_FIGURES.draws["efficiency"](force_turn(fourbar)) is None  # without friction
     turned = {
         k: replace(x, direction_rad=x.direction_rad + math.pi) for k, x in scene.loads.items()

@@ -104,9 +104,7 @@ def test_a_sweep_steps_elastic_links_as_their_segments_ask() -> None:
         assert [cell.dt_s for cell in cells(name, dt_s=[5e-4], **free)] == [5e-4]
 
 
-def test_what_is_let_go_is_swept_timed_and_verified(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_let_go_is_swept_and_timed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
     asked = [*MUJOCO, "--free", "--segments", 4, "--dt", "1e-3,5e-4", "--duration", 0.1]
     told = crankcheck("sweep", PULSE, "-o", tmp_path / "s", *asked)
