@@ -87,7 +87,7 @@ def test_a_planted_growth_or_end_ends_with_1_and_is_named(stored: Copy, diff: Ru
      (2.1, "one", "equal inside the noise of 10%"),
      (4.0, "another", None)],
 )  # fmt: skip
-def test_costs_are_advice_and_only_told_of_one_processor(
+def test_costs_are_only_advice(
     us: float, cpu: str, told: str | None, store: Copy, diff: Run
 ) -> None:
     code, shown = flat(diff(store("old"), store("new", us=us, cpu=cpu)))

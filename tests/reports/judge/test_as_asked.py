@@ -82,9 +82,7 @@ C_M = 0.37885
         ("sliders", "C", "displacement", 1.0 / C_M, "L"),
     ],
 )
-def test_a_body_begun_elsewhere_is_named(
-    kind: str, body: str, place: str, share: float, unit: str
-) -> None:
+def test_a_wrong_start_is_named(kind: str, body: str, place: str, share: float, unit: str) -> None:
     size = 2e-9
 
     def moved(*args: Any, **options: Any) -> Run:
@@ -181,9 +179,7 @@ def test_rounding_is_no_fault_where_joints_are_solved(monkeypatch: pytest.Monkey
 
 
 @pytest.mark.parametrize("spared", [None, "coupler"])
-def test_rates_that_are_the_references_are_too_good_of_any_engine(
-    monkeypatch: pytest.MonkeyPatch, spared: str | None
-) -> None:
+def test_exact_rates_are_too_good(monkeypatch: pytest.MonkeyPatch, spared: str | None) -> None:
     def taken(*args: Any, **options: Any) -> Run:
         done = exactly(*args, **options)
         true = solve(FOURBAR, done.motion.time_s)

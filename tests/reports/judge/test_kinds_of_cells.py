@@ -145,9 +145,7 @@ def test_newtons_method_ends_by_one_measure_for_all_sizes_masses_and_speeds(
         ("slider-crank-offset", "mujoco", "C", 0.5),
     ],
 )
-def test_forces_beside_jumps_of_constant_friction_are_left_out_and_counted(
-    name: str, engine: str, joint: str, size: float
-) -> None:
+def test_forces_beside_jumps_are_left_out(name: str, engine: str, joint: str, size: float) -> None:
     scene = replace(load_scene(name), friction={joint: ConstantFriction(joint, size)})
     found = checked(scene, engine, 360)
     assert found.verdict == "within", found.failures

@@ -56,7 +56,7 @@ def test_the_error_is_the_worst_of_the_scenes_and_the_cost_their_sum(two: attemp
     assert max(errors(two, math.floor(found.steps_per_turn / 1.03))) > 1e-4, "at a coarser step"
 
 
-def test_settings_with_a_floor_reach_nothing_and_say_how_far_they_are(
+def test_a_floor_says_how_far_it_is_off(
     two: attempt.Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 8000)

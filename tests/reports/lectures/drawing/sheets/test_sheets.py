@@ -14,7 +14,7 @@ from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.polygon import DriverState
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.scene import Scene
+from models.scene import Point, Scene
 from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.sheets.centre_sheet import centres_of, draw_centres
 from reports.lectures.drawing.sheets.letters import Letter, write_letters
@@ -28,9 +28,7 @@ from tests.worlds.tiers import slow
 A4, SMALLEST = Paper.of("A4"), Paper.of("180x120")
 
 
-def lettered(
-    letters: list[Letter], *strokes: tuple[tuple[float, float], tuple[float, float], str]
-) -> Axes:
+def lettered(letters: list[Letter], *strokes: tuple[Point, Point, str]) -> Axes:
     """The layer of letters that are written beside such lines, and clear of them."""
     canvas = Canvas(SMALLEST)
     axes = canvas.layer("lines")
