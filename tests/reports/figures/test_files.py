@@ -33,8 +33,9 @@ from tests.worlds.free_store import SCENE as LET_GO
 from tests.worlds.small_store import SCENES
 from tests.worlds.tiers import few
 
-EACH = ("work-precision", "convergence", "split", "mechanism")
-ALL = {f"{name}-{scene}" for name in EACH for scene in SCENES}
+OF_SCENES = ("work-precision", "convergence", "split", "mechanism")
+EACH = {f"{name}-{scene}" for name in OF_SCENES for scene in SCENES}
+ALL = EACH | {"work-precision", "convergence", "profile"}
 LABELS = {
     "work-precision": ("time per simulated turn [s]",),
     "convergence": ("steps per turn", "largest error: angle [rad], place / L [-]"),
@@ -100,9 +101,7 @@ def flat(path: Path) -> str:
 
 def test_there_is_an_svg_of_each_figure_that_a_store_has(drawn: Path, drawn_free: Path) -> None:
     """With its fonts, as wide as a column or a page of a paper, and labels with units."""
-    assert {path.name for path in drawn.iterdir()} == {
-        f"{name}.svg" for name in ALL | {"work-precision", "convergence", "profile"}
-    }
+    assert {path.name for path in drawn.iterdir()} == {f"{name}.svg" for name in ALL}
     assert {path.stem for path in drawn_free.iterdir()} == {f"{n}-{LET_GO}" for n in FREE_LABELS}
     for path in drawn.glob("*.svg"):
         assert "@font-face{font-family:'DejaVu Sans'" in path.read_text(), path.name
@@ -209,13 +208,9 @@ def has_room(draw: Callable[..., Figure | None], *arguments: object) -> None:
         assert figure is not None
         canvas, page = FigureCanvasAgg(figure), figure.bbox
         canvas.draw()
-        unseen = {text for axes in figure.axes for text in _undrawn(axes)}
-        seen = [t for t in figure.findobj(Text) if t.get_visible() and t not in unseen]
-        found = [
-            (t.get_text(), t.get_window_extent(canvas.get_renderer()))
-            for t in seen
-            if t.get_text().strip()
-        ]
+        by, unseen = canvas.get_renderer(), {t for axes in figure.axes for t in _undrawn(axes)}
+        seen = (t for t in figure.findobj(Text) if t.get_visible() and t not in unseen)
+        found = [(t.get_text(), t.get_window_extent(by)) for t in seen if t.get_text().strip()]
     assert len(found) > 5
     for text, box in found:
         inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1

@@ -27,7 +27,6 @@ def written(folder: Path, text: str, head: str = 'name = "x"\nsource = "a test"\
 
 
 def frame_of(kind: str, task: str) -> pd.DataFrame:
-
     return solution_frame(solutions_of(load_task(kind, task)).examined)
 
 
