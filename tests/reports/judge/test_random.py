@@ -32,7 +32,6 @@ from tests.worlds.turns import of_turns
 
 SEED = 20_261_121
 PARTS, EACH = 20, 50
-
 ENGINES = ("mujoco", "pymunk")
 
 

@@ -139,17 +139,14 @@ def test_a_run_without_a_whole_log_is_judged_by_its_status() -> None:
     assert "CC115" not in by_rule(replace(with_errors(incomplete="50 samples"), status="diverged"))
 
 
+NO_NUMBER = row("velocity", maximum=math.nan, kind="start")
 UNSURE = "reference not certain: angle of rocker"
 
 
 @pytest.mark.parametrize(
     ("evidence", "rule", "text"),
     [
-        (
-            with_errors(rows=(*ROWS, row("velocity", maximum=math.nan, kind="start"))),
-            "CC109",
-            "velocity of rocker",
-        ),
+        (with_errors(rows=(*ROWS, NO_NUMBER)), "CC109", "velocity of rocker"),
         (with_errors(missing=("link rocker", "gap of C")), "CC109", "link rocker, gap of C"),
         (with_errors(incomplete="50 samples, not the 721"), "CC115", "50 samples, not the 721"),
         (with_row(replace(row("angle"), bound=2e-4)), "CC112", UNSURE),

@@ -290,9 +290,11 @@ def test_a_log_at_another_speed_is_drawn_with_a_doubt(write: Write) -> None:
 
 THETA, SHORT = ROCKER.exact(0, EVEN), EVEN <= 0.4
 ONCE = {"time_s": EVEN, "rocker_theta_rad": THETA}
+CUT = {name: column[SHORT] for name, column in ONCE.items()}
+LATE = ONCE | {"rocker_theta_rad": ROCKER.exact(0, EVEN + 0.2)}
 UNFIT: list[tuple[dict[str, Array], str]] = [
-    ({name: column[SHORT] for name, column in ONCE.items()}, "to 0.628319 s: log 0.628319 s or"),
-    (ONCE | {"rocker_theta_rad": ROCKER.exact(0, EVEN + 0.2)}, "another scene, speed, start or"),
+    (CUT, "to 0.628319 s: log 0.628319 s or more"),
+    (LATE, "another scene, speed, start or unit"),
     ({"time_s": EVEN, "lever_theta_rad": THETA}, "no column is of scene"),
     ({"time_s": EVEN, "crank_theta_rad": 0.5 * np.pi + 10.0 * EVEN}, "no column is of rocker"),
     (
