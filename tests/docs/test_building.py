@@ -58,11 +58,9 @@ def test_a_figure_that_no_command_draws_is_told_or_has_a_stand_in(tmp_path: Path
     assert "drawn by" in (tmp_path / "o" / "a" / "b.svg").read_text()
 
 
-EXTENSIONS = ["tables", "pymdownx.superfences", "docs.site.formulas"]
-
-
 def html(page: str) -> str:
-    return Markdown(extensions=EXTENSIONS).convert(page)
+    extensions = ["tables", "pymdownx.superfences", "docs.site.formulas"]
+    return Markdown(extensions=extensions).convert(page)
 
 
 def test_formulas_stand_in_lines_tables_and_by_themselves_and_what_is_none_stays() -> None:

@@ -43,15 +43,11 @@ def test_every_page_stands_in_the_navigation_once_and_begins_with_its_title() ->
 
 
 def anchors(page: str) -> set[str]:
+    """Of the headings, as GitHub and the site make them."""
     prose = re.sub(r"^```.*?^```", "", page, flags=re.DOTALL | re.MULTILINE)
     titles = re.findall(r"^#+ (.+)$", prose, re.MULTILINE)
-    return {anchor_of(title.replace("`", "")) for title in titles}
-
-
-def anchor_of(title: str) -> str:
-    """The anchor of a heading, as GitHub and the site make it."""
-    kept = re.sub(r"[^\w\- ]", "", title.strip().lower())
-    return kept.replace(" ", "-")
+    kept = (re.sub(r"[^\w\- ]", "", title.strip().lower()) for title in titles)
+    return {title.replace(" ", "-") for title in kept}
 
 
 def dead_links(text: Mapping[str, str]) -> Iterator[str]:

@@ -19,7 +19,6 @@ from tests.worlds.tiers import few
 
 ROOT = Path(__file__).parents[3]
 SOLVE = "solve fourbar-lecture-1"
-HAS_FULL = pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell is needed")
 
 
@@ -66,15 +65,16 @@ def check_told(end: End, fault: str) -> None:
 
 
 @POSIX
-@HAS_FULL
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 @pytest.mark.parametrize("line", FILLED)
 def test_a_full_disk_behind_the_output_is_told(line: str, ended: dict[str, End]) -> None:
     check_told(ended[line], "standard output can not be written: No space left on device")
 
 
-@POSIX
-def test_a_closed_output_is_told() -> None:
+def test_a_closed_output_and_a_variable_that_breaks_a_package_are_told() -> None:
     check_told(shell(f"crankcheck {SOLVE} >&-"), "standard output is closed")
+    end = shell("crankcheck solve tangent", NUMPY_MADVISE_HUGEPAGE="foo")
+    check_told(end, "numpy can not be imported here: .*foo")
 
 
 @POSIX
@@ -112,16 +112,8 @@ def test_a_fault_of_crankcheck_asks_to_be_reported(
     assert "Traceback" in crank("scenes").stderr
 
 
-@POSIX
-def test_a_variable_of_a_package_is_no_fault_of_crankcheck() -> None:
-    end = shell("crankcheck solve tangent", NUMPY_MADVISE_HUGEPAGE="foo")
-    check_told(end, "numpy can not be imported here: .*foo")
-
-
 @pytest.mark.parametrize("value", ["9" * 5000, "\u00b2", "1000000000", "0", "-80", ""])
-def test_a_size_of_the_terminal_that_is_none_is_left_out(
-    value: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_odd_size_of_a_terminal_is_left_out(value: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", value)
     monkeypatch.setenv("LINES", "24")
     forget_odd_sizes()
@@ -165,10 +157,14 @@ def start(*args: str, counted: bool = True) -> tuple[int, int, list[str], str]:
     return code or 0, calls, loaded, "\n".join(output)
 
 
-HELPS = ["--help", "verify --help", "solve -h", "--version"]
-
-
-@pytest.mark.parametrize("line", few(HELPS, ["--help"], "the same imports as of the others"))
+@pytest.mark.parametrize(
+    "line",
+    few(
+        ["--help", "verify --help", "solve -h", "--version"],
+        ["--help"],
+        "the same imports as of the others",
+    ),
+)
 def test_help_is_shown_after_few_calls_and_loads_no_engine(line: str) -> None:
     code, calls, loaded, output = start(*line.split())
     assert code == 0

@@ -77,9 +77,7 @@ def test_scenes_lists_every_shipped_scene_under_its_kind_with_its_groups() -> No
     assert "RPR + RRP" in output
 
 
-def test_engines_lists_versions_profiles_and_settings_with_reasons_and_what_is_missing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_engines_lists_versions_profiles_settings_and_gaps(monkeypatch: pytest.MonkeyPatch) -> None:
     plain, full = told("engines"), told("engines --settings")
     assert [word for word in ("mujoco", "tuned", "as-shipped") if word not in plain] == []
     assert len(full.splitlines()) > len(plain.splitlines()) + 5
@@ -97,9 +95,7 @@ def test_view_with_a_screen_opens_the_assembled_model(monkeypatch: pytest.Monkey
     assert shown == [1]
 
 
-def test_view_without_a_screen_draws_an_animation_that_moves(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_view_without_a_screen_animates_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
@@ -115,9 +111,7 @@ def test_view_without_a_screen_draws_an_animation_that_moves(
     assert len(set(frames)) > 1
 
 
-def test_a_strip_of_a_swinging_driver_shows_both_ends_of_its_swing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_strip_of_a_swinging_driver_shows_both_its_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     titles: list[str] = []
     monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))
     gif.strip(load_scene("tangent"))
@@ -176,9 +170,7 @@ def test_what_is_let_go_has_its_length_in_seconds_and_is_judged_as_such(tmp_path
     assert "turn" not in shown
 
 
-def test_a_run_that_came_apart_is_written_as_far_as_it_went(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_came_apart_is_written_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sim.run.RUNAWAY", 0.5)
     path = tmp_path / "log.csv"
     assert "ended diverged at t = " in told(f"{ONCE} -o", path, code=1)

@@ -39,9 +39,7 @@ def test_verify_has_a_table_of_forces_of_its_own(tmp_path: Path) -> None:
     assert {"CC120", "CC123", "CC124"} <= {finding["rule"] for finding in findings}
 
 
-def test_an_engine_without_forces_is_unsupported_where_it_is_named_and_a_note_else(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_an_engine_without_forces_fails_if_named_or_notes(monkeypatch: pytest.MonkeyPatch) -> None:
     deaf = replace(registry.engine("mujoco"), forces_of="nothing")
     monkeypatch.setattr("sim.mujoco.engine.ENGINE", deaf)
     lines = (f"{MUJOCO} --forces", f"{ONCE} --no-convergence --forces")

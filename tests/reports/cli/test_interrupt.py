@@ -68,16 +68,15 @@ LONG = ("verify", "--turns", "4", "--jobs", "2", "-o", "out")
 
 ENDED = {"interrupted": (GROUP, 4, 130), "terminated": (ALONE, 2, 143)}
 """How it is told to end, how many times, and the exit code."""
-MOMENTS = [
-    *(("interrupted", each) for each in (IMPORTS, FIRST_STARTS, SECOND_STARTS, FIRST_ANSWER)),
-    *(("terminated", each) for each in (FIRST_STARTS, FIRST_ANSWER)),
-]
 
 
 @pytest.mark.parametrize(
     "case",
     few(
-        MOMENTS,
+        [
+            *(("interrupted", at) for at in (IMPORTS, FIRST_STARTS, SECOND_STARTS, FIRST_ANSWER)),
+            *(("terminated", at) for at in (FIRST_STARTS, FIRST_ANSWER)),
+        ],
         [("interrupted", SECOND_STARTS)],
         "at one moment of three that workers have; an import and SIGTERM itself are below",
     ),
@@ -145,9 +144,7 @@ def started(module: str, number: int, program: str, start: Start) -> tuple[int, 
     ],
     ids=["before the command line", "in it", "after it", "as a module"],
 )
-def test_ctrl_c_during_an_import_ends_in_one_line(
-    module: str, program: str, programs: Start
-) -> None:
+def test_ctrl_c_in_an_import_ends_in_one_line(module: str, program: str, programs: Start) -> None:
     assert started(module, 1, program, programs) == (130, "crankcheck: interrupted\n")
 
 
@@ -163,16 +160,12 @@ def test_ctrl_c_at_any_import_ends_in_one_line(program: str, programs: Start) ->
     assert complaint == ""
 
 
-def test_a_script_that_imports_crankcheck_hears_ctrl_c_as_ever(programs: Start) -> None:
-    code = "import crankcheck, signal; signal.raise_signal(signal.SIGINT)"
-    running = programs(PYTHON, "-P", "-c", code)
-    assert "KeyboardInterrupt" in running.communicate()[1]
-
-
 def test_the_command_hears_ctrl_c_in_one_line_from_its_first_import_on(programs: Start) -> None:
-    code = "import sys; sys.argv = ['bin/crankcheck']; import crankcheck, signal; "
-    running = programs(PYTHON, "-P", "-c", f"{code}signal.raise_signal(signal.SIGINT)")
-    assert running.communicate()[1] == "crankcheck: interrupted\n"
+    code = "import crankcheck, signal; signal.raise_signal(signal.SIGINT)"
+    named = f"import sys; sys.argv = ['bin/crankcheck']; {code}"
+    command, plain = (programs(PYTHON, "-P", "-c", each) for each in (named, code))
+    assert command.communicate()[1] == "crankcheck: interrupted\n"
+    assert "KeyboardInterrupt" in plain.communicate()[1]  # a script that imports it, as ever
 
 
 ENDS = {

@@ -39,9 +39,7 @@ def asked(monkeypatch: pytest.MonkeyPatch, line: str) -> object:
 
 
 @pytest.mark.parametrize("line", LEAST)
-def test_what_is_not_given_keeps_the_default_of_the_request(
-    line: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_given_is_the_request_s_own(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert asked(monkeypatch, line) == kind_of(line)(*LEAST[line])
 
 

@@ -23,9 +23,6 @@ from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.without_pdf import without_pdf
 
-PISTON = "slider-crank-by-piston"
-FOURBAR = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
-
 
 def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
     links = dict(fourbar.links)
@@ -52,7 +49,8 @@ def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(tmp_path: Path)
 def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(tmp_path: Path) -> None:
     path = tmp_path / "faster.toml"
     law = 'law = "accelerating"\nspeed_rad_s = 10.0\nacceleration_rad_s2 = 5.0'
-    path.write_text(FOURBAR.replace("speed_rad_s = 10.0", law), encoding="utf-8")
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    path.write_text(text.replace("speed_rad_s = 10.0", law), encoding="utf-8")
     output = told("solve --at-deg 180", path)
     assert "driver crank, 10 rad/s and 5 rad/s^2 from 90 deg" in output
     speed = math.sqrt(100.0 + 2 * 5.0 * math.pi / 2)
@@ -69,14 +67,11 @@ def test_without_a_whole_cycle_there_is_no_stroke(tmp_path: Path) -> None:
     assert "\nC along 30 deg: no stroke: the driver goes through no whole cycle, or" in output
 
 
-def test_positions_are_numbered_along_what_is_driven(tmp_path: Path) -> None:
-    sheet = tmp_path / "sheet.svg"
-    assert f"12 positions of {PISTON}" in told(f"positions {PISTON} -o", sheet)
+def test_what_a_slider_drives_is_numbered_along_it_and_logged_in_newtons(tmp_path: Path) -> None:
+    name, sheet = "slider-crank-by-piston", tmp_path / "sheet.svg"
+    assert f"12 positions of {name}" in told(f"positions {name} -o", sheet)
     assert "locus-B" in sheet.read_text(encoding="utf-8")
-
-
-def test_what_a_slider_drives_is_logged_in_newtons(tmp_path: Path) -> None:
-    told(f"solve {PISTON} --forces -o", tmp_path / "log.csv")
+    told(f"solve {name} --forces -o", tmp_path / "log.csv")
     heads = (tmp_path / "log.csv").read_text(encoding="utf-8").partition("\n")[0].split(",")
     assert "drive_force_n" in heads
     assert "torque_n_m" not in heads
@@ -86,9 +81,7 @@ def test_what_a_slider_drives_is_logged_in_newtons(tmp_path: Path) -> None:
     ("ending", "begins"),
     [(".xlsx", b"PK"), (".html", b"<!doctype html>"), (".svg", b"<?xml"), (".pdf", b"%PDF")],
 )
-def test_the_ending_says_what_is_written_of_a_family(
-    ending: str, begins: bytes, tmp_path: Path
-) -> None:
+def test_an_ending_says_how_a_family_is_written(ending: str, begins: bytes, tmp_path: Path) -> None:
     file = tmp_path / f"family{ending}"
     line = "solve slotted-lever --family R=0.1,0.12 --steps-per-turn 8 --turns 1.5 -o"
     assert told(line, file).strip() == f"{file}: 2 members of slotted-lever, 13 rows"

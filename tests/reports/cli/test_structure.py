@@ -24,17 +24,18 @@ def test_one_assembly_is_the_scenes_own(name: str) -> None:
     assert all(scene.branch.get(key, 1) == number for key, number in own.branch.items())
 
 
-def test_assemblies_are_drawn(tmp_path: Path) -> None:
+def test_sheets_are_drawn_and_told_of(tmp_path: Path) -> None:
+    assert "at 90 deg, on 297 x 210 mm" in told(
+        "polygon fourbar-lecture-1 -o", tmp_path / "polygons.svg"
+    )
+    assert b"layer-velocity-1" in (tmp_path / "polygons.svg").read_bytes()
+    chains = tmp_path / "chains.svg"
+    assert "7 mechanisms" in told("chains --links 4 --sliders 2 --inversions -o", chains)
+    assert b"layer-chains" in chains.read_bytes()
     told("structure fourbar-lecture-1 -o", tmp_path / "all.svg")
     drawn = (tmp_path / "all.svg").read_text(encoding="utf-8")
     assert "branch: C +1; this scene's" in drawn
     assert "branch: C -1" in drawn
-
-
-def test_a_sheet_of_chains_is_written(tmp_path: Path) -> None:
-    file = tmp_path / "chains.svg"
-    assert "7 mechanisms" in told("chains --links 4 --sliders 2 --inversions -o", file)
-    assert b"layer-chains" in file.read_bytes()
 
 
 def test_json_holds_what_the_tables_say() -> None:
@@ -103,20 +104,12 @@ OF_JOINTS = [
 
 
 @pytest.mark.parametrize(("text", "says"), [*OF_SCHEMES, *OF_JOINTS])
-def test_a_faulty_scheme_or_joint_is_refused_with_one_message(
-    tmp_path: Path, text: str, says: str
-) -> None:
+def test_a_faulty_scheme_or_joint_has_a_short_message(tmp_path: Path, text: str, says: str) -> None:
     path = tmp_path / "faulty.toml"
     path.write_text(text, encoding="utf-8")
     result = crank("joint" if (text, says) in OF_JOINTS else "mobility", path)
     refused(result, says)
     assert len(result.output.splitlines()) <= 3
-
-
-def test_the_sheet_is_written_and_told_of(tmp_path: Path) -> None:
-    file = tmp_path / "sheet.svg"
-    assert "at 90 deg, on 297 x 210 mm" in told("polygon fourbar-lecture-1 -o", file)
-    assert b"layer-velocity-1" in file.read_bytes()
 
 
 def test_a_log_is_drawn_beside_and_that_of_another_scene_refused(tmp_path: Path) -> None:

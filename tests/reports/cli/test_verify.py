@@ -73,9 +73,7 @@ def test_all_files_of_a_folder_hold_the_same_cells_of_the_last_run(tmp_path: Pat
     assert [case.get("name") for case in suite.iter("testcase")] == ["mine"] * 2
 
 
-def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_costs_the_file_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Path, "replace", raising(OSError(28, "No space left on device")))
     result = crank(*MUJOCO.split(), "--csv", tmp_path / "cells.csv")
     assert "WITHIN TOLERANCE" in result.output
@@ -112,9 +110,7 @@ def against(tmp_path: Path) -> Verify:
     return run
 
 
-def test_a_run_as_good_as_its_baseline_ends_with_0_unless_it_is_out_of_tolerance(
-    against: Verify, tmp_path: Path
-) -> None:
+def test_a_run_as_good_as_its_baseline_ends_by_the_limits(against: Verify, tmp_path: Path) -> None:
     against(folder=tmp_path)
     code, text = against(baseline=tmp_path)
     assert code == 0
@@ -124,9 +120,7 @@ def test_a_run_as_good_as_its_baseline_ends_with_0_unless_it_is_out_of_tolerance
     assert against(baseline=tmp_path, tolerance=("angle=1e-12",))[0] == 1
 
 
-def test_a_run_worse_than_its_baseline_ends_with_1_though_within(
-    against: Verify, tmp_path: Path
-) -> None:
+def test_a_run_within_but_worse_than_before_ends_with_1(against: Verify, tmp_path: Path) -> None:
     against(folder=tmp_path)
     cells = pd.read_csv(tmp_path / "verify.csv")
     cells.assign(gap_pure=cells["gap_pure"] / 1.2).to_csv(tmp_path / "verify.csv", index=False)

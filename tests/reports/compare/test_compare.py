@@ -146,13 +146,20 @@ def test_a_number_that_is_missing_is_a_failure_wherever_it_stands(
     assert math.isnan(pure(short, quantity))
 
 
-def test_a_missing_crank_angle_leaves_a_note_and_no_drive(fourbar: Scene, healthy: Run) -> None:
+def test_a_crank_angle_that_is_missing_or_out_of_range_leaves_a_note_and_no_geometry(
+    fourbar: Scene, healthy: Run, disturbed: Callable[..., Run]
+) -> None:
     theta = link_of(healthy, "crank").theta.copy()
     theta[5] = np.nan
     errors = compared(fourbar, with_link(healthy, "crank", theta=theta))
     assert "logged crank angle is not finite" in errors.notes[0]
     assert not any(row.kind == "geometric" for row in errors.rows)
     assert math.isnan(pure(errors, "drive"))
+    scene = load_scene("fourbar-double-rocker")
+    run = disturbed(scene)
+    errors = compared(scene, with_link(run, "driver", theta=link_of(run, "driver").theta + 2.0))
+    assert "left its range" in errors.notes[0]
+    assert pure(errors, "drive") == pytest.approx(2.0)
 
 
 def test_accelerations_not_reported_are_named_and_no_failure(fourbar: Scene, healthy: Run) -> None:
@@ -222,14 +229,6 @@ def test_a_whole_log_is_complete_however_thin_it_is(fourbar: Scene, steps: int, 
     assert incomplete(run) == ""
 
 
-def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(disturbed: Callable[..., Run]) -> None:
-    scene = load_scene("fourbar-double-rocker")
-    run = disturbed(scene)
-    errors = compared(scene, with_link(run, "driver", theta=link_of(run, "driver").theta + 2.0))
-    assert "left its range" in errors.notes[0]
-    assert pure(errors, "drive") == pytest.approx(2.0)
-
-
 LINE, LONG = np.linspace(0.0, 1.0, 20), np.linspace(0.0, 20.0, 500)
 
 
@@ -253,20 +252,17 @@ def test_whole_turns_are_errors_but_at_starts(angle: Array, reference: Array, er
     assert size(angle_error(angle, reference)).maximum == pytest.approx(error)
 
 
-@pytest.mark.parametrize(("at", "bad"), [(0, math.nan), (7, -math.inf), (19, math.inf)])
-def test_one_sample_that_is_no_number_is_never_skipped(at: int, bad: float) -> None:
-    measured = size(with_one(at, bad))
-    assert math.isnan(measured.maximum)
-    assert math.isnan(measured.rms)
-    assert measured.index == at
-
-
-def test_size_of_known_series() -> None:
+def test_size_is_that_of_known_series_and_skips_no_sample_that_is_no_number() -> None:
     measured = size(np.array([3.0, -4.0, 0.0, 1.0]))
     assert (measured.maximum, measured.final, measured.index) == (4.0, 1.0, 1)
     assert measured.rms == pytest.approx(math.sqrt(26 / 4))
     assert size(np.array([1e200, 1e200])).rms == pytest.approx(1e200)  # does not overflow
     assert length(np.array([[3.0, 4.0], [0.0, -2.0]])).tolist() == [5.0, 2.0]
+    for at, bad in ((0, math.nan), (7, -math.inf), (19, math.inf)):
+        measured = size(with_one(at, bad))
+        assert math.isnan(measured.maximum)
+        assert math.isnan(measured.rms)
+        assert measured.index == at
 
 
 def traced(run: Run, scene: Scene) -> dict[str, Array]:
@@ -279,11 +275,13 @@ def test_the_last_turn_is_at_equal_parts(fourbar: Scene, disturbed: Callable[...
     turns = np.diff(found["driver_rad"]) * 90 / math.tau
     np.testing.assert_allclose(turns, 1.0, rtol=1e-12)
     assert found["time_s"][-1] == pytest.approx(2.0 * fourbar.driver.law.period_s)
+    found = traced(disturbed(fourbar, steps=100), fourbar)
+    assert 10 <= found["time_s"].size <= 14
+    assert found["time_s"][0] == 0.0
+    assert traced(replace(disturbed(fourbar), motion=None), fourbar) == {}
 
 
-def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_run(
-    fourbar: Scene, disturbed: Callable[..., Run]
-) -> None:
+def test_errors_of_the_last_turn_keep_signs(fourbar: Scene, disturbed: Callable[..., Run]) -> None:
     run = disturbed(fourbar, turned_link("rocker", lambda _: -1e-3))
     found = traced(run, fourbar)
     np.testing.assert_allclose(found["angle.rocker"], -1e-3, rtol=1e-6)
@@ -291,10 +289,3 @@ def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_r
         np.testing.assert_allclose(found[name], 0.0, atol=1e-12)
     worst = compare(Truth(fourbar).beside(run)).worst("gap")
     assert 0.0 < np.max(found["gap"]) <= worst.maximum
-
-
-def test_a_run_cut_short_gives_what_there_is(fourbar: Scene, disturbed: Callable[..., Run]) -> None:
-    found = traced(disturbed(fourbar, steps=100), fourbar)
-    assert 10 <= found["time_s"].size <= 14
-    assert found["time_s"][0] == 0.0
-    assert traced(replace(disturbed(fourbar), motion=None), fourbar) == {}

@@ -182,42 +182,36 @@ def _shaken(force: float, inertia: float) -> object:
     return pytest.approx(force / inertia * (STEP_RAD / SPEED_RAD_S) ** 2, rel=1e-3)
 
 
-SINE, NEARLY_0 = Sine(1.0, PERIOD_S), pytest.approx(0.0, abs=1e-10)
-CRANK, ROD, BLOCK = SLIDER.links["crank"], SLIDER.links["rod"], SLIDER.sliders["C"]
+SINE = Sine(1.0, PERIOD_S)
+BLOCK = SLIDER.sliders["C"]
 SHAKES = {
     "no load": (SLIDER, 0.0),
-    "one that grows evenly": (_pushed(Polynomial((3.0, 100.0))), NEARLY_0),
+    "one that grows evenly": (
+        _pushed(Polynomial((3.0, 100.0))), pytest.approx(0.0, abs=1e-10),
+    ),
     "a table that ends before the motion": (_pushed(Tabulated((0.0, 1e-3), (0.0, 1.0))), 0.0),
     "a sine, by the mass of its body": (
         _pushed(Sine(100.0, PERIOD_S)), _shaken(100.0, BLOCK.mass_kg * SLIDER.longest_m),
     ),
     "a torque, by the inertia of its link": (
-        _loaded(Load("turn", "rod", None, SINE)), _shaken(1.0, ROD.inertia_kg_m2),
+        _loaded(Load("turn", "rod", None, SINE)), _shaken(1.0, SLIDER.links["rod"].inertia_kg_m2),
     ),
     "a torque on a link that a guide holds": (
         _loaded(Load("turn", "ram", None, SINE), load_scene("shaper-cutting")), 0.0,
     ),
     "a constant in the frame of a body, as that turns": (
         _loaded(Load("push", "crank", "B", Constant(10.0), frame="body")),
-        _shaken(10.0, CRANK.mass_kg * SLIDER.longest_m),
+        _shaken(10.0, SLIDER.links["crank"].mass_kg * SLIDER.longest_m),
     ),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("load", SHAKES)
-def test_a_load_shakes_bodies_by_its_second_difference(load: str) -> None:
-    scene, expected = SHAKES[load]
-    assert loading(scene, _motion(scene)) == expected
-
-
-def test_a_body_without_mass_counts_as_the_lightest() -> None:
+def test_a_load_shakes_bodies_by_its_second_difference() -> None:
+    for load, (scene, expected) in SHAKES.items():
+        assert loading(scene, _motion(scene)) == expected, load
+    # A body without mass counts as the lightest.
     light = replace(_pushed(SINE), sliders={"C": replace(BLOCK, mass_kg=0.0)})
     assert 0.0 < loading(light, _motion(light)) < np.inf
-
-
-def test_without_loads_over_a_displacement_there_is_no_slope() -> None:
-    for scene in (SLIDER, _pushed(Sine(100.0, 0.1))):
-        assert load_slopes(scene, _motion(scene), 1.0, 1.0) == {"reaction": 0.0, "torque": 0.0}
 
 
 def test_the_slope_is_that_of_the_stroke_on_which_the_load_acts() -> None:
@@ -227,6 +221,8 @@ def test_the_slope_is_that_of_the_stroke_on_which_the_load_acts() -> None:
     chord = 1e5 / 3e-3  # N/m; a cubic is taken to be three times as steep as its chord
     assert one["reaction"] == pytest.approx(3 * chord * press.longest_m / 1e5, rel=1e-6)
     assert both["reaction"] == pytest.approx(6 * one["reaction"], rel=1e-6)  # over 0.5 mm
+    for scene in (SLIDER, _pushed(Sine(100.0, 0.1))):  # without loads over a displacement
+        assert load_slopes(scene, _motion(scene), 1.0, 1.0) == {"reaction": 0.0, "torque": 0.0}
 
 
 def test_the_slope_of_the_torque_is_by_the_speed_of_what_is_loaded() -> None:
@@ -257,15 +253,12 @@ def _beside(turns: list[int]) -> list[int]:
     return sorted(k + by for k in turns for by in range(1 - NEAR, 1 + NEAR))
 
 
-def test_friction_jumps_where_its_joint_turns_back() -> None:
+def test_friction_jumps_where_its_joint_turns_and_a_load_of_a_stroke_where_it_is_not_0() -> None:
     assert _near(SLIDER) == _near(_pushed(Constant(1.0))) == []
     scene = replace(SLIDER, friction={"C": ConstantFriction("C", 0.5)})
     assert len(TURNS) == 2
     assert _near(scene) == _beside(TURNS)
     assert _near(scene, 2) == [0, 1, 2]  # of few samples all are beside a jump
-
-
-def test_so_does_a_load_of_a_stroke_where_it_is_other_than_0() -> None:
     stroke = {"slider": "C", "stroke": "forward"}
     assert _near(_pushed(Constant(1.0), **stroke)) == _beside(TURNS)
     ends = Tabulated((-1.0, 0.3, 0.35, 1.0), (0.0, 0.0, 1.0, 1.0))  # at the outer end alone

@@ -103,9 +103,7 @@ def test_errors_at_one_time_are_over_the_growth_of_that_time(truth: FreeTruth, d
         assert plain.worst(name, kind=kind) == over.worst(name, kind=kind), name
 
 
-def test_samples_that_the_truth_does_not_know_well_enough_are_left_out_and_counted(
-    truth: FreeTruth, done: Run
-) -> None:
+def test_samples_of_uncertain_truth_are_left_out_and_counted(truth: FreeTruth, done: Run) -> None:
     unsure = _Changed(truth.free, error_rad=lambda time_s: np.where(time_s < 0.1 - 1e-9, 0.0, 1.0))
     errors = found(replace(truth, free=unsure), done)
     assert errors.of_motion.until_s == pytest.approx(0.099)
@@ -138,9 +136,7 @@ def test_a_window_is_a_tenth_of_the_run_or_a_swing_of_the_longest_link() -> None
     swing_s = pytest.approx(2.0 * np.pi * np.sqrt(0.25 / 9.81))
     assert [window_s(SWING, lasts_s) for lasts_s in (100.0, 4.0, 0.5)] == [10.0, swing_s, 0.25]
     assert window_s(replace(SWING, gravity_m_s2=(0.0, 0.0)), 4.0) == 0.4
-
-
-def test_means_over_windows_begin_and_end_with_those_of_the_drift() -> None:
+    # Means over windows begin and end with those of the drift.
     time_s = np.linspace(0.0, 10.0, 1001)
     series = 0.1 * time_s + np.sin(7.0 * time_s)
     means = window_means(SWING, time_s, series)
@@ -231,9 +227,7 @@ def test_an_exact_run_has_no_error_and_keeps_its_energy() -> None:
     assert place_until(found, 2.0) < 1e-14
     assert np.max([found.lean_rad.max(), found.gap_m.max(), energy_drift(found)]) < 1e-14
     assert found.left is None
-
-
-def test_velocities_half_a_step_late_are_no_drift_of_energy() -> None:
+    # Velocities half a step late are no drift, where that is said.
     assert 1e-9 < energy_drift(held(velocity_shift=0.5)) < 2e-6
     unsaid = held(lambda poses: replace(poses, lag_s=0.0), velocity_shift=0.5)
     assert energy_drift(unsaid) > 1e-3

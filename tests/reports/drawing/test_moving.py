@@ -19,22 +19,8 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.describe.elastic_course import ElasticCourse, elastic_course
-from reports.drawing import shape
+from reports.drawing import moving, shape
 from reports.drawing.force_arrows import CUT, LONGEST, force_arrows, rounded
-from reports.drawing.moving import (
-    LEVELS,
-    Magnified,
-    displacements,
-    drawing,
-    embedded,
-    instants,
-    magnification,
-    moving_points,
-    packed,
-    policy,
-    singles,
-    size_of,
-)
 from reports.drawing.svg import HEIGHT, WIDTH, svg
 from reports.output import numbers
 from reports.output.numbers import DIGITS, NONE, finite
@@ -42,15 +28,15 @@ from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "shaper", "scotch-yoke", "sixbar-stephenson")
 FOURBAR = load_scene("fourbar-lecture-1")
-TIME_S = instants(FOURBAR)
+TIME_S = moving.instants(FOURBAR)
 
 
-def unpacked(packed: dict[str, object]) -> Array:
+def unpacked(held: dict[str, object]) -> Array:
     """Rows as the page reads them."""
-    whole = np.frombuffer(base64.b64decode(str(packed["base64"])), "<i2")
-    rows = whole.reshape(len(np.asarray(packed["scales"])), -1).astype(np.float64)
+    whole = np.frombuffer(base64.b64decode(str(held["base64"])), "<i2")
+    rows = whole.reshape(len(np.asarray(held["scales"])), -1).astype(np.float64)
     rows[rows == -32768] = np.nan
-    return rows * np.asarray(packed["scales"])[:, None]
+    return rows * np.asarray(held["scales"])[:, None]
 
 
 def traced(
@@ -65,18 +51,18 @@ def traced(
 
 
 def rows_off(trace: dict[str, Array], time_s: Array = TIME_S, scene: Scene = FOURBAR) -> Array:
-    return unpacked(displacements(scene, trace, time_s))
+    return unpacked(moving.displacements(scene, trace, time_s))
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_reference_is_the_closed_form(name: str) -> None:
     scene = load_scene(name)
-    time_s = instants(scene)
-    drawn = drawing(scene, time_s)
+    time_s = moving.instants(scene)
+    drawn = moving.drawing(scene, time_s)
     motion = solve(scene, time_s)
     rows = unpacked(drawn["places"])
-    assert drawn["points"] == moving_points(scene)
-    for i, point in enumerate(moving_points(scene)):
+    assert drawn["points"] == moving.moving_points(scene)
+    for i, point in enumerate(moving.moving_points(scene)):
         exact = motion.points[point].position.T
         level = np.max(np.abs(exact)) / 32767
         np.testing.assert_allclose(rows[2 * i : 2 * i + 2], exact, atol=level)
@@ -88,21 +74,23 @@ def test_the_reference_is_the_closed_form(name: str) -> None:
 @pytest.mark.parametrize("name", SCENES[:2])
 def test_small_errors_are_kept_apart_from_large_places(name: str, shift_m: float) -> None:
     scene = load_scene(name)
-    time_s = instants(scene)
+    time_s = moving.instants(scene)
     rows = rows_off(traced(scene, time_s, shift_m, turn_rad=2e-8), time_s, scene)
-    points = len(moving_points(scene))
+    points = len(moving.moving_points(scene))
     np.testing.assert_allclose(rows[0 : 2 * points : 2], shift_m, rtol=1e-4)
     np.testing.assert_allclose(rows[1 : 2 * points : 2], 0.0, atol=1e-16)
     np.testing.assert_allclose(rows[2 * points :], 2e-8, rtol=1e-4)
 
 
 def test_a_run_of_other_turns_is_shown_at_the_same_crank_angles() -> None:
-    period, own = FOURBAR.driver.law.period_s, instants(FOURBAR, turns=4.0)
+    period, own = FOURBAR.driver.law.period_s, moving.instants(FOURBAR, turns=4.0)
     trace = traced(FOURBAR, own)
     trace["x.C"] = trace["x.C"] + 1e-3 * np.sin(2 * np.pi * own / period)
-    row = rows_off(trace, instants(FOURBAR, turns=2.0))[2 * moving_points(FOURBAR).index("C")]
+    row = rows_off(trace, moving.instants(FOURBAR, turns=2.0))[
+        2 * moving.moving_points(FOURBAR).index("C")
+    ]
     np.testing.assert_allclose(row, 1e-3 * np.sin(2 * np.pi * TIME_S / period), atol=1e-7)
-    angles = np.asarray(drawing(FOURBAR, instants(FOURBAR, turns=3.0))["told"]["at"])
+    angles = np.asarray(moving.drawing(FOURBAR, moving.instants(FOURBAR, turns=3.0))["told"]["at"])
     assert angles[[0, -1]] == pytest.approx([90.0, 450.0])  # it starts in its first turn
 
 
@@ -112,11 +100,11 @@ def test_a_run_is_drawn_as_far_as_it_was_logged_and_cut_off_where_it_came_apart(
     trace = traced(FOURBAR, TIME_S)
     trace["x.C"] = trace["x.C"] + np.linspace(0.0, 1e200, len(TIME_S))
     trace["y.C"] = np.full_like(TIME_S, math.nan)
-    x, y = rows_off(trace)[2 * moving_points(FOURBAR).index("C") :][:2]
+    x, y = rows_off(trace)[2 * moving.moving_points(FOURBAR).index("C") :][:2]
     assert np.max(x) == pytest.approx(20 * FOURBAR.longest_m, rel=1e-4)
     assert np.isnan(y).all()
-    assert displacements(FOURBAR, {}, TIME_S) is None
-    assert displacements(FOURBAR, {"time_s": TIME_S}, TIME_S) is None
+    assert moving.displacements(FOURBAR, {}, TIME_S) is None
+    assert moving.displacements(FOURBAR, {"time_s": TIME_S}, TIME_S) is None
 
 
 @pytest.fixture(scope="module")
@@ -126,8 +114,8 @@ def course() -> ElasticCourse:
     return elastic_course(motion, np.linspace(0.0, 0.8, 9))
 
 
-def bent(course: ElasticCourse, factor: float) -> Magnified:
-    return Magnified(course.scene, course.motion, course.rigid, course.bent, factor)
+def bent(course: ElasticCourse, factor: float) -> moving.Magnified:
+    return moving.Magnified(course.scene, course.motion, course.rigid, course.bent, factor)
 
 
 def test_everything_is_where_it_is_and_magnified_by_the_factor(course: ElasticCourse) -> None:
@@ -146,21 +134,23 @@ def test_everything_is_where_it_is_and_magnified_by_the_factor(course: ElasticCo
 
 @pytest.mark.parametrize("size_m", [1e-3, 0.3, 1.0, 40.0])
 def test_a_magnification_is_a_round_number_that_fits(course: ElasticCourse, size_m: float) -> None:
-    factor = magnification(course.motion, course.rigid, course.bent, size_m)
+    factor = moving.magnification(course.motion, course.rigid, course.bent, size_m)
     assert f"{factor:e}"[0] in "125"
     largest = np.max(np.abs(course.bent["coupler"]))
     assert factor == 1.0 or 0.02 < factor * largest / size_m <= 0.06
-    assert magnification(course.rigid, course.rigid, {}, 1.0) == 1.0  # nothing bends
+    assert moving.magnification(course.rigid, course.rigid, {}, 1.0) == 1.0  # nothing bends
 
 
 HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""
 
 
 def test_hostile_text_stays_in_its_script_and_what_is_no_number_is_null() -> None:
-    text = str(embedded({HOSTILE: [HOSTILE, {"deep": HOSTILE}]}))
+    text = str(moving.embedded({HOSTILE: [HOSTILE, {"deep": HOSTILE}]}))
     assert not re.search("[<>&\u2028\u2029]", text)
     assert json.loads(text) == {HOSTILE: [HOSTILE, {"deep": HOSTILE}]}
-    text = str(embedded({"a": np.array([1 / 3, math.nan, math.inf, 2.0]), "b": True, "c": None}))
+    text = str(
+        moving.embedded({"a": np.array([1 / 3, math.nan, math.inf, 2.0]), "b": True, "c": None})
+    )
     assert text == '{"a":[0.333333,null,null,2],"b":true,"c":null}'
     assert finite(np.float64(-1.23456789e-9), DIGITS) == -1.23457e-9
     assert finite(np.int64(7), DIGITS) == 7
@@ -169,16 +159,16 @@ def test_hostile_text_stays_in_its_script_and_what_is_no_number_is_null() -> Non
 @pytest.mark.parametrize("scale", [1.0, 1e-12, 1e300, 5e-324])
 def test_packed_samples_come_back_to_a_part_of_their_row(scale: float) -> None:
     rows = np.vstack([np.sin(np.linspace(0, 7, 91)), np.linspace(-1e-6, 1e-7, 91)]) * scale
-    found = packed(rows)
+    found = moving.packed(rows)
     largest = np.max(np.abs(rows), axis=1, keepdims=True)
-    room = largest / LEVELS if scale > 1e-300 else np.full_like(largest, scale)
+    room = largest / moving.LEVELS if scale > 1e-300 else np.full_like(largest, scale)
     assert np.all(np.abs(unpacked(found) - rows) <= room)
     assert found["samples"] == 91
 
 
 def test_single_samples_come_back_to_seven_digits() -> None:
     row = np.array([0.0, 123.456789, -1e-30, 1e300, np.nan])
-    told = singles(row)
+    told = moving.singles(row)
     found = np.frombuffer(base64.b64decode(str(told["singles"])), dtype="<f4")
     assert told["samples"] == 5
     assert found[:3] == pytest.approx(row[:3], rel=1e-7, abs=1e-38)
@@ -187,16 +177,18 @@ def test_single_samples_come_back_to_seven_digits() -> None:
 
 
 def test_missing_samples_are_told_from_zero_and_the_size_of_rows_is_known_beforehand() -> None:
-    found = packed(np.array([[math.nan, 0.0, math.inf, 1.0], [0.0, 0.0, 0.0, math.nan]]))
+    found = moving.packed(np.array([[math.nan, 0.0, math.inf, 1.0], [0.0, 0.0, 0.0, math.nan]]))
     whole = np.frombuffer(base64.b64decode(str(found["base64"])), "<i2").reshape(2, 4)
-    assert whole.tolist() == [[-32768, 0, -32768, LEVELS], [0, 0, 0, -32768]]
+    assert whole.tolist() == [[-32768, 0, -32768, moving.LEVELS], [0, 0, 0, -32768]]
     rows = np.random.default_rng(1).normal(size=(17, 91))
-    assert size_of(17, 91) == pytest.approx(len(str(embedded(packed(rows)))), rel=0.05)
+    assert moving.size_of(17, 91) == pytest.approx(
+        len(str(moving.embedded(moving.packed(rows)))), rel=0.05
+    )
 
 
 def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
     script = "let a = 1;"
-    found = policy([script])
+    found = moving.policy([script])
     own = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     assert f"script-src 'sha256-{own}';" in found
     assert "default-src 'none'" in found
@@ -217,9 +209,7 @@ def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
             12.0: "12.0 s", None: NONE, math.inf: NONE}.items()],
     ],
 )  # fmt: skip
-def test_numbers_have_no_needless_exponent_errors_two_digits_and_times_three(
-    way: str, value: float | None, text: str
-) -> None:
+def test_numbers_are_written_by_their_kind(way: str, value: float | None, text: str) -> None:
     assert getattr(numbers, way)(value) == text
 
 

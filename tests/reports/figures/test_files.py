@@ -111,9 +111,6 @@ def test_there_is_an_svg_of_each_figure_that_a_store_has(drawn: Path, drawn_free
         for name in (each for each in LABELS if path.name.startswith(each)):
             for words in LABELS[name]:
                 assert words in flat(path), path.name
-
-
-def test_a_free_figure_says_what_it_shows(drawn_free: Path) -> None:
     for name, labels in FREE_LABELS.items():
         found = flat(drawn_free / f"{name}-{LET_GO}.svg")
         assert {label for label in labels if label not in found} == set()
@@ -196,16 +193,6 @@ OF_FREE = [name for name, drawing in FIGURES.items() if "let go" in drawing.driv
 OTHER = "what differs between figures is that one is of a scene, of all, or of what was let go"
 
 
-def boxes(figure: Figure) -> list[tuple[str, Bbox]]:
-    """Every text that is drawn, with where it stands [pixel]."""
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    renderer = canvas.get_renderer()
-    outside = {text for axes in figure.axes for text in _undrawn(axes)}
-    texts = (text for text in figure.findobj(Text) if text.get_visible() and text not in outside)
-    return [(t.get_text(), t.get_window_extent(renderer)) for t in texts if t.get_text().strip()]
-
-
 def _undrawn(axes: Axes) -> Iterator[Text]:
     for axis in (axes.xaxis, axes.yaxis):
         low, high = sorted(axis.get_view_interval())
@@ -219,7 +206,11 @@ def has_room(draw: Callable[..., Figure | None], *arguments: object) -> None:
     with styled():
         figure = draw(*arguments)
         assert figure is not None
-        found, page = boxes(figure), figure.bbox
+        canvas, page = FigureCanvasAgg(figure), figure.bbox
+        canvas.draw()
+        by, unseen = canvas.get_renderer(), {t for axes in figure.axes for t in _undrawn(axes)}
+        seen = (t for t in figure.findobj(Text) if t.get_visible() and t not in unseen)
+        found = [(t.get_text(), t.get_window_extent(by)) for t in seen if t.get_text().strip()]
     assert len(found) > 5
     for text, box in found:
         inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
@@ -242,9 +233,7 @@ def figure_of(report: Report, name: str, scene: str | None) -> Figure | None:
 
 
 @pytest.mark.parametrize("shown", few(SHOWN, QUICK, OTHER), ids=str)
-def test_words_keep_off_each_other_and_the_edge(
-    report: Report, shown: tuple[str, str | None]
-) -> None:
+def test_words_keep_off_others_and_the_edge(report: Report, shown: tuple[str, str | None]) -> None:
     if shown in EMPTY:
         assert figure_of(report, *shown) is None
     else:

@@ -92,9 +92,7 @@ def test_beside_where_friction_locks_nothing_is_drawn_but_the_efficiency() -> No
     assert len(figure.axes[0].collections) == 1
 
 
-def test_a_turn_locked_nearly_everywhere_draws_no_forces_and_where_loads_drive_no_efficiency(
-    fourbar: Scene,
-) -> None:
+def test_a_locked_turn_has_no_forces_and_driving_loads_no_efficiency(fourbar: Scene) -> None:
     """With mu = 10 only some degrees near the ends of the stroke are not locked."""
     scene = load_scene("slider-crank-self-locking")
     turn = force_turn(replace(scene, friction={"piston": CoulombFriction("piston", 10.0)}))
@@ -102,7 +100,6 @@ def test_a_turn_locked_nearly_everywhere_draws_no_forces_and_where_loads_drive_n
     left = {name for name, draw in FORCE_FIGURES.draws.items() if draw(turn) is not None}
     assert left == {"reduced", "efficiency"}
     assert "within 5 deg of it are not drawn, which is all of the turn" in turn.notes[-1]
-
     assert FORCE_FIGURES.draws["efficiency"](force_turn(fourbar)) is None  # without friction
     turned = {
         k: replace(x, direction_rad=x.direction_rad + math.pi) for k, x in scene.loads.items()
@@ -132,9 +129,7 @@ def test_words_of_regulation_have_room(wanted: WantedFlywheel, name: str) -> Non
     has_room(REGULATION_FIGURES.draws[name], Regulated(wanted.cycle, wanted))
 
 
-def test_a_wanted_flywheel_has_a_closer_panel_of_its_speed_and_touching_tangents(
-    wanted: WantedFlywheel,
-) -> None:
+def test_a_wanted_flywheel_has_a_panel_of_its_speed_and_tangents(wanted: WantedFlywheel) -> None:
     figure = REGULATION_FIGURES.draws["speed"](Regulated(wanted.cycle, wanted))
     far, near = (np.ptp(axes.get_ylim()) for axes in figure.axes)
     assert far > 20.0 * near

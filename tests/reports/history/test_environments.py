@@ -13,22 +13,10 @@ from packaging.version import Version
 
 from models.errors import CrankcheckError
 from reports.history import environments
-from reports.history.environments import (
-    COMPLETE,
-    EngineVersion,
-    NotMeasuredError,
-    clean_variables,
-    commands,
-    place,
-    python_of,
-    ready,
-    reason,
-    wanted,
-)
 from reports.history.verification import alone, user_cache
 from reports.workers.signals import Ended, run_child
 
-ONE = EngineVersion("mujoco", Version("3.6.0"))
+ONE = environments.EngineVersion("mujoco", Version("3.6.0"))
 
 
 class FakeInstaller:
@@ -43,7 +31,7 @@ class FakeInstaller:
         self.commands.append([*command])
         self.variables.append({**variables})
         if "venv" in command:
-            python = python_of(Path(command[-1]))
+            python = environments.python_of(Path(command[-1]))
             python.parent.mkdir(parents=True)
             python.touch()
             return Ended(0, "", "")
@@ -57,23 +45,21 @@ class FakeInstaller:
 
 
 def test_versions_are_taken_once_and_the_oldest_first_and_no_other_text() -> None:
-    found = wanted("mujoco", ["3.10.0", "3.9", "3.9.0", "3.10.0rc1"])
+    found = environments.wanted("mujoco", ["3.10.0", "3.9", "3.9.0", "3.10.0rc1"])
     assert [one.name for one in found] == ["mujoco-3.9", "mujoco-3.10.0rc1", "mujoco-3.10.0"]
     for text in ("3.x; rm", "", "--index-url", "3.6.0/.."):
         with pytest.raises(CrankcheckError, match="not a version number"):
-            wanted("mujoco", ["3.6.0", text])
+            environments.wanted("mujoco", ["3.6.0", text])
 
 
-def test_uv_makes_the_environment_or_else_pip_and_what_is_not_there_is_an_end(
-    tmp_path: Path,
-) -> None:
-    env, python = str(tmp_path / "env"), str(python_of(tmp_path / "env"))
-    make, install = commands("/bin/uv", tmp_path / "env", ONE, tmp_path / "held.txt")
+def test_uv_makes_the_environment_or_else_pip_and_what_is_missing_ends_it(tmp_path: Path) -> None:
+    env, python = str(tmp_path / "env"), str(environments.python_of(tmp_path / "env"))
+    make, install = environments.commands("/bin/uv", tmp_path / "env", ONE, tmp_path / "held.txt")
     assert (make[:2], make[-1]) == (["/bin/uv", "venv"], env)
     assert make[make.index("--python") + 1] == sys.executable
     assert (install[:3], install[-1]) == (["/bin/uv", "pip", "install"], "mujoco==3.6.0")
     assert install[install.index("--python") + 1] == python
-    make, install = commands(None, tmp_path / "env", ONE, tmp_path / "held.txt")
+    make, install = environments.commands(None, tmp_path / "env", ONE, tmp_path / "held.txt")
     assert make == [sys.executable, "-m", "venv", env]
     assert (install[:4], install[-1]) == ([python, "-m", "pip", "install"], "mujoco==3.6.0")
     ended = run_child([str(tmp_path / "none")], os.environ)
@@ -83,30 +69,33 @@ def test_uv_makes_the_environment_or_else_pip_and_what_is_not_there_is_an_end(
 
 def test_only_a_complete_environment_of_the_version_is_kept(tmp_path: Path) -> None:
     installer = FakeInstaller()
-    first = ready(tmp_path, ONE, None, installer)
-    assert ready(tmp_path, ONE, None, installer) == first
+    first = environments.ready(tmp_path, ONE, None, installer)
+    assert environments.ready(tmp_path, ONE, None, installer) == first
     assert installer.installs == 1
-    (place(tmp_path, ONE) / COMPLETE).unlink()
-    (place(tmp_path, ONE) / "half").touch()
-    ready(tmp_path, ONE, None, installer)
+    (environments.place(tmp_path, ONE) / environments.COMPLETE).unlink()
+    (environments.place(tmp_path, ONE) / "half").touch()
+    environments.ready(tmp_path, ONE, None, installer)
     assert installer.installs == 2
-    assert not (place(tmp_path, ONE) / "half").exists()
+    assert not (environments.place(tmp_path, ONE) / "half").exists()
     other = tmp_path / "other"
-    with pytest.raises(NotMeasuredError, match="not installed: no space left"):
-        ready(other, ONE, None, FakeInstaller(fails="ERROR: no space left"))
-    assert not place(other, ONE).exists()
-    with pytest.raises(NotMeasuredError, match=r"finds 4\.0\.0 in place of 3\.6\.0"):
-        ready(other, ONE, None, FakeInstaller(finds="4.0.0"))
-    assert not (place(other, ONE) / COMPLETE).exists()
+    with pytest.raises(environments.NotMeasuredError, match="not installed: no space left"):
+        environments.ready(other, ONE, None, FakeInstaller(fails="ERROR: no space left"))
+    assert not environments.place(other, ONE).exists()
+    with pytest.raises(environments.NotMeasuredError, match=r"finds 4\.0\.0 in place of 3\.6\.0"):
+        environments.ready(other, ONE, None, FakeInstaller(finds="4.0.0"))
+    assert not (environments.place(other, ONE) / environments.COMPLETE).exists()
 
 
 def test_another_version_numpy_or_python_has_another_environment(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    places = [place(tmp_path, ONE), place(tmp_path, EngineVersion("mujoco", Version("3.7.0")))]
+    places = [
+        environments.place(tmp_path, ONE),
+        environments.place(tmp_path, environments.EngineVersion("mujoco", Version("3.7.0"))),
+    ]
     for module, name in ((environments, "held_numpy"), (environments.platform, "python_version")):
         monkeypatch.setattr(module, name, lambda: "3.99.1")
-        places.append(place(tmp_path, ONE))
+        places.append(environments.place(tmp_path, ONE))
     assert len({*places}) == 4
 
 
@@ -118,12 +107,12 @@ def test_only_wheels_and_numpy_as_it_runs_get_into_the_new_one_and_no_path_of_ou
         monkeypatch.setenv(name, "elsewhere")
     monkeypatch.setenv("PIP_INDEX_URL", "kept")
     installer = FakeInstaller()
-    ready(tmp_path, ONE, uv, installer)
+    environments.ready(tmp_path, ONE, uv, installer)
     install = next(command for command in installer.commands if "install" in command)
     assert install[install.index("--only-binary") + 1] == ":all:"
     constraint = Path(install[install.index("--constraint") + 1])
     assert constraint.read_text(encoding="utf-8") == f"numpy=={np.__version__}\n"
-    for variables in (*installer.variables, clean_variables()):
+    for variables in (*installer.variables, environments.clean_variables()):
         assert "elsewhere" not in variables.values()
         assert variables["PIP_INDEX_URL"] == "kept"
 
@@ -172,7 +161,7 @@ ERROR: HTTP error 410 for https://packages.example.com/simple/mujoco-3.6.0.whl (
     ],
 )
 def test_the_reason_is_one_line_that_names_no_host(output: str, parts: list[str]) -> None:
-    told = reason(output)
+    told = environments.reason(output)
     assert [part for part in parts if part not in told] == []
     assert "\n" not in told
     assert len(told) <= 200

@@ -138,9 +138,7 @@ COLUMNS = (
 )
 
 
-def test_cells_are_read_from_the_folder_of_a_verification_or_what_has_no_result_refused(
-    tmp_path: Path,
-) -> None:
+def test_cells_are_read_from_a_verification_and_one_without_is_refused(tmp_path: Path) -> None:
     rows = (
         'one,{},within,ok,,"{""dt"": 1.0}",1e-3,2e-3,1e-3,2e-2,1e-3,4e-3,1e-2,\n'
         "two,{},unsupported,unsupported,no such thing,,,,,,,,,\n"
@@ -182,9 +180,7 @@ def history() -> list[VersionResult]:
     ]
 
 
-def test_table_file_and_page_hold_every_number_or_the_reason_for_none(
-    history: list[VersionResult],
-) -> None:
+def test_outputs_hold_every_number_or_the_reason_for_none(history: list[VersionResult]) -> None:
     stream = io.StringIO()
     show(Console(file=stream, width=60), history, "made by hand")
     assert max(len(line.rstrip()) for line in stream.getvalue().splitlines()) <= 60

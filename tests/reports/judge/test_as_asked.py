@@ -82,9 +82,7 @@ C_M = 0.37885
         ("sliders", "C", "displacement", 1.0 / C_M, "L"),
     ],
 )
-def test_a_body_begun_elsewhere_is_named(
-    kind: str, body: str, place: str, share: float, unit: str
-) -> None:
+def test_a_wrong_start_is_named(kind: str, body: str, place: str, share: float, unit: str) -> None:
     size = 2e-9
 
     def moved(*args: Any, **options: Any) -> Run:
@@ -154,9 +152,7 @@ def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(each: str) -> No
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])
-def test_a_widest_gap_that_no_step_leaves_is_too_good_where_something_moves_unevenly(
-    share: float,
-) -> None:
+def test_a_widest_gap_that_no_step_leaves_is_too_good_of_uneven_motion(share: float) -> None:
     errors = examined(of_turns(FOURBAR))[0].errors
     least = LEAST * errors.of_scene.step_rad**2 * max(errors.of_scene.uneven.values())
     gaps = (row for row in errors.rows if row.quantity == "gap")
@@ -175,9 +171,7 @@ def exactly(scene: Scene, state: Any, _: str, *rest: Any, **asked: Any) -> Run:
     return run(scene, state, FakeEngine(), *rest, **asked)
 
 
-def test_rounding_is_no_fault_where_joints_are_solved(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_rounding_is_no_fault_where_joints_are_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = verdict_of(exactly)
     assert "what is integrated is off by step^2" in seen["CC111"]
     monkeypatch.setattr("reports.judge.cell.engine", lambda _: FakeEngine())
@@ -185,9 +179,7 @@ def test_rounding_is_no_fault_where_joints_are_solved(
 
 
 @pytest.mark.parametrize("spared", [None, "coupler"])
-def test_rates_that_are_the_references_are_too_good_of_any_engine(
-    monkeypatch: pytest.MonkeyPatch, spared: str | None
-) -> None:
+def test_exact_rates_are_too_good(monkeypatch: pytest.MonkeyPatch, spared: str | None) -> None:
     def taken(*args: Any, **options: Any) -> Run:
         done = exactly(*args, **options)
         true = solve(FOURBAR, done.motion.time_s)

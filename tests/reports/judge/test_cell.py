@@ -173,9 +173,7 @@ def test_a_failure_is_a_row_with_its_reason_and_the_same_columns(slider_crank: S
         assert frame[name][0] >= 0.0
 
 
-def test_a_scene_is_prepared_once_and_solved_once_for_each_set_of_instants(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_scene_is_prepared_and_solved_once_for_instants(monkeypatch: pytest.MonkeyPatch) -> None:
     """For the log of each engine, for its logged crank, and for velocities that belong to other
     instants; two more would be one for each finer run. The state at the start, the same for all,
     is a solution of one instant."""

@@ -145,9 +145,7 @@ def test_newtons_method_ends_by_one_measure_for_all_sizes_masses_and_speeds(
         ("slider-crank-offset", "mujoco", "C", 0.5),
     ],
 )
-def test_forces_beside_jumps_of_constant_friction_are_left_out_and_counted(
-    name: str, engine: str, joint: str, size: float
-) -> None:
+def test_forces_beside_jumps_are_left_out(name: str, engine: str, joint: str, size: float) -> None:
     scene = replace(load_scene(name), friction={joint: ConstantFriction(joint, size)})
     found = checked(scene, engine, 360)
     assert found.verdict == "within", found.failures
@@ -234,9 +232,7 @@ def test_limits_grow_with_late_impulses_and_with_what_lasts_and_drifts() -> None
     assert lasted(curvature=4.0) == pytest.approx(8.0 * lasted(curvature=1.0))
 
 
-def test_no_order_is_graded_where_a_start_grows_much(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_no_order_is_graded_where_a_start_grows_much(monkeypatch: pytest.MonkeyPatch) -> None:
     assert check(cell(converge=True)).convergence is not None
     monkeypatch.setattr(free_facts, "MOST_GROWTH", 0.5)
     assert check(cell(converge=True)).convergence is None

@@ -33,14 +33,11 @@ def numbers(scene: Scene, **changed: float) -> dict[str, float]:
     }
 
 
-def test_place_and_rates_shrink_with_the_square_of_the_step(fourbar: Scene) -> None:
+def test_defaults_go_with_the_square_of_the_step_and_the_conditioning(fourbar: Scene) -> None:
     coarse, fine = (numbers(fourbar, step_rad=step) for step in (0.02, 0.01))
     for name in ("angle", "displacement", "position", "gap", "velocity"):
         assert coarse[name] / fine[name] == pytest.approx(4.0, rel=0.02)
     assert coarse["drive"] == pytest.approx(fine["drive"])
-
-
-def test_a_badly_conditioned_scene_gets_wider_angles_and_no_wider_gap(fourbar: Scene) -> None:
     near, far = (numbers(fourbar, conditioning=sine) for sine in (0.1, 1.0))
     assert near["angle"] == pytest.approx(10 * far["angle"], rel=1e-3)
     assert near["gap"] == far["gap"]
@@ -73,16 +70,14 @@ def test_the_command_line_beats_the_scene_and_the_scene_beats_the_default(fourba
     assert (found["angle"].number, found["angle"].origin) == (5e-5, "--tol")
     assert (found["gap"].number, found["gap"].origin) == (2e-3, "scene")
     assert found["position"].origin == "default"
+    with pytest.raises(CrankcheckError, match=r"\[tolerance\] positon.*did you mean position"):
+        check_names(replace(fourbar, tolerance={"positon": 1.0}))
 
 
 def test_tolerances_are_read_one_by_one_or_with_commas() -> None:
     found = parse(["angle=1e-4", "gap=1e-6, velocity-differenced = 0.5"])
     assert found == {"angle": 1e-4, "gap": 1e-6, "velocity-differenced": 0.5}
-
-
-@pytest.mark.parametrize(
-    ("text", "parts"),
-    [
+    for text, parts in (
         ("angle", ["--tol 'angle'", "no `=`", "angle=1e-4"]),
         ("angle=small", ["'small' is not a number above 0"]),
         ("angle=0", ["not a number above 0"]),
@@ -90,17 +85,10 @@ def test_tolerances_are_read_one_by_one_or_with_commas() -> None:
         ("angle=inf", ["not a number above 0"]),
         ("angel=1e-4", ["'angel' is no quantity", "did you mean angle"]),
         ("zzz=1", ["use one of drive, angle"]),
-    ],
-)
-def test_a_tolerance_that_is_not_read_says_where_what_and_how(text: str, parts: list[str]) -> None:
-    with pytest.raises(CrankcheckError) as caught:
-        parse([text])
-    assert all(part in str(caught.value) for part in parts), str(caught.value)
-
-
-def test_a_scene_with_a_tolerance_for_nothing_is_refused(fourbar: Scene) -> None:
-    with pytest.raises(CrankcheckError, match=r"\[tolerance\] positon.*did you mean position"):
-        check_names(replace(fourbar, tolerance={"positon": 1.0}))
+    ):
+        with pytest.raises(CrankcheckError) as caught:
+            parse([text])
+        assert all(part in str(caught.value) for part in parts), str(caught.value)
 
 
 @pytest.mark.parametrize("steps", [360, 1440])
@@ -208,15 +196,13 @@ def test_a_hundred_turns_are_within_tolerance_as_one_turn_is(engine: str, fourba
     assert found.limits["drive"].number > 1e-10
 
 
-def test_the_limit_grows_with_the_square_of_the_steps_and_again_for_a_law_that_is_no_line() -> None:
+def test_the_sum_goes_with_the_square_of_the_steps_and_more_if_no_line(fourbar: Scene) -> None:
     short, long = (summed(LAWS["constant"], 1e-3, steps) for steps in (10_000, 100_000))
     assert long / short == pytest.approx(100.0, rel=0.03)
     swing = LAWS["oscillating"]
     line = ConstantSpeed(swing.offset_rad, swing.peak_speed_rad_s)
     assert summed(swing, 1e-3, 1000) == pytest.approx(4.0 * summed(line, 1e-3, 1000))
-
-
-def test_every_limit_leaves_room_for_what_the_driver_passes_on(fourbar: Scene) -> None:
+    # Every limit leaves room for what the driver passes on.
     hard = {"curvature": 2.0, "conditioning": 0.5, "step_rad": 1e-6}
     short, long = (numbers(fourbar, **hard, summed_rad=off) for off in (0.0, 1e-4))
     for name in ("drive", "angle", "gap", "velocity", "acceleration"):

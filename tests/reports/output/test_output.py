@@ -173,9 +173,7 @@ def test_what_can_not_be_written_is_refused_before_the_work(
     refused(message, check, tmp_path / name, "-o", *more)
 
 
-def test_a_place_that_may_not_be_looked_at_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_place_not_to_be_seen_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def locked(self: Path, **_: object) -> object:
         raise PermissionError(13, "Permission denied")
 

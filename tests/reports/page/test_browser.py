@@ -52,9 +52,7 @@ def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(open
     opened.every_control_has_a_name()
 
 
-def test_a_switch_of_the_legend_takes_out_a_trace_or_an_engine_and_brings_it_back(
-    page: Page,
-) -> None:
+def test_a_switch_of_the_legend_takes_a_trace_or_an_engine_out_and_back(page: Page) -> None:
     before = traces(page, "precision-chart")
     assert all(before.values())
     assert {"mujoco tuned", "pymunk tuned", "front"} <= set(before)
@@ -121,9 +119,7 @@ def test_tables_sort_by_their_numbers_up_and_down_and_are_filtered(page: Page) -
     assert page.locator("#cells-filter-told").inner_text() == "2 shown"
 
 
-def test_the_drawing_moves_by_itself_where_motion_is_welcome_and_stops(
-    opened: Tab, page: Page
-) -> None:
+def test_the_drawing_moves_by_itself_if_that_is_welcome_and_stops(opened: Tab, page: Page) -> None:
     page.emulate_media(reduced_motion="no-preference")
     page.locator("#precision").scroll_into_view_if_needed()
     top = "document.getElementById('motion-picture').getBoundingClientRect().top"
@@ -159,9 +155,7 @@ def test_the_keyboard_skips_to_the_verdict_and_turns_the_crank(opened: Tab, page
     assert cursor.bounding_box() != place
 
 
-def test_an_error_is_magnified_by_the_factor_and_shown_with_its_parts(
-    opened: Tab, page: Page
-) -> None:
+def test_an_error_is_magnified_by_the_factor_and_has_its_parts(opened: Tab, page: Page) -> None:
     parts = ["total", "drive", "model floor", "discretisation", "closure: widest gap / L"]
     assert list(traces(page, "motion-chart")) == parts
     page.select_option("#motion-steps", "90")

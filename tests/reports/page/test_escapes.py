@@ -99,9 +99,7 @@ def test_a_workbook_of_the_motion_holds_no_formula_of_the_file(scene: Path, tmp_
     assert NASTY in [cell.value for cell in book["source"]["B"]]
 
 
-def test_terminal_page_and_summary_show_the_source_as_text(
-    scene: Path, store: Path, page: Path
-) -> None:
+def test_every_output_shows_the_source_as_text(scene: Path, store: Path, page: Path) -> None:
     assert "".join(NASTY.split()) in "".join(crank("solve", scene).output.split())
     found = Outline(page.read_text(encoding="utf-8"))
     assert " ".join(NASTY.split()) in " ".join(found.text.split())
@@ -152,9 +150,7 @@ def test_the_name_of_a_file_is_text(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", WORST, ids=ascii)
-def test_the_name_of_a_file_that_is_not_there_is_text(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_name_is_text(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     result = crank("solve", f"./no/{name}.toml")
     assert result.exit_code == 2

@@ -72,9 +72,7 @@ def test_a_page_of_free_runs_has_no_section_that_speaks_of_turns(free_path: Path
         assert words not in told  # where all were let go it needs no word
 
 
-def test_what_was_driven_keeps_its_sections_beside_what_was_let_go_or_bends(
-    small: Stored, free: Stored, bent: Stored
-) -> None:
+def test_driven_stores_keep_their_sections(small: Stored, free: Stored, bent: Stored) -> None:
     report = PageReport(beside(beside(small, free), bent))
     assert not {FREE, ELASTIC} & set(report.driven.scenes)
     assert "segments" not in json.dumps(embedded(report, "convergence"))
@@ -167,9 +165,7 @@ def test_settings_are_recommended_by_the_deflection(small: Stored, bent: Stored)
     assert "/ D" in both
 
 
-def test_the_section_draws_on_a_phone_and_keeps_within_its_window(
-    phone: Tab, bent_path: Path
-) -> None:
+def test_the_section_draws_on_a_phone_within_its_window(phone: Tab, bent_path: Path) -> None:
     seen = phone.open(bent_path, "elastic").page
     seen.locator("#elastic-course").select_option("error")
     seen.locator("#elastic-error").select_option("segments_pure")

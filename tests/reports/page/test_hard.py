@@ -46,9 +46,7 @@ def one_case(matrix: Matrix, **run: object) -> Matrix:
     return Matrix(matrix.facts, (case,), (first,), ())
 
 
-def test_the_page_stands_alone_with_a_sign_for_every_outcome(
-    text: str, matrix: Matrix, tmp_path: Path
-) -> None:
+def test_the_page_stands_alone_with_every_sign(text: str, matrix: Matrix, tmp_path: Path) -> None:
     assert set(SIGNS) == set(MEANINGS) == set(OUTCOMES)
     assert len(set(SIGNS.values())) == len(OUTCOMES)
     stands_alone(text, ["hard"])
@@ -88,9 +86,7 @@ def test_the_map_is_a_table_of_cases_by_engine_and_profile(text: str, matrix: Ma
         assert one.words in text
 
 
-def test_each_failure_has_its_picture_and_a_truth_is_carried_once(
-    text: str, matrix: Matrix
-) -> None:
+def test_each_failure_has_its_picture_and_a_truth_is_held_once(text: str, matrix: Matrix) -> None:
     found = embedded_in(text, "hard")
     failed = [n for n, run in enumerate(matrix.runs) if run.outcome != "ok"]
     assert sorted(picture["run"] for picture in found["pictures"]) == failed
@@ -312,9 +308,7 @@ def test_the_failures_are_gone_through_one_by_one(opened: Tab, matrix: Matrix) -
     assert chip.get_attribute("aria-pressed") == "true"
 
 
-def test_the_picture_moves_beside_the_truth_and_its_error_can_be_magnified(
-    opened: Tab, page: Page, matrix: Matrix
-) -> None:
+def test_the_picture_moves_and_magnifies_errors(opened: Tab, page: Page, matrix: Matrix) -> None:
     """How it moves by itself, and stops again, is the same stage's in `test_browser`."""
     page.select_option("#hard-failures", str(worst(matrix)))
     still, truth = opened.drawn(RUN), opened.drawn(TRUTH)
@@ -350,9 +344,7 @@ def test_hostile_text_does_nothing(wide: Tab, matrix: Matrix, written: Write) ->
     wide.hostile_text_does_nothing("#hard-told")
 
 
-def test_what_is_missing_of_a_run_and_its_truth_is_told_as_such_and_not_drawn(
-    wide: Tab, matrix: Matrix, written: Write
-) -> None:
+def test_what_is_missing_is_told_and_not_drawn(wide: Tab, matrix: Matrix, written: Write) -> None:
     picture = copy.deepcopy(matrix.pictures[0])
     samples = len(np.asarray(picture.drawing["told"]["at"]))
     rows = np.full((4, samples), 1e-3)

@@ -228,9 +228,7 @@ def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(open
     opened.every_control_has_a_name()
 
 
-def test_the_worst_channel_is_shown_over_the_truth_until_another_one_is_chosen(
-    opened: Tab, page: Page
-) -> None:
+def test_the_worst_channel_is_shown_until_another_one_is_chosen(opened: Tab, page: Page) -> None:
     rocker = np.degrees(TWO_TURNS.links["rocker"].theta)
     assert "rocker_deg" in page.evaluate(LAYOUT)["y"]
     assert np.allclose(trace(page, "logged")["y"], rocker + 2.0, atol=1e-4)

@@ -78,9 +78,7 @@ def test_the_worst_channel_is_the_first_and_what_is_not_judged_the_last() -> Non
         ("fourbar-double-rocker", 2.0, [0, 25, 50, 75, 0, 25, 50, 75, 0]),
     ],
 )
-def test_the_phase_is_the_angle_of_the_crank_or_the_part_of_the_period_where_it_swings(
-    name: str, turns: float, phases: list[float]
-) -> None:
+def test_the_phase_is_of_the_crank_or_period(name: str, turns: float, phases: list[float]) -> None:
     scene = load_scene(name)
     motion = motion_of(scene, turns, len(phases))
     phase = only({"rocker": motion.links["rocker"].theta}, motion, scene).whole.phase

@@ -65,9 +65,7 @@ def test_many_disturbances_of_a_kind_stand_in_a_drawer() -> None:
     assert text.count("acts on joint knee</li>") == ACTUATORS
 
 
-def test_a_model_of_which_nothing_ran_has_a_page_and_nothing_of_a_file_acts_on_it(
-    rubbing: JudgedModel,
-) -> None:
+def test_a_model_of_which_nothing_ran_has_a_page_that_no_file_acts_on(rubbing: JudgedModel) -> None:
     account, bare = rubbing.account, lost(rubbing)
     request = replace(account.request, path=Path(f"{NASTY.replace('/', '')}.xml"), joint=NASTY)
     hostile = replace(
@@ -86,9 +84,7 @@ def test_a_model_of_which_nothing_ran_has_a_page_and_nothing_of_a_file_acts_on_i
     assert len(outline.named("script")) == len(plain.named("script"))
 
 
-def test_the_scripts_draw_every_line_that_is_switched_on(
-    wide: Tab, written: Write, text: str
-) -> None:
+def test_the_scripts_draw_each_line_switched_on(wide: Tab, written: Write, text: str) -> None:
     page = wide.open(written(text), "lines", "motion").page
     course, steps = (f"document.getElementById('lines-{each}')" for each in ("course", "steps"))
     names = ["as-written", "contacts-off", "recommended", "limit"]

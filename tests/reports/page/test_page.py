@@ -43,9 +43,7 @@ def test_hostile_text_is_shown_and_not_read(evil_page: Path) -> None:
     shown_and_not_read(evil_page.read_text(encoding="utf-8"), scripts=3)  # theme, Plotly, ours
 
 
-def test_a_store_of_one_line_of_failures_alone_or_without_texts_of_scenes_has_a_page(
-    small: Stored, tiny: Stored, tiny_page: Path
-) -> None:
+def test_stores_that_lack_much_have_a_page(small: Stored, tiny: Stored, tiny_page: Path) -> None:
     text = tiny_page.read_text(encoding="utf-8")
     assert Outline(text).sections() == STORED
     assert "Over all scenes" not in text
@@ -93,15 +91,12 @@ def test_the_command_names_a_file_itself_and_gives_text_to_the_terminal_or_to_a_
         ("report.pdf", "pdf", "--format 'pdf': unknown; use html or md"),
     ],
 )
-def test_a_file_that_can_not_be_written_is_refused_before_the_store_is_read(
-    name: str, format: str, message: str, tmp_path: Path
-) -> None:
+def test_bad_files_are_refused_first(name: str, format: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(CrankcheckError, match=re.escape(message)):
         report(tmp_path / "no store", tmp_path / name, format)
     assert not list(tmp_path.iterdir())
 
 
-LIMIT = 60_000
 JUDGED: Row = {"gated": False, "verdict": "within", "reason": "", "failed_rules": "",
                "crankcheck": "0.0.0", "turns": 2.0}  # fmt: skip
 
@@ -122,7 +117,7 @@ def tables(text: str) -> list[list[str]]:
 
 
 def assert_whole(text: str) -> None:
-    assert len(text.encode()) < LIMIT
+    assert len(text.encode()) < 60_000
     assert tables(text)
     for rows in tables(text):
         cells = {len(re.split(r"(?<!\\)\|", row)) for row in rows}

@@ -141,9 +141,7 @@ def test_keys_lead_from_step_to_step_and_through_the_positions(wide: Tab, writte
     assert [words.split(", ")[1] for words in told] == [f"position {k} of 3" for k in (1, 2, 3)]
 
 
-def test_buttons_lead_to_a_step_and_those_who_want_no_motion_get_whole_ones(
-    wide: Tab, rocker: Path
-) -> None:
+def test_buttons_lead_to_a_step_or_a_whole_one_without_motion(wide: Tab, rocker: Path) -> None:
     page = wide.open(rocker).page
     page.locator("#construction-steps button").nth(1).click()
     assert wide.text(PLACE) == "Step 2 of 5"

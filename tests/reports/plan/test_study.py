@@ -101,6 +101,7 @@ def test_options_take_the_place_of_what_the_study_says() -> None:
     assert [(v.engine, v.profile) for v in profiles] == [("mujoco", "tuned"), ("pymunk", "tuned")]
     extra = asked_for(engines=["pymunk", "exudyn"]).variants
     assert [v.profile for v in extra if v.engine == "exudyn"] == ["as-shipped", "tuned"]
+    # --set makes one variant for each value.
 
 
 def test_a_study_of_ones_own_names_the_engines_that_it_has() -> None:
@@ -108,9 +109,6 @@ def test_a_study_of_ones_own_names_the_engines_that_it_has() -> None:
     assert chosen_study(study, StudyChoice(), is_shipped=False).variants == study.variants
     with pytest.raises(CrankcheckError, match="--engine mujoco: the study has no variant of it"):
         chosen_study(study, StudyChoice(engines=["mujoco", "exudyn"]), is_shipped=False)
-
-
-def test_set_makes_one_variant_for_each_value() -> None:
     study = asked_for(settings=["mujoco.iterations=1,2", "mujoco.solver=CG"])
     names = [one.name for variant in study.variants for one in variant.each()]
     assert names == [*(f"tuned, iterations={n}, solver=CG" for n in (1, 2)), "tuned"]

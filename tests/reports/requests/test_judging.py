@@ -12,10 +12,9 @@ from crankcheck import Error, Errors
 from crankcheck.testing import assert_within
 
 SCENE = "fourbar-lecture-1"
-Key = tuple[str, str, str, str, str]
 
 
-def by_key(errors: Errors) -> dict[Key, Error]:
+def by_key(errors: Errors) -> dict[tuple[str, ...], Error]:
     return {(x.quantity, x.body_kind, x.body, x.source, x.kind): x for x in errors.rows}
 
 
@@ -108,9 +107,7 @@ def log() -> dict[str, np.ndarray]:
     return {"time_s": time_s, "rocker_deg": theta + 0.5 * (time_s > 0.3)}
 
 
-def test_what_is_within_is_handed_back(
-    ran: crankcheck.Simulation, log: dict[str, np.ndarray]
-) -> None:
+def test_what_is_within_comes_back(ran: crankcheck.Simulation, log: dict[str, np.ndarray]) -> None:
     assert isinstance(assert_within(SCENE, ran), crankcheck.CellVerdict)
     assert isinstance(assert_within(SCENE, log, angle=1e-2), crankcheck.LogVerdict)
     assert_within(SCENE, crankcheck.solve(SCENE), target=1e-12, velocity=1e-9)

@@ -65,9 +65,7 @@ def test_a_notebook_gets_a_drawing_and_tables_without_scripts(
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_result_is_itself_alone_cannot_be_changed_travels_and_has_a_tidy_frame(
-    results: dict[str, Shown], kind: str
-) -> None:
+def test_a_result_is_fixed_travels_and_has_a_frame(results: dict[str, Shown], kind: str) -> None:
     one = results[kind]
     assert repr(one) == str(one)
     again = pickle.loads(pickle.dumps(one))
@@ -162,9 +160,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> crankcheck.Sweep:
         return crankcheck.sweep(scenes, folder, keep_trajectories=True, **asked)
 
 
-def test_a_sweep_has_a_frame_of_its_cells_and_keeps_the_text_of_a_scene_without_a_file(
-    swept: crankcheck.Sweep,
-) -> None:
+def test_a_sweep_has_a_frame_of_its_cells_and_keeps_its_scenes(swept: crankcheck.Sweep) -> None:
     frame = swept.frame()
     assert len(frame) == swept.cells == swept.done.ran == 4
     assert set(frame["scene"]) == {SCENE, "own"}
@@ -220,9 +216,7 @@ def verdict(model: Path) -> crankcheck.ModelVerdict:
         return crankcheck.check_model(model, "motor", -10.0, turns=0.5, converge=False)
 
 
-def test_a_model_gives_a_verdict_lines_a_scene_a_diff_a_frame_of_every_error_and_a_drawing(
-    verdict: crankcheck.ModelVerdict,
-) -> None:
+def test_a_verdict_of_a_model_is_lines_a_scene_and_tables(verdict: crankcheck.ModelVerdict) -> None:
     assert verdict.verdict == "out"
     assert "CC105" in {finding.rule for finding in verdict.failures}
     assert set(verdict.failures) <= set(verdict.findings)

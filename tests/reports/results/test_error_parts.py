@@ -149,9 +149,7 @@ def test_a_crank_that_left_its_reach_leaves_the_total() -> None:
 
 
 @pytest.mark.parametrize(("bad", "told"), [(0, True), (-1, False)])
-def test_a_run_that_did_not_end_well_is_split_but_not_extrapolated_from(
-    bad: int, told: bool
-) -> None:
+def test_a_run_that_ended_badly_is_split_but_not_extrapolated_from(bad: int, told: bool) -> None:
     rows = [cell("s", "v", n, 40.0 * (PERIOD_S / n) ** 2, 1.0) for n in STEPS]
     rows[bad]["status"] = "branch-changed"
     (line,) = lines(stored(rows))

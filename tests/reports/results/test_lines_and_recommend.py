@@ -13,16 +13,7 @@ from rich.console import Console
 
 from models.files.reading import load_scene
 from reports.judge.cell import Cell
-from reports.results.candidates import (
-    candidates,
-    costs_of,
-    front,
-    front_over_all,
-    noise,
-    performance_profile,
-    reached,
-    time_to,
-)
+from reports.results import candidates
 from reports.results.lines import Line, left_out, lines, machine
 from reports.results.recommend import (
     Recommendation,
@@ -175,16 +166,6 @@ def test_another_drive_is_another_choice_and_named() -> None:
     assert found.reason.startswith("nearest is x, servo drive at 90 steps a turn: ")
 
 
-STUDY = {
-    "scenes": ["b", "a"],
-    "variants": [
-        {"engine": "pymunk", "profile": "tuned"},
-        {"engine": "mujoco", "profile": "tuned", "settings": {"iterations": [1, 2]}},
-    ],
-    "steps_per_turn": [90],
-}
-
-
 def test_a_line_is_fitted_from_coarse_to_fine() -> None:
     steps = (360, 90, 720, 180)  # as they come out of a pool
     (line,) = lines(stored(cell("a", "x", n, 1e-3 * (90 / n) ** 2, 1.0) for n in steps))
@@ -193,9 +174,7 @@ def test_a_line_is_fitted_from_coarse_to_fine() -> None:
     assert line.words == "order 2.0, no floor seen"
     assert line.period_s == pytest.approx(PERIOD_S)
     assert line.settings == {"name": "x"}
-
-
-def test_a_line_of_another_quantity_is_that_of_its_column() -> None:
+    # Of another quantity it is that of its column.
     rows = [cell("a", "x", n, 1e-9, 1.0, pin_gap_m=7e-4) for n in (90, 180, 360, 720, 1440)]
     (line,) = lines(stored(rows), "pin_gap_m")
     assert line.words == "converges to the wrong answer: floor 7.0e-4 m"
@@ -220,13 +199,18 @@ def test_the_newest_version_stands_however_it_is_spelled_on_each_scene_by_itself
 
 
 def test_lines_come_in_the_order_of_the_study() -> None:
+    tuned = [
+        {"engine": "pymunk", "profile": "tuned"},
+        {"engine": "mujoco", "profile": "tuned", "settings": {"iterations": [1, 2]}},
+    ]
+    study = {"scenes": ["b", "a"], "variants": tuned, "steps_per_turn": [90]}
     names = [("mujoco", "tuned, iterations=2"), ("mujoco", "tuned, iterations=1")]
     rows = [
         cell(scene, variant, 90, 1e-3, 1.0, engine=engine)
         for engine, variant in [*names, ("pymunk", "tuned"), ("pymunk", "other")]
         for scene in ("c", "a", "b")
     ]
-    found = lines(stored(rows, scenes=("b", "a"), runs=({"study": STUDY}, {"study": {"old": 1}})))
+    found = lines(stored(rows, scenes=("b", "a"), runs=({"study": study}, {"study": {"old": 1}})))
     assert [line.scene for line in found] == ["b"] * 4 + ["a"] * 4 + ["c"] * 4
     in_order = [("pymunk", "tuned"), *reversed(names), ("pymunk", "other")]
     assert [(line.engine, line.variant) for line in found[:4]] == in_order
@@ -265,21 +249,19 @@ def test_noise_is_what_95_of_100_pairs_stay_below() -> None:
         cell("a", "x", 90 + i, 1e-3, 1.0, us_per_step_a=1.0, us_per_step_b=1.0 + 0.001 * i)
         for i in range(101)
     ]
-    assert noise(stored(rows)) == pytest.approx(0.095)
+    assert candidates.noise(stored(rows)) == pytest.approx(0.095)
     swapped = [r | {"us_per_step_a": r["us_per_step_b"], "us_per_step_b": 1.0} for r in rows]
-    assert noise(stored(swapped)) == pytest.approx(0.095)
-
-
-def test_noise_is_that_of_the_machine_whose_times_are_compared() -> None:
+    assert candidates.noise(stored(swapped)) == pytest.approx(0.095)
+    # Of a machine whose times are compared.
     rows = [
         cell("a", "x", 90, 1e-3, 1.0, us_per_step_b=2.0, processor="old", made="2025-01-01"),
         cell("a", "x", 180, 1e-3, 1.0, us_per_step_b=1.01),
     ]
-    assert noise(stored(rows)) == pytest.approx(0.01)
+    assert candidates.noise(stored(rows)) == pytest.approx(0.01)
     text = noise_line(stored(rows))
     assert "Noise of costs on abacus: 95% of 1 A/A pairs differ by less than 1.0%" in text
     assert "Times of old are not compared" in text
-    assert math.isnan(noise(stored([untimed(rows[0])])))
+    assert math.isnan(candidates.noise(stored([untimed(rows[0])])))
     assert noise_line(stored([untimed(rows[0])])).startswith("No cell was timed")
 
 
@@ -289,26 +271,26 @@ def test_the_time_to_a_target_is_taken_along_the_fit_and_not_extrapolated() -> N
     line = line_of(rows)
     # 1e-3 at the coarsest step, 1.6e-5 at the finest
     for target, steps, rel in ((1e-4, 90 * math.sqrt(10), 1e-3), (1e-2, 90, 1e-6)):
-        assert time_to(line, target) == pytest.approx(2e-6 * steps, rel=rel)
-        assert reached(line, target).steps_per_turn == pytest.approx(steps, rel=rel)
-    assert (time_to(line, 1e-6), reached(line, 1e-6)) == (None, None)
+        assert candidates.time_to(line, target) == pytest.approx(2e-6 * steps, rel=rel)
+        assert candidates.reached(line, target).steps_per_turn == pytest.approx(steps, rel=rel)
+    assert (candidates.time_to(line, 1e-6), candidates.reached(line, 1e-6)) == (None, None)
     failed = line_of([rows[0] | {"status": "diverged"}, *rows[1:]])
-    assert reached(failed, 1e-2).steps_per_turn == pytest.approx(180)
+    assert candidates.reached(failed, 1e-2).steps_per_turn == pytest.approx(180)
     unknown = line_of([untimed(row) for row in rows])
-    assert reached(unknown, 1e-4) is not None
-    assert time_to(unknown, 1e-4) is None
+    assert candidates.reached(unknown, 1e-4) is not None
+    assert candidates.time_to(unknown, 1e-4) is None
 
 
 def test_costs_are_means_over_scenes_of_the_least_and_the_median_repeat() -> None:
     rows = second_order("a", "x", 1e-3, 2.0) + second_order("b", "x", 1e-3, 8.0)
     rows += second_order("a", "y", 1e-2, 1.0) + second_order("b", "y", 1e-5, 1.0)
-    x, y = costs_of(lines(stored(rows)), [1e-4])
+    x, y = candidates.costs_of(lines(stored(rows)), [1e-4])
     assert (x.us_per_step, x.us_per_step_median) == pytest.approx((4.0, 4.4))
     assert x.s_to[1e-4] == pytest.approx(4e-6 * 90 * math.sqrt(10), rel=1e-3)
     assert (x.reached[1e-4], y.reached[1e-4]) == (2, 1)
     assert math.isnan(y.s_to[1e-4])
     assert (x.part(x.reached[1e-4]), y.part(y.reached[1e-4])) == ("", "1/2")
-    (partly,) = costs_of(lines(stored([*rows[:4], *map(untimed, rows[4:8])])), [1e-4])
+    (partly,) = candidates.costs_of(lines(stored([*rows[:4], *map(untimed, rows[4:8])])), [1e-4])
     assert (partly.timed, partly.reached[1e-4], partly.us_per_step) == (1, 2, pytest.approx(2.0))
     assert math.isnan(partly.s_to[1e-4])
 
@@ -321,16 +303,14 @@ def test_the_front_is_what_nothing_beats_in_both() -> None:
     rows.append(cell("a", "wrong", 90, 1e-9, 0.1, status="diverged"))
     rows.append(untimed(cell("a", "untimed", 90, 1e-9, 0.1)))
     cells = stored(rows).cells
-    chosen = cells.set_index("key").loc[front(cells)]
+    chosen = cells.set_index("key").loc[candidates.front(cells)]
     found = list(zip(chosen["variant"], chosen["steps_per_turn"], strict=True))
     assert found == [("exact", 90), ("x", 180), ("x", 90)]
-
-
-def test_within_the_noise_a_saving_is_none() -> None:
+    # A saving within the noise is none.
     cells = stored(table("a x 90 1e-3 1, a y 90 1e-4 1.02")).cells
     variants = cells.set_index("key")["variant"]
     for noises, chosen in (((), ["y", "x"]), ((0.05,), ["y"]), ((math.nan,), ["y", "x"])):
-        assert [variants[key] for key in front(cells, *noises)] == chosen
+        assert [variants[key] for key in candidates.front(cells, *noises)] == chosen
 
 
 def test_over_all_scenes_an_error_is_the_worst_and_a_failure_bars() -> None:
@@ -339,7 +319,7 @@ def test_over_all_scenes_an_error_is_the_worst_and_a_failure_bars() -> None:
         "a late 90 2e-1 2, b late 90 1e-9 2"
     )
     rows.append(cell("b", "z", 90, 1e-9, 0.1, status="diverged"))
-    found = front_over_all(candidates(lines(stored(rows))))
+    found = candidates.front_over_all(candidates.candidates(lines(stored(rows))))
     assert [(one.variant, one.worst_error) for one in found] == [("y", 1e-2), ("x", 1e-1)]
 
 
@@ -354,14 +334,14 @@ def test_a_performance_profile_counts_scenes_within_a_factor_of_the_fastest() ->
     # On the third scene only y comes to the target, on the fourth, where y was not run, nothing.
     rows += [cell("c", "x", n, 0.5, 1.0) for n in STEPS] + second_order("c", "y", 1e-3, 1.0)
     rows += [cell("d", name, n, 0.5, 1.0) for name in ("x", "never") for n in STEPS]
-    found = performance_profile(lines(stored(rows)), 1e-4)
+    found = candidates.performance_profile(lines(stored(rows)), 1e-4)
     assert [share(found, "x", f) for f in (1.0, 2.9, 3.1, 99.0)] == [0.25, 0.25, 0.5, 0.5]
     assert [share(found, "y", f) for f in (1.0, 1.9, 2.1, 99.0)] == [0.5, 0.5, 0.75, 0.75]
     assert share(found, "never", 99.0) == 0.0
     assert found.groupby("variant")["factor"].min().eq(1.0).all()
     near = lines(stored(second_order("a", "x", 1e-3, 1.0) + second_order("a", "y", 1e-3, 1.03)))
-    assert share(performance_profile(near, 1e-4), "y", 1.0) == 0.0
-    assert share(performance_profile(near, 1e-4, 0.05), "y", 1.0) == 1.0
+    assert share(candidates.performance_profile(near, 1e-4), "y", 1.0) == 0.0
+    assert share(candidates.performance_profile(near, 1e-4, 0.05), "y", 1.0) == 1.0
 
 
 @pytest.mark.parametrize("width", [60, 120])

@@ -74,13 +74,8 @@ def in_turn() -> Iterator[tuple[str, str, str, int]]:
                 turn += 1
 
 
-def run_of(case: tuple[str, str, str, int]) -> tuple[object, ...]:
-    """What a case shares with others: faults of one run stand side by side, as that is kept."""
-    name, *run = case
-    return FAULTS[name].kind, *run
-
-
-CASES = sorted(in_turn(), key=run_of)
+CASES = sorted(in_turn(), key=lambda case: (FAULTS[case[0]].kind, *case[1:]))
+"""Faults of one run stand side by side, as that is kept."""
 LENGTHY = {
     "elastic-other", "elastic-long", "beam-given", "linear-given", "beam-theory-given",
     "beam-linear-given", "gravity-hardly", "springs-corrected", "modulus-off", "bending-reversed",

@@ -34,9 +34,7 @@ def stored(folder: Path) -> Result:
     return crank_alone(*args, "-o", folder, "--jobs", 1)
 
 
-def test_the_matrix_is_printed_and_each_run_stored_with_its_command_and_failures_with_pictures(
-    stored: Result, folder: Path
-) -> None:
+def test_the_matrix_is_printed_and_runs_and_pictures_stored(stored: Result, folder: Path) -> None:
     assert stored.exit_code == 0, stored.output
     told = flat(stored.stdout)
     assert told.endswith(f"{folder}: stability.json, stability.csv, stability.html")
@@ -66,9 +64,7 @@ def test_the_matrix_is_printed_and_each_run_stored_with_its_command_and_failures
     assert json.loads((folder / "stability.json").read_text(encoding="utf-8"))["format"] == 1
 
 
-def test_a_second_run_takes_the_place_of_the_first_but_never_of_more_cases(
-    tmp_path: Path, stored: Result, folder: Path
-) -> None:
+def test_a_second_run_replaces_no_larger_one(tmp_path: Path, stored: Result, folder: Path) -> None:
     for _ in range(2):
         assert crank_alone(*PYMUNK, "-o", tmp_path, "--jobs", 1).exit_code == 0
     assert {run.engine for run in read_matrix(tmp_path).runs} == {"pymunk"}
@@ -97,9 +93,7 @@ def test_what_comes_of_a_lost_run() -> None:
         assert words in flat(result.output)
 
 
-def test_a_report_is_of_the_folder_or_of_a_sweep_with_the_hard_cases_beside_it_or_damaged(
-    stored: Result, folder: Path, tmp_path: Path
-) -> None:
+def test_a_report_is_of_the_folder_or_a_sweep(stored: Result, folder: Path, tmp_path: Path) -> None:
     store, page = tmp_path / "store", tmp_path / "page.html"
     swept = crank_alone(
         *("sweep", "fourbar-lecture-1", "-o", store, "--engine", "pymunk"),
@@ -166,9 +160,7 @@ DAMAGED: dict[str, Callable[[str], str]] = {
 
 
 @pytest.mark.parametrize("damage", DAMAGED)
-def test_a_damaged_matrix_is_refused_with_the_cure(
-    matrix: Matrix, tmp_path: Path, damage: str
-) -> None:
+def test_a_damaged_matrix_is_told_its_cure(matrix: Matrix, tmp_path: Path, damage: str) -> None:
     with pytest.raises(CrankcheckError, match=r"no stability\.json .* makes one"):
         read_matrix(tmp_path)
     (tmp_path / FILE).write_text(DAMAGED[damage](to_json(matrix)), encoding="utf-8")

@@ -107,9 +107,7 @@ def test_a_run_that_holds_is_ok_and_its_growth_told_over_the_time(trial: Trial, 
     assert replace(errors, drive=np.zeros_like(errors.place)).per_turn == "a turn"
 
 
-def test_energy_lost_is_an_error_of_its_size_and_what_is_not_finite_has_diverged(
-    trial: Trial, good: Run
-) -> None:
+def test_energy_lost_is_an_error_of_its_size_or_not_finite(trial: Trial, good: Run) -> None:
     kinetic = good.energy.kinetic_j
     lost = np.linspace(0.0, 0.1, kinetic.size) * np.max(kinetic)
     leaking = replace(good, energy=Energy(kinetic - lost, good.energy.potential_j))
@@ -124,9 +122,7 @@ def test_energy_lost_is_an_error_of_its_size_and_what_is_not_finite_has_diverged
     )
 
 
-def test_a_phase_is_an_error_as_long_as_it_is_followed_and_places_at_the_runs_angle_after(
-    trial: Trial, good: Run
-) -> None:
+def test_a_phase_is_an_error_while_followed_and_places_after_it(trial: Trial, good: Run) -> None:
     """With a tenth less of gravity it is late, closed, and loses nothing."""
     light = replace(trial.scene, gravity_m_s2=(0.0, -0.9 * 9.81))
     slow = done(trial, free_start(trial), scene=light)
@@ -173,9 +169,7 @@ def runs() -> dict[str, Run]:
     return {name: done(one, thrown_start(one)) for name, one in thrown.items()}
 
 
-def test_a_throw_is_graded_by_its_energy_and_undecided_or_broken_where_it_ends_too_soon(
-    runs: dict[str, Run],
-) -> None:
+def test_a_throw_is_graded_by_energy_or_undecided_if_it_ends_early(runs: dict[str, Run]) -> None:
     for trial, name in ((OVER, "over"), (SHORT, "short")):
         assert outcome(at_toggle(trial, runs[name]), 1e-2).outcome == "ok"
     grade = outcome(at_toggle(SHORT, runs["over"]), 1e-2)

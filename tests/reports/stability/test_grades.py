@@ -112,9 +112,7 @@ def held(given: Case, good: Callable[[float], bool]) -> tuple[Critical, list[Gra
         ((0.0, 30.0, 90.0, 180.0), "linear", 71.0),
     ],
 )
-def test_bisection_closes_in_on_the_value_at_which_it_breaks(
-    values: tuple[float, ...], scale: str, at: float
-) -> None:
+def test_bisection_finds_where_it_breaks(values: tuple[float, ...], scale: str, at: float) -> None:
     falling = values[-1] < values[0]
     found, runs = held(case(*values, scale=scale), lambda v: v >= at if falling else v <= at)
     low, high = sorted((found.holds, found.fails))

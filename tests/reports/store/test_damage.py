@@ -165,9 +165,7 @@ def test_a_cut_baseline_passes_what_it_has(store: Path, capsys: pytest.CaptureFi
     assert "1 cell of what was asked for, such as fourbar-lecture-1, mujoco tuned" in message
 
 
-def test_a_lost_manifest_is_made_again_without_runs_and_lets_no_other_scene_in(
-    store: Path, swept: Sweep, whole: Path
-) -> None:
+def test_a_lost_manifest_is_remade_for_its_scenes(store: Path, swept: Sweep, whole: Path) -> None:
     (store / MANIFEST).unlink()
     parts = {path: path.read_bytes() for path in store.glob("*/*.parquet")}
     assert swept(store, "pymunk") == 0

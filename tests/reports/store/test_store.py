@@ -92,9 +92,7 @@ def test_what_is_written_is_read_again(tmp_path: Path, outcome: MeasuredCell) ->
     np.testing.assert_array_equal(found.C_gap_m, outcome.run.gaps["C"])
 
 
-def test_a_second_run_replaces_nothing_and_cells_are_forgotten_part_by_part(
-    tmp_path: Path, outcome: MeasuredCell
-) -> None:
+def test_a_second_run_adds_and_parts_are_forgotten(tmp_path: Path, outcome: MeasuredCell) -> None:
     filled(tmp_path, outcome, "k1")
     first = {path: path.read_bytes() for path in tmp_path.glob("*/*.parquet")}
     filled(tmp_path, outcome, "k2")
@@ -111,9 +109,7 @@ def test_a_second_run_replaces_nothing_and_cells_are_forgotten_part_by_part(
     assert found.trace("k2")
 
 
-def test_a_changed_scene_of_the_same_name_and_what_is_no_store_are_refused(
-    tmp_path: Path, outcome: MeasuredCell
-) -> None:
+def test_a_changed_scene_and_no_store_are_refused(tmp_path: Path, outcome: MeasuredCell) -> None:
     name = str(outcome.row["scene"])
     with Writer(tmp_path, Manifest({name: TEXT})) as writer:
         row = {**names("k1"), "scene_digest": digest(TEXT), **outcome.row}

@@ -92,9 +92,7 @@ def test_a_killed_sweep_goes_on(programs: Start, tmp_path: Path) -> None:
     assert {path: path.stat().st_mtime_ns for path in folder.glob("*/*.parquet")} == parts
 
 
-def test_ctrl_c_keeps_the_cells_and_the_timings_before(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ctrl_c_keeps_cells_and_timings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     real, cells, blocks = measuring.measured, [], []
     monkeypatch.setattr("reports.sweep.running.BLOCK", 3)
 

@@ -180,9 +180,7 @@ def test_what_the_clock_ended_is_not_kept_and_tried_anew(path: Path) -> None:
 
 
 @pytest.mark.parametrize("late", [(), range(40)], ids=["in time", "ended by the clock"])
-def test_settings_are_not_tried_twice_in_a_search_and_progress_is_told_of_each_trial(
-    late: Collection[int],
-) -> None:
+def test_settings_are_tried_once_and_progress_is_told_of_each_trial(late: Collection[int]) -> None:
     space, called, told = replace(SPACE, knobs=SPACE.knobs[1:]), Called(late=late), []
     with study_in(None, {}) as study:
         found = search(study, replace(plan(40), space=space), called, lambda: told.append(None))

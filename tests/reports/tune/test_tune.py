@@ -52,9 +52,7 @@ def test_one_seed_gives_the_same_in_two_halves(path: Path, whole: tuple[int, str
     assert told(replace(SMALL, output=path)) == whole
 
 
-def test_what_is_found_reaches_the_target_no_dearer_than_tuned_and_its_snippet_has_it(
-    whole: tuple[int, str],
-) -> None:
+def test_what_is_found_reaches_the_target_no_dearer_than_tuned(whole: tuple[int, str]) -> None:
     code, text = whole
     assert code == 0
     tuned, found = line(text, "error of place")

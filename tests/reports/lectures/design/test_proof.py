@@ -89,17 +89,13 @@ def test_what_is_not_met_is_seen(kind: str, name: str) -> None:
         assert [met.off for met in every] == pytest.approx([0.01] * len(every), rel=0.01)
 
 
-def test_a_driver_a_degree_off_is_seen() -> None:
+def test_a_driver_off_and_too_long_a_step_are_seen_and_tolerances_are_of_the_task() -> None:
     one, task = best("coupler", "three-positions")
     by = math.radians(1.0)
     driver = replace(one.scene.driver, law=one.scene.driver.law.turned(by))
     positions = tuple(replace(p, driver_rad=p.driver_rad + by) for p in one.positions)
     late = replace(one, scene=replace(one.scene, driver=driver), positions=positions)
     assert not all(met.within for met in proven(late, task, "mujoco"))
-
-
-def test_a_step_that_is_too_long_is_seen_and_tolerances_are_those_of_the_task() -> None:
-    one, task = best("coupler", "three-positions")
     assert not all(met.within for met in proven(one, task, "pymunk", steps_per_turn=12.0))
     tight = task.model_copy(update={"tolerance_m": 1e-12, "tolerance_deg": 1e-12})
     assert all(met.limit <= 1e-12 for met in by_reference(one, tight))

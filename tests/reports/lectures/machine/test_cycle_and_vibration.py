@@ -22,9 +22,7 @@ from tests.worlds.without_pdf import without_pdf
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_with_the_shaft_of_40_j(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[None]:
+def _beside_a_shaft_of_40_j(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
     scene = shaft({"pull": (Sine(20.0, math.tau), "angle")})
     Path("shaft.toml").write_text(scene_text(scene), encoding="utf-8")
@@ -52,7 +50,7 @@ def numbers(output: str, start: str) -> list[float]:
 FLYWHEEL = "flywheel shaft.toml --delta 0.02"
 
 
-def test_a_cycle_is_told() -> None:
+def test_a_cycle_and_the_drive_that_closes_its_balance_are_told() -> None:
     output = told("cycle shaft.toml")
     assert numbers(output, "largest speed") == [11.0, 180.0]
     assert numbers(output, "smallest speed")[0] == 9.0
@@ -60,9 +58,6 @@ def test_a_cycle_is_told() -> None:
     assert numbers(output, "surplus of work") == [40.0]
     assert numbers(output, "loads.pull") == [0.0, 0.0]
     assert "closes the balance of work." in " ".join(output.split())
-
-
-def test_the_drive_that_closes_the_balance_is_told() -> None:
     scene = shaft({"brake": (Constant(-3.0), "time")})
     Path("braked.toml").write_text(scene_text(scene), encoding="utf-8")
     output = told("cycle braked.toml")
@@ -123,35 +118,32 @@ def test_a_page_is_written() -> None:
     body = text.partition("<main")[2].partition("<script")[0]
     assert "Wittenbauer" in body
     assert "nan" not in body.lower().split()
-
-
-def test_a_shaft_of_constant_moment_of_inertia_has_no_energy_mass_diagram() -> None:
+    # A shaft of constant moment of inertia has no energy-mass diagram.
     told("cycle shaft.toml -o s.html --figures two")
     assert pictures("s.html") == 2
     names = {"speed.svg", "speed.pdf", "torques.svg", "torques.pdf"}
     assert {path.name for path in Path("two").iterdir()} == names
 
 
-MISTAKES = {
-    "no cycle": ("cycle toggle-press", "it comes to rest near crank"),
-    "no flywheel of 0": ("flywheel shaft.toml --delta 0", "--delta 0: "),
-    "2": ("flywheel shaft.toml --delta 2 -o f.csv", "--delta 2: "),
-    "met": (
-        "flywheel shaft.toml --delta 0.3 --write f.toml",
-        "no flywheel is needed for a coefficient of 0.3: without one more it is 0.2 already",
-    ),
-    "ending": ("cycle shaft.toml -o out.txt", "found '.txt'"),
-    "scene ending": ("flywheel shaft.toml --delta 0.1 --write f.csv", "found .csv; use .toml"),
-    "over itself": ("flywheel shaft.toml --delta 0.1 --write shaft.toml", "which is read"),
-    "free alone": ("flywheel shaft.toml --delta 0.1 --free", "give --write FILE.toml"),
-    "no scene": ("cycle shafts.toml", "shafts.toml"),
-    "a folder": ("cycle shaft.toml --figures shaft.toml", "--figures"),
-}
-
-
-@pytest.mark.parametrize("name", MISTAKES)
-def test_a_mistake_ends_with_2_one_message_and_nothing_written(name: str) -> None:
-    line, words = MISTAKES[name]
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("cycle toggle-press", "it comes to rest near crank"),
+        ("flywheel shaft.toml --delta 0", "--delta 0: "),
+        ("flywheel shaft.toml --delta 2 -o f.csv", "--delta 2: "),
+        (
+            "flywheel shaft.toml --delta 0.3 --write f.toml",
+            "no flywheel is needed for a coefficient of 0.3: without one more it is 0.2 already",
+        ),
+        ("cycle shaft.toml -o out.txt", "found '.txt'"),
+        ("flywheel shaft.toml --delta 0.1 --write f.csv", "found .csv; use .toml"),
+        ("flywheel shaft.toml --delta 0.1 --write shaft.toml", "which is read"),
+        ("flywheel shaft.toml --delta 0.1 --free", "give --write FILE.toml"),
+        ("cycle shafts.toml", "shafts.toml"),
+        ("cycle shaft.toml --figures shaft.toml", "--figures"),
+    ],
+)
+def test_a_mistake_ends_with_2_one_message_and_nothing_written(line: str, words: str) -> None:
     before = set(Path().iterdir())
     result = crank(*line.split())
     refused(result, words)
@@ -159,8 +151,10 @@ def test_a_mistake_ends_with_2_one_message_and_nothing_written(name: str) -> Non
     assert set(Path().iterdir()) == before
 
 
-MOTOR = {"pull": (Sine(20.0, math.tau), "angle"), "motor": (Polynomial((30.0, -3.0)), "omega")}
-MOTORISED = shaft(MOTOR, free=True)  # type: ignore[arg-type]  # literals
+MOTORISED = shaft(
+    {"pull": (Sine(20.0, math.tau), "angle"), "motor": (Polynomial((30.0, -3.0)), "omega")},
+    free=True,
+)
 
 
 def test_in_python_results_are_small_values_that_print_as_the_commands() -> None:
@@ -186,15 +180,12 @@ def test_in_python_messages_name_arguments() -> None:
             crankcheck.flywheel(scene, delta)  # type: ignore[arg-type]  # that is what is refused
 
 
-SPEED = "speed_rad_s = 7.3686"
-
-
 def scene_at(ratio: float, **changes: str) -> str:
     """A file with the shipped four-bar at another frequency ratio, and other changes of its text;
     its name."""
-    text = read_text(find_scene("fourbar-elastic"))
-    assert SPEED in text
-    text = text.replace(SPEED, f"speed_rad_s = {77.37042596564 / ratio!r}")
+    text, speed = read_text(find_scene("fourbar-elastic")), "speed_rad_s = 7.3686"
+    assert speed in text
+    text = text.replace(speed, f"speed_rad_s = {77.37042596564 / ratio!r}")
     for old, new in changes.items():
         text = text.replace(old, new)
     Path("own.toml").write_text(text, encoding="utf-8")
@@ -246,18 +237,19 @@ def test_a_map_tells_where_it_is_unstable() -> None:
 
 
 BEAM = "height_m = 0.003"
-GROWTH = {
-    r"UNSTABLE: a turn multiplies deviations by 2\.58.*Take another speed":
-        (4.15, {"mass_kg = 0.18225": "mass_kg = 5.4675"}),
-    r"Stable: deviations fall to a tenth in \d": (5.5, {BEAM: f"{BEAM}\ndamping_s = 1e-4"}),
-    r"Stable: deviations die out within a turn\.": (500.0, {BEAM: f"{BEAM}\ndamping_s = 1e-2"}),
-    "NEAR A RESONANCE with coupler at order 5": (5.05, {}),
-}  # fmt: skip
 
 
-@pytest.mark.parametrize("words", GROWTH)
-def test_growth_and_resonance_are_told(words: str) -> None:
-    ratio, changes = GROWTH[words]
+@pytest.mark.parametrize(
+    ("ratio", "changes", "words"),
+    [
+        (4.15, {"mass_kg = 0.18225": "mass_kg = 5.4675"},
+         r"UNSTABLE: a turn multiplies deviations by 2\.58.*Take another speed"),
+        (5.5, {BEAM: f"{BEAM}\ndamping_s = 1e-4"}, r"Stable: deviations fall to a tenth in \d"),
+        (500.0, {BEAM: f"{BEAM}\ndamping_s = 1e-2"}, r"Stable: deviations die out within a turn\."),
+        (5.05, {}, "NEAR A RESONANCE with coupler at order 5"),
+    ],
+)  # fmt: skip
+def test_growth_and_resonance_are_told(ratio: float, changes: dict[str, str], words: str) -> None:
     assert re.search(words, joined(f"vibration {scene_at(ratio, **changes)} --modes 1"))
 
 

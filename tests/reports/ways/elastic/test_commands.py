@@ -65,13 +65,6 @@ def test_what_makes_no_sense_is_refused(words: str, said: str) -> None:
     assert said in crankcheck(*words.split(), code=2)
 
 
-def test_elastic_links_that_are_let_go_are_verified_where_they_are_named() -> None:
-    asked = [*MUJOCO, "--segments", 4, "--no-convergence", "--duration", 0.1]
-    told = crankcheck("verify", PULSE, *asked)
-    assert "elastic links, profile tuned" in told
-    assert "WITHIN TOLERANCE" in told
-
-
 @pytest.mark.parametrize("name", [PULSE, CONTROLLED])
 def test_a_log_of_elastic_links_that_were_let_go_is_not_judged(name: str, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
@@ -117,6 +110,10 @@ def test_what_is_let_go_is_swept_and_timed(tmp_path: Path, monkeypatch: pytest.M
     told = crankcheck("sweep", PULSE, "-o", tmp_path / "s", *asked)
     assert "2 run now" in told
     assert "2 timed now" in told
+    asked = [*MUJOCO, "--segments", 4, "--no-convergence", "--duration", 0.1]
+    told = crankcheck("verify", PULSE, *asked)  # where it is named
+    assert "elastic links, profile tuned" in told
+    assert "WITHIN TOLERANCE" in told
 
 
 def test_a_link_that_stretches_alone_is_a_row_with_its_reason(tmp_path: Path) -> None:

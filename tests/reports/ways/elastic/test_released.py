@@ -65,9 +65,7 @@ def checked() -> Checked:
     return check(cell())
 
 
-def test_the_segments_are_told_from_the_engine_and_the_phase_is_the_beams(
-    checked: Checked,
-) -> None:
+def test_the_segments_are_told_of_the_engine_and_the_phase_is_the_beams(checked: Checked) -> None:
     facts, raw = checked.errors.of_links, worst(checked, "phase", "raw")
     assert facts.chain == pytest.approx(worst(checked, "deflection"), rel=0.01)
     assert facts.chain == pytest.approx(0.05, rel=0.1)  # 0.80/n^2

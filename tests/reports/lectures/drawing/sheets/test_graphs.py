@@ -64,9 +64,7 @@ def slopes(by: Method, name: str) -> Array:
         ("integration", "step-phi", "ray-omega"),
     ],
 )
-def test_rays_are_parallel_on_paper_to_what_is_drawn_of_them(
-    by: Method, line: str, ray: str
-) -> None:
+def test_rays_are_parallel_on_paper_to_what_they_are_of(by: Method, line: str, ray: str) -> None:
     rays = slopes(by, ray)
     assert len(rays) >= 8
     # lines of 10 mm are written to a millionth of a point
@@ -89,9 +87,7 @@ def test_scales_of_integration_are_those_of_the_problem_book() -> None:
 
 @pytest.mark.parametrize("by", METHODS)
 @pytest.mark.parametrize("heights", [(1.0, 6.0, 90.0), (1.0, 1e-3, 1e-6), (1e-6, 10.0, 4e3)])
-def test_graphs_of_any_heights_fit_with_one_scale_round(
-    by: Method, heights: tuple[float, float, float]
-) -> None:
+def test_heights_fit_with_one_scale_round(by: Method, heights: tuple[float, float, float]) -> None:
     scales = graph_scales(by, heights, 0.003, 45.0)
     high = np.array(heights) / scales.units_per_mm
     assert high.max() <= 45.0 * (1.0 + 1e-8)
@@ -133,7 +129,7 @@ def test_over_the_angle_of_a_steady_driver_rates_are_rates() -> None:
     assert angle.span.shown == pytest.approx(math.degrees(10.0))
 
 
-def test_over_the_angle_of_another_driver_rates_are_analogues() -> None:
+def test_over_another_driver_s_angle_rates_are_analogues_which_no_log_has(write: Write) -> None:
     sheet = sheet_of("fourbar-double-rocker", "rocker", over="angle")
     of = sheet.drawn.span
     assert (of.symbols[1], of.units[1]) == ("phi'", "rad/rad")
@@ -143,6 +139,8 @@ def test_over_the_angle_of_another_driver_rates_are_analogues() -> None:
     driver = at.scene.driver.law.at(np.zeros(1))
     assert of.exact(1, driver[0]) == pytest.approx(at.exact(1, np.zeros(1)) / driver[1])
     assert sheet.drawn.off(sheet.drawn.reference, 1) < 0.002
+    with pytest.raises(CrankcheckError, match="which no log has; use --over time"):
+        graph_log(write(time_s=EVEN), None, of)
 
 
 @pytest.mark.parametrize(
@@ -234,9 +232,7 @@ def test_what_is_let_go_is_drawn_from_its_start_on(write: Write) -> None:
         graph_log(late, None, of)
 
 
-def test_own_rates_and_rays_of_a_log_are_layers_whose_words_stand_on_no_others(
-    write: Write,
-) -> None:
+def test_own_rates_and_rays_of_a_log_are_layers_whose_words_are_clear(write: Write) -> None:
     theta, omega = ROCKER.exact(0, EVEN), ROCKER.exact(1, EVEN) + ripple(EVEN, 1)
     graphs = drawn(write(time_s=EVEN, rocker_theta_rad=theta, rocker_omega_rad_s=omega))
     canvas = draw_graphs(laid_out(graphs, Paper.of("180x120")), "a source")
@@ -315,9 +311,3 @@ UNFIT: list[tuple[dict[str, Array], str]] = [
 def test_a_log_that_is_unfit_is_refused(write: Write, columns: dict[str, Array], told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         drawn(write(**columns))
-
-
-def test_a_log_over_analogues_is_refused(write: Write) -> None:
-    of = over_period(load_scene("fourbar-double-rocker"), "rocker", "angle", None)
-    with pytest.raises(CrankcheckError, match="which no log has; use --over time"):
-        graph_log(write(time_s=EVEN), None, of)

@@ -7,13 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 
 from analytic.kinematics import reach
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.polygon import DriverState
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.scene import Scene
+from models.scene import Point, Scene
 from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.sheets.centre_sheet import centres_of, draw_centres
 from reports.lectures.drawing.sheets.letters import Letter, write_letters
@@ -25,15 +26,17 @@ from tests.reports.lectures.drawing.sheets.measured import drawn_lines, overlaps
 from tests.worlds.tiers import slow
 
 A4, SMALLEST = Paper.of("A4"), Paper.of("180x120")
-ROOM = Box(10.0, 10.0, 160.0, 100.0)
 
 
-def sheet_with(*strokes: tuple[tuple[float, float], tuple[float, float], str]) -> Canvas:
+def lettered(letters: list[Letter], *strokes: tuple[Point, Point, str]) -> Axes:
+    """The layer of letters that are written beside such lines, and clear of them."""
     canvas = Canvas(SMALLEST)
     axes = canvas.layer("lines")
     for start, end, color in strokes:
         line(axes, np.array(start), np.array(end), color=color, linewidth=0.5)
-    return canvas
+    write_letters(canvas, canvas.layer("letters"), letters, Box(10.0, 10.0, 160.0, 100.0))
+    assert overlaps(canvas.figure) == []
+    return canvas.layers[-1]
 
 
 def angles_of(scene: Scene, count: int) -> list[float]:
@@ -45,31 +48,19 @@ def angles_of(scene: Scene, count: int) -> list[float]:
     return list(np.linspace(low + spare, high - spare, count))
 
 
-def test_a_letter_stands_beside_its_point_clear_of_the_lines_that_meet_there() -> None:
-    ends = [(60.0 + 30.0 * math.cos(a), 60.0 + 30.0 * math.sin(a)) for a in np.arange(6.0)]
-    canvas = sheet_with(*(((60.0, 60.0), end, "black") for end in ends))
+def test_a_letter_stands_clear_of_lines_near_its_point_or_has_a_line_that_leads_to_it() -> None:
     at = np.array([60.0, 60.0])
-    write_letters(canvas, canvas.layer("letters"), [Letter(n, at, 1.0) for n in "ABC"], ROOM)
-    assert overlaps(canvas.figure) == []
-    spots = [np.array(t.get_position()) for t in canvas.layers[-1].texts]
-    assert max(np.hypot(*(spot - at)) for spot in spots) < 10.0
-
-
-def test_among_faint_lines_a_letter_interrupts_them_and_stays_near() -> None:
+    ends = [(60.0 + 30.0 * math.cos(a), 60.0 + 30.0 * math.sin(a)) for a in np.arange(6.0)]
+    lines = (((60.0, 60.0), end, "black") for end in ends)
+    layer = lettered([Letter(n, at, 1.0) for n in "ABC"], *lines)
+    assert max(np.hypot(*(np.array(t.get_position()) - at)) for t in layer.texts) < 10.0
+    # Faint lines it interrupts.
     fan = [((20.0, 58.0 + 0.8 * k), (100.0, 50.0 + 1.6 * k), "#a9b3bf") for k in range(20)]
-    canvas = sheet_with(*fan)
-    at = np.array([60.0, 65.0])
-    write_letters(canvas, canvas.layer("letters"), [Letter("A", at, 0.5)], ROOM)
-    assert overlaps(canvas.figure) == []
-    assert np.hypot(*(np.array(canvas.layers[-1].texts[0].get_position()) - at)) < 6.0
-
-
-def test_a_letter_that_stands_far_off_has_a_line_that_leads_to_it() -> None:
+    among = np.array([60.0, 65.0])
+    layer = lettered([Letter("A", among, 0.5)], *fan)
+    assert np.hypot(*(np.array(layer.texts[0].get_position()) - among)) < 6.0
     grid = [((40.0, y), (80.0, y), "black") for y in np.arange(50.0, 70.0, 0.8)]
-    canvas = sheet_with(*grid)
-    write_letters(canvas, canvas.layer("letters"), [Letter("A", np.array([60.0, 60.0]), 0.5)], ROOM)
-    assert overlaps(canvas.figure) == []
-    (lead,) = canvas.layers[-1].lines
+    (lead,) = lettered([Letter("A", at, 0.5)], *grid).lines
     assert np.hypot(lead.get_xdata()[1] - 60.0, lead.get_ydata()[1] - 60.0) == pytest.approx(0.5)
 
 
@@ -114,6 +105,9 @@ def test_the_crank_circle_is_divided_equally_from_the_start() -> None:
     angles = np.unwrap(np.arctan2(pins[:, 1], pins[:, 0]))
     assert np.diff(angles) == pytest.approx(np.pi / 4)
     assert angles[0] == pytest.approx(sheet.scene.driver.law.at(np.zeros(1))[0][0])
+    # Divisions that fall together are refused.
+    with pytest.raises(CrankcheckError, match=r"at most \d+ fit, or take larger paper"):
+        sheet_of("shaper", 300)
 
 
 def test_a_driver_that_turns_or_swings_clockwise_is_numbered_in_its_sense() -> None:
@@ -147,11 +141,6 @@ def test_the_drawn_locus_is_the_point_s_way_to_a_tenth_of_a_millimetre() -> None
     assert np.ptp(drawn["locus-C"][0][:, 0]) * sheet.scale == pytest.approx(
         np.ptp(sheet.loci["C"][:, 0]), abs=1e-4
     )
-
-
-def test_divisions_that_fall_together_are_refused_with_how_many_fit() -> None:
-    with pytest.raises(CrankcheckError, match=r"at most \d+ fit, or take larger paper"):
-        sheet_of("shaper", 300)
 
 
 def test_singular_angles_are_left_out_one_by_one() -> None:

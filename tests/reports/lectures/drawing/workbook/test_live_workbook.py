@@ -109,9 +109,7 @@ def test_a_row_at_a_change_point_is_not_called_open() -> None:
     assert columns["state"][0] == "rates not determined"
 
 
-def test_a_motion_that_goes_over_to_the_other_branch_and_other_mechanisms_have_no_formulas() -> (
-    None
-):
+def test_a_motion_over_to_the_other_branch_and_other_mechanisms_have_no_formulas() -> None:
     folds = scene_of("fourbar-lecture-1", inputs_of(live("fourbar-lecture-1")[1]) | PARALLELOGRAM)
     for scene in (folds, load_scene("shaper"), load_scene("scotch-yoke")):
         assert formulas_of(scene, 3, 1.0) is None
@@ -126,7 +124,6 @@ def test_a_workbook_of_very_many_rows_says_what_it_has_not() -> None:
 KNOWN = {"ABS", "ACOS", "ATAN2", "COS", "COUNTIF", "IF", "ISNUMBER", "NA", "PI", "RADIANS",
          "ROUND", "SIN", "SQRT"}  # fmt: skip
 """In every spreadsheet, by one value a cell, and none that is worked out anew without a reason."""
-CELL = re.compile(r"[A-Za-z]{1,3}\d+|[RrCc]|[Rr]\d*[Cc]\d*")
 
 
 @pytest.fixture(scope="module", params=KINDS)
@@ -148,19 +145,14 @@ def test_formulas_have_common_functions_alone_and_no_text_is_one(book: openpyxl.
     assert book["source"]["B2"].data_type == "s"
 
 
-def test_every_input_is_a_cell_of_a_name_that_no_cell_has(book: openpyxl.Workbook) -> None:
-    sheet = book["inputs"]
-    count = len(book.defined_names)
-    for row in range(2, 2 + count):
-        name = sheet.cell(row, 5).value
-        assert book.defined_names[name].attr_text == f"'inputs'!$B${row}"
-        assert not CELL.fullmatch(name)
-    assert {text for text in formulas_in(book) if "omega_1" in text}
-
-
-def test_inputs_alone_can_be_changed(book: openpyxl.Workbook) -> None:
+def test_inputs_alone_can_be_changed_and_have_names_of_no_cell(book: openpyxl.Workbook) -> None:
     inputs, table = book["inputs"], book["live"]
     rows = range(2, 2 + len(book.defined_names))
+    for row in rows:
+        name = inputs.cell(row, 5).value
+        assert book.defined_names[name].attr_text == f"'inputs'!$B${row}"
+        assert not re.fullmatch(r"[A-Za-z]{1,3}\d+|[RrCc]|[Rr]\d*[Cc]\d*", name)
+    assert {text for text in formulas_in(book) if "omega_1" in text}
     assert inputs.protection.sheet
     assert table.protection.sheet
     assert not inputs.protection.password
@@ -301,21 +293,14 @@ def test_formulas_are_the_reference_wherever_frames_lie(draw: Callable[[Drawn], 
         held_to_the_reference(evaluated(table), scene, f"{number}: {scene}", turned=True)
 
 
-def lever_on_the_crank(drawn: Drawn) -> Scene:
-    turns = drawn.bar("lever", "BE", 0.2, 0.3)
-    slider = Slider("s", "A", "lever", turns.points["B"], drawn.angle())
-    return drawn.scene({"A": drawn.place()}, [turns], slider)
-
-
-def links_on_the_pivot(drawn: Drawn) -> Scene:
-    bars = [drawn.bar("coupler", "BC", 0.3, 0.3), drawn.bar("rocker", "AC", 0.3, 0.3)]
-    return drawn.scene({"A": drawn.place()}, bars, None)
-
-
 def test_what_hangs_otherwise_has_values() -> None:
     """Its groups are of the same kinds, yet no sheet is its."""
-    for draw in (lever_on_the_crank, links_on_the_pivot):
-        assert formulas_of(draw(Drawn(1)), 3, 1.0) is None
+    drawn = Drawn(1)
+    pivot, turns = {"A": drawn.place()}, drawn.bar("lever", "BE", 0.2, 0.3)
+    slider = Slider("s", "A", "lever", turns.points["B"], drawn.angle())
+    bars = [drawn.bar("coupler", "BC", 0.3, 0.3), drawn.bar("rocker", "AC", 0.3, 0.3)]
+    for scene in (drawn.scene(pivot, [turns], slider), drawn.scene(pivot, bars, None)):
+        assert formulas_of(scene, 3, 1.0) is None
 
 
 ALL_CHANGED = {
@@ -341,9 +326,7 @@ def by_library(table: FormulaTable, file: Path) -> Mapping[str, np.ndarray]:
 
 @slow("seconds of each kind: each formula anew, which `evaluated` does as well")
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_library_recalculates_what_was_changed_and_says_what_is_open(
-    kind: str, tmp_path: Path
-) -> None:
+def test_a_library_recalculates_changes_and_says_what_is_open(kind: str, tmp_path: Path) -> None:
     table, file = live(kind)[1], tmp_path / "live.xlsx"
     inputs = inputs_of(table) | ALL_CHANGED[kind]
     write_changed(table, inputs, file)
@@ -351,11 +334,7 @@ def test_a_library_recalculates_what_was_changed_and_says_what_is_open(
     assert set(columns["state"]) == {ASSEMBLED}
     held_to_the_reference(columns, scene_of(kind, inputs))
     write_changed(table, inputs_of(table) | OPEN[kind], file)
-    _says_what_is_open(by_library(table, file), table)
-
-
-def _says_what_is_open(columns: Mapping[str, np.ndarray], table: FormulaTable) -> None:
-    """Rows that cannot be assembled say so, and have no numbers; the others have all."""
+    columns = by_library(table, file)
     wrong = columns["state"] != ASSEMBLED
     assert 0 < wrong.sum() < wrong.size
     assert set(columns["state"][wrong]) == {"cannot be assembled"}
