@@ -10,19 +10,24 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from analytic.structure.mobility import sides_of
 from models.array import Array
 from models.files.reading import load_scene
 from models.motion import LinkMotion
 from models.scene import Scene
+from models.scene.moved import mirrored, moved, rotated, scaled
 from reports.compare.compare import SETTLING, Truth, compare, incomplete
 from reports.compare.errors import ErrorKind, Errors
 from reports.compare.last_turn import trace
 from reports.compare.tracks import angle_error, length, size
+from reports.judge.cell import check
 from reports.judge.tolerance import limits
 from reports.quantities.quantity import Source
 from sim.engine import Run
 from sim.run import run as run_scene
 from tests.worlds.fake.engine import FakeEngine, turned_link
+from tests.worlds.other_way import sped_up
+from tests.worlds.turns import of_turns
 
 Find = Callable[..., Errors]
 ROUNDING = 1e-12
@@ -227,6 +232,19 @@ def test_a_whole_log_is_complete_however_thin_it_is(fourbar: Scene, steps: int, 
     engine = FakeEngine(exact=solve)
     run = run_scene(fourbar, state, engine, dt_s=1e-3, steps=steps, every=every)
     assert incomplete(run) == ""
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+def test_pure_errors_are_those_of_another_place_size_side_and_speed(
+    engine: str, fourbar: Scene
+) -> None:
+    aside = moved(rotated(fourbar, 0.7), (3.0, -2.0))
+    other = sped_up(scaled(mirrored(aside, sides_of(aside)), 10.0), -50.0)
+    old, new = (check(of_turns(scene, engine, 720)).errors for scene in (fourbar, other))
+    reported = ["acceleration"] if engine == "mujoco" else []
+    for quantity in ("drive", "angle", "position", "gap", "velocity", *reported):
+        pair = (old.worst(quantity).pure, new.worst(quantity).pure)
+        assert max(pair) <= max(2.0 * min(pair), 1e-10), quantity
 
 
 LINE, LONG = np.linspace(0.0, 1.0, 20), np.linspace(0.0, 20.0, 500)
