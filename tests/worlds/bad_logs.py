@@ -222,6 +222,10 @@ def notes_first(path: Path) -> None:
     made.save(path)
 
 
+def empty_book(path: Path) -> None:
+    openpyxl.Workbook().save(path)
+
+
 def bomb(path: Path) -> None:
     """A workbook of one megabyte whose sheet is a gigabyte when it is unpacked: ten of zeros, which
     are packed once and stand there a hundred times."""
@@ -275,7 +279,7 @@ WORKBOOKS: dict[str, tuple[Made, str]] = {
         partial(book, A1=0.5, B1=1.5, C1=2.5, D1=3.5), "sheet 'Sheet': row 1 holds numbers and no"),
     "hours": (partial(book, A2=time(0, 0, 1)), "row 2, column 'time_s': found '00:00:01'.*seconds"),
     "an empty sheet": (partial(book, first="first"), "sheet 'first' is empty"),
-    "no sheet of numbers": (lambda path: openpyxl.Workbook().save(path), "is empty"),
+    "no sheet of numbers": (empty_book, "is empty"),
     "a bomb": (bomb, "bytes when it is unpacked; at most .* are read|no workbook"),
     "a cell far away": (
         partial(sheet_of, inside=FAR), "cells up to row 300000 and column 1000; at most"),

@@ -105,7 +105,11 @@ def test_what_is_drawn_of_a_partial_log_is_said_and_that_rates_alone_have_no_dra
 def test_text_of_the_file_stays_text_and_acts_on_nothing() -> None:
     hostile = ChannelTable(column=NASTY, of="rocker", kind="angle", unit="deg")
     columns = {NASTY: angles(MOTION, rocker=1.0)["rocker_deg"]}
-    columns |= {f"{NASTY} 2": TIME_S, "x" * 5000: TIME_S, "crank_deg \u202e": TIME_S}
+    columns |= {
+        "</script><i onload='hack()'>&amp;{{ 7 * 7 }}": TIME_S,
+        "x" * 5000: TIME_S,
+        "crank_deg \u202e": TIME_S,
+    }
     calm = ChannelTable(column="calm", of="rocker", kind="angle", unit="deg")
     one = judged(TIME_S, columns, mapped=Map(channel=[hostile]), require=["coupler"])
     no_text = os.fsdecode(b"\xff\xfe.csv")
