@@ -30,6 +30,8 @@ MOTION = motion_of()
 TIME_S = MOTION.time_s
 SECTIONS = ["verdict", "channels", "motion", "made"]
 ACTING = "\u202egnp\u2066 \x1b[2J \x9b31m \u2028 \x00"
+ASIDE = "</script><i onload='hack()'>&amp;{{ 7 * 7 }}"
+"""Names no body, nor a letter of one beside an axis."""
 NASTY = f"{EVIL} %{{x}} $x^2$ \u0645\u0631 {ACTING}"
 
 
@@ -105,11 +107,7 @@ def test_what_is_drawn_of_a_partial_log_is_said_and_that_rates_alone_have_no_dra
 def test_text_of_the_file_stays_text_and_acts_on_nothing() -> None:
     hostile = ChannelTable(column=NASTY, of="rocker", kind="angle", unit="deg")
     columns = {NASTY: angles(MOTION, rocker=1.0)["rocker_deg"]}
-    columns |= {
-        "</script><i onload='hack()'>&amp;{{ 7 * 7 }}": TIME_S,
-        "x" * 5000: TIME_S,
-        "crank_deg \u202e": TIME_S,
-    }
+    columns |= {ASIDE: TIME_S, "x" * 5000: TIME_S, "crank_deg \u202e": TIME_S}
     calm = ChannelTable(column="calm", of="rocker", kind="angle", unit="deg")
     one = judged(TIME_S, columns, mapped=Map(channel=[hostile]), require=["coupler"])
     no_text = os.fsdecode(b"\xff\xfe.csv")
@@ -208,7 +206,7 @@ def log(written: Write) -> Path:
 def hostile(written: Write) -> Path:
     table = ChannelTable(column=NASTY, of="coupler", kind="angle", unit="deg")
     columns = {NASTY: angles(TWO_TURNS, coupler=1.0)["coupler_deg"]}
-    columns |= {f"{NASTY} 2": TWO_S, "x" * 5000: TWO_S}
+    columns |= {ASIDE: TWO_S, "x" * 5000: TWO_S}
     return written(page_of(TWO_S, columns, mapped=Map(channel=[table])))
 
 
