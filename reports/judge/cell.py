@@ -223,6 +223,7 @@ class _Runs:
             "every": finer * cell.every,
             "drive": cell.drive,
             "settings": cell.settings,
+            "rates": finer == 1 or cell.with_forces,  # of finer runs places alone are compared
             **({"with_forces": True} if cell.with_forces else {}),
         }
         done = self.runner(given, self.state, *names, **options)

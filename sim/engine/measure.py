@@ -130,31 +130,32 @@ def _pairs(x: Array, y: Array) -> Array:
 
 
 @np.errstate(all="ignore")  # open joints may overflow; they are judged, not warned of
-def motion(scene: Scene, poses: Poses) -> Motion:
-    """Compute the motion from the poses.
+def motion(scene: Scene, poses: Poses, *, rates: bool = True) -> Motion:
+    """Compute the motion from the poses; without ``rates``, those of points and sliders are NaN.
 
     Points belong to the ground or the first link that lists them, else to the first block with
     mass. A slider's speed and acceleration are relative to its guide. Where the velocities lag,
     each level is computed at its own instant: velocities with the positions of then, accelerations
     with the velocities of now.
     """
-    now, then = _at_now(poses), at_velocities(poses)
+    now, then = (_at_now(poses), at_velocities(poses)) if rates else (poses, poses)
+    none = np.broadcast_to(np.nan, (len(poses.time_s), 2))
     tracks, later = _tracks(scene, now), _tracks(scene, then) if then is not now else None
     points, sliders = {}, {}
     for name, names in pairs.carriers(scene).items():
         if names:
             track = tracks[name][names[0]]
-            velocity = (later or tracks)[name][names[0]].velocity
-            points[name] = PointMotion(track.position, velocity, track.acceleration)
+            sped = (later or tracks)[name][names[0]]
+            own = (sped.velocity, track.acceleration) if rates else (none, none)
+            points[name] = PointMotion(track.position, *own)
     for name, slider in scene.sliders.items():
         rider = _rider(scene, slider)
         seen = _Seen(slider, _guide(slider, now), tracks[slider.point][rider])
-        sped = seen
+        fast = seen
         if later is not None:
-            sped = _Seen(slider, _guide(slider, then), later[slider.point][rider])
-        sliders[name] = SliderMotion(
-            seen.position[:, 0], sped.velocity[:, 0], seen.acceleration[:, 0]
-        )
+            fast = _Seen(slider, _guide(slider, then), later[slider.point][rider])
+        own = (fast.velocity, seen.acceleration) if rates else (none, none)
+        sliders[name] = SliderMotion(seen.position[:, 0], *(each[:, 0] for each in own))
     turning = {name: poses.bodies[name] for name in scene.links}
     links = {n: LinkMotion(p.theta, p.omega, p.alpha) for n, p in turning.items()}
     return Motion(poses.time_s, links, points, sliders)

@@ -51,7 +51,9 @@ def chunks(steps: int, every: int) -> list[int]:
     return [min(chunk, steps - done) for done in range(0, steps, chunk)]
 
 
-def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: float) -> Run:
+def recorded(
+    blank: Run, scene: Scene, session: Session, facts: Facts, runaway: float, *, rates: bool
+) -> Run:
     """Record the run, chunk by chunk, until its end or divergence."""
     every = blank.every
     logs: list[Poses] = []
@@ -92,7 +94,7 @@ def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: 
         blank,
         status=status,
         reason=reason,
-        motion=replace(motion(scene, poses), forces=forces),
+        motion=replace(motion(scene, poses, rates=rates), forces=forces),
         gaps={name: np.concatenate([each[name] for each in opened]) for name in opened[0]},
         energy=energy(scene, poses) if blank.drive == "free" else None,
         velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
@@ -158,11 +160,13 @@ def run(
     settings: Settings | None = None,
     open_m: float = 0.0,
     with_forces: bool = False,
+    rates: bool = True,
 ) -> Run:
     """Run ``scene`` from ``state`` for ``steps`` of ``dt_s`` [s], logging every ``every``-th step.
 
     Joints of ``state`` may be open by ``open_m`` [m], to see the engine's reaction. With forces,
-    the motion has the reactions in all joints and the driving torque.
+    the motion has the reactions in all joints and the driving torque. Without ``rates``, those of
+    points and sliders are NaN, which saves time where places alone are compared.
 
     Returns
     -------
@@ -209,7 +213,8 @@ def run(
     # Later loads may move a scene that almost rests: a radian in the whole run, at least.
     own = pace(scene, state, drive)
     runaway = RUNAWAY * max(own, 1.0 / (dt_s * steps)) if own else math.inf
-    return recorded(replace(blank, settings=facts.settings), scene, session, facts, runaway)
+    held = replace(blank, settings=facts.settings)
+    return recorded(held, scene, session, facts, runaway, rates=rates)
 
 
 def setup(
@@ -224,8 +229,9 @@ def setup(
     drive: Drive = "prescribed",
     settings: Settings | None = None,
     with_forces: bool = False,
+    rates: bool = True,
 ) -> Setup:
-    """Return the request of `run` with these arguments.
+    """Return the request of `run` with these arguments; ``rates`` are no part of it.
 
     Raises
     ------
