@@ -1,5 +1,5 @@
 """What runs when: `make test` runs what is not marked; `make slow` what takes its time, with the
-reason; `benchmarks/long_runs.py` what is longer by nature, such as a thousand tasks of each kind.
+reason; `benchmarks/long_runs.py` what is longer by nature, such as ten thousand scene files.
 
     @slow("a minute: the order of the error needs five steps")
     @pytest.mark.parametrize("name", few(SCENES, {"fourbar-lecture-1"}, "one scene shows it"))
