@@ -12,7 +12,8 @@ least squares comes to 50 points of a known coupler curve, plain and blurred. It
 exits with 0.
 
 The others run the cases of `tests/analytic/lectures/synthesis/random_tasks.py`, write a line for
-each to out/synthesis, and continue there when they were cut; the exit code is 1 where a case fails.
+each to out/synthesis, in a folder for the commit, and continue there when they were cut; the exit
+code is 1 where a case fails.
 """
 
 import functools
@@ -34,6 +35,7 @@ from analytic.lectures.synthesis.examine import examine
 from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
 from analytic.lectures.synthesis.solutions import solutions_of
+from benchmarks.mutants import suites
 from models.lectures.tasks.positions import CouplerTask
 from reports.output.write import provenance
 from tests.analytic.lectures.synthesis.random_tasks import TASKS, hold, proofs
@@ -131,7 +133,7 @@ def speed() -> None:
     print("\n" + ", ".join(f"{name} {value}" for name, value in facts.items() if name != "made"))
 
 
-OUT = Path(__file__).parents[1] / "out" / "synthesis"
+OUT = Path(__file__).parents[1] / "out" / "synthesis" / suites()["test"].commit
 Case = tuple[int, str, dict[str, float]]
 """Number of a task, its fault, and what was measured."""
 
@@ -185,7 +187,7 @@ def run(suite: str) -> int:
             print(*faults, sep="\n", end="\n" if faults else "", flush=True)
             failed += len(faults)
             facts = [facts for _, _, facts in cases if facts]
-            for name in facts[0]:
+            for name in next(iter(facts), {}):
                 values = [each[name] for each in facts]
                 if suite == "tasks":
                     print(f"    {name} {sum(values):g}")
