@@ -8,7 +8,7 @@ import numpy as np
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account, chosen, sentence
 from reports.causes.cause import Cause, LogCase
-from reports.causes.hypotheses import other_world
+from reports.causes.hypotheses import frames, other_world
 from reports.causes.hypotheses.clock import drift, stamps, time_unit
 from reports.causes.hypotheses.dimension import dimension
 from reports.causes.hypotheses.filtered import filtered, forth_and_back, smoothed
@@ -25,13 +25,13 @@ Hypotheses = Sequence[Hypothesis]
 OF_SAMPLES: Hypotheses = (turns, samples)
 """Faults of some samples, besides any fault of all samples."""
 OF_CHANNELS: Hypotheses = (
-    straight, swapped, misnamed, *OF_SAMPLES, other_world.turned_points, late, filtered,
+    straight, swapped, misnamed, *OF_SAMPLES, frames.turned_points, late, filtered,
     forth_and_back, rounded,
 )  # fmt: skip
 """Faults of some channels."""
 OF_LOGS: Hypotheses = (
-    other_world.backwards, other_world.assembly, other_world.mirrored, time_unit, stamps, lost_rows,
-    other_world.moved, other_world.turned, other_world.sized, other_world.start_angle, dimension,
+    other_world.backwards, other_world.assembly, frames.mirrored, time_unit, stamps, lost_rows,
+    frames.moved, frames.turned, frames.sized, other_world.start_angle, dimension,
     drift, smoothed, two_faults,
 )  # fmt: skip
 """Faults of the log as a whole, or of the scene; the expensive ones come last, for channels without
