@@ -16,9 +16,10 @@ import numpy as np
 
 from models.array import Array, Mask
 from models.motion import Motion
+from models.scene import Scene
 from reports.compare.compare import EPSILON, Beside
 from reports.compare.errors import Error, ErrorKind
-from reports.compare.hardness import WINDOW_RAD, near
+from reports.compare.hardness import WINDOW_RAD, near, shared
 from reports.compare.tracks import Track, length, rate, second_rate, size
 from reports.quantities import QUANTITIES, named, quantity
 
@@ -156,9 +157,9 @@ def differenced_rows(beside: Beside, at: Instants) -> Iterable[Error]:
             yield from rate_rows(differenced, inner, "differenced")
 
 
-def uncertain(beside: Beside) -> dict[tuple[str, str], float]:
+@shared
+def uncertain(scene: Scene, reference: Motion) -> dict[tuple[str, str], float]:
     """Return the largest bound of the reference per quantity and body, as a pure number."""
-    scene, reference = beside.scene, beside.reference
     shares = {}
     for name in named("place", "derived"):
         for measure in QUANTITIES[name].measures:

@@ -258,16 +258,23 @@ class Errors:
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"
     ) -> Error | None:
         """Return the largest pure error of a quantity (not finite counts as largest)."""
-        return largest(
-            row
-            for row in self.rows
-            if (row.quantity, row.source, row.kind) == (quantity, source, kind)
-        )
+        return self._largest.get((quantity, source, kind))
+
+    @cached_property
+    def _largest(self) -> Mapping[tuple[str, str, str], Error]:
+        groups = dict[tuple[str, str, str], list[Error]]()
+        for row in self.rows:
+            groups.setdefault((row.quantity, row.source, row.kind), []).append(row)
+        return {key: max(rows, key=_size) for key, rows in groups.items()}
 
 
 def largest(rows: Iterable[Error]) -> Error | None:
     """Return the row with the largest pure error; a value that is not finite counts as largest."""
-    return max(rows, key=lambda row: row.pure if row.finite else math.inf, default=None)
+    return max(rows, key=_size, default=None)
+
+
+def _size(row: Error) -> float:
+    return row.pure if row.finite else math.inf
 
 
 BENT = (

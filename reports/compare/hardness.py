@@ -7,7 +7,9 @@ and the effect of a load over a displacement depends on its slider's position.
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from typing import ParamSpec, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +21,33 @@ from models.scene import Scene, driver, joints, loads
 from reports.compare.tracks import length
 from reports.quantities.quantity import BodyKind
 
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
 
+
+def shared(measure: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
+    """Return a measure that keeps its last result for the same objects and equal arrays: the runs
+    of a scene, which follow one another, share a reference. Arguments have no names."""
+    last: list[tuple[tuple[object, ...], Result]] = []
+
+    @wraps(measure)
+    def kept(*given: Parameters.args, **named: Parameters.kwargs) -> Result:
+        for before, found in last:
+            if all(map(_same, before, given)):
+                return found
+        found = measure(*given, **named)
+        last[:] = [(given, found)]
+        return found
+
+    return kept
+
+
+def _same(one: object, other: object) -> bool:
+    arrays = isinstance(one, np.ndarray) and isinstance(other, np.ndarray)
+    return one is other or (arrays and np.array_equal(cast(Array, one), cast(Array, other)))
+
+
+@shared
 def loading(scene: Scene, motion: Motion) -> float:
     """Return the largest second difference, from sample to sample, of the acceleration that its
     loads alone would give a body, over that of the driver's speed on the longest link.
@@ -147,6 +175,7 @@ def _speed(scene: Scene, load: loads.Load, motion: Motion) -> Array:
     return np.zeros_like(motion.time_s) if turns is None else np.abs(turns.omega)
 
 
+@shared
 def curvature(scene: Scene, reference: Motion) -> float:
     """Return the largest finite pure acceleration of the reference, at least 1."""
     square = scene.pace_rad_s**2
@@ -183,6 +212,7 @@ def near(crossings: Iterable[Crossing], driver_rad: Array, within_rad: float) ->
     return nearby
 
 
+@shared
 def conditioning(motion: Motion, driver_rad: Array) -> float:
     """Return the smallest sine of a transmission angle, 1 where there is no dyad.
 
@@ -210,6 +240,7 @@ EVEN = 1e-3
 rounding."""
 
 
+@shared
 def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[BodyKind, str], float]:
     """Return the departure of each body from even motion with the driver, without even bodies:
     links in radians, sliders and points in longest links, at most 1.

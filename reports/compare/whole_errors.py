@@ -15,7 +15,13 @@ from models.motion import Forces, Motion
 from models.scene import Scene, joints, laws
 from reports.compare import error_rows, errors
 from reports.compare.compare import Beside
-from reports.compare.hardness import curvature, inertia_share, load_slopes, unevenly_turned
+from reports.compare.hardness import (
+    curvature,
+    inertia_share,
+    load_slopes,
+    shared,
+    unevenly_turned,
+)
 from reports.compare.tracks import length
 from reports.output.numbers import count
 from reports.quantities import named, quantity
@@ -196,11 +202,14 @@ class ComparedParts:
     drives_within: bool = False
 
 
+_jolts = shared(jolts)
+
+
 def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) -> errors.Errors:
     """Return all errors of a run; ``at`` are the instants of its positions."""
     scene, run, borne = beside.scene, beside.run, parts.borne
     reported, not_reported = error_rows.reported_rows(beside)
-    jolt = jolts(scene, beside.whole)
+    jolt = _jolts(scene, beside.whole)
     growth = parts.motion.sensitivity
     return errors.Errors(
         rows=(
@@ -230,7 +239,10 @@ def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) 
         of_motion=parts.motion,
         missing=beside.missing,
         incomplete=beside.incomplete or borne.incomplete,
-        uncertain={key: bound / growth for key, bound in error_rows.uncertain(beside).items()}
+        uncertain={
+            key: bound / growth
+            for key, bound in error_rows.uncertain(scene, beside.reference).items()
+        }
         | dict(borne.unsure),
         departure=parts.departure,
     )

@@ -224,7 +224,7 @@ class _Runs:
             "drive": cell.drive,
             "settings": cell.settings,
             "rates": finer == 1 or cell.with_forces,  # of finer runs places alone are compared
-            **({"with_forces": True} if cell.with_forces else {}),
+            "with_forces": cell.with_forces,
         }
         done = self.runner(given, self.state, *names, **options)
         asked = setup(given, self.state, *names, **options)

@@ -11,7 +11,7 @@ from reports.compare.errors import Error, Errors, largest
 from reports.compare.whole_errors import force_rows
 from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
-from reports.judge.tolerance import beyond_engine, limits
+from reports.judge.tolerance import Limit, beyond_engine, limits
 from reports.quantities import named
 from sim.engine import Placing, Run
 
@@ -59,6 +59,7 @@ def followed(
     rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * summed_rad)
     rounding = motion.rounding(rounding, parts[-1] * summed_rad, worst.pure_bound)
     steps_s, faults = [dt_s / p for p in parts], [fault for _, fault in finer if fault]
+    before = limits(truth.scene, errors, tolerance)
 
     def pure(followed: Error) -> list[float]:
         same = [_largest_total(rows, [followed.quantity]) for rows, _ in finer]
@@ -67,12 +68,12 @@ def followed(
     def over(quantities: Sequence[str], rounding: float) -> list[str]:
         numbered = zip(parts[1:], finer, strict=True)
         texts = (
-            _over(truth.scene, dt_s, errors, tolerance, p, rows, quantities, rounding)
+            _over(truth.scene, dt_s, errors, before, tolerance, p, rows, quantities, rounding)
             for p, (rows, _) in numbered
         )
         return [text for text in texts if text]
 
-    limit = limits(truth.scene, errors, tolerance).get(worst.tolerance)
+    limit = before.get(worst.tolerance)
     unit = "rad" if worst.unit == "rad" else "of the longest link"
     unit = "of the largest deflection" if worst.quantity in ELASTIC else unit
     of_places = convergence(
@@ -121,6 +122,7 @@ def _over(
     scene: Scene,
     dt_s: float,
     errors: Errors,
+    before: Mapping[str, Limit],
     tolerance: Mapping[str, float],
     parts: int,
     rows: Sequence[Error],
@@ -128,8 +130,8 @@ def _over(
     rounding: float,
 ) -> str:
     """Return the errors of a finer run over the limits of its step, the worst of each quantity. An
-    error over its limit at the full step fails its own rule, and is not repeated."""
-    before = limits(scene, errors, tolerance)
+    error over its limit at the full step, one of those ``before``, fails its own rule, and is not
+    repeated."""
     finer = _at_step(errors, parts, errors.of_scene.summed_rad * parts)
     in_force = limits(scene, finer, tolerance)
     texts = []
