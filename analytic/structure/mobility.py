@@ -189,6 +189,15 @@ def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | No
         )
 
 
+def refuse_elastic(scene: Scene, what: str) -> None:
+    """Refuse elastic links, as ``what`` is worked out for rigid ones. Raises CrankcheckError."""
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: {next(iter(scene.elastic))} is elastic; {what} are those of rigid "
+            "links: leave [elastic.LINK] out"
+        )
+
+
 MOST_LOOKS = 200_000
 """Most pairs tested, over all sets of links, to name a group: about 0.2 s, however many links there
 are."""

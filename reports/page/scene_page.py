@@ -263,14 +263,14 @@ def factors(chosen: float) -> list[tuple[str, str]]:
 def _moved(course: ElasticCourse) -> Array:
     """Return the offset of points and guides from the drawing: x and y by point [m], then angles of
     the links that carry guides [rad], (R, T), as the rows of the drawing."""
-    elastic, rigid = course.motion, course.base
+    bent, base = course.motion, course.base
     rows = [
         row
         for name in moving_points(course.scene)
-        for row in (elastic.points[name].position - rigid.points[name].position).T
+        for row in (bent.points[name].position - base.points[name].position).T
     ]
-    guides = dict.fromkeys(s.on for s in course.scene.sliders.values() if s.on in elastic.links)
-    rows += [elastic.links[name].theta - rigid.links[name].theta for name in guides]
+    guides = dict.fromkeys(s.on for s in course.scene.sliders.values() if s.on in bent.links)
+    rows += [bent.links[name].theta - base.links[name].theta for name in guides]
     return np.array(rows)
 
 

@@ -6,28 +6,29 @@ Apart from the quantities, as it reads all entries, also those of others.
 from collections.abc import Mapping
 
 from reports.quantities import MOVES, QUANTITIES
-from reports.quantities.quantity import Tolerance, tolerance_name
+from reports.quantities.quantity import Role, Tolerance, tolerance_name
 
 _OWN = {
     tolerance_name(name, each.source): (entry.role, each)
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
 }
-DRIVEN = (*MOVES, "force")
-DEFAULTS: Mapping[str, Tolerance] = {
-    name: each.tolerance for name, (role, each) in _OWN.items() if role in DRIVEN
-}
+
+
+def _of(*roles: Role) -> Mapping[str, Tolerance]:
+    return {name: each.tolerance for name, (role, each) in _OWN.items() if role in roles}
+
+
+DEFAULTS = _of(*MOVES, "force")
 """Tolerances of a driven mechanism."""
-BENDING: Mapping[str, Tolerance] = {
-    name: each.tolerance for name, (role, each) in _OWN.items() if role == "elastic"
-}
+BENDING = _of("elastic")
 """Tolerances of elastic links themselves."""
 ELASTIC = {**DEFAULTS, **BENDING}
 """Tolerances of a mechanism whose links bend."""
 FREE: Mapping[str, Tolerance] = {
     name: limit
-    for name, (role, each) in _OWN.items()
-    if (limit := each.tolerance if role == "free" else each.free_motion)
+    for name, (_, each) in _OWN.items()
+    if (limit := _of("free").get(name, each.free_motion))
 }
 """Tolerances of free motion: its errors at the same time are over the sensitivity of the motion."""
 FREE_ELASTIC = {**FREE, **BENDING}

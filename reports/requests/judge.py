@@ -254,7 +254,7 @@ def judged(
             )
         named = limits if every is None else {name: limits.get(name, every) for name in way.targets}
         return verdict_of_run(scene, log, named)
-    scene = loosened(scene) if asked.free else scene
+    scene = _released(scene, free=asked.free)
     _refuse_other_targets(scene, limits)
     given = given_of([scene], asked.segments, asked.springs)
     request = LogRequest(
@@ -268,6 +268,10 @@ def judged(
     found = judge_log(any_log.log_of(scene, log, asked.map, forces=asked.forces), request)
     notes = tuple(arguments.in_python(note) for note in found.notes)
     return LogVerdict(**arguments.parts_in_python(found) | {"notes": notes}, facts=provenance({}))
+
+
+def _released(scene: Scene, *, free: bool) -> Scene:
+    return loosened(scene) if free else scene
 
 
 def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
@@ -320,7 +324,7 @@ class JudgeRequest:
         """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
         can not be read and for a faulty request, before anything is written."""
         scene = load_scene(self.scene)
-        scene = loosened(scene) if self.free else scene
+        scene = _released(scene, free=self.free)
         outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
         asked = _checked(self, scene, outputs)
         tolerance.check_names(scene)

@@ -17,6 +17,7 @@ from analytic.lectures.circuits.arcs import Arc, Signs
 from analytic.lectures.circuits.circuits import Circuits, circuits_of
 from analytic.lectures.circuits.rotatability import plain_angles
 from analytic.lectures.regulation.angle_cells import crossings
+from analytic.structure.mobility import refuse_elastic
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -57,11 +58,7 @@ def equilibria(scene: Scene) -> Equilibria:
     """Find the positions of rest of a scene, released if it is driven, circuit by circuit. Raises
     StructureError as `circuits_of`; CrankcheckError for loads over time, elastic links, friction
     that follows the reactions, or a circuit in which nothing acts."""
-    if scene.elastic:
-        raise CrankcheckError(
-            f"{scene.name}: {next(iter(scene.elastic))} is elastic; positions of rest are those of "
-            "rigid links: leave [elastic.LINK] out"
-        )
+    refuse_elastic(scene, "positions of rest")
     for load in scene.loads.values():
         if load.over == "time" and not isinstance(load.characteristic, Constant):
             raise CrankcheckError(

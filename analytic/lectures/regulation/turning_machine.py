@@ -18,7 +18,7 @@ from analytic.forces import force_elements
 from analytic.forces.bounded import Bounded
 from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
 from analytic.kinematics import driven_chunk, reach, repeats_after, unit_chunk
-from analytic.structure.mobility import analyse, refuse_other_than_cranked
+from analytic.structure.mobility import analyse, refuse_elastic, refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, few
 from models.scene import Scene
@@ -151,11 +151,7 @@ class TurningMachine:
     def of(scene: Scene) -> TurningMachine:
         """Make the machine of a scene; to the side of its driver's start, and left-handed from
         rest. Raises CrankcheckError as `cycle_angle`, and for elastic links."""
-        if scene.elastic:
-            raise CrankcheckError(
-                f"{scene.name}: {next(iter(scene.elastic))} is elastic; the steady cycle of a "
-                "machine, and its flywheel, are those of rigid links: leave [elastic.LINK] out"
-            )
+        refuse_elastic(scene, "the steady cycle of a machine, and its flywheel,")
         whole = cycle_angle(scene)
         theta, omega, _ = scene.driver.law.at(np.zeros(1))
         return TurningMachine(scene, math.copysign(1.0, omega[0]), float(theta[0]), whole)

@@ -132,9 +132,10 @@ def _rod(
     model, data, index = loop.model, loop.data, int(loop.model.body_jntadr[root])
     kind = loops.JOINTS[int(model.jnt_type[index])]
     carries = any(loops.rigid(model, int(model.body_parentid[body])) == root for body in loop.ids)
-    if kind not in ("free", "ball") or carries:
+    if kind not in (loops.FLOATING, loops.BALL) or carries:
         return ()
-    places = [data.xanchor[index]] if kind == "ball" else []
+    anchored = kind == loops.BALL
+    places = [data.xanchor[index]] if anchored else []
     for each in (each for each in loop.closures if each.kind == "connect"):
         for end, other in ((0, 1), (1, 0)):
             beside = model.jnt_type[model.jnt_bodyid == loops.rigid(model, each.bodies[other])]
@@ -144,13 +145,15 @@ def _rod(
     line = max((place - places[0] for place in places), key=np.linalg.norm, default=np.zeros(3))
     if not np.any(line):
         return ()
-    free = 3 if kind == "free" else 0
-    at, dof = int(model.jnt_qposadr[index]) + free, int(model.jnt_dofadr[index]) + free
+    ahead = 0 if anchored else 3  # coordinates of its place, before those of its turn
+    at, dof = int(model.jnt_qposadr[index]) + ahead, int(model.jnt_dofadr[index]) + ahead
     own, turned = data.xmat[root].reshape(3, 3), np.array(data.qpos[at : at + 4])
     axes = np.array([plane.x, plane.y, plane.normal]) @ own @ matrix_of(turned).T
     arm, line = own.T @ (places[0] - data.xpos[root]), own.T @ line
     before = sum(rod.count for rod in rods)
-    rods.append(HeldRod(at, dof, axes, turned, arm, line, np.array(places[0]) if free else None))
+    rods.append(
+        HeldRod(at, dof, axes, turned, arm, line, None if anchored else np.array(places[0]))
+    )
     columns = [(model.nq + before + n, model.nv + before + n) for n in range(rods[-1].count)]
     name, anchor = loops.joint_name(model, index), plane.flat(places[0])
     hinge = PlanarJoint(index, name, "hinge", anchor, 0j, 1.0, columns[-1])

@@ -25,6 +25,8 @@ JOINTS = {
     kind.value: kind.name.removeprefix("mjJNT_").lower()
     for kind in mujoco.mjtJoint.__members__.values()
 }
+FLOATING, BALL = "free", "ball"
+"""Joints that turn about any axis, with and without a place of their own."""
 SHOWN = 6
 WORLD = 0
 NOTHING = 1e-9
@@ -155,7 +157,7 @@ def _ties(model: Any, closures: Sequence[file.ModelClosure]) -> Ties:
     for root in range(1, model.nbody):
         kinds = [JOINTS[int(model.jnt_type[joint])] for joint in _joints(model, [root])]
         floats = kinds.count("slide") >= 2 and len(kinds) > kinds.count("slide")
-        if rigid(model, root) == root and "free" not in kinds and not floats:
+        if rigid(model, root) == root and FLOATING not in kinds and not floats:
             pairs.append((root, rigid(model, int(model.body_parentid[root]))))
     ties: dict[int, set[int]] = {}
     for first, second in pairs:

@@ -219,13 +219,18 @@ def _by_angle(scene: Scene, quantity: GraphedQuantity) -> GraphSpan:
     return GraphSpan(scene, quantity, start, end, "angle", math.degrees(1.0), motion_at, None)
 
 
-def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
+def refuse_released_elastic(scene: Scene, drawings: str, cure: str) -> None:
+    """Refuse elastic links in free motion for ``drawings``. Raises CrankcheckError."""
     if scene.elastic:
         raise CrankcheckError(
-            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and graphs "
-            "are those of rigid links; `crankcheck solve` writes that motion with -o FILE.csv, or "
-            "take [elastic] out of the scene"
+            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and "
+            f"{drawings} are those of rigid links; {cure}"
         )
+
+
+def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
+    writes = "`crankcheck solve` writes that motion with -o FILE.csv"
+    refuse_released_elastic(scene, "graphs", f"{writes}, or take [elastic] out of the scene")
     if duration_s is None:
         raise CrankcheckError(
             f"{scene.name}: it is let go, and has no period to draw; say for how long: --duration "

@@ -25,6 +25,7 @@ from reports.compare.tracks import rate, second_rate
 from reports.describe.facts import angle_at, driver_at, time_at
 from reports.drawing.shape import true_motion
 from reports.lectures.drawing.sheets.graph_drawing import SheetLog
+from reports.lectures.drawing.sheets.graph_span import refuse_released_elastic
 from reports.logs.channel import OwnLog, Reading, logged_motion
 from reports.logs.log_beside import EVEN
 
@@ -83,12 +84,8 @@ def _motion_at(scene: Scene, time_s: float) -> Motion:
     least, as it begins at 0."""
     if not scene.is_free:
         return true_motion(scene, np.array([time_s]))
-    if scene.elastic:
-        raise CrankcheckError(
-            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and polygons "
-            "are those of rigid links; take [elastic] out of the scene, or name an --omega, with "
-            "which links are drawn as rigid"
-        )
+    omega = "name an --omega, with which links are drawn as rigid"
+    refuse_released_elastic(scene, "polygons", f"take [elastic] out of the scene, or {omega}")
     own_s = scene.driver.law.period_s
     if time_s > MOST_PERIODS * own_s:
         raise CrankcheckError(
