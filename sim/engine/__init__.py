@@ -24,6 +24,9 @@ Settings = Mapping[str, SettingValue]
 Placing = Literal["integrated", "solved"]
 """Integrated: positions follow from velocities, step by step, with the error of the step. Solved:
 each step solves for the joints, so positions may be exact to rounding."""
+Precision = Literal["double", "single"]
+EPSILON: Mapping[Precision, float] = {"double": 2.0**-52, "single": 2.0**-23}
+"""Relative distance of two neighbouring numbers."""
 ForcesOf = Literal["nothing", "states", "steps"]
 """Forces that an engine reports. States: forces of a state, at every sample. Steps: forces of the
 last step, so that they are NaN at the start of a run."""
@@ -193,6 +196,7 @@ class Engine:
     applies_constant_friction: bool = False
     applies_springs: bool = False
     applies_beams: bool = False
+    precision: Precision = "double"
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,7 @@ The velocity at that instant itself, for dampers and motors, would be half by th
 is taken from the last three positions, to the second order.
 """
 
-import math
-from collections.abc import Collection, Mapping, Sequence
-from typing import Generic, TypeVar
+from collections.abc import Sequence
 
 import numpy as np
 import pymunk
@@ -21,10 +19,10 @@ import pymunk.batch
 
 from models.array import Array
 from models.scene import GROUND, Point, Scene
-from models.scene.joints import FIXED, Frame, Prism, Slot, less, riding_body, turned, whole_turns
-from models.scene.loads import LineSpring, PinSpring, SegmentSpring, SlideSpring, Spring
-from sim.engine import BodyPose, measure, ties
-from sim.pymunk.native import Pushes
+from models.scene.joints import FIXED, Frame, whole_turns
+from models.scene.loads import SegmentSpring
+from sim.engine import BodyPose, measure
+from sim.engine.acting import Course, Frames
 from sim.pymunk.space import SpaceModel
 
 FIELDS = (
@@ -33,7 +31,6 @@ FIELDS = (
     | pymunk.batch.BodyFields.VELOCITY
     | pymunk.batch.BodyFields.ANGULAR_VELOCITY
 )
-Value = TypeVar("Value", float, Array)
 WIDTH = 6
 """Numbers per body: x, y, angle, vx, vy, omega."""
 
@@ -67,10 +64,6 @@ def pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
     )
 
 
-Frames = Mapping[str, Frame]
-"""Frames of the pymunk bodies, with their own origins, and of the ground."""
-
-
 def frames_at_end(model: SpaceModel, dt_s: float) -> Frames:
     """Return the frames of all bodies at the end of the next step; they have no velocities."""
     return {GROUND: FIXED} | {
@@ -85,150 +78,6 @@ def frames_at_end(model: SpaceModel, dt_s: float) -> Frames:
         )
         for name, body in model.bodies.items()
     }
-
-
-class Course(Generic[Value]):
-    """A quantity, or many, at the ends of the last steps, and its rate."""
-
-    def __init__(self, start: Value, dt_s: float) -> None:
-        self._dt = dt_s
-        self._values: list[Value] = [start]
-
-    def go_on(self, value: Value) -> None:
-        """Go on to the end of the next step."""
-        self._values.append(value)
-        del self._values[:-3]
-
-    @property
-    def value(self) -> Value:
-        """Value at the end of the step."""
-        return self._values[-1]
-
-    @property
-    def rate(self) -> Value:
-        """Rate there, by the parabola through the last three values, or the line through two."""
-        if len(self._values) < 3:
-            return (self._values[-1] - self._values[0]) / self._dt
-        first, second, third = self._values
-        return (3.0 * third - 4.0 * second + first) / (2.0 * self._dt)
-
-    @property
-    def rate_before(self) -> Value:
-        """Rate half a step before the end."""
-        return (self._values[-1] - self._values[-2]) / self._dt
-
-
-class SliderCourse:
-    """Displacement of a slider [m], and pushes along its line."""
-
-    def __init__(self, model: SpaceModel, slide: Prism | Slot, dt_s: float) -> None:
-        self._slide, slider, self._rider = slide, slide.slider, riding_body(slide)
-        self._guide = slider.on
-        self._anchor = model.anchor(self._rider, slider.point)
-        self._start = less(slider.through_m, model.centre[slider.on])
-        self._along = turned((1.0, 0.0), slider.direction_rad)
-        self.course = Course(model.state.displacement[slider.name], dt_s)
-
-    def follow(self, frames: Frames) -> None:
-        """Go on to the positions of the bodies at the end of a step."""
-        seen = frames[self._guide].into(frames[self._rider].at(self._anchor))
-        x, y = less(seen, self._start)
-        self.course.go_on(x * self._along[0] + y * self._along[1])
-
-    def push(self, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Push the sliding body by so much along the line [N], and the guide back."""
-        slider, rider, guide = self._slide.slider, frames[self._rider], frames[self._guide]
-        fx, fy = turned((size, 0.0), guide.theta + slider.direction_rad)
-        if isinstance(self._slide, Slot):
-            pushes.note(slider.name, (fx, fy, 0.0))
-        place = rider.at(self._anchor)
-        pushes.force(self._rider, rider, place, (fx, fy))
-        pushes.force(self._guide, guide, place, (-fx, -fy))
-
-
-class SpringSteps:
-    """Springs of a scene that are not the space's own, ``but`` the springs of a chain."""
-
-    def __init__(
-        self,
-        model: SpaceModel,
-        tracks: Mapping[str, SliderCourse],
-        dt_s: float,
-        but: Collection[Spring],
-    ) -> None:
-        start = frames_at_end(model, 0.0)
-        self._steps: list[_OnLine | _InPin | _OnSlide] = []
-        for name, spring in model.scene.springs.items():
-            if name in model.springs or spring in but:
-                continue
-            if isinstance(spring, LineSpring):
-                self._steps.append(_OnLine(model, spring, start, dt_s))
-            elif isinstance(spring, PinSpring):
-                self._steps.append(_InPin(spring, start, dt_s))
-            else:
-                self._steps.append(_OnSlide(spring, tracks[spring.slider]))
-
-    def __bool__(self) -> bool:
-        return bool(self._steps)
-
-    @property
-    def numbers(self) -> dict[str, tuple[float, float, float]]:
-        """Rate, damping and slack length of each spring by name."""
-        springs = (step.spring for step in self._steps)
-        return {one.name: (one.rate, one.damping, one.free) for one in springs}
-
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        """Apply the springs."""
-        for step in self._steps:
-            step.push(frames, pushes)
-
-
-class _OnLine:
-    def __init__(self, model: SpaceModel, spring: LineSpring, start: Frames, dt_s: float) -> None:
-        self.spring = spring
-        first, second = (
-            (body, less(place, model.centre[body]))
-            for body, place in ties.spring_ends(model.scene, spring)
-        )
-        self._ends = first, second
-        self._course = Course(self._length(start), dt_s)
-
-    def _length(self, frames: Frames) -> float:
-        return math.dist(*(frames[body].at(anchor) for body, anchor in self._ends))
-
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        length = self._length(frames)
-        self._course.go_on(length)
-        pushes.pull(*self._ends, frames, self.spring.pull(length, self._course.rate))
-
-
-class _InPin:
-    def __init__(self, spring: PinSpring, start: Frames, dt_s: float) -> None:
-        self.spring = spring
-        opened = self._opened(start)
-        self._whole = whole_turns(spring, opened)
-        self._course = Course(opened + self._whole, dt_s)
-
-    def _opened(self, frames: Frames) -> float:
-        first, second = self.spring.bodies
-        return frames[second].theta - frames[first].theta
-
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        q = self._opened(frames) + self._whole
-        self._course.go_on(q)
-        pull = self.spring.pull(q, self._course.rate)
-        first, second = self.spring.bodies
-        pushes.torque(first, pull)
-        pushes.torque(second, -pull)
-
-
-class _OnSlide:
-    def __init__(self, spring: SlideSpring, track: SliderCourse) -> None:
-        self.spring, self._track = spring, track
-
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        course = self._track.course
-        self._track.push(-self.spring.pull(course.value, course.rate), frames, pushes)
 
 
 TURNING = pymunk.batch.BodyFields.ANGLE | pymunk.batch.BodyFields.ANGULAR_VELOCITY

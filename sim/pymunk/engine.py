@@ -15,7 +15,7 @@ from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
 from sim.engine.settings import as_held
 from sim.pymunk import settings as own
-from sim.pymunk.acting import Acting
+from sim.pymunk.acting import SpaceActing
 from sim.pymunk.arcs import Arcs
 from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, finite, pose, rows_of
 from sim.pymunk.convergence import iterations
@@ -63,7 +63,7 @@ class PymunkSession:
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
-        self._acting = Acting(self._model, dt_s, drive)
+        self._acting = SpaceActing(self._model, dt_s, drive)
         # Pins are closed for the arcs of a step in free motion, if a step corrects the whole error.
         wanted = settings["free_paths"] == "arcs" and float(settings["error_bias"]) == 0.0
         bent = wanted and drive == "free" and not chain_springs(scene)

@@ -1,8 +1,7 @@
 """Bodies of a scene in a space, actions on them in a step, and the space's own springs and friction
 in pins."""
 
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,16 +9,12 @@ import pymunk
 
 from models.array import Array
 from models.errors import EngineError
-from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND
 from models.scene import joints as pairs
 from models.scene.joints import End, Frame, less
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
+from sim.engine.acting import PlacedBodies, Pushes
 from sim.engine.ties import slide_of, spring_ends
-
-Push = tuple[float, float, float]
-"""A force [N] and a moment [N m]."""
-NONE: Push = (0.0, 0.0, 0.0)
 
 
 def moves_freely(body: pymunk.Body) -> bool:
@@ -28,64 +23,15 @@ def moves_freely(body: pymunk.Body) -> bool:
 
 
 @dataclass(frozen=True)
-class SpaceBodies:
-    """Moving bodies of a scene in a space, placed at a state, by name in the order they were added.
+class SpaceBodies(PlacedBodies):
+    """Moving bodies of a scene in a space, by name in the order they were added."""
 
-    ``centre`` is the origin of each pymunk body, and of the ground, in the frame of its link [m].
-    """
-
-    scene: Scene
-    state: State
     space: pymunk.Space
     bodies: dict[str, pymunk.Body] = field(default_factory=dict)
-    centre: dict[str, Point] = field(default_factory=lambda: {GROUND: (0.0, 0.0)})
 
     def body(self, name: str) -> pymunk.Body:
         """Return a body or the ground."""
         return self.space.static_body if name == GROUND else self.bodies[name]
-
-    def anchor(self, body: str, point: str) -> Point:
-        """Return a named point in the coordinates of its pymunk body [m]."""
-        return less(pairs.local_point(self.scene, body, point), self.centre[body])
-
-
-class Pushes:
-    """Forces at the origins of bodies with moments about them, by body, and their part on slider
-    blocks without mass, which transfer it, by slider."""
-
-    def __init__(self, bodies: Iterable[str], blocks: Iterable[str]) -> None:
-        self.on_bodies = dict.fromkeys(bodies, NONE)
-        self.on_blocks = dict.fromkeys(blocks, NONE)
-
-    def torque(self, body: str, size: float) -> None:
-        """Add a torque [N m]."""
-        self.on_bodies[body] = _sum(self.on_bodies[body], (0.0, 0.0, size))
-
-    def force(self, body: str, frame: Frame, place: Point, force: Point) -> None:
-        """Add a force [N] on a body with that frame, at a place of the plane [m]."""
-        x, y = less(place, frame.origin)
-        push = force[0], force[1], x * force[1] - y * force[0]
-        self.on_bodies[body] = _sum(self.on_bodies[body], push)
-
-    def pull(self, first: End, second: End, frames: Mapping[str, Frame], size: float) -> Point:
-        """Pull two places on pymunk bodies together by a force [N]; return it as the first body has
-        it. Where they meet it has no direction."""
-        (one, a), (other, b) = first, second
-        here, there = frames[one].at(a), frames[other].at(b)
-        way = less(there, here)
-        per_length = size / (math.hypot(*way) or math.inf)
-        fx, fy = per_length * way[0], per_length * way[1]
-        self.force(one, frames[one], here, (fx, fy))
-        self.force(other, frames[other], there, (-fx, -fy))
-        return fx, fy
-
-    def note(self, slider: str, push: Push) -> None:
-        """Note an action on a block without mass, beside the bodies that take it."""
-        self.on_blocks[slider] = _sum(self.on_blocks[slider], push)
-
-
-def _sum(a: Push, b: Push) -> Push:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 WHOLE = 1.0 - 1e-9

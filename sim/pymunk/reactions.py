@@ -22,8 +22,9 @@ import pymunk.batch
 from models.array import Array
 from models.motion import Forces
 from models.scene.joints import centre_of, mass_of, turned
+from sim.engine.acting import Push, Pushes
 from sim.engine.momentum_balance import JointPushes, MomentumGain, forces_by_body, joint_pushes
-from sim.pymunk.native import Push, Pushes, moves_freely
+from sim.pymunk.native import moves_freely
 from sim.pymunk.space import SpaceModel
 
 BEFORE = (

@@ -17,6 +17,7 @@ ENGINES: Mapping[str, str] = {
     "mujoco": "..mujoco",
     "pymunk": "..pymunk",
     "exudyn": "..exudyn",
+    "box2d": "..box2d",
 }
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))

@@ -209,7 +209,7 @@ def run(
     except EngineError as error:
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
-    refuse_other_model(scene, state, facts, dt_s, drive, open_m)
+    refuse_other_model(scene, state, facts, dt_s, drive, open_m, chosen.precision)
     # Later loads may move a scene that almost rests: a radian in the whole run, at least.
     own = pace(scene, state, drive)
     runaway = RUNAWAY * max(own, 1.0 / (dt_s * steps)) if own else math.inf

@@ -9,30 +9,41 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene, driver, loads
 from models.scene.joints import bodies, centre_of, frames, mass_of
-from sim.engine import Drive, Engine, Facts, measure
+from sim.engine import EPSILON, Drive, Engine, Facts, Precision, measure
 from sim.engine.drive import pace, start_speed
 
 SAME = 1e-9
 """Relative difference that counts as none: rounding of a few operations, far below any error."""
 SHUT = 1e-12
 """Largest loop gap at the start, over the longest link, that counts as assembled."""
+ROUNDINGS = 16.0
+"""Units of the last place of an engine's numbers that both of these allow at least."""
 
 
 def refuse_other_model(
-    scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive, open_m: float = 0.0
+    scene: Scene,
+    state: State,
+    facts: Facts,
+    dt_s: float,
+    drive: Drive,
+    open_m: float = 0.0,
+    precision: Precision = "double",
 ) -> None:
     """Refuse a model that differs from the scene. Raises EngineError with all differences.
 
     Compared are mass, inertia, gravity, springs, beams, position and angle of every body, loop
     gaps, and the velocities at the engine's own instant. A prescribed crank need not have a mass,
-    nor a body that cannot turn an inertia; a free crank needs both, and nothing else.
+    nor a body that cannot turn an inertia; a free crank needs both, and nothing else. ``precision``
+    is that of the engine's numbers.
     """
+    rounding = ROUNDINGS * EPSILON[precision]
+    same = max(SAME, rounding)
     faults = [
-        *_matter(scene, facts, drive),
-        *_springs(scene, facts),
-        *_beams(scene, facts),
-        *_state(scene, state, facts, dt_s, drive),
-        *_gaps(scene, facts, open_m),
+        *_matter(scene, facts, drive, same),
+        *_springs(scene, facts, same),
+        *_beams(scene, facts, same),
+        *_state(scene, state, facts, dt_s, drive, same),
+        *_gaps(scene, facts, open_m, max(SHUT, rounding)),
     ]
     if faults:
         raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
@@ -84,25 +95,25 @@ def refuse_unknown_forces(
         raise EngineError(f"{engine.name} reports no forces; run it without, or another engine")
 
 
-def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
+def _matter(scene: Scene, facts: Facts, drive: Drive, same: float) -> Iterator[str]:
     for body in bodies(scene):
         mass, inertia = mass_of(scene, body)
         if body not in facts.mass_kg:
             if body != scene.driver.link or drive != "prescribed":
                 yield f"{body} has no mass_kg"
-        elif not math.isclose(facts.mass_kg[body], mass, rel_tol=SAME):
+        elif not math.isclose(facts.mass_kg[body], mass, rel_tol=same):
             yield f"{body} has mass_kg {facts.mass_kg[body]:g}, not {mass:g}"
         centre, wanted = facts.centre_m.get(body), centre_of(scene, body)
-        if centre is not None and math.dist(centre, wanted) > SAME * scene.longest_m:
+        if centre is not None and math.dist(centre, wanted) > same * scene.longest_m:
             yield f"{body} has centre_m {centre}, not {wanted}"
         own = facts.inertia_kg_m2.get(body, inertia)
-        if not math.isclose(own, inertia, rel_tol=SAME):
+        if not math.isclose(own, inertia, rel_tol=same):
             yield f"{body} has inertia_kg_m2 {own:g}, not {inertia:g}"
-    if math.dist(facts.gravity_m_s2, scene.gravity_m_s2) > SAME * math.hypot(*scene.gravity_m_s2):
+    if math.dist(facts.gravity_m_s2, scene.gravity_m_s2) > same * math.hypot(*scene.gravity_m_s2):
         yield f"gravity is {facts.gravity_m_s2}, not {scene.gravity_m_s2} m/s^2"
 
 
-def _springs(scene: Scene, facts: Facts) -> Iterator[str]:
+def _springs(scene: Scene, facts: Facts, same: float) -> Iterator[str]:
     """Yield differences of springs; a free length of 0 has no relative difference."""
     for name, spring in scene.springs.items():
         if name not in facts.springs:
@@ -117,14 +128,14 @@ def _springs(scene: Scene, facts: Facts) -> Iterator[str]:
             (0.0, 0.0, length),
             strict=True,
         ):
-            if not abs(found - wanted) <= SAME * max(abs(wanted), scale):
+            if not abs(found - wanted) <= same * max(abs(wanted), scale):
                 yield f"springs.{name} has {what} {found:g}, not {wanted:g}"
     for name in facts.springs:
         if name not in scene.springs:
             yield f"springs.{name} is none of the scene"
 
 
-def _beams(scene: Scene, facts: Facts) -> Iterator[str]:
+def _beams(scene: Scene, facts: Facts, same: float) -> Iterator[str]:
     """Yield differences of beams, at their first element."""
     for name, beam in scene.beams.items():
         elements = facts.beams.get(name, ())
@@ -139,12 +150,14 @@ def _beams(scene: Scene, facts: Facts) -> Iterator[str]:
         ):
             for i, element in enumerate(elements, start=1):
                 own = getattr(element, what)
-                if not abs(own - wanted) <= SAME * abs(wanted):
+                if not abs(own - wanted) <= same * abs(wanted):
                     yield f"element {i} of {name} has {what} {own:g}, not {wanted:g}"
                     break
 
 
-def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) -> Iterator[str]:
+def _state(
+    scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive, same: float
+) -> Iterator[str]:
     """Yield differences of position and velocity.
 
     Angular velocities are compared at the engine's own instant, to the second order of a delay.
@@ -170,21 +183,21 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) 
     for body in bodies(scene):
         frame, pose = wanted[body], facts.start.bodies[body]
         turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, math.tau))
-        if not turn <= SAME:
+        if not turn <= same:
             yield f"{body} stands at {pose.theta[0]:g} rad, not {frame.theta:g}"
-        if not np.hypot(*(pose.origin[0] - frame.origin)) <= SAME * length:
+        if not np.hypot(*(pose.origin[0] - frame.origin)) <= same * length:
             yield f"{body} lies at {pose.origin[0]}, not {frame.origin} m"
-        if not abs(pose.omega[0] - frame.omega) <= SAME * peak + 4.0 * slack:
+        if not abs(pose.omega[0] - frame.omega) <= same * peak + 4.0 * slack:
             yield f"{body} turns at {pose.omega[0]:g} rad/s, not {frame.omega:g}"
         off = float(np.hypot(*(pose.velocity[0] - frame.velocity)))
-        if not off <= (SAME * peak + 4.0 * slack) * length + 2.0 * abs(delay) * push:
+        if not off <= (same * peak + 4.0 * slack) * length + 2.0 * abs(delay) * push:
             yield f"{body} moves at {pose.velocity[0]} m/s, not {frame.velocity}"
 
 
-def _gaps(scene: Scene, facts: Facts, open_m: float) -> Iterator[str]:
+def _gaps(scene: Scene, facts: Facts, open_m: float, shut: float) -> Iterator[str]:
     """Yield joints that are open at the start by more than ``open_m`` [m]."""
     farthest = max(float(np.abs(facts.start.bodies[link].origin).max()) for link in scene.links)
-    limit = SHUT * max(scene.longest_m, farthest)
+    limit = shut * max(scene.longest_m, farthest)
     for name, gap in measure.gaps(scene, facts.start).items():
         if not gap[0] <= limit + open_m:
             yield f"{name} is open by {gap[0]:.2e} m"
