@@ -1,4 +1,4 @@
-"""Box2D 3: bodies in the plane, joints soft constraints, solved in sub-steps in single precision."""
+"""Box2D 3: bodies in the plane, soft joints, solved in sub-steps in single precision."""
 
 import math
 from importlib.metadata import version
@@ -8,7 +8,6 @@ import numpy as np
 import pyb2d3 as b2  # type: ignore[import-untyped]  # ships no stubs
 
 from models.array import Array
-from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene import joints as pairs

@@ -1,7 +1,7 @@
 """Sessions of engines that are stepped from Python: what is done before each step, and the log.
 
-An adapter says how its engine takes one step, where its bodies are, how its driver is turned and how
-a body is pushed; the drive, the loads and springs of the scene, whole turns and the log are here.
+An adapter says how its engine takes one step, where its bodies are, how its driver is turned and
+how a body is pushed; the drive, loads and springs of the scene, whole turns and the log are here.
 """
 
 import math
@@ -15,11 +15,23 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
+from models.mjcf.tree import driven_freedom, plan
 from models.motion import Forces, State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from models.scene.joints import FIXED, Frame
-from sim.engine import BodyPose, Drive, Facts, Log, Poses, Settings, SettingValue, drive, measure
+from sim.engine import (
+    BodyPose,
+    Drive,
+    Facts,
+    Log,
+    Poses,
+    Settings,
+    SettingValue,
+    drive,
+    measure,
+    tree_poses,
+)
 from sim.engine.acting import Acting, PlacedBodies, Pushes
 
 TURN_BETWEEN = 1.0
@@ -116,9 +128,7 @@ class SteppedSession(ABC):
         log = Log(poses, (count - 1) * every, count < len(at), warnings, wall)
         return log if forces is None else replace(log, forces=self.acted(forces[:count], poses))
 
-    def _run(
-        self, steps: int, every: int, rows: list[Array], forces: list[object] | None
-    ) -> None:
+    def _run(self, steps: int, every: int, rows: list[Array], forces: list[object] | None) -> None:
         """Take the steps; add numbers, and forces, after every ``every``-th."""
         turns = self._turns(steps) if self.drive != "free" else []
         if self.acting:
@@ -247,3 +257,46 @@ def refuse_driver_between(scene: Scene, engine: str, why: str) -> None:
     """Refuse a driver between two moving bodies. Raises EngineError."""
     if scene.driver.is_inner:
         raise EngineError(f"{scene.name}: its driver is {scene.driver.joint}; {engine} {why}")
+
+
+class TreeSession(SteppedSession):
+    """A session of an engine whose bodies hang on one another by joint coordinates, with loops
+    closed at pins (`models.mjcf.tree`). The frames of its bodies are those of the links."""
+
+    def __init__(
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
+    ) -> None:
+        super().__init__(scene, state, settings, dt_s, driven_by)
+        self.tree = plan(scene, state, delay_s=self.shift * dt_s)
+        self.freedoms = [own for limb in self.tree.limbs for own in limb.freedoms]
+        """The joint coordinates, in the order of the limbs and of each one's joints."""
+        driven, self.sense = driven_freedom(scene, self.tree.limbs)
+        self.driven = next(k for k, own in enumerate(self.freedoms) if own.name == driven)
+        """Row of the driven coordinate, and its sense against the driver's own."""
+        self.names = pairs.bodies(scene)
+        centre = dict.fromkeys((GROUND, *self.names), (0.0, 0.0))
+        self.bodies = PlacedBodies(scene, state, centre=centre)
+
+    @abstractmethod
+    def look(self) -> Array:
+        """Return the joint coordinates, their rates and accelerations (NaN where unknown), of
+        `freedoms`, as these count them, (3, n)."""
+
+    def numbers(self) -> Array:
+        return self.look()
+
+    def frames(self, ahead_s: float) -> Mapping[str, Frame]:
+        q, rate, _ = self.look()
+        still = np.zeros((1, len(q)))
+        found = tree_poses.body_poses(self.tree.limbs, (q + ahead_s * rate)[None], still, still)
+        return {GROUND: FIXED} | {
+            name: Frame(
+                (float(p.origin[0, 0]), float(p.origin[0, 1])), float(p.theta[0]), (0, 0), 0
+            )
+            for name, p in found.items()
+        }
+
+    def poses(self, rows: Array, time_s: Array) -> Poses:
+        lag = self.shift * self.dt
+        q, rate, push = rows[:, 0], rows[:, 1], rows[:, 2]
+        return Poses(time_s, tree_poses.body_poses(self.tree.limbs, q, rate, push, lag), lag)
