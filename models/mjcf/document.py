@@ -42,7 +42,7 @@ def build(
     _check_masses(scene)
     _check_driver(scene)
     writing = options.exact(scene) if writing is None else writing
-    tree = tree or forces.planned(scene, state, writing)
+    tree = tree or forces.planned(scene, state, writing.close, delay_s=writing.delay_s)
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
         f"  <!-- {options.commentable(scene.source)} -->",

@@ -1,5 +1,6 @@
 """Loads, springs and friction of a scene in its MJCF text."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from models.errors import EngineError
@@ -244,26 +245,28 @@ def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:
     ]
 
 
-def planned(scene: Scene, state: State, writing: Writing) -> Tree:
+def planned(
+    scene: Scene, state: State, close: str | Sequence[str] = (), *, delay_s: float = 0.0
+) -> Tree:
     """Plan the tree of a scene, with all joints with friction in it.
 
-    MuJoCo has constant friction (``frictionloss``) in hinges and slides of the tree; a connect,
-    which closes a loop, has none. So loops close at pins without friction. Raises EngineError as
+    Engines have constant friction (MuJoCo's ``frictionloss``) in hinges and slides of the tree;
+    what closes a loop has none. So loops close at pins without friction. Raises EngineError as
     `models.mjcf.tree.plan`, and where every way to close the loops takes a pin with friction.
     """
-    tree = plan(scene, state, writing.close, delay_s=writing.delay_s)
+    tree = plan(scene, state, close, delay_s=delay_s)
     rubbing = [one.joint for one in scene.friction.values() if one.joint not in scene.sliders]
     at_closures = [point for point in rubbing if _closes(tree, point)]
     if not at_closures:
         return tree
-    if not writing.close:
-        for close in closings(scene, state):
-            other = plan(scene, state, close, delay_s=writing.delay_s)
+    if not close:
+        for others in closings(scene, state):
+            other = plan(scene, state, others, delay_s=delay_s)
             if not any(_closes(other, point) for point in rubbing):
                 return other
     where = ", ".join(at_closures)
     raise EngineError(
-        f"close = {where}: a pin that closes a loop of {scene.name} in MuJoCo has no friction, and "
+        f"close = {where}: a pin that closes a loop of {scene.name} has no friction here, and "
         f"friction.{at_closures[0]} asks for it; leave a pin of that loop without, and close there"
     )
 

@@ -188,8 +188,8 @@ def _slides(slide: joints.Prism | joints.Slot) -> list[_Edge]:
 
 def _needs_mass(slider: Slider) -> str:
     return (
-        f"slider {slider.name}: a massless block cannot be held here, as MuJoCo closes loops only "
-        f"at pins; give sliders.{slider.name} a mass_kg above 0"
+        f"slider {slider.name}: a massless block cannot be held here, as loops close only at "
+        f"pins; give sliders.{slider.name} a mass_kg above 0"
     )
 
 

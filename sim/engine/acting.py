@@ -397,8 +397,9 @@ def slider_friction(scene: Scene, drive: Drive, engine: str) -> dict[str, float]
 
 
 class Acting:
-    """Loads, springs and friction of sliders; not springs of the names ``but``, which the engine
-    has itself. ``bodies`` are placed so in the ``engine``, and have the frames ``start`` there."""
+    """Loads, springs and friction of sliders; not springs of the names ``but``, nor friction where
+    the engine ``rubs``: it has these itself. ``bodies`` are placed so in the ``engine``, and have
+    the frames ``start`` there."""
 
     def __init__(
         self,
@@ -408,6 +409,8 @@ class Acting:
         dt_s: float,
         drive: Drive,
         but: Collection[str] = (),
+        *,
+        rubs: bool = False,
     ) -> None:
         scene = bodies.scene
         slides = joints(scene).slides
@@ -422,7 +425,7 @@ class Acting:
         slots = {block_name(slide.slider): slide for slide in slides if isinstance(slide, Slot)}
         self._loads = LoadSteps(bodies, start, slots, self._tracks, dt_s, drive)
         self._springs = SpringSteps(bodies, start, self._tracks, dt_s, but)
-        self._friction = slider_friction(scene, drive, engine)
+        self._friction = {} if rubs else slider_friction(scene, drive, engine)
         self._acts = bool(scene.loads or self._springs or self._friction)
         self._bodies = tuple(start)
         self._blocks = tuple(slot.slider.name for slot in slots.values())

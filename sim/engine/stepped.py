@@ -15,7 +15,8 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.mjcf.tree import driven_freedom, plan
+from models.mjcf.forces import planned
+from models.mjcf.tree import driven_freedom
 from models.motion import Forces, State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
@@ -42,12 +43,14 @@ class SteppedSession(ABC):
     """A session with one model, in steps of ``dt`` [s]; ``done`` steps are behind it.
 
     A subclass opens its model, and then calls `begin`. Forces act ``acts_at`` steps after the
-    positions before a step, velocities belong ``shift`` steps after the positions.
+    positions before a step, velocities belong ``shift`` steps after the positions. An engine that
+    ``rubs`` has the friction of sliders itself.
     """
 
     name: ClassVar[str]
     shift: ClassVar[float] = 0.0
     acts_at: ClassVar[float] = 0.0
+    rubs: ClassVar[bool] = False
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
@@ -59,7 +62,8 @@ class SteppedSession(ABC):
     def begin(self, placed: PlacedBodies) -> None:
         """Take the first look at the model, whose bodies are ``placed``."""
         self.placed = placed
-        self.acting = Acting(self.name, placed, self.frames(0.0), self.dt, self.drive)
+        at = self.frames(0.0)
+        self.acting = Acting(self.name, placed, at, self.dt, self.drive, rubs=self.rubs)
         if self.drive != "free":
             law = self.scene.driver.law
             self.turn(None, drive.start_speed(law, self.start_s, self.dt, self.shift))
@@ -267,7 +271,7 @@ class TreeSession(SteppedSession):
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
     ) -> None:
         super().__init__(scene, state, settings, dt_s, driven_by)
-        self.tree = plan(scene, state, delay_s=self.shift * dt_s)
+        self.tree = planned(scene, state, delay_s=self.shift * dt_s)
         self.freedoms = [own for limb in self.tree.limbs for own in limb.freedoms]
         """The joint coordinates, in the order of the limbs and of each one's joints."""
         driven, self.sense = driven_freedom(scene, self.tree.limbs)
@@ -279,14 +283,14 @@ class TreeSession(SteppedSession):
 
     @abstractmethod
     def look(self) -> Array:
-        """Return the joint coordinates, their rates and accelerations (NaN where unknown), of
-        `freedoms`, as these count them, (3, n)."""
+        """Return the joint coordinates, their rates and, where known, accelerations, of `freedoms`,
+        as these count them, (2, n) or (3, n)."""
 
     def numbers(self) -> Array:
         return self.look()
 
     def frames(self, ahead_s: float) -> Mapping[str, Frame]:
-        q, rate, _ = self.look()
+        q, rate = self.look()[:2]
         still = np.zeros((1, len(q)))
         found = tree_poses.body_poses(self.tree.limbs, (q + ahead_s * rate)[None], still, still)
         return {GROUND: FIXED} | {
@@ -297,6 +301,17 @@ class TreeSession(SteppedSession):
         }
 
     def poses(self, rows: Array, time_s: Array) -> Poses:
-        lag = self.shift * self.dt
-        q, rate, push = rows[:, 0], rows[:, 1], rows[:, 2]
-        return Poses(time_s, tree_poses.body_poses(self.tree.limbs, q, rate, push, lag), lag)
+        lag, known = self.shift * self.dt, rows.shape[1] > 2
+        q, rate = rows[:, 0], rows[:, 1]
+        push = rows[:, 2] if known else np.full_like(q, np.nan)
+        found = Poses(time_s, tree_poses.body_poses(self.tree.limbs, q, rate, push, lag), lag)
+        return found if known else found.changed(unpushed)
+
+
+def unpushed(pose: BodyPose) -> BodyPose:
+    """Return the pose without accelerations; a body that only slides would keep its alpha of 0."""
+    return replace(
+        pose,
+        origin_acceleration=np.full_like(pose.origin, np.nan),
+        alpha=np.full_like(pose.theta, np.nan),
+    )

@@ -182,7 +182,7 @@ def _pair(vector: Array) -> Point:
 def _tree(scene: Scene, state: State, chosen: options.Writing) -> Tree:
     """Plan the tree; a fault that only the setting ``close`` causes is a fault of the setting."""
     try:
-        return planned(scene, state, chosen)
+        return planned(scene, state, chosen.close, delay_s=chosen.delay_s)
     except EngineError as error:
         if not chosen.close:
             raise

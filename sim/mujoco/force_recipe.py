@@ -71,7 +71,7 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
     count as joint forces, for the tree's too. Refuse drives and loads that a file does not hold."""
     _check_held(scene)
     chosen = writing(scene, settings, dt_s, "prescribed")
-    tree = planned(scene, state, chosen)
+    tree = planned(scene, state, chosen.close, delay_s=chosen.delay_s)
     loops = _signed(
         scene,
         (

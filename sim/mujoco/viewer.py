@@ -21,7 +21,7 @@ def show(scene: Scene, start: State) -> None:
     their sizes.
     """
     writing = options.exact(scene)
-    tree = forces.planned(scene, start, writing)
+    tree = forces.planned(scene, start, writing.close, delay_s=writing.delay_s)
     model = mujoco.MjModel.from_xml_string(document.build(scene, start, writing, tree))
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
