@@ -102,6 +102,7 @@ class DartSession(TreeSession):
         return joint, body
 
     def _drive(self) -> None:
+        """Give the driven joint its motor."""
         kinds = dartpy.dynamics
         if self.drive == "prescribed":
             self.motor.setActuatorType(kinds.VELOCITY)
@@ -142,6 +143,7 @@ class DartSession(TreeSession):
             loop.setConstraintForceMixing(float(self.settings["force_mixing"]))
 
     def once(self) -> None:
+        """Take one step; DART forgets its commands, joint forces and the motor's rate, after it."""
         tree = self.skeleton
         given = np.zeros(len(self.freedoms))
         if self.settings["coriolis"] == "middle":
@@ -246,6 +248,7 @@ ENGINE = Engine(
     check=own.checked,
     open=DartSession,
     reports_accelerations=False,
+    in_seconds=lambda settings: (),
     forces_of="steps",
     applies_loads=True,
     applies_constant_friction=True,

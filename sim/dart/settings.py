@@ -21,12 +21,12 @@ TUNED = Profile(
         "error_reduction": Setting(
             1.0,
             "the whole error in one step: the rocker of the lecture's four-bar is off by 4.5e-5 "
-            "rad at 1 ms, with 0.5 by 8.9e-5, with the default by 2.3e-3",
+            "rad at 1 ms, with 0.5 by 8.9e-5, with the default by 2.0e-3",
         ),
         "coriolis": Setting(
             "middle",
             "rates at the positions: the difference of its own Coriolis forces is given as joint "
-            "forces; let go, errors fall as dt^2 in place of dt (double pendulum, 1 ms, 2 s: "
+            "forces; let go, errors fall as dt^2 in place of dt (double pendulum, 2 s: "
             "2.3e-6 in place of 5.8e-4 of the sensitivity)",
         ),
     },

@@ -120,7 +120,15 @@ def forces_of(
             blocks[rub.joint][:, :2] += force
     gains = {n: _gain(scene, n, poses[n], given[n]) for n in poses if n != GROUND}
     pushes = joint_pushes(scene, [*hinges(scene, GROUND)], gains, driven=driven)
-    return forces_by_body(scene, pushes, blocks, rubbed, time_s - dt_s)
+    found = forces_by_body(scene, pushes, blocks, rubbed, time_s - dt_s)
+    unknown = np.flatnonzero(~np.isfinite(push).all(axis=1))
+
+    def told(series: Array) -> Array:
+        series = np.array(series)
+        series[unknown] = np.nan
+        return series
+
+    return found.each_series(told)
 
 
 def _gain(scene: Scene, name: str, pose: BodyPose, given: Array) -> MomentumGain:
