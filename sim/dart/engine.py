@@ -2,24 +2,23 @@
 
 import importlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from importlib.metadata import version
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from models.array import Array
 from models.mjcf.forces import planned
 from models.mjcf.tree import Freedom, Limb, LoopPin
-from models.motion import Forces, State
+from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from sim.dart import settings as own
-from sim.engine import Drive, Engine, Facts, Poses, Settings
+from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Pushes
 from sim.engine.stepped import TreeSession
 from sim.engine.ties import refuse_massless
-from sim.engine.tree_reactions import Row, forces_of, rubs
 
 dartpy: Any = importlib.import_module("dartpy")  # ships no stubs
 VERSION = version("dartpy")
@@ -62,7 +61,6 @@ class DartSession(TreeSession):
         self.skeleton.setVelocities(np.array([one.rate for one in self.freedoms]))
         self.motor = self.joints[self.driven]
         self._drive()
-        self.rubbing = rubs(scene, self.tree.limbs)
         for rub in self.rubbing:
             if rub.row != self.driven or driven_by != "prescribed":  # else it moves nothing
                 self.joints[rub.row].setCoulombFriction(0, rub.size)
@@ -71,7 +69,6 @@ class DartSession(TreeSession):
         for loop in self.loops:
             self.world.getConstraintSolver().addConstraint(loop)
         self.begin(self.bodies)
-        self.pushed = self.acting.none().on_bodies
 
     def _body(self, limb: Limb) -> Any:
         """Add the bodies of a limb, one for each of its joints, and return the last."""
@@ -175,28 +172,10 @@ class DartSession(TreeSession):
         self.rate = rate
 
     def push(self, pushes: Pushes) -> None:
-        self.pushed = pushes.on_bodies
         for name in self.names:
             fx, fy, moment = pushes.on_bodies[name]
             self.body[name].addExtForce([fx, fy, 0.0], [0.0, 0.0, 0.0], False, True)
             self.body[name].addExtTorque([0.0, 0.0, moment], False)
-
-    def joint_forces(self) -> Row:
-        q, rate = self.look()
-        push = self.skeleton.getAccelerations() if self.done else np.full(len(q), np.nan)
-        rubbed = {rub.joint: rub.on_second(rate[rub.row], self._pace()) for rub in self.rubbing}
-        return Row(np.stack([q, rate, push]), self.pushed, self.acting.on_blocks, rubbed)
-
-    def acted(self, rows: Sequence[object], poses: Poses) -> Forces:
-        return forces_of(
-            self.scene,
-            self.tree.limbs,
-            self.rubbing,
-            cast(Sequence[Row], rows),
-            poses.time_s,
-            self.dt,
-            driven=self.drive != "free",
-        )
 
     def look(self) -> Array:
         tree = self.skeleton

@@ -9,14 +9,14 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
 from models.mjcf.forces import planned
-from models.mjcf.tree import driven_freedom
+from models.mjcf.tree import Tree, driven_freedom
 from models.motion import Forces, State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
@@ -34,6 +34,7 @@ from sim.engine import (
     tree_poses,
 )
 from sim.engine.acting import Acting, PlacedBodies, Pushes
+from sim.engine.tree_reactions import Row, forces_of, rubs
 
 TURN_BETWEEN = 1.0
 """Largest turn of a body between two looks at its angle [rad], where an engine counts no turns."""
@@ -48,9 +49,9 @@ class SteppedSession(ABC):
     """
 
     name: ClassVar[str]
-    shift: ClassVar[float] = 0.0
-    acts_at: ClassVar[float] = 0.0
     rubs: ClassVar[bool] = False
+    shift: float = 0.0
+    acts_at: float = 0.0
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
@@ -64,6 +65,7 @@ class SteppedSession(ABC):
         self.placed = placed
         at = self.frames(0.0)
         self.acting = Acting(self.name, placed, at, self.dt, self.drive, rubs=self.rubs)
+        self.pushed, self.before = self.acting.none(), np.full_like(self.numbers(), np.nan)
         if self.drive != "free":
             law = self.scene.driver.law
             self.turn(None, drive.start_speed(law, self.start_s, self.dt, self.shift))
@@ -142,7 +144,10 @@ class SteppedSession(ABC):
             if turns:
                 self.turn(*turns[k])
             if self.acting:
-                self.push(self.acting.pushes(k, self.frames(self.acts_at * self.dt)))
+                self.pushed = self.acting.pushes(k, self.frames(self.acts_at * self.dt))
+                self.push(self.pushed)
+            if forces is not None:
+                self.before = self.numbers()
             self.once()
             self.done += 1
             if every and (k + 1) % every == 0:
@@ -271,15 +276,42 @@ class TreeSession(SteppedSession):
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
     ) -> None:
         super().__init__(scene, state, settings, dt_s, driven_by)
-        self.tree = planned(scene, state, delay_s=self.shift * dt_s)
+        self.tree = self.grown()
         self.freedoms = [own for limb in self.tree.limbs for own in limb.freedoms]
         """The joint coordinates, in the order of the limbs and of each one's joints."""
-        driven, self.sense = driven_freedom(scene, self.tree.limbs)
-        self.driven = next(k for k, own in enumerate(self.freedoms) if own.name == driven)
+        self.driven, self.sense = 0, 1.0
         """Row of the driven coordinate, and its sense against the driver's own."""
+        if driven_by != "free":
+            driven, self.sense = driven_freedom(scene, self.tree.limbs)
+            self.driven = next(k for k, own in enumerate(self.freedoms) if own.name == driven)
+        self.rubbing = rubs(scene, self.tree.limbs) if self.rubs else []
         self.names = pairs.bodies(scene)
         centre = dict.fromkeys((GROUND, *self.names), (0.0, 0.0))
         self.bodies = PlacedBodies(scene, state, centre=centre)
+
+    def grown(self) -> Tree:
+        """Return the tree, with the rates of its coordinates at the engine's own instant."""
+        return planned(self.scene, self.state, delay_s=self.shift * self.dt)
+
+    def joint_forces(self) -> Row:
+        """Return what shows the forces of the last step: the change of the rates in it."""
+        q, rate = self.numbers()[:2]
+        push = (rate - self.before[1]) / self.dt
+        rubbed = {rub.joint: rub.on_second(rate[rub.row], self._pace()) for rub in self.rubbing}
+        acting = self.acting
+        on_bodies, on_blocks = self.pushed.on_bodies, acting.on_blocks
+        return Row(np.stack([q, rate, push]), on_bodies, on_blocks, acting.rubbed | rubbed)
+
+    def acted(self, rows: Sequence[object], poses: Poses) -> Forces:
+        return forces_of(
+            self.scene,
+            self.tree.limbs,
+            self.rubbing,
+            cast(Sequence[Row], rows),
+            poses.time_s,
+            self.dt,
+            driven=self.drive != "free",
+        )
 
     @abstractmethod
     def look(self) -> Array:

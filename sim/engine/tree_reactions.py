@@ -102,7 +102,9 @@ def forces_of(
     poses = {GROUND: BodyPose(*_still(len(rows))), **poses}
     given = {name: np.array([row.on_bodies[name] for row in rows]) for name in poses}
     blocks = {name: np.array([row.on_blocks[name] for row in rows]) for name in rows[0].on_blocks}
-    rubbed = {rub.joint: np.array([row.rubbed[rub.joint] for row in rows]) for rub in rubbing}
+    rubbed = {
+        name: np.array([row.rubbed.get(name, math.nan) for row in rows]) for name in rows[-1].rubbed
+    }
     for rub in rubbing:
         size = rubbed[rub.joint]
         if rub.joint not in scene.sliders:

@@ -18,6 +18,9 @@ ENGINES: Mapping[str, str] = {
     "pymunk": "..pymunk",
     "exudyn": "..exudyn",
     "box2d": "..box2d",
+    "rapier": "..rapier",
+    "bullet": "..bullet",
+    "drake": "..drake",
     "dart": "..dart",
 }
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
