@@ -26,7 +26,7 @@ from reports.compare.errors import Error, Errors
 from reports.compare.tracks import Track, angle_error, fitting, lacking, tracks
 from reports.quantities import named
 from sim.engine import Energy, Run, Settings, SettingValue, Setup
-from sim.run.check import SAME
+from sim.run.check import SAME, rounding_of
 
 SETTLING = 40
 """Samples in which an engine that starts with closed pins comes to its steady error: their rates
@@ -354,8 +354,9 @@ def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
         for name, place in state.displacement.items()
         if name in first.displacement
     }
+    same = max(SAME, rounding_of(run.precision))
     far = [*((*each, "rad") for each in turned.items()), *((*each, "L") for each in moved.items())]
-    return [f"start: {body} begins {by:.2g} {unit} off" for body, by, unit in far if by > SAME]
+    return [f"start: {body} begins {by:.2g} {unit} off" for body, by, unit in far if by > same]
 
 
 def _words(name: str, asked: object, found: object) -> str:

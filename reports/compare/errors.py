@@ -12,6 +12,7 @@ from analytic.forces.late_impulses import ON_TIME, LateImpulses
 from reports.quantities import named
 from reports.quantities.limits import BENDING, DEFAULTS
 from reports.quantities.quantity import BodyKind, Source, Tolerance, tolerance_name
+from sim.engine import AT_ROUNDING
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class SceneFacts:
     moves two moving bodies against each other, and ``starts_in_passage`` if one of the first
     samples is near a change point. ``uneven`` is the departure of bodies from even motion with the
     driver, ``uneven_rates`` those of them whose rates depart too (`reports.compare.hardness`).
+    ``floor`` is the pure error that rounding leaves in the engine (`sim.engine.Engine`).
     """
 
     curvature: float
@@ -42,6 +44,7 @@ class SceneFacts:
     starts_in_passage: bool = False
     uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
+    floor: float = AT_ROUNDING
 
 
 @dataclass(frozen=True)

@@ -234,6 +234,7 @@ def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) 
             starts_in_passage=bool(np.any(at.passed[: at.first])),
             uneven={body: size / growth for body, size in parts.far.items()},
             uneven_rates=unevenly_turned(scene, parts.far),
+            floor=run.floor,
         ),
         of_forces=borne.facts,
         of_motion=parts.motion,

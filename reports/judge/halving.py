@@ -10,7 +10,7 @@ from reports.compare.compare import Truth, incomplete, places
 from reports.compare.errors import Error, Errors, largest
 from reports.compare.whole_errors import force_rows
 from reports.judge.rules.reference import too_good
-from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
+from reports.judge.three_steps import Convergence, convergence
 from reports.judge.tolerance import Limit, beyond_engine, limits
 from reports.quantities import named
 from sim.engine import Placing, Run
@@ -56,7 +56,8 @@ def followed(
     finer = [_finer(truth, dt_s, p, rerun) for p in parts[1:]]
     every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
     drive = largest(row for row in every_row if row.quantity == "drive")
-    rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * summed_rad)
+    least = errors.of_scene.floor
+    rounding = _rounding(drive, max(EXACT_DRIVE, least) + parts[-1] * summed_rad, least)
     rounding = motion.rounding(rounding, parts[-1] * summed_rad, worst.pure_bound)
     steps_s, faults = [dt_s / p for p in parts], [fault for _, fault in finer if fault]
     before = limits(truth.scene, errors, tolerance)
@@ -185,10 +186,11 @@ def _copied(
     return texts
 
 
-def _rounding(drive: Error | None, exact: float) -> float:
-    """Return the position error that rounding explains: of a set crank, at most ``exact``."""
+def _rounding(drive: Error | None, exact: float, least: float) -> float:
+    """Return the position error that rounding explains, ``least`` or more: of a set crank, at most
+    ``exact``."""
     of_crank = drive.pure if drive is not None and drive.pure <= exact else 0.0
-    return max(AT_ROUNDING, BEHIND_DRIVE * of_crank)
+    return max(least, BEHIND_DRIVE * of_crank)
 
 
 def worst_place(errors: Errors) -> Error | None:

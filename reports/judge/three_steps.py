@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from sim.engine import AT_ROUNDING
+
 Trend = Literal[
     "shrinks",
     "levels off",
@@ -21,8 +23,6 @@ Trend = Literal[
     "diverges",
 ]
 
-AT_ROUNDING = 1e-11
-"""A pure error that rounding over a run of thousands of steps explains by itself."""
 STAYS, GROWS = 0.6, 2.0
 """Ratios of the last error to the first: first order makes 0.25, and a floor wanders a little."""
 

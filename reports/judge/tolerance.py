@@ -72,7 +72,6 @@ from dataclasses import dataclass
 from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
-from reports.judge.three_steps import AT_ROUNDING
 from reports.quantities import named
 from reports.quantities.limits import BENDING, EVERY, FREE
 from reports.quantities.places import WITHIN_A_STEP
@@ -106,7 +105,7 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     if tolerance.bends:
         budget = links.deflecting(budget, step)
     budget = min(float(budget), tolerance.cap)
-    return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
+    return float(budget + tolerance.floor + scene.floor / step**tolerance.differenced)
 
 
 def _felt(tolerance: Tolerance, errors: Errors) -> float:

@@ -162,4 +162,5 @@ ENGINE = Engine(
     applies_loads=True,
     applies_springs=True,
     precision="single",
+    floor=5e-6,
 )

@@ -27,6 +27,9 @@ each step solves for the joints, so positions may be exact to rounding."""
 Precision = Literal["double", "single"]
 EPSILON: Mapping[Precision, float] = {"double": 2.0**-52, "single": 2.0**-23}
 """Relative distance of two neighbouring numbers."""
+AT_ROUNDING = 1e-11
+"""A pure error that rounding over a run of thousands of steps explains by itself, with numbers of
+double precision."""
 ForcesOf = Literal["nothing", "states", "steps"]
 """Forces that an engine reports. States: forces of a state, at every sample. Steps: forces of the
 last step, so that they are NaN at the start of a run."""
@@ -178,7 +181,8 @@ class Engine:
     with loads are unsupported, without ``applies_constant_friction`` scenes with constant friction,
     without ``applies_springs`` scenes with springs; with it `Facts.springs` has each spring.
     Without ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the
-    beams.
+    beams. ``precision`` is that of the engine's numbers, ``floor`` the pure error of places that it
+    leaves at any step.
     """
 
     name: str
@@ -197,6 +201,7 @@ class Engine:
     applies_springs: bool = False
     applies_beams: bool = False
     precision: Precision = "double"
+    floor: float = AT_ROUNDING
 
 
 @dataclass(frozen=True)
@@ -242,6 +247,8 @@ class Setup:
     asked: Settings
     with_forces: bool = False
     forces_of: ForcesOf = "nothing"
+    precision: Precision = "double"
+    floor: float = AT_ROUNDING
 
 
 @dataclass(frozen=True)
@@ -255,7 +262,7 @@ class Run:
     checked against them. ``asked`` is the complete set of requested settings, for another run;
     ``settings`` the engine's own after that. ``energy`` is kept for free motion, without the work
     of loads, dampers and friction. ``with_forces`` is true if forces were requested; they are in
-    ``motion``, of the kind ``forces_of``.
+    ``motion``, of the kind ``forces_of``. ``precision`` and ``floor`` are the engine's.
     """
 
     scene: str
@@ -282,3 +289,5 @@ class Run:
     energy: Energy | None = None
     with_forces: bool = False
     forces_of: ForcesOf = "nothing"
+    precision: Precision = "double"
+    floor: float = AT_ROUNDING

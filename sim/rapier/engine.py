@@ -299,4 +299,5 @@ ENGINE = Engine(
     applies_constant_friction=True,
     applies_springs=True,
     precision="single",
+    floor=2e-6,
 )

@@ -253,6 +253,8 @@ def setup(
         asked=resolved(profile_of(chosen, profile), settings),
         with_forces=with_forces,
         forces_of=chosen.forces_of if with_forces else "nothing",
+        precision=chosen.precision,
+        floor=chosen.floor,
     )
 
 

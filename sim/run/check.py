@@ -20,6 +20,11 @@ ROUNDINGS = 16.0
 """Units of the last place of an engine's numbers that both of these allow at least."""
 
 
+def rounding_of(precision: Precision) -> float:
+    """Return the relative difference of numbers of an engine that rounding explains."""
+    return ROUNDINGS * EPSILON[precision]
+
+
 def refuse_other_model(
     scene: Scene,
     state: State,
@@ -36,7 +41,7 @@ def refuse_other_model(
     nor a body that cannot turn an inertia; a free crank needs both, and nothing else. ``precision``
     is that of the engine's numbers.
     """
-    rounding = ROUNDINGS * EPSILON[precision]
+    rounding = rounding_of(precision)
     same = max(SAME, rounding)
     faults = [
         *_matter(scene, facts, drive, same),

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from reports.compare.errors import Errors
 from reports.judge.rules.rule import Evidence, Finding, Level, measure
-from reports.judge.three_steps import AT_ROUNDING, Convergence
+from reports.judge.three_steps import Convergence
 from reports.quantities import named
 
 FINE = ("shrinks", "at rounding", "as solved", "as the truth")
@@ -69,8 +69,8 @@ def _seen(rule: str, convergence: Convergence | None, evidence: Evidence) -> Fin
 
 DENSE_RAD = 0.04
 """The longest step, of about 160 a turn, at which an error is followed closely enough."""
-CLEAR = 10.0 * AT_ROUNDING
-"""Least pure error above rounding within the engine."""
+CLEAR = 10.0
+"""Least pure error above rounding within the engine, over the engine's floor."""
 UNSURE = 100.0
 """Least ratio of an error to the uncertainty of the reference."""
 MOST = 1.0
@@ -117,7 +117,7 @@ def _roughest(errors: Errors) -> tuple[float, str] | None:
         for row in errors.rows
         if row.quantity in named("place")
         and row.kind == "total"
-        and row.pure >= CLEAR + UNSURE * row.pure_bound
+        and row.pure >= CLEAR * errors.of_scene.floor + UNSURE * row.pure_bound
         and (row.body_kind, row.body) in bent
     ]
     if not ratios:
