@@ -42,12 +42,14 @@ class SteppedSession(ABC):
     """A session with one model, in steps of ``dt`` [s]; ``done`` steps are behind it.
 
     A subclass opens its model, and then calls `begin`. Forces act ``acts_at`` steps after the
-    positions before a step, velocities belong ``shift`` steps after the positions.
+    positions before a step, velocities belong ``shift`` steps after the positions. With
+    ``knows_rates`` `frames` has the velocities of its instant, for dampers and motors.
     """
 
     name: ClassVar[str]
     shift: ClassVar[float] = 0.0
     acts_at: ClassVar[float] = 0.0
+    knows_rates: ClassVar[bool] = False
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
@@ -59,7 +61,9 @@ class SteppedSession(ABC):
     def begin(self, placed: PlacedBodies) -> None:
         """Take the first look at the model, whose bodies are ``placed``."""
         self.placed = placed
-        self.acting = Acting(self.name, placed, self.frames(0.0), self.dt, self.drive)
+        self.acting = Acting(
+            self.name, placed, self.frames(0.0), self.dt, self.drive, rates=self.knows_rates
+        )
         if self.drive != "free":
             law = self.scene.driver.law
             self.turn(None, drive.start_speed(law, self.start_s, self.dt, self.shift))
@@ -259,15 +263,24 @@ def refuse_driver_between(scene: Scene, engine: str, why: str) -> None:
         raise EngineError(f"{scene.name}: its driver is {scene.driver.joint}; {engine} {why}")
 
 
+def _frame(pose: BodyPose) -> Frame:
+    """Return the only sample of a pose."""
+    (x, y), (u, v) = pose.origin[0].tolist(), pose.velocity[0].tolist()
+    return Frame((x, y), float(pose.theta[0]), (u, v), float(pose.omega[0]))
+
+
 class TreeSession(SteppedSession):
     """A session of an engine whose bodies hang on one another by joint coordinates, with loops
-    closed at pins (`models.mjcf.tree`). The frames of its bodies are those of the links."""
+    closed at pins (`models.mjcf.tree`), or ``at_slides`` too. The frames of its bodies are those of
+    the links."""
+
+    at_slides: ClassVar[bool] = False
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
     ) -> None:
         super().__init__(scene, state, settings, dt_s, driven_by)
-        self.tree = plan(scene, state, delay_s=self.shift * dt_s)
+        self.tree = plan(scene, state, delay_s=self.shift * dt_s, at_slides=self.at_slides)
         self.freedoms = [own for limb in self.tree.limbs for own in limb.freedoms]
         """The joint coordinates, in the order of the limbs and of each one's joints."""
         driven, self.sense = driven_freedom(scene, self.tree.limbs)
@@ -286,15 +299,11 @@ class TreeSession(SteppedSession):
         return self.look()
 
     def frames(self, ahead_s: float) -> Mapping[str, Frame]:
-        q, rate, _ = self.look()
-        still = np.zeros((1, len(q)))
-        found = tree_poses.body_poses(self.tree.limbs, (q + ahead_s * rate)[None], still, still)
-        return {GROUND: FIXED} | {
-            name: Frame(
-                (float(p.origin[0, 0]), float(p.origin[0, 1])), float(p.theta[0]), (0, 0), 0
-            )
-            for name, p in found.items()
-        }
+        q, rate, push = self.look()
+        gained = ahead_s * np.nan_to_num(push)
+        then = (q + ahead_s * (rate + 0.5 * gained))[None], (rate + gained)[None]
+        found = tree_poses.body_poses(self.tree.limbs, *then, np.zeros((1, len(q))))
+        return {GROUND: FIXED} | {name: _frame(pose) for name, pose in found.items()}
 
     def poses(self, rows: Array, time_s: Array) -> Poses:
         lag = self.shift * self.dt

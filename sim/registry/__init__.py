@@ -18,6 +18,7 @@ ENGINES: Mapping[str, str] = {
     "pymunk": "..pymunk",
     "exudyn": "..exudyn",
     "box2d": "..box2d",
+    "simbody": "..simbody",
 }
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
