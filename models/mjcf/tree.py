@@ -73,10 +73,12 @@ class LoopPin:
 
 @dataclass(frozen=True)
 class Tree:
-    """The limbs depth first, as MuJoCo numbers them, and the pins that close the loops."""
+    """The limbs depth first, as MuJoCo numbers them, and the pins that close the loops; the sliders
+    that close further loops, where they may."""
 
     limbs: tuple[Limb, ...]
     closures: tuple[LoopPin, ...]
+    slides: tuple[joints.Prism | joints.Slot, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -112,9 +114,15 @@ class _Groups:
 
 
 def plan(
-    scene: Scene, state: State, close: str | Sequence[str] = (), *, delay_s: float = 0.0
+    scene: Scene,
+    state: State,
+    close: str | Sequence[str] = (),
+    *,
+    delay_s: float = 0.0,
+    at_slides: bool = False,
 ) -> Tree:
-    """Plan the tree of a scene at an assembled state, with the loops closed at pins.
+    """Plan the tree of a scene at an assembled state, with the loops closed at pins, and, with
+    ``at_slides``, a loop of sliders at one of them.
 
     The rates of the coordinates belong to ``delay_s`` later (see `models.scene.joints.frames`).
 
@@ -125,6 +133,7 @@ def plan(
     _check_close(scene, close)
     together, at_point = _Groups(), _Groups()
     edges: list[_Edge] = []
+    outside: list[Slider] = []
     for choices in _choices(scene, close):
         kept = next((e for e in choices if together.join(e.a, e.b)), None)
         if kept is not None:
@@ -132,12 +141,15 @@ def plan(
             if kept.slider is None:
                 at_point.join((kept.point, kept.a), (kept.point, kept.b))
         elif choices[0].slider is not None:
-            raise EngineError(_needs_mass(choices[0].slider))
+            if not at_slides:
+                raise EngineError(_needs_mass(choices[0].slider))
+            outside.append(choices[0].slider)
     closures = _closures(scene, at_point)
     for point in close:
         if point not in {c.point for c in closures}:
             raise EngineError(f"close = {point}: no loop of {scene.name} closes there")
-    return Tree(_limbs(scene, joints.frames(scene, state, delay_s), edges), closures)
+    slides = tuple(slide for slide in joints.joints(scene).slides if slide.slider in outside)
+    return Tree(_limbs(scene, joints.frames(scene, state, delay_s), edges), closures, slides)
 
 
 def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:

@@ -3,7 +3,7 @@ forces: loads, springs, and friction of sliders.
 
 An engine says where its bodies are at the instant of a step's forces. The velocity at that instant
 itself, for dampers and motors, may be half by the step to come. It is taken from the last three
-positions, to the second order.
+positions, to the second order, unless the engine has it in the frames of the bodies.
 """
 
 import math
@@ -107,9 +107,11 @@ class Course(Generic[Value]):
     def __init__(self, start: Value, dt_s: float) -> None:
         self._dt = dt_s
         self._values: list[Value] = [start]
+        self._rate: Value | None = None
 
-    def go_on(self, value: Value) -> None:
-        """Go on to the end of the next step."""
+    def go_on(self, value: Value, rate: Value | None = None) -> None:
+        """Go on to the end of the next step, with the rate there if it is known."""
+        self._rate = rate
         self._values.append(value)
         del self._values[:-3]
 
@@ -120,7 +122,10 @@ class Course(Generic[Value]):
 
     @property
     def rate(self) -> Value:
-        """Rate there, by the parabola through the last three values, or the line through two."""
+        """Rate there, if not known by the parabola through the last three values, or the line
+        through two."""
+        if self._rate is not None:
+            return self._rate
         if len(self._values) < 3:
             return (self._values[-1] - self._values[0]) / self._dt
         first, second, third = self._values
@@ -135,7 +140,10 @@ class Course(Generic[Value]):
 class SliderCourse:
     """Displacement of a slider [m], and pushes along its line."""
 
-    def __init__(self, placed: PlacedBodies, slide: Prism | Slot, dt_s: float) -> None:
+    def __init__(
+        self, placed: PlacedBodies, slide: Prism | Slot, dt_s: float, *, rates: bool = False
+    ) -> None:
+        self._rates = rates
         self._slide, slider, self._rider = slide, slide.slider, riding_body(slide)
         self._guide = slider.on
         self._anchor = placed.anchor(self._rider, slider.point)
@@ -145,9 +153,15 @@ class SliderCourse:
 
     def follow(self, frames: Frames) -> None:
         """Go on to the positions of the bodies at the end of a step."""
-        seen = frames[self._guide].into(frames[self._rider].at(self._anchor))
-        x, y = less(seen, self._start)
-        self.course.go_on(x * self._along[0] + y * self._along[1])
+        guide, rider = frames[self._guide], frames[self._rider]
+        place = rider.at(self._anchor)
+        x, y = less(guide.into(place), self._start)
+        speed = None
+        if self._rates:
+            drift = less(rider.velocity_at(place), guide.velocity_at(place))
+            u, v = turned(self._along, guide.theta)
+            speed = u * drift[0] + v * drift[1]
+        self.course.go_on(x * self._along[0] + y * self._along[1], speed)
 
     def push(self, size: float, frames: Frames, pushes: Pushes) -> None:
         """Push the sliding body by so much along the line [N], and the guide back."""
@@ -170,15 +184,17 @@ class SpringSteps:
         tracks: Mapping[str, SliderCourse],
         dt_s: float,
         but: Collection[str],
+        *,
+        rates: bool,
     ) -> None:
         self._steps: list[_OnLine | _InPin | _OnSlide] = []
         for name, spring in placed.scene.springs.items():
             if name in but:
                 continue
             if isinstance(spring, LineSpring):
-                self._steps.append(_OnLine(placed, spring, start, dt_s))
+                self._steps.append(_OnLine(placed, spring, start, dt_s, rates=rates))
             elif isinstance(spring, PinSpring):
-                self._steps.append(_InPin(spring, start, dt_s))
+                self._steps.append(_InPin(spring, start, dt_s, rates=rates))
             else:
                 self._steps.append(_OnSlide(spring, tracks[spring.slider]))
 
@@ -199,9 +215,9 @@ class SpringSteps:
 
 class _OnLine:
     def __init__(
-        self, placed: PlacedBodies, spring: LineSpring, start: Frames, dt_s: float
+        self, placed: PlacedBodies, spring: LineSpring, start: Frames, dt_s: float, *, rates: bool
     ) -> None:
-        self.spring = spring
+        self.spring, self._rates = spring, rates
         first, second = (
             (body, less(place, placed.centre[body]))
             for body, place in spring_ends(placed.scene, spring)
@@ -212,15 +228,22 @@ class _OnLine:
     def _length(self, frames: Frames) -> float:
         return math.dist(*(frames[body].at(anchor) for body, anchor in self._ends))
 
+    def _speed(self, frames: Frames, length: float) -> float:
+        (one, a), (other, b) = self._ends
+        here, there = frames[one].at(a), frames[other].at(b)
+        drift = less(frames[other].velocity_at(there), frames[one].velocity_at(here))
+        way = less(there, here)
+        return (way[0] * drift[0] + way[1] * drift[1]) / (length or math.inf)
+
     def push(self, frames: Frames, pushes: Pushes) -> None:
         length = self._length(frames)
-        self._course.go_on(length)
+        self._course.go_on(length, self._speed(frames, length) if self._rates else None)
         pushes.pull(*self._ends, frames, self.spring.pull(length, self._course.rate))
 
 
 class _InPin:
-    def __init__(self, spring: PinSpring, start: Frames, dt_s: float) -> None:
-        self.spring = spring
+    def __init__(self, spring: PinSpring, start: Frames, dt_s: float, *, rates: bool) -> None:
+        self.spring, self._rates = spring, rates
         opened = self._opened(start)
         self._whole = whole_turns(spring, opened)
         self._course = Course(opened + self._whole, dt_s)
@@ -231,9 +254,9 @@ class _InPin:
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
         q = self._opened(frames) + self._whole
-        self._course.go_on(q)
-        pull = self.spring.pull(q, self._course.rate)
         first, second = self.spring.bodies
+        self._course.go_on(q, frames[second].omega - frames[first].omega if self._rates else None)
+        pull = self.spring.pull(q, self._course.rate)
         pushes.torque(first, pull)
         pushes.torque(second, -pull)
 
@@ -269,8 +292,10 @@ class LoadSteps:
         tracks: Mapping[str, SliderCourse],
         dt_s: float,
         drive: Drive,
+        *,
+        rates: bool,
     ) -> None:
-        self._placed, self._dt, self._drive = placed, dt_s, drive
+        self._placed, self._dt, self._drive, self._rates = placed, dt_s, drive, rates
         self._scene = scene = placed.scene
         self._slots, self._tracks = slots, tracks
         self._turning = {
@@ -310,7 +335,7 @@ class LoadSteps:
     def push(self, step: int, frames: Frames, pushes: Pushes) -> None:
         """Apply the loads of a step, by its number since the look ahead, from 0 on."""
         for body, course in self._turning.items():
-            course.go_on(frames[body].theta)
+            course.go_on(frames[body].theta, frames[body].omega if self._rates else None)
         for name, load in self._scene.loads.items():
             size = (
                 self._known[name][step] if name in self._known else self._size(load, step, frames)
@@ -398,8 +423,8 @@ def slider_friction(scene: Scene, drive: Drive, engine: str) -> dict[str, float]
 
 class Acting:
     """Loads, springs and friction of sliders; not springs of the names ``but``, nor friction where
-    the engine ``rubs``: it has these itself. ``bodies`` are placed so in the ``engine``, and have
-    the frames ``start`` there."""
+    the engine ``rubs``: it has these itself. ``bodies`` are placed so in the ``engine``, with the
+    frames ``start`` there; with ``rates`` all frames have the velocities of their instant."""
 
     def __init__(
         self,
@@ -411,6 +436,7 @@ class Acting:
         but: Collection[str] = (),
         *,
         rubs: bool = False,
+        rates: bool = False,
     ) -> None:
         scene = bodies.scene
         slides = joints(scene).slides
@@ -418,13 +444,13 @@ class Acting:
         followed |= {getattr(one, "slider", None) for one in scene.springs.values()}
         followed |= {*scene.friction}
         self._tracks = {
-            slide.slider.name: SliderCourse(bodies, slide, dt_s)
+            slide.slider.name: SliderCourse(bodies, slide, dt_s, rates=rates)
             for slide in slides
             if slide.slider.name in followed
         }
         slots = {block_name(slide.slider): slide for slide in slides if isinstance(slide, Slot)}
-        self._loads = LoadSteps(bodies, start, slots, self._tracks, dt_s, drive)
-        self._springs = SpringSteps(bodies, start, self._tracks, dt_s, but)
+        self._loads = LoadSteps(bodies, start, slots, self._tracks, dt_s, drive, rates=rates)
+        self._springs = SpringSteps(bodies, start, self._tracks, dt_s, but, rates=rates)
         self._friction = {} if rubs else slider_friction(scene, drive, engine)
         self._acts = bool(scene.loads or self._springs or self._friction)
         self._bodies = tuple(start)

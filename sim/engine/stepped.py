@@ -45,11 +45,13 @@ class SteppedSession(ABC):
 
     A subclass opens its model, and then calls `begin`. Forces act ``acts_at`` steps after the
     positions before a step, velocities belong ``shift`` steps after the positions. An engine that
-    ``rubs`` has the friction of sliders itself.
+    ``rubs`` has the friction of sliders itself. With ``knows_rates`` `frames` has the velocities of
+    its instant, for dampers and motors.
     """
 
     name: ClassVar[str]
     rubs: ClassVar[bool] = False
+    knows_rates: ClassVar[bool] = False
     shift: float = 0.0
     acts_at: float = 0.0
 
@@ -63,8 +65,8 @@ class SteppedSession(ABC):
     def begin(self, placed: PlacedBodies) -> None:
         """Take the first look at the model, whose bodies are ``placed``."""
         self.placed = placed
-        at = self.frames(0.0)
-        self.acting = Acting(self.name, placed, at, self.dt, self.drive, rubs=self.rubs)
+        given = self.name, placed, self.frames(0.0), self.dt, self.drive
+        self.acting = Acting(*given, rubs=self.rubs, rates=self.knows_rates)
         self.pushed, self.before = self.acting.none(), np.full_like(self.numbers(), np.nan)
         if self.drive != "free":
             law = self.scene.driver.law
@@ -268,6 +270,12 @@ def refuse_driver_between(scene: Scene, engine: str, why: str) -> None:
         raise EngineError(f"{scene.name}: its driver is {scene.driver.joint}; {engine} {why}")
 
 
+def _frame(pose: BodyPose) -> Frame:
+    """Return the only sample of a pose."""
+    (x, y), (u, v) = pose.origin[0].tolist(), pose.velocity[0].tolist()
+    return Frame((x, y), float(pose.theta[0]), (u, v), float(pose.omega[0]))
+
+
 class TreeSession(SteppedSession):
     """A session of an engine whose bodies hang on one another by joint coordinates, with loops
     closed at pins (`models.mjcf.tree`). The frames of its bodies are those of the links."""
@@ -293,7 +301,7 @@ class TreeSession(SteppedSession):
         """Return the tree, with the rates of its coordinates at the engine's own instant."""
         return planned(self.scene, self.state, delay_s=self.shift * self.dt)
 
-    def joint_forces(self) -> Row:
+    def joint_forces(self) -> object:
         """Return what shows the forces of the last step: the change of the rates in it."""
         q, rate = self.numbers()[:2]
         push = (rate - self.before[1]) / self.dt
@@ -322,15 +330,11 @@ class TreeSession(SteppedSession):
         return self.look()
 
     def frames(self, ahead_s: float) -> Mapping[str, Frame]:
-        q, rate = self.look()[:2]
-        still = np.zeros((1, len(q)))
-        found = tree_poses.body_poses(self.tree.limbs, (q + ahead_s * rate)[None], still, still)
-        return {GROUND: FIXED} | {
-            name: Frame(
-                (float(p.origin[0, 0]), float(p.origin[0, 1])), float(p.theta[0]), (0, 0), 0
-            )
-            for name, p in found.items()
-        }
+        q, rate, *push = self.look()
+        gained = ahead_s * np.nan_to_num(push[0] if push else np.zeros_like(q))
+        then = (q + ahead_s * (rate + 0.5 * gained))[None], (rate + gained)[None]
+        found = tree_poses.body_poses(self.tree.limbs, *then, np.zeros((1, len(q))))
+        return {GROUND: FIXED} | {name: _frame(pose) for name, pose in found.items()}
 
     def poses(self, rows: Array, time_s: Array) -> Poses:
         lag, known = self.shift * self.dt, rows.shape[1] > 2

@@ -22,6 +22,7 @@ ENGINES: Mapping[str, str] = {
     "bullet": "..bullet",
     "drake": "..drake",
     "dart": "..dart",
+    "simbody": "..simbody",
 }
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
