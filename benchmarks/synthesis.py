@@ -1,7 +1,7 @@
 """Synthesis: what it costs, and its random tasks and their proofs in engines by the thousand.
 
     python -m benchmarks.synthesis            # a minute
-    python -m benchmarks.synthesis tasks      # 1,000 tasks of each kind: half an hour of two processors
+    python -m benchmarks.synthesis tasks      # 1,000 tasks of each kind: half an hour
     python -m benchmarks.synthesis proofs     # 50 proofs of each kind in three engines: the same
 
 The first prints mechanisms a second: of three-position tasks with two moving pivots, proposed (two
