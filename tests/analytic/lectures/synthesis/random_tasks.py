@@ -148,7 +148,7 @@ def path(draw: Draw) -> TaskTable:
     task = random_path(seed, 12, timed=bool(timed), closed=bool(closed))
     points = [[place.real, place.imag] for place in task.points]
     turns = None if task.crank_rad is None else np.degrees(task.crank_rad).tolist()
-    return PathTable(**HEAD, points_m=points, crank_deg=turns, closed=bool(closed), starts=4)
+    return PathTable(**HEAD, points_m=points, crank_deg=turns, closed=bool(closed), starts=16)
 
 
 def straight_line(draw: Draw) -> TaskTable:
