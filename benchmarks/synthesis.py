@@ -1,7 +1,7 @@
 """Synthesis: what it costs, and its random tasks and their proofs in engines by the thousand.
 
     python -m benchmarks.synthesis            # a minute
-    python -m benchmarks.synthesis tasks      # 1,000 tasks of each kind: an hour of two processors
+    python -m benchmarks.synthesis tasks      # 1,000 tasks of each kind: half an hour
     python -m benchmarks.synthesis proofs     # 50 proofs of each kind in three engines: the same
 
 The first prints mechanisms a second: of three-position tasks with two moving pivots, proposed (two
@@ -22,6 +22,7 @@ import itertools
 import json
 import math
 import multiprocessing
+import os
 import statistics
 import sys
 import time
@@ -38,6 +39,7 @@ from analytic.lectures.synthesis.solutions import solutions_of
 from benchmarks.mutants import suites
 from models.lectures.tasks.positions import CouplerTask
 from reports.output.write import provenance
+from reports.workers import one_thread
 from tests.analytic.lectures.synthesis.random_tasks import TASKS, hold, proofs
 
 COUNT, SEED = 100, 19
@@ -178,6 +180,7 @@ def filled(suite: str, kind: str) -> list[Case]:
 
 def run(suite: str) -> int:
     OUT.mkdir(parents=True, exist_ok=True)
+    one_thread(os.environ)  # of the children, which start with them
     failed = 0
     with multiprocessing.get_context("spawn").Pool() as pool:
         every = pool.imap(functools.partial(filled, suite), TASKS, chunksize=1)

@@ -112,6 +112,7 @@ def test_an_editable_install_is_the_checkout(
 @pytest.mark.parametrize(
     "module", [False, slowly(True, reason="a second start: `python -m` looks into the folder")]
 )
+@slow("a wheel and an environment of its own: 9 s")
 def test_packages_of_our_names_in_the_users_folder_hide_nothing(
     installed: Path, mine: Path, module: bool
 ) -> None:

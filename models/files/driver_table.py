@@ -283,3 +283,5 @@ def _faults_of_pin(pin: str, links: object, names: schema.NamesInTables) -> Iter
             yield f"driver.links: pin {cut(pin)} joins {both}, not {cut(name)}; name two of them"
     if len(links) == 2 and links[0] == links[1]:
         yield f"driver.links: found {cut(links[0])} twice; pin {cut(pin)} joins {both}"
+    elif len(links) == 2 and links[1] == GROUND:
+        yield f"driver.links: the ground is driven against {cut(links[0])}; name the ground first"

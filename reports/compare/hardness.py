@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
-from typing import ParamSpec, TypeVar, cast
+from typing import TypeVar, TypeVarTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,21 +21,21 @@ from models.scene import Scene, driver, joints, loads
 from reports.compare.tracks import length
 from reports.quantities.quantity import BodyKind
 
-Parameters = ParamSpec("Parameters")
+Given = TypeVarTuple("Given")
 Result = TypeVar("Result")
 
 
-def shared(measure: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
+def shared(measure: Callable[[*Given], Result]) -> Callable[[*Given], Result]:
     """Return a measure that keeps its last result for the same objects and equal arrays: the runs
-    of a scene, which follow one another, share a reference. Arguments have no names."""
-    last: list[tuple[tuple[object, ...], Result]] = []
+    of a scene, which follow one another, share a reference."""
+    last: list[tuple[tuple[*Given], Result]] = []
 
     @wraps(measure)
-    def kept(*given: Parameters.args, **named: Parameters.kwargs) -> Result:
+    def kept(*given: *Given) -> Result:
         for before, found in last:
             if all(map(_same, before, given)):
                 return found
-        found = measure(*given, **named)
+        found = measure(*given)
         last[:] = [(given, found)]
         return found
 

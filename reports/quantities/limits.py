@@ -25,10 +25,9 @@ BENDING = _of("elastic")
 """Tolerances of elastic links themselves."""
 ELASTIC = {**DEFAULTS, **BENDING}
 """Tolerances of a mechanism whose links bend."""
+_FREE = _of("free")
 FREE: Mapping[str, Tolerance] = {
-    name: limit
-    for name, (_, each) in _OWN.items()
-    if (limit := _of("free").get(name, each.free_motion))
+    name: limit for name, (_, each) in _OWN.items() if (limit := _FREE.get(name, each.free_motion))
 }
 """Tolerances of free motion: its errors at the same time are over the sensitivity of the motion."""
 FREE_ELASTIC = {**FREE, **BENDING}

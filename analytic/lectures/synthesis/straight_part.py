@@ -14,7 +14,9 @@ Machinery, section 3.8, figure 3-30 (exact straight-line linkages).
 
 import cmath
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -106,14 +108,7 @@ def longest(four_bar: CouplerCurve, centre_rad: float, deviation: float) -> Stra
     """Find the longest part about a crank angle [rad] that deviates by a share of its length. Its
     ends are equally far from the place at its centre. Raises CrankcheckError where the shortest
     tried part deviates more."""
-    angles, far = _both_ways(four_bar, centre_rad)
-    ways = [(angle, np.maximum.accumulate(each)) for angle, each in zip(angles, far, strict=True)]
-    reach = min(float(each[-1]) for _, each in ways)
-
-    def part(half: float) -> StraightPart:
-        low, high = (float(np.interp(half, each, angle)) for angle, each in ways)
-        return measured(four_bar, low, high)
-
+    reach, part = _parts(four_bar, centre_rad)
     # From the longest part down: the curve may leave the line and come back to it.
     good, bad = 0.0, reach
     for half in np.linspace(reach, 0.0, TRIALS, endpoint=False).tolist():
@@ -132,6 +127,23 @@ def longest(four_bar: CouplerCurve, centre_rad: float, deviation: float) -> Stra
         one = part(half)
         good, bad = (half, bad) if one.deviation_m <= deviation * one.length_m else (good, half)
     return part(good)
+
+
+@lru_cache(maxsize=8)
+def _parts(
+    four_bar: CouplerCurve, centre_rad: float
+) -> tuple[float, Callable[[float], StraightPart]]:
+    """Return the largest distance of the ends of parts about a crank angle [m], and the part with
+    ends at a smaller one; each is measured once, as tasks nearby look at the same parts."""
+    angles, far = _both_ways(four_bar, centre_rad)
+    ways = [(angle, np.maximum.accumulate(each)) for angle, each in zip(angles, far, strict=True)]
+
+    @cache
+    def part(half: float) -> StraightPart:
+        low, high = (float(np.interp(half, each, angle)) for angle, each in ways)
+        return measured(four_bar, low, high)
+
+    return min(float(each[-1]) for _, each in ways), part
 
 
 def _both_ways(four_bar: CouplerCurve, centre: float) -> tuple[tuple[Array, Array], list[Array]]:

@@ -112,6 +112,7 @@ REFUSED = [
         (f'slider = "C"\n{WAY.replace("0.1", "0.0")}', "its speed is 0"),
         (f'slider = "C"\nlaw = "free"\n{WAY}', "found 'free'; use one of constant, oscillating"),
         (f'pin = "A"\nlinks = ["crank", "rod"]\n{TURN}', "pin A joins ground, crank, not rod"),
+        (f'pin = "A"\nlinks = ["crank", "ground"]\n{TURN}', "name the ground first"),
         (f'pin = "Q"\n{TURN}', "no body has such a point"),
         (f'pin = "B"\nlinks = ["rod", "rod"]\n{TURN}', "rod twice"),
         (f'pin = "C"\n{TURN}', "slider = 'C', or a pin of two"),

@@ -147,6 +147,7 @@ def vibration() -> SteadyVibration:
     return steady_vibration(load_scene("fourbar-elastic"), ONE)
 
 
+@slow("drawn whole: 2 s; words of other figures remain")
 def test_words_of_vibration_have_room(vibration: SteadyVibration) -> None:
     factors, few_rad_s = np.array([1.0, 30.0]), np.linspace(17.0, 19.0, 3)
     speeds = over_speeds(vibration.scene, ONE, np.linspace(8.0, 60.0, 14))

@@ -9,6 +9,7 @@ from playwright.sync_api import Locator, Page
 
 from models.array import Array
 from tests.reports.page.tab import Tab
+from tests.worlds.tiers import slow
 
 SECTIONS = ("precision", "convergence", "motion")
 LINKS = "#motion-picture .reference .link"
@@ -40,6 +41,7 @@ def opened(wide: Tab, small_page: Path) -> Tab:
     return wide.visit(small_page, *SECTIONS)
 
 
+@slow("a page printed whole: 2 s")
 def test_printing_draws_what_was_not_scrolled_to(wide: Tab, small_page: Path) -> None:
     page = wide.open(small_page).page
     page.evaluate("window.dispatchEvent(new Event('beforeprint'))")

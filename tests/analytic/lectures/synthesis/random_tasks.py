@@ -9,9 +9,10 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 import pytest
 
-from analytic.kinematics import solve
+from analytic.kinematics import solve, solve_driven
 from analytic.lectures.synthesis import coupler
 from analytic.lectures.synthesis.examine import IN_LINE, Examined, passing_times
+from analytic.lectures.synthesis.function.generator import FunctionProposal
 from analytic.lectures.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError, ReachError
 from models.lectures.shipped_tables import TaskTable
@@ -147,7 +148,7 @@ def path(draw: Draw) -> TaskTable:
     task = random_path(seed, 12, timed=bool(timed), closed=bool(closed))
     points = [[place.real, place.imag] for place in task.points]
     turns = None if task.crank_rad is None else np.degrees(task.crank_rad).tolist()
-    return PathTable(**HEAD, points_m=points, crank_deg=turns, closed=bool(closed), starts=4)
+    return PathTable(**HEAD, points_m=points, crank_deg=turns, closed=bool(closed), starts=16)
 
 
 def straight_line(draw: Draw) -> TaskTable:
@@ -198,6 +199,10 @@ def passed(one: Examined) -> tuple[float, float]:
     try:
         on_the_way = np.linspace(0.0, at_s.max(), 200)
         motion = solve(one.scene, np.concatenate([at_s, on_the_way]), bound=False)
+        if isinstance(own := one.proposal, FunctionProposal):  # its range goes on beyond them
+            x = np.linspace(own.task.x_low, own.task.x_high, 200)
+            turned = own.generator.input_start + own.task.input_turn(x)
+            solve_driven(one.scene, turned, np.ones(1), np.zeros(1), bound=False)
     except ReachError:
         return math.inf, 1.0
     size = one.scene.longest_m

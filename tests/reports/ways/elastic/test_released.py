@@ -21,7 +21,7 @@ from reports.selftest.elastic_changes import in_given
 from reports.selftest.elastic_faults import springs, stiffer
 from reports.verify.table import footer
 from tests.worlds.facts import with_facts
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 PULSE, CONTROLLED = "fourbar-elastic-pulse", "fourbar-elastic-controlled"
 SEGMENTS = 4
@@ -109,6 +109,7 @@ def test_springs_that_are_a_part_in_a_hundred_too_stiff_are_out() -> None:
     assert "CC132" in {finding.rule for finding in found.failures}
 
 
+@slow("a search of steps: 2 s")
 def test_a_step_that_the_springs_do_not_hold_says_which_would() -> None:
     found = check(cell(segments=8, dt_s=3e-3, steps=100))
     assert found.status == "diverged"
