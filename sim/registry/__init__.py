@@ -3,7 +3,7 @@
 import importlib
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Literal, cast
@@ -62,7 +62,7 @@ class Declaration:
     wheels: str = ""
 
 
-OWN = Declaration("", "", extra=True, apart=True)
+OWN = Declaration("", "", extra=True)
 """Declaration of a user's own engine."""
 
 
@@ -89,6 +89,11 @@ def declaration(name: str) -> Declaration:
         own_engine(name, ENGINES)
         return OWN
     return cast(Declaration, importlib.import_module(ENGINES[name], __package__).DECLARATION)
+
+
+def apart(names: Iterable[str]) -> bool:
+    """True if any of the engines may end its process; so may all of users."""
+    return any(name not in ENGINES or declaration(name).apart for name in names)
 
 
 def usual() -> list[str]:
