@@ -75,12 +75,7 @@ NAMING = ("sim/registry/__init__.py", "models/mjcf/", *(f"sim/{name}/" for name 
 """Where engines are named: the line of each, MuJoCo's own format, which others read too, and each
 engine's folder."""
 MENTIONING: Mapping[str, str] = {
-    "reports/judge/rules": "what to turn in which engine, as a cure",
-    "reports/quantities": "as in the rules",
-    "reports/selftest/engines.py": "what a fault is called that one engine has by default",
     "reports/cli/commands.py": "whose viewer `view` opens",
-    "reports/requests/history.py": "an example in the help, and in a message",
-    "reports/requests/sweep.py": "an example in a message",
     "reports/requests/options.py": "whose files --mjcf takes",
 }
 """Where sentences mention engines, and why; an engine that is not mentioned works as well."""

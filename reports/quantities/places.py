@@ -160,8 +160,7 @@ GAP = quantity.Quantity(
             "pin gap",
             "Two bodies that share a pin or a slider must not come apart: an open loop is "
             "another mechanism, however well the crank turns.",
-            "Stiffen the joint (MuJoCo: solref, solimp; pymunk: iterations, error_bias), or "
-            "shorten the step.",
+            "Stiffen the joint (`crankcheck engines --settings`), or shorten the step.",
             short="gap",
             diagram="closure: the widest gap",
             tolerance=replace(
@@ -277,7 +276,7 @@ ACCELERATION = quantity.Quantity(
             "acceleration, reported",
             "The accelerations that the engine reports, against the closed form at the instants "
             "that they belong to; an engine that reports none is not judged.",
-            "Use an integrator of higher order (MuJoCo: RK4), or shorten the step.",
+            "Use an integrator of higher order, where the engine has one, or shorten the step.",
             short="acc",
             diagram="acceleration, as reported",
             tolerance=TWICE_DERIVED,

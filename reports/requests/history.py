@@ -22,7 +22,7 @@ from reports.requests.options import argument, option
 from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.stored_runs import scene_digests
 from reports.workers.signals import run_child
-from sim.registry import ENGINES, engine
+from sim.registry import ENGINES, FIRST, engine
 
 FILES = ("history.csv", "history.md")
 LENGTHS = ("turns", "duration_s", "dt_s", "steps_per_turn")
@@ -32,7 +32,7 @@ LENGTHS = ("turns", "duration_s", "dt_s", "steps_per_turn")
 class HistoryRequest:
     """Arguments of `history`, as given; as in `verify` where the names are the same."""
 
-    engine: Annotated[str, argument("ENGINE", "Engine, such as mujoco.")]
+    engine: Annotated[str, argument("ENGINE", f"Engine, such as {FIRST}.")]
     versions: Annotated[Sequence[str], argument("VERSION", "Released versions of it.")]
     scenes: Annotated[
         Sequence[str], option("Shipped name or file; may be repeated; all if none.", "--scene")

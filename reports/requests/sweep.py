@@ -25,6 +25,7 @@ from reports.requests import arguments, options, sweep_arguments
 from reports.requests.options import argument, option, output_option
 from reports.requests.shown import Shown
 from reports.workers.isolated import checked_limits
+from sim.registry import FIRST
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -264,14 +265,14 @@ def asked(request: SweepRequest) -> Study:
 def _overrides(
     texts: Sequence[str], engines: Sequence[str]
 ) -> dict[str, dict[str, StudyValue | list[StudyValue]]]:
-    """Parse `mujoco.iterations=2,10` and the like, by engine."""
+    """Parse `ENGINE.iterations=2,10` and the like, by engine."""
     overrides: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
     for text in texts:
         name, equals, values = text.partition("=")
         owner, dot, setting = name.strip().partition(".")
         if not (equals and dot and values.strip()):
             raise CrankcheckError(
-                f"--set {shown(text)}: write it like --set mujoco.iterations=2,10: "
+                f"--set {shown(text)}: write it like --set {FIRST}.iterations=2,10: "
                 "engine.setting=values"
             )
         refuse_other_engine(owner, engines, f"--set {shown(text)}")

@@ -77,9 +77,9 @@ def refuse_unknown_forces(
     if scene.beams and not engine.applies_beams:
         able = " or ".join(applying_beams()) or "no engine here"
         raise EngineError(
-            f"{scene.name}: {engine.name} has no beams ({', '.join(scene.beams)}), and {able} has; "
-            "it may be given links that do not stretch as rigid segments with springs between them "
-            "(--springs plain)"
+            f"{scene.name}: beams ({', '.join(scene.beams)}) in {engine.name} are not offered by "
+            f"crankcheck, but in {able}; it may be given links that do not stretch as rigid "
+            "segments with springs between them (--springs plain)"
         )
     if isinstance(scene.driver.law, driver.Controlled):
         raise EngineError(

@@ -22,8 +22,8 @@ class ErrorShrinks:
         "that is over the limit of the finer step, fails, as does a finer run that breaks down."
     )
     cure = (
-        "A shorter step does not help; change what the engine models "
-        "(MuJoCo: solref, solimp; pymunk: error_bias, iterations)."
+        "A shorter step does not help; change what the engine models: stiffness of joints, sweeps "
+        "(`crankcheck engines --settings`)."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -39,7 +39,7 @@ class ForcesShrink:
     )
     cure = (
         "Look at which instant the forces belong to: half a step off is an error of first order. "
-        "A floor is what soft constraints leave open (MuJoCo: solref, solimp)."
+        "A floor is what soft constraints leave open: stiffen them."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -87,7 +87,7 @@ class ErrorSmooth:
     )
     cure = (
         "Log every digit; look for what is added to the numbers, and for joints whose solver stops "
-        "too soon (exudyn as shipped does where lengths and forces are small: take profile tuned)."
+        "too soon (take profile tuned)."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
