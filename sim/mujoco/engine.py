@@ -22,7 +22,7 @@ from sim.engine import drive as drives
 from sim.engine.settings import SettingError
 from sim.mujoco import settings as own
 from sim.mujoco.loading import Loading
-from sim.mujoco.reactions import JointForces, TreeReactions
+from sim.mujoco.reactions import JointForces, TreeReactions, joint_forces
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 
 
@@ -43,12 +43,13 @@ class MujocoSession(SteppedModel):
         self._weights = model.body_invweight0.copy()
         model.body_invweight0[:] *= own.weight_share(scene, settings, drive)
         self._hold(model, keyframe=0)
+        self._stays = not model.nu
         self._servo = chosen.servo_gain is not None
         self._controlled = options.has_control(scene, chosen)
         self._free = chosen.free
         staged = self._free and own.integrator(settings, drive) == "RK4"
         self._loading = Loading(
-            scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else None
+            scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else 0.0
         )
         self._tendons = spring_tendons(scene, state, tree)
         driven, sense = driven_freedom(scene, tree.limbs)
@@ -95,10 +96,10 @@ class MujocoSession(SteppedModel):
 
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log, as `record`, with the forces of `mj_forward` at each kept state."""
-        joint_forces = JointForces(self._model, self._limbs, self._loading.first, self._tendons)
-        log = self._recorded(steps, every, joint_forces.look)
-        forces = TreeReactions(self._scene, self._tree, log.poses, joint_forces).forces()
-        return replace(log, forces=forces)
+        states: list[JointForces] = []
+        log = self._recorded(steps, every, lambda *at: states.append(joint_forces(*at)))
+        built = TreeReactions(self._scene, self._tree, log.poses, states, self._tendons)
+        return replace(log, forces=built.forces())
 
     def _spring(self, tendon: SpringTendon) -> tuple[float, float, float]:
         """Return rate, damping and slack length or angle of a spring, as in `Facts`."""
@@ -116,10 +117,6 @@ class MujocoSession(SteppedModel):
     def _roll(self, steps: int) -> Array:
         with self._loading.in_stages(self._done, steps):
             return super()._roll(steps)
-
-    @property
-    def _stays(self) -> bool:
-        return not self._model.nu
 
     def _start(self) -> Poses:
         """Return the current state; the opening has computed the accelerations of the first."""

@@ -20,7 +20,7 @@ from sim.mujoco.own_model.component import component, loose_joints
 from sim.mujoco.own_model.linkage import linkage, nearly
 from sim.mujoco.own_model.planar_model import PlanarModel, limbs_of
 from sim.mujoco.own_model.scene import scene_of
-from sim.mujoco.stepped import VERSION, compiled_file
+from sim.mujoco.stepped import VERSION, compiled
 from sim.registry.own_models import MOST_TURNS, Advised, Disturbance, Reader, Tour
 
 
@@ -124,7 +124,7 @@ class ReadModel:
         try:
             raw = file.text_of(self.path)
             new = variants.patched(raw, planar.loops, int(planar.model.neq), told)
-            found = compiled_file(self.path, new)
+            found = compiled(new, self.path)
             text = variants.diff(self.path, raw, new)
         except EngineError as error:
             return f"{error}: {told.words()}\n"

@@ -37,12 +37,15 @@ class SteppedModel(ABC):
     """A model and its data from ``start_s`` [s] on, in steps of ``dt_s`` [s]; its velocities belong
     to ``shift`` steps after its positions."""
 
+    _model: Any
+    _data: Any
+    _stays = True
+    """False if `step` needs controls that change from step to step."""
+
     def __init__(self, start_s: float, dt_s: float, shift: float) -> None:
         self._start_s, self._dt, self._shift = start_s, dt_s, shift
         self._done = 0
         self._warnings: list[str] = []
-        self._model: Any
-        self._data: Any
 
     def _hold(self, model: Any, keyframe: int | None) -> None:
         """Take a compiled model, at one of its keyframes."""
@@ -65,11 +68,6 @@ class SteppedModel(ABC):
     @abstractmethod
     def _control_at(self, at: Array) -> Array | None:
         """Return the controls at the steps ``at``, (T, nu); None without any."""
-
-    @property
-    def _stays(self) -> bool:
-        """True if `step` needs no control that changes from step to step."""
-        return True
 
     def step(self, steps: int) -> None:
         """Advance in C without logging."""
@@ -101,16 +99,13 @@ class SteppedModel(ABC):
         with self._at_work():
             poses = self._poses(kept[:count], at[:count], look)
         self._done += steps
-        return Log(poses, (count - 1) * every, diverged or count < len(kept), self.taken(), wall)
+        warnings = tuple(dict.fromkeys(self._warnings))
+        return Log(poses, (count - 1) * every, diverged or count < len(kept), warnings, wall)
 
     def read(self) -> Poses:
         """Read the current state."""
         with self._at_work():
             return self._poses(self._full_state()[None], np.array([float(self._done)]))
-
-    def taken(self) -> tuple[str, ...]:
-        """Return the warnings so far, each once."""
-        return tuple(dict.fromkeys(self._warnings))
 
     def _roll(self, steps: int) -> Array:
         """Return the states after each of the next steps, (steps, n)."""
@@ -133,24 +128,20 @@ class SteppedModel(ABC):
         return state
 
     def _poses(self, states: Array, at: Array, look: Look | None = None) -> Poses:
-        """Return the poses of logged states, with accelerations by `mj_forward` at each state."""
-        return self._placed(states, at, self._accelerations(states, at, look))
-
-    def _accelerations(self, states: Array, at: Array, look: Look | None) -> Array:
-        """Compute joint accelerations of the states (T, nv), on a copy of the data."""
+        """Return the poses of logged states, with accelerations by `mj_forward` at each state, on a
+        copy of the data."""
         model, data = self._model, mujoco.MjData(self._model)
-        rows = np.empty((len(states), model.nv))
-        control = self._control_at(at)
-        for row, state in enumerate(states):
+        push, control = np.empty((len(states), model.nv)), self._control_at(at)
+        for k, state in enumerate(states):
             mujoco.mj_setState(model, data, state, FULL)
             if control is not None:
-                data.ctrl[:] = control[row]
+                data.ctrl[:] = control[k]
             mujoco.mj_forward(model, data)
             if look is not None:
                 look(model, data)
-            rows[row] = data.qacc
+            push[k] = data.qacc
             data.qacc_warmstart[:] = data.qacc
-        return rows
+        return self._placed(states, at, push)
 
     def _joints(self, states: Array) -> tuple[Array, Array]:
         """Return joint coordinates (T, nq) and their rates (T, nv) of states."""
@@ -175,20 +166,13 @@ def heard(hear: Callable[[str], object]) -> Iterator[None]:
         mujoco.set_mju_user_warning(before)
 
 
-def compiled(xml: str) -> Any:
-    """Compile a model. Raises EngineError with MuJoCo's own words."""
+def compiled(text: str | bytes | None = None, path: Path | None = None) -> Any:
+    """Compile a model from its text, from a file, or from a text in place of a file. Raises
+    EngineError with MuJoCo's own words."""
     try:
-        return mujoco.MjModel.from_xml_string(xml)
+        if path is None:
+            return mujoco.MjModel.from_xml_string(text)
+        with heard(lambda _: None):
+            return mujoco.MjModel.from_xml_path(str(path), {str(path): text} if text else {})
     except ValueError as error:
         raise EngineError(f"MuJoCo refuses the model: {error}") from error
-
-
-def compiled_file(path: Path, text: bytes | None = None) -> Any:
-    """Compile the model of a file, or of another text in its place. Raises EngineError with
-    MuJoCo's own words."""
-    with heard(lambda _: None):
-        try:
-            others = {} if text is None else {str(path): text}
-            return mujoco.MjModel.from_xml_path(str(path), others)
-        except ValueError as error:
-            raise EngineError(f"MuJoCo refuses the model: {error}") from error
