@@ -16,7 +16,7 @@ from models.mjcf import document, options
 from models.mjcf.forces import SpringTendon, planned, spring_tendons
 from models.mjcf.tree import Tree, driven_freedom, plan
 from models.motion import State
-from models.scene import Point, Scene
+from models.scene import Scene
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue, tree_poses
 from sim.engine import drive as drives
 from sim.engine.settings import SettingError
@@ -35,26 +35,20 @@ class MujocoSession(SteppedModel):
         super().__init__(state.time_s, dt_s, own.velocity_shift(settings, drive))
         self._scene, self._settings, self._drive = scene, settings, drive
         chosen = own.writing(scene, settings, dt_s, drive)
-        self._tree = tree = _tree(scene, state, chosen)
-        self._limbs = tree.limbs
-        self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
+        self._chosen, self._tree = chosen, _tree(scene, state, chosen)
         with heard(self._warnings.append):
-            model = compiled(document.build(scene, state, chosen, tree))
+            model = compiled(document.build(scene, state, chosen, self._tree))
         self._weights = model.body_invweight0.copy()
         model.body_invweight0[:] *= own.weight_share(scene, settings, drive)
         self._hold(model, keyframe=0)
         self._stays = not model.nu
-        self._servo = chosen.servo_gain is not None
         self._controlled = options.has_control(scene, chosen)
-        self._free = chosen.free
-        staged = self._free and own.integrator(settings, drive) == "RK4"
-        self._loading = Loading(
-            scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else 0.0
-        )
-        self._tendons = spring_tendons(scene, state, tree)
-        driven, sense = driven_freedom(scene, tree.limbs)
-        self._crank = int(self._model.joint(driven).dofadr[0])
-        if not self._free:
+        staged = dt_s if chosen.free and own.integrator(settings, drive) == "RK4" else 0.0
+        self._loading = Loading(scene, model, self._tree.limbs, drive, state.time_s, staged)
+        self._tendons = spring_tendons(scene, state, self._tree)
+        driven, sense = driven_freedom(scene, self._tree.limbs)
+        self._crank = int(model.joint(driven).dofadr[0])
+        if not chosen.free:
             start = drives.start_speed(scene.driver.law, state.time_s, dt_s, self._shift)
             self._data.qvel[self._crank] = sense * start
         self._pushes = np.empty(0)
@@ -62,30 +56,27 @@ class MujocoSession(SteppedModel):
 
     def facts(self) -> Facts:
         """Read the model as MuJoCo holds it now."""
-        model = self._model
-        names = [limb.body for limb in self._limbs]
-        opt = model.opt
+        model, opt = self._model, self._model.opt
         share = float(model.body_invweight0.sum() / self._weights.sum())
         counted = int(opt.iterations), float(f"{share:.12g}")
         settings: dict[str, SettingValue] = {
             **own.used(self._settings, self._drive),
             **own.holds(self._settings, self._dt, self._drive),
-            "close": self._closed,
+            "close": ", ".join(dict.fromkeys(c.point for c in self._tree.closures)),
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
             **own.held(self._scene, self._settings, self._drive, *counted),
             "integrator": own.INTEGRATORS[int(opt.integrator)],
         }
         if model.neq:
-            settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
-            settings["solref_dampratio"] = float(model.eq_solref[0, 1])
-            impedance = ("solimp_dmin", "solimp_dmax", "solimp_width")
-            settings |= zip(impedance, map(float, model.eq_solimp[0, :3]), strict=True)
+            found = (*model.eq_solref[0], *model.eq_solimp[0, :3])
+            settings |= zip(own.OF_LOOPS, map(float, found), strict=True)
+        bodies = {limb.body: model.body(limb.body) for limb in self._tree.limbs}
         return Facts(
             version=VERSION,
-            mass_kg={n: float(model.body(n).mass[0]) for n in names},
-            inertia_kg_m2={n: self._inertia(n) for n in names},
-            centre_m={n: _pair(model.body(n).ipos) for n in names},
+            mass_kg={name: float(body.mass[0]) for name, body in bodies.items()},
+            inertia_kg_m2={name: self._inertia(name) for name in bodies},
+            centre_m={n: (float(b.ipos[0]), float(b.ipos[1])) for n, b in bodies.items()},
             gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
             start=self._start(),
             settings=settings,
@@ -110,7 +101,7 @@ class MujocoSession(SteppedModel):
     def _inertia(self, body: str) -> float:
         """Return the inertia about the centre of mass; a free crank's hinge counts as well."""
         inertia = float(self._model.body(body).inertia[2])
-        if self._free and body == self._scene.driver.link:
+        if self._chosen.free and body == self._scene.driver.link:
             inertia += float(self._model.dof_armature[self._crank])
         return inertia
 
@@ -127,10 +118,9 @@ class MujocoSession(SteppedModel):
     def _controls(self, steps: int) -> Array | None:
         """Return the controls of each of the next steps; None where the model has no actuator.
 
-        A load that is known ahead keeps through a step its size in the middle of the velocity's
-        step. At the start of a step of RK4 it would come half a step late: of first order, where
-        this is of second. In free motion a step of RK4 sees it in its stages instead
-        (`Loading.in_stages`), which is of fourth.
+        A load that is known ahead has in a step the size of the middle of the velocity's step; that
+        of the start of a step of RK4 would be half a step late, and of first order. In free motion
+        a step of RK4 sees it in its stages instead (`Loading.in_stages`).
         """
         if not self._model.nu:
             return None
@@ -141,7 +131,9 @@ class MujocoSession(SteppedModel):
     def _driving(self, steps: int) -> Array:
         """Return the control of the crank in each of the next steps, (steps, 1)."""
         law, end = self._scene.driver.law, self._done + steps
-        if self._servo:  # the speed at the end of the step is its mean speed
+        if (
+            self._chosen.servo_gain is not None
+        ):  # the speed at the end of the step is its mean speed
             return drives.chords(law, self._start_s, self._dt, self._done, end - 1)[:, None]
         if len(self._pushes) < end + 1:
             longer = max(end + 1, 2 * len(self._pushes))
@@ -151,7 +143,7 @@ class MujocoSession(SteppedModel):
     def _placed(self, states: Array, at: Array, push: Array) -> Poses:
         """Return the poses of states with their joint accelerations (T, nv)."""
         lag = self._shift * self._dt
-        poses = tree_poses.body_poses(self._limbs, *self._joints(states), push, lag)
+        poses = tree_poses.body_poses(self._tree.limbs, *self._joints(states), push, lag)
         return Poses(self._start_s + self._dt * at, poses, lag)
 
     def _control_at(self, at: Array) -> Array | None:
@@ -163,17 +155,14 @@ class MujocoSession(SteppedModel):
         if not self._controlled:
             return loads
         _, omega, alpha = self._scene.driver.law.at(time_s)
-        return np.column_stack([omega if self._servo else alpha, loads])
+        driving = alpha if self._chosen.servo_gain is None else omega
+        return np.column_stack([driving, loads])
 
     @contextmanager
     def _at_work(self) -> Iterator[None]:
         """Let loads follow the motion while MuJoCo works."""
         with super()._at_work(), self._loading.following():
             yield
-
-
-def _pair(vector: Array) -> Point:
-    return float(vector[0]), float(vector[1])
 
 
 def _tree(scene: Scene, state: State, chosen: options.Writing) -> Tree:

@@ -12,7 +12,7 @@ import numpy as np
 from models.array import Array
 from models.mjcf.tree import Limb, driven_freedom
 from models.scene import Scene
-from models.scene.characteristics import Characteristic, Constant
+from models.scene.characteristics import Constant
 from models.scene.loads import Load
 from sim.engine import Drive, load_magnitudes
 
@@ -82,23 +82,15 @@ def stage_sizes(load: Load, start_s: float, dt_s: float, first: int, count: int)
     begins = start_s + dt_s * np.arange(first, first + count)
     times = begins[:, None] + dt_s * STAGES
     sizes = load.magnitude(times.ravel()).reshape(times.shape)
-    for step, cuts in _cut_steps(load.characteristic, start_s, dt_s, first, count).items():
-        sizes[step - first] = _parabola(load, start_s + dt_s * step, dt_s, cuts)
-    return np.asarray(sizes)
-
-
-def _cut_steps(
-    course: Characteristic, start_s: float, dt_s: float, first: int, count: int
-) -> dict[int, list[float]]:
-    """Return the steps with a kink within, and its places in the step, between 0 and 1."""
     cuts: dict[int, list[float]] = {}
-    end_s = start_s + dt_s * (first + count)
-    for kink in course.kinks_between(start_s + dt_s * first, end_s):
+    for kink in load.characteristic.kinks_between(begins[0], start_s + dt_s * (first + count)):
         place = (kink - start_s) / dt_s
         step = math.floor(place)
         if first <= step < first + count and INSIDE < place - step < 1.0 - INSIDE:
             cuts.setdefault(step, []).append(place - step)
-    return cuts
+    for step, places in cuts.items():
+        sizes[step - first] = _parabola(load, start_s + dt_s * step, dt_s, places)
+    return np.asarray(sizes)
 
 
 def _parabola(load: Load, begin_s: float, dt_s: float, cuts: Sequence[float]) -> Array:
@@ -191,7 +183,7 @@ class Loading:
     def in_stages(self, first: int, count: int) -> Iterator[None]:
         """Set loads over time in their stages, and loads of one stroke by their share of the step,
         while MuJoCo takes ``count`` steps from the step ``first`` on."""
-        if self._dt:
+        if self._of_time or self._of_strokes:
             self._clock = StageClock(self._dt, first)
         given = self._start_s, self._dt, first, count
         sizes = [stage_sizes(self.loads[k], *given) for k in self._of_time]

@@ -33,12 +33,10 @@ class ReadModel:
 
     @property
     def scene(self) -> Scene:
-        """Scene without a branch; its driver turns at 1 rad/s from its drawn position."""
         return self.planar.read.scene
 
     @property
     def dt_s(self) -> float:
-        """The file's own step [s]."""
         return float(self.planar.model.opt.timestep)
 
     @cached_property
@@ -55,11 +53,9 @@ class ReadModel:
 
     @property
     def files(self) -> list[Path]:
-        """The file, and its included files."""
         return file.files(self.path)
 
     def drawn(self) -> Poses:
-        """Return the pose of the file: as drawn, or of the keyframe."""
         limbs = self.planar.limbs
         q = self.planar.pose()
         still = np.zeros((1, len(q)))
@@ -67,25 +63,20 @@ class ReadModel:
         return Poses(np.zeros(1), {name: poses[limb] for name, limb in limbs.shown.items()})
 
     def coordinate_rad(self) -> float:
-        """Return the coordinate of the driven joint in that pose."""
         planar = self.planar
         return float(planar.qpos[planar.model.jnt_qposadr[planar.driven]])
 
     def open_m(self) -> Mapping[str, float]:
-        """Return the opening of each joint in that pose [m]."""
         return {name: float(gap[0]) for name, gap in measure.gaps(self.scene, self.drawn()).items()}
 
     def loose(self) -> list[str]:
-        """List the joints that can still move while the driven joint is fixed."""
         return loose_joints(self.planar.linkage.component)
 
     @property
     def notes(self) -> Sequence[str]:
-        """What was held, and left out."""
         return self.planar.linkage.component.notes
 
     def welds(self) -> list[str]:
-        """List the welds that unite bodies of the linkage."""
         component = self.planar.linkage.component
         return [
             f"{' and '.join(file.body_name(component.model, body) for body in each.bodies)}"
@@ -94,11 +85,9 @@ class ReadModel:
         ]
 
     def outside(self, scene: Scene, state: State) -> list[str]:
-        """Describe the joints that a state puts outside their declared ranges."""
         return self.planar.outside(scene, state)
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
-        """Put the model into states of its closed form."""
         try:
             return session.tour(self.planar, scene, states)
         except file.ModelError as error:
