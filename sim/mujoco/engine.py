@@ -4,8 +4,7 @@ The crank is driven by its armature, or an actuator (`models.mjcf.options`, `mod
 whose control comes from `sim.engine.drive`.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -17,9 +16,10 @@ from models.mjcf.forces import SpringTendon, planned, spring_tendons
 from models.mjcf.tree import Tree, driven_freedom, plan
 from models.motion import State
 from models.scene import Scene
-from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue, tree_poses
+from sim.engine import BodyPose, Drive, Engine, Facts, Log, Settings, SettingValue
 from sim.engine import drive as drives
 from sim.engine.settings import SettingError
+from sim.engine.tree_poses import body_poses
 from sim.mujoco import settings as own
 from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import JointForces, TreeReactions, joint_forces
@@ -45,6 +45,7 @@ class MujocoSession(SteppedModel):
         self._controlled = options.has_control(scene, chosen)
         staged = dt_s if chosen.free and own.integrator(settings, drive) == "RK4" else 0.0
         self._loading = Loading(scene, model, self._tree.limbs, drive, state.time_s, staged)
+        self._following = self._loading.following
         self._tendons = spring_tendons(scene, state, self._tree)
         driven, sense = driven_freedom(scene, self._tree.limbs)
         self._crank = int(model.joint(driven).dofadr[0])
@@ -78,7 +79,7 @@ class MujocoSession(SteppedModel):
             inertia_kg_m2={name: self._inertia(name) for name in bodies},
             centre_m={n: (float(b.ipos[0]), float(b.ipos[1])) for n, b in bodies.items()},
             gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
-            start=self._start(),
+            start=self.read(),
             settings=settings,
             velocity_shift=self._shift,
             acceleration_shift=0.0,
@@ -88,7 +89,7 @@ class MujocoSession(SteppedModel):
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log, as `record`, with the forces of `mj_forward` at each kept state."""
         states: list[JointForces] = []
-        log = self._recorded(steps, every, lambda *at: states.append(joint_forces(*at)))
+        log = self.record(steps, every, lambda *at: states.append(joint_forces(*at)))
         built = TreeReactions(self._scene, self._tree, log.poses, states, self._tendons)
         return replace(log, forces=built.forces())
 
@@ -109,12 +110,6 @@ class MujocoSession(SteppedModel):
         with self._loading.in_stages(self._done, steps):
             return super()._roll(steps)
 
-    def _start(self) -> Poses:
-        """Return the current state; the opening has computed the accelerations of the first."""
-        if self._done or self._model.nu:  # by the law's control, which the opening left out
-            return self.read()
-        return self._placed(self._full_state()[None], np.zeros(1), self._data.qacc[None].copy())
-
     def _controls(self, steps: int) -> Array | None:
         """Return the controls of each of the next steps; None where the model has no actuator.
 
@@ -131,20 +126,16 @@ class MujocoSession(SteppedModel):
     def _driving(self, steps: int) -> Array:
         """Return the control of the crank in each of the next steps, (steps, 1)."""
         law, end = self._scene.driver.law, self._done + steps
-        if (
-            self._chosen.servo_gain is not None
-        ):  # the speed at the end of the step is its mean speed
+        if self._chosen.servo_gain is not None:
+            # The speed at the end of the step is its mean.
             return drives.chords(law, self._start_s, self._dt, self._done, end - 1)[:, None]
         if len(self._pushes) < end + 1:
             longer = max(end + 1, 2 * len(self._pushes))
             self._pushes = drives.pushes(law, self._start_s, self._dt, longer, self._shift)
         return self._pushes[self._done : end, None]
 
-    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        """Return the poses of states with their joint accelerations (T, nv)."""
-        lag = self._shift * self._dt
-        poses = tree_poses.body_poses(self._tree.limbs, *self._joints(states), push, lag)
-        return Poses(self._start_s + self._dt * at, poses, lag)
+    def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
+        return body_poses(self._tree.limbs, q, rate, push, lag_s)
 
     def _control_at(self, at: Array) -> Array | None:
         """Return the law's own speed or acceleration at the steps, and the sizes of the loads."""
@@ -157,12 +148,6 @@ class MujocoSession(SteppedModel):
         _, omega, alpha = self._scene.driver.law.at(time_s)
         driving = alpha if self._chosen.servo_gain is None else omega
         return np.column_stack([driving, loads])
-
-    @contextmanager
-    def _at_work(self) -> Iterator[None]:
-        """Let loads follow the motion while MuJoCo works."""
-        with super()._at_work(), self._loading.following():
-            yield
 
 
 def _tree(scene: Scene, state: State, chosen: options.Writing) -> Tree:

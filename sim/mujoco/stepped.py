@@ -3,8 +3,8 @@
 import os
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ import numpy as np
 from mujoco import rollout
 
 from models.errors import EngineError
-from sim.engine import Log, Poses
+from sim.engine import BodyPose, Log, Poses
 
 VERSION = str(mujoco.mj_versionString())
 """Version of the C library."""
@@ -46,6 +46,8 @@ class SteppedModel(ABC):
         self._start_s, self._dt, self._shift = start_s, dt_s, shift
         self._done = 0
         self._warnings: list[str] = []
+        self._following: Callable[[], AbstractContextManager[None]] = nullcontext
+        """What is to be entered while MuJoCo works."""
 
     def _hold(self, model: Any, keyframe: int | None) -> None:
         """Take a compiled model, at one of its keyframes."""
@@ -58,16 +60,17 @@ class SteppedModel(ABC):
             mujoco.mj_forward(self._model, self._data)
 
     @abstractmethod
-    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        """Return the poses of states with their joint accelerations (T, nv)."""
+    def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
+        """Return the bodies from joint coordinates (T, nq), and their rates and accelerations
+        (T, nv); the rates belong to ``lag_s`` later."""
 
-    @abstractmethod
     def _controls(self, steps: int) -> Array | None:
         """Return the controls of each of the next steps, (steps, nu); None without any."""
+        return np.tile(self._data.ctrl, (steps, 1)) if self._model.nu else None
 
-    @abstractmethod
     def _control_at(self, at: Array) -> Array | None:
         """Return the controls at the steps ``at``, (T, nu); None without any."""
+        return self._controls(len(at))
 
     def step(self, steps: int) -> None:
         """Advance in C without logging."""
@@ -80,12 +83,9 @@ class SteppedModel(ABC):
                 self._roll(steps)
         self._done += steps
 
-    def record(self, steps: int, every: int) -> Log:
-        """Advance in C, log every step, keep every ``every``-th."""
-        return self._recorded(steps, every)
-
-    def _recorded(self, steps: int, every: int, look: Look | None = None) -> Log:
-        """Advance and log, as `record`; ``look`` gets each kept state after `mj_forward`."""
+    def record(self, steps: int, every: int, look: Look | None = None) -> Log:
+        """Advance in C, log every step, keep every ``every``-th; ``look`` gets each of these after
+        `mj_forward`."""
         first = self._full_state()[None]
         began = time.perf_counter()
         with self._at_work():
@@ -141,17 +141,14 @@ class SteppedModel(ABC):
                 look(model, data)
             push[k] = data.qacc
             data.qacc_warmstart[:] = data.qacc
-        return self._placed(states, at, push)
-
-    def _joints(self, states: Array) -> tuple[Array, Array]:
-        """Return joint coordinates (T, nq) and their rates (T, nv) of states."""
-        nq, nv = self._model.nq, self._model.nv
-        return states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
+        rates, lag = 1 + model.nq, self._shift * self._dt
+        bodies = self._placed(states[:, 1:rates], states[:, rates : rates + model.nv], push, lag)
+        return Poses(self._start_s + self._dt * at, bodies, lag)
 
     @contextmanager
     def _at_work(self) -> Iterator[None]:
         """Collect MuJoCo's warnings while it works."""
-        with heard(self._warnings.append):
+        with heard(self._warnings.append), self._following():
             yield
 
 
