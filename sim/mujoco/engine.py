@@ -110,15 +110,13 @@ class MujocoSession(SteppedModel):
         with self._loading.in_stages(self._done, steps):
             return super()._roll(steps)
 
-    def _controls(self, steps: int) -> Array | None:
-        """Return the controls of each of the next steps; None where the model has no actuator.
+    def _controls(self, steps: int) -> Array:
+        """Return the controls of each of the next steps.
 
         A load that is known ahead has in a step the size of the middle of the velocity's step; that
         of the start of a step of RK4 would be half a step late, and of first order. In free motion
         a step of RK4 sees it in its stages instead (`Loading.in_stages`).
         """
-        if not self._model.nu:
-            return None
         middle = self._done + np.arange(steps, dtype=np.float64) + 0.5 + self._shift
         loads = self._loading.at_times(self._start_s + self._dt * middle)
         return np.hstack([self._driving(steps), loads]) if self._controlled else loads
@@ -137,10 +135,8 @@ class MujocoSession(SteppedModel):
     def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
         return body_poses(self._tree.limbs, q, rate, push, lag_s)
 
-    def _control_at(self, at: Array) -> Array | None:
+    def _control_at(self, at: Array) -> Array:
         """Return the law's own speed or acceleration at the steps, and the sizes of the loads."""
-        if not self._model.nu:
-            return None
         time_s = self._start_s + self._dt * at
         loads = self._loading.at_times(time_s)
         if not self._controlled:

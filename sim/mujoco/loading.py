@@ -10,6 +10,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
+from models.mjcf.forces import sliding_joint
 from models.mjcf.tree import Limb, driven_freedom
 from models.scene import Scene
 from models.scene.characteristics import Constant
@@ -67,9 +68,7 @@ def forward_parts(speed: float, change: float) -> Parts:
         return whole, whole, whole
     s = abs(speed / change)
     until = (s * (6.0 - 9.0 * s + 4.0 * s * s), s * s * (3.0 - 2.0 * s), s * s * (4.0 * s - 3.0))
-    if speed > 0.0:
-        return until
-    return 1.0 - until[0], 1.0 - until[1], 1.0 - until[2]
+    return until if speed > 0.0 else (1.0 - until[0], 1.0 - until[1], 1.0 - until[2])
 
 
 def stage_sizes(load: Load, start_s: float, dt_s: float, first: int, count: int) -> Array:
@@ -137,25 +136,21 @@ class Loading:
         self._clock: StageClock | None = None
         # Lists, as a callback reads a number of an array ten times as slowly.
         self._sizes: list[list[list[float]]] = []
-        self._parts: dict[str | None, Parts] = {}
+        self._parts: dict[str, Parts] = {}
         driven, self._sense = driven_freedom(scene, limbs)
         self._crank = int(model.joint(driven).qposadr[0])
         self._turning = {
             load.body: int(model.body(load.body).id) for load in self.loads if load.over == "omega"
         }
         self._slides = {
-            limb.slider.name: int(model.joint(freedom.name).qposadr[0])
-            for limb in limbs
-            if limb.slider is not None
-            for freedom in limb.freedoms
-            if freedom.kind == "slide"
+            slider: int(model.joint(sliding_joint(limbs, slider)).qposadr[0])
+            for slider in scene.sliders
         }
         self._of_strokes = {
             load.name: replace(load, stroke="both")
             for load in self.loads
             if self._dt and load.stroke != "both"
         }
-        self._stroking = dict.fromkeys(str(load.slider) for load in self._of_strokes.values())
 
     def at_times(self, time_s: Array) -> Array:
         """Return the controls (T, n), 0 where they follow from the motion."""
@@ -197,14 +192,14 @@ class Loading:
         controls, first, clock = data.ctrl, self.first, self._clock
         step, stage = clock.at(data.time) if clock is not None else (0, 0)
         if clock is not None and stage == 0:  # the rate of the speed is that of the stage before
-            for name in self._stroking:
-                k = self._slides[name]
+            for name, load in self._of_strokes.items():
+                k = self._slides[str(load.slider)]
                 change = self._dt * float(data.qacc[k])
                 self._parts[name] = forward_parts(float(data.qvel[k]), change)
         for k in self._of_motion:
             load, share = self.loads[k], 1.0
             if clock is not None and load.name in self._of_strokes:
-                forward = self._parts[load.slider][stage]
+                forward = self._parts[load.name][stage]
                 share = forward if load.stroke == "forward" else 1.0 - forward
                 load = self._of_strokes[load.name]
             controls[first + k] = share * self.size(load, data)

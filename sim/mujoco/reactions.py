@@ -127,7 +127,7 @@ class TreeReactions:
             if slider is None:
                 self._pins.add(limb.point, limb.parent, limb.body, wrench.force)
                 if limb.freedoms[0].name == driven:
-                    torque = sense * wrench.moment_about(self._point(limb.body, limb.point))
+                    torque = sense * wrench.moment_about(self._place(limb.body, limb.point))
                 continue
             sliders[slider.name], along = self._slide(limb, slider, wrench)
             if slider.name == scene.driver.slider:
@@ -153,7 +153,7 @@ class TreeReactions:
         rides = limb.parent == slider.on
         rider, sign = (limb.body, 1.0) if rides else (limb.parent, -1.0)
         force = sign * wrench.force
-        moment = sign * wrench.moment_about(self._point(rider, slider.point))
+        moment = sign * wrench.moment_about(self._place(rider, slider.point))
         if slider.link is None and slider.mass_kg == 0.0:
             moment = moment + self._block(slider, rider, force)
         line = self._theta(slider.on) + slider.direction_rad
@@ -222,11 +222,9 @@ class TreeReactions:
         """Return the direction of the line of a slider, (T, 2)."""
         return directions(self._theta(slider.on) + slider.direction_rad)
 
-    def _point(self, body: str, point: str) -> Array:
-        return self._place(body, local_point(self._scene, body, point))
-
-    def _place(self, body: str, local: Point) -> Array:
-        """Return the position of a place of a body's frame, (T, 2)."""
+    def _place(self, body: str, at: str | Point) -> Array:
+        """Return the position of a named point of a body, or a place of its frame, (T, 2)."""
+        local = local_point(self._scene, body, at) if isinstance(at, str) else at
         return PointPath(self._paths[body], local).position
 
     def _theta(self, body: str) -> Array:

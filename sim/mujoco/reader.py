@@ -4,7 +4,7 @@ import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 from models.errors import EngineError, suggestion
 from models.motion import State
 from models.scene import Scene
-from sim.engine import Drive, Engine, Poses, Session, Settings, measure, tree_poses
+from sim.engine import Engine, Poses, measure, tree_poses
 from sim.mujoco.own_model import disturbing, file, session, variants
 from sim.mujoco.own_model.component import component, loose_joints
 from sim.mujoco.own_model.linkage import linkage, nearly
@@ -77,12 +77,9 @@ class ReadModel:
         return self.planar.linkage.component.notes
 
     def welds(self) -> list[str]:
-        component = self.planar.linkage.component
-        return [
-            f"{' and '.join(file.body_name(component.model, body) for body in each.bodies)}"
-            for each in component.closures
-            if each.kind == "weld"
-        ]
+        own = self.planar.linkage.component
+        united = [each.bodies for each in own.closures if each.kind == "weld"]
+        return [" and ".join(file.body_name(own.model, body) for body in two) for two in united]
 
     def outside(self, scene: Scene, state: State) -> list[str]:
         return self.planar.outside(scene, state)
@@ -96,11 +93,7 @@ class ReadModel:
     def engine(self, advised: Advised) -> Engine:
         """Return MuJoCo with this model, and the lines of its report as profiles."""
 
-        def opened(
-            scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-        ) -> Session:
-            return session.OwnModelSession(self.planar, scene, state, settings, dt_s, drive)
-
+        opened = partial(session.OwnModelSession, self.planar)
         present = dict.fromkeys(each.kind for each in self._present if each.kind in variants.OFF)
         lines = variants.profiles(present, advised)
         return Engine("mujoco", lines, version=lambda: VERSION, check=variants.checked, open=opened)
@@ -130,11 +123,9 @@ class ReadModel:
 def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
     """Read a file, driven by one of its joints, from a keyframe if named.
 
-    Raises
-    ------
-    ModelError
-        See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name, or a keyframe
-        that is not finite, or a hinge that is many turns away.
+    Raises ModelError as `load`, `component`, `linkage` and `scene_of`; for no keyframe of that
+    name, or one that is not finite, and for a hinge with so many turns that the rounding of its
+    angle would be judged.
     """
     model = file.load(path)
     names = [file.name_of(model, "key", index) for index in range(model.nkey)]
@@ -155,19 +146,14 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
     except file.ModelError as error:
         raise file.ModelError(f"{path}: {error}") from None
     planar = PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe)
-    _refuse_many_turns(path, planar)
-    return ReadModel(path, planar)
-
-
-def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
-    """Refuse hinges with so many turns that the rounding of their angles would be judged."""
-    for joint in planar.limbs.joints:
-        turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
-        if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
+    for each in planar.limbs.joints:
+        turns = float(planar.qpos[planar.model.jnt_qposadr[each.index]]) / math.tau
+        if each.kind == "hinge" and not abs(turns) <= MOST_TURNS:
             raise file.ModelError(
-                f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
+                f"{path}: joint {each.name} reads {turns:.3g} turns in this pose; take whole "
                 f"turns off it, to within {MOST_TURNS}"
             )
+    return ReadModel(path, planar)
 
 
 def _moved(model: Any, keyframe: int) -> Any:

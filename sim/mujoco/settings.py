@@ -34,13 +34,8 @@ RANGES = {
 """Ranges in MuJoCo, which silently clips impedances to these."""
 MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weight_share": 4}
 """Iterations by cause, beyond those of pins as stiff as by the compiled weights."""
-OF_LOOPS = (
-    "solref_timeconst_s",
-    "solref_dampratio",
-    "solimp_dmin",
-    "solimp_dmax",
-    "solimp_width",
-)
+OF_IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
+OF_LOOPS = ("solref_timeconst_s", "solref_dampratio", *OF_IMPEDANCE)
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
 
@@ -134,12 +129,8 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
     """Return the options of the MJCF text for the settings."""
     checked(settings)
     held = holds(settings, dt_s, drive)
-    servo = None
-    if drive == "servo":
-        scale = joints.inertia_scale(scene) * scene.pace_rad_s
-        servo = float(settings["servo_gain"]) * scale
-    dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
-    solimp = (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0)
+    scale = joints.inertia_scale(scene) * scene.pace_rad_s
+    solimp = (*(float(settings[name]) for name in OF_IMPEDANCE), 0.5, 2.0)
     damping, driven = float(settings["solref_dampratio"]), holds(settings, dt_s, "prescribed")
     return options.Writing(
         close=tuple(p.strip() for p in re.split("[+,]", str(settings["close"])) if p.strip()),
@@ -154,7 +145,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
         connect={"solref": (float(held["solref_timeconst_s"]), damping), "solimp": solimp},
         rubbing={"solref": (float(driven["solref_timeconst_s"]), damping), "solimp": solimp},
         flywheel_ratio=float(settings["flywheel_ratio"]),
-        servo_gain=servo,
+        servo_gain=float(settings["servo_gain"]) * scale if drive == "servo" else None,
         delay_s=velocity_shift(settings, drive) * dt_s,
         free=drive == "free",
     )

@@ -64,12 +64,12 @@ class SteppedModel(ABC):
         """Return the bodies from joint coordinates (T, nq), and their rates and accelerations
         (T, nv); the rates belong to ``lag_s`` later."""
 
-    def _controls(self, steps: int) -> Array | None:
-        """Return the controls of each of the next steps, (steps, nu); None without any."""
-        return np.tile(self._data.ctrl, (steps, 1)) if self._model.nu else None
+    def _controls(self, steps: int) -> Array:
+        """Return the controls of each of the next steps, (steps, nu)."""
+        return np.tile(self._data.ctrl, (steps, 1))
 
-    def _control_at(self, at: Array) -> Array | None:
-        """Return the controls at the steps ``at``, (T, nu); None without any."""
+    def _control_at(self, at: Array) -> Array:
+        """Return the controls at the steps ``at``, (T, nu)."""
         return self._controls(len(at))
 
     def step(self, steps: int) -> None:
@@ -110,8 +110,7 @@ class SteppedModel(ABC):
     def _roll(self, steps: int) -> Array:
         """Return the states after each of the next steps, (steps, n)."""
         warm = self._data.qacc_warmstart[None].copy()
-        control = self._controls(steps)
-        given: dict[str, Any] = {} if control is None else {"control": control[None]}
+        given = {"control": self._controls(steps)[None]} if self._model.nu else {}
         states, _ = rollout.rollout(
             self._model,
             self._data,
@@ -131,10 +130,10 @@ class SteppedModel(ABC):
         """Return the poses of logged states, with accelerations by `mj_forward` at each state, on a
         copy of the data."""
         model, data = self._model, mujoco.MjData(self._model)
-        push, control = np.empty((len(states), model.nv)), self._control_at(at)
+        push, control = np.empty((len(states), model.nv)), self._control_at(at) if model.nu else ()
         for k, state in enumerate(states):
             mujoco.mj_setState(model, data, state, FULL)
-            if control is not None:
+            if model.nu:
                 data.ctrl[:] = control[k]
             mujoco.mj_forward(model, data)
             if look is not None:
