@@ -190,7 +190,13 @@ class Loading:
 
     def _follow(self, _model: Any, data: Any) -> None:
         controls, first, clock = data.ctrl, self.first, self._clock
-        step, stage = clock.at(data.time) if clock is not None else (0, 0)
+        step, stage = (0, 0) if clock is None else clock.at(data.time)
+        if self._sizes:
+            # MuJoCo puts a state that diverges back to time 0; such a run is thrown away.
+            for k, size in zip(self._of_time, self._sizes[max(step, 0)][stage], strict=True):
+                controls[first + k] = size
+        if not self._of_motion:
+            return
         if clock is not None and stage == 0:  # the rate of the speed is that of the stage before
             for name, load in self._of_strokes.items():
                 k = self._slides[str(load.slider)]
@@ -203,11 +209,6 @@ class Loading:
                 share = forward if load.stroke == "forward" else 1.0 - forward
                 load = self._of_strokes[load.name]
             controls[first + k] = share * self.size(load, data)
-        if self._sizes:
-            # MuJoCo puts a state that diverges back to time 0; such a run is thrown away.
-            sizes = self._sizes[min(max(step, 0), len(self._sizes) - 1)][stage]
-            for k, size in zip(self._of_time, sizes, strict=True):
-                controls[first + k] = size
 
     def size(self, load: Load, data: Any) -> float:
         """Return the size of a load in the state of the data; all slides are joints, and their

@@ -28,9 +28,10 @@ def show(scene: Scene, start: State) -> None:
     if model.nu:
         drive: Drive = "free" if scene.is_free else "prescribed"
         loading = Loading(scene, model, tree.limbs, drive, 0.0)
+        driven = options.has_control(scene, writing)
 
         def control(_model: Any, data: Any) -> None:
-            if options.has_control(scene, writing):
+            if driven:
                 data.ctrl[0] = scene.driver.law.at(np.array([data.time]))[2][0]
             for k, load in enumerate(loading.loads):
                 data.ctrl[loading.first + k] = loading.size(load, data)
