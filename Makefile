@@ -5,6 +5,7 @@
 #   make quick        the tests that reach what differs from main, or FILES="reports/page"
 #   make report       run the shipped study into out/, with its page, figures and summary
 #   make hard         hard cases, graded, into out/hard
+#   make engines      install all engines that this system has, compare them in out/engines
 #   make slow         the long checks that `make test` leaves out
 #   make docs         build the documentation into out/docs: every example run, every link checked
 #   make benchmarks   speed of the reference, of logging and of free motion, as ratios
@@ -16,7 +17,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test lint pytest quick record browser report hard slow docs benchmarks models format clean
+.PHONY: verify test lint pytest quick record browser report hard engines slow docs benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
@@ -63,6 +64,13 @@ report: $(VENV)/crankcheck
 hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
 
+engines: $(VENV)/engines
+	$(BIN)/crankcheck sweep --engine all -o out/engines
+	$(BIN)/crankcheck sweep --engine all --free -o out/engines
+	$(BIN)/crankcheck sweep --engine all --forces -o out/engines
+	$(BIN)/crankcheck stability --engine all -o out/engines
+	$(BIN)/crankcheck report out/engines -o out/engines.html
+
 slow: $(VENV)/test browser
 	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "slow and not long" $(PYTEST)
 
@@ -101,6 +109,14 @@ $(VENV)/crankcheck: pyproject.toml constraints.txt | $(BIN)/python
 
 $(VENV)/test: $(VENV)/crankcheck
 	$(PIP) install --constraint constraints.txt --group test
+	touch $@
+
+# An engine without a wheel for this system is left out, and `--engine all` says so. Each is asked for by
+# itself, so that one that is not there does not keep the others away.
+$(VENV)/engines: $(VENV)/crankcheck
+	for extra in engines bullet drake; do \
+		$(PIP) install --constraint constraints.txt --only-binary pybullet --editable ".[$$extra]" || true; \
+	done
 	touch $@
 
 $(VENV)/docs: $(VENV)/crankcheck

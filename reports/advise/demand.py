@@ -16,13 +16,12 @@ from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from models.scene.loads import ConstantFriction
 from reports.judge.cell import Cell
-from reports.judge.three_steps import AT_ROUNDING
 from reports.plan import grid, singular, study
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
 from reports.results.floor_fit import interpolate
 from reports.results.lines import OWN, Line, value_text
 from reports.store.reader import Stored
-from sim.engine import SettingValue
+from sim.engine import AT_ROUNDING, SettingValue
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 

@@ -46,7 +46,7 @@ class EngineVersion:
 
     @property
     def requirement(self) -> str:
-        return f"{declaration(self.engine).install}=={self.version}"
+        return f"{declaration(self.engine).distribution}=={self.version}"
 
 
 def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
@@ -144,7 +144,7 @@ def ready(cache: Path, asked: EngineVersion, uv: str | None, run: Runner) -> Pat
 
 def _check(python: Path, asked: EngineVersion, run: Runner) -> None:
     """Check the version in the new interpreter. Raises NotMeasuredError."""
-    package = declaration(asked.engine).install
+    package = declaration(asked.engine).distribution
     question = f"from importlib.metadata import version; print(version({package!r}))"
     ended = run([str(python), "-P", "-c", question], clean_variables(), None)
     answer = ended.output.strip()

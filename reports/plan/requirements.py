@@ -18,11 +18,12 @@ from models.scene import Scene
 from models.scene.cut_links import with_rigid_links
 from models.scene.driver import Controlled
 from reports.judge.tolerance import check_names
+from reports.output.console import tell
 from reports.output.numbers import listed
 from reports.plan.steps import FREE_STEP_S, STEPS_PER_TURN, counted_free, positive
 from reports.protocol.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
 from reports.protocol.way import StudyLinks, way_of
-from sim.registry import engine, usual
+from sim.registry import available, engine, other_version, usual
 
 if TYPE_CHECKING:
     from reports.compare.elastic_truth import ElasticTruth
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 LOOKS = 721
 """Positions of the first look at a period; the run itself looks at every sample."""
 PROFILES = ("tuned", "as-shipped")
+EVERY_ENGINE = "all"
 
 
 def chosen_scenes(
@@ -98,11 +100,19 @@ def refuse_unfollowed(scene: Scene) -> None:
 
 def chosen_engines(names: str | Sequence[str]) -> list[str]:
     """Return the names of the engines, each once, all installed; the usual ones where none is
-    named. An engine given as module and attribute is known by its own name from here on."""
-    engines = [engine(name) for name in names_in(names, "engines") or usual()]
-    for each in engines:
+    named, for `all` every installed one. An engine given as module and attribute is known by its
+    own name from here on."""
+    asked = list(names_in(names, "engines")) or usual()
+    if EVERY_ENGINE in asked:
+        here = available()
+        tell([f"engine {each.name}: {each.absence}" for each in here if not each.version])
+        there = [each.name for each in here if each.version]
+        asked = [one for name in asked for one in (there if name == EVERY_ENGINE else [name])]
+    engines = {each.name: each for each in map(engine, asked)}
+    for each in engines.values():
         each.version()
-    return list(dict.fromkeys(each.name for each in engines))
+    tell([note for name in engines if (note := other_version(name))])
+    return list(engines)
 
 
 def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:

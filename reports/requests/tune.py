@@ -15,7 +15,6 @@ from rich.text import Text
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes, read_text
-from reports.judge.three_steps import AT_ROUNDING
 from reports.output.console import say_whole
 from reports.output.write import crankcheck_version, provenance
 from reports.plan import grid, requirements, singular
@@ -26,7 +25,7 @@ from reports.tune.search import Plan, attempts, best_of, check_storage, plainer,
 from reports.tune.table import Side, footer, show
 from reports.workers import isolated, signals
 from reports.workers.progress import progress_bar
-from sim.engine import Settings, settings
+from sim.engine import AT_ROUNDING, Settings, settings
 from sim.registry import engine, offering
 from sim.registry.offers import SearchSpace, search_space, snippet
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import CrankcheckError
-from reports.judge.three_steps import AT_ROUNDING
 from reports.output.numbers import count
 from reports.quantities.limits import ELASTIC, FREE
 from reports.results.runs import COMPARED, CellName, StoredCell, StoredRun
 from reports.store.manifest import BUSY
+from sim.engine import AT_ROUNDING
 
 FACTOR = 1.1
 """Growth of an error up to which it is not called worse."""

@@ -15,10 +15,10 @@ from typing import Literal
 import numpy as np
 
 from models.array import Array
-from reports.judge.three_steps import AT_ROUNDING
 from reports.output.numbers import count, short
 from reports.results import fit_forms
 from reports.results.floor_fit import ALIGNMENTS, ORDERS, ErrorCurve, reach, straight, within
+from sim.engine import AT_ROUNDING
 
 FitKind = Literal[
     "order", "floor", "grows", "irregular", "too few", "at rounding", "diverges", "not run"

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from pydantic import ValidationError
 
-from reports.judge import halving, three_steps
+from reports.judge import halving
 from reports.plan.study import Study
 from reports.protocol.length import SECONDS, clock_of, common_clock
 from reports.protocol.way import ResultKind, Way, way_of_row
@@ -19,7 +19,7 @@ from reports.quantities import QUANTITIES
 from reports.results.line_fit import LineFit, fit_line, words
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
-from sim.engine import Drive, SettingValue
+from sim.engine import AT_ROUNDING, Drive, SettingValue
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,7 @@ def _rounding(rows: pd.DataFrame) -> float:
     """Return the pure error from rounding: of the crank, and of the bodies behind it."""
     drives = rows.get("drive_pure", ())  # a free motion has none
     drive = max((float(error) for error in drives if error <= halving.EXACT_DRIVE), default=0.0)
-    return max(three_steps.AT_ROUNDING, halving.BEHIND_DRIVE * drive)
+    return max(AT_ROUNDING, halving.BEHIND_DRIVE * drive)
 
 
 TIMES = ("us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn")

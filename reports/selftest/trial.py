@@ -21,7 +21,7 @@ from reports.protocol.way import own_parts
 from reports.selftest.fault import PROFILE, STEPS, Fault, FaultRuns, FaultSet, RunKind, Unseen
 from reports.workers.isolated import Limits, Lost, run_all
 from sim.engine.settings import profile_of, resolved
-from sim.registry import ENGINES, engine
+from sim.registry import ENGINES, apart, engine
 
 _SETS = [cast(FaultSet, each) for each in own_parts("faults").values()]
 RUNS: dict[RunKind, FaultRuns] = {kind: runs for each in _SETS for kind, runs in each.runs.items()}
@@ -186,8 +186,8 @@ def tried_all(
     names: Sequence[str], engines: Sequence[str], jobs: int, done: Callable[[Verdict], None]
 ) -> list[Verdict]:
     """Plant all faults, in ``jobs`` processes (0: one per processor)."""
-    apart = any(name not in ENGINES for name in engines)
-    return run_all(partial(tried, engines=engines), names, jobs, LIMITS, _lost, done, apart)
+    work = partial(tried, engines=engines)
+    return run_all(work, names, jobs, LIMITS, _lost, done, apart(engines))
 
 
 def _lost(name: str, lost: Lost) -> Verdict:

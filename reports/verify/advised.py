@@ -9,7 +9,7 @@ from reports.judge.rules import FORCES, PLACES, RATES, TUNABLE, judge
 from reports.workers.isolated import Limits, Lost, run_all
 from sim.engine import Settings
 from sim.engine.settings import profile_of, resolved
-from sim.registry import ENGINES, engine
+from sim.registry import apart, engine
 from sim.registry.offers import remedies
 
 HELPS = 3.0
@@ -132,8 +132,8 @@ def check_all(
     jobs : int
         Processes; 0 for one per processor.
     """
-    apart = any(cell.engine not in ENGINES for cell in cells)
-    return run_all(advised, cells, jobs, LIMITS, _lost, done, apart)
+    own_process = apart(cell.engine for cell in cells)
+    return run_all(advised, cells, jobs, LIMITS, _lost, done, own_process)
 
 
 def _lost(cell: Cell, lost: Lost) -> Checked:

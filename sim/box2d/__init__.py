@@ -2,4 +2,12 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("pyb2d3", "'crankcheck[box2d]'", (), True)
+DECLARATION = Declaration(
+    "pyb2d3",
+    "pyb2d3",
+    extra=True,
+    formulation="constraint impulses",
+    precision="single",
+    apart=True,
+    tried="0.11.",
+)

@@ -12,6 +12,7 @@ from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene import joints as pairs
 from models.scene.joints import Prism, Slot, less, turned
+from sim.box2d import DECLARATION
 from sim.box2d import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Pushes
@@ -161,6 +162,6 @@ ENGINE = Engine(
     reports_accelerations=False,
     applies_loads=True,
     applies_springs=True,
-    precision="single",
+    precision=DECLARATION.precision,
     floor=5e-6,
 )

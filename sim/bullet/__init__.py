@@ -2,4 +2,12 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("pybullet", "'crankcheck[bullet]'", (), True)
+DECLARATION = Declaration(
+    "pybullet",
+    "pybullet",
+    extra=True,
+    formulation="constraint impulses",
+    apart=True,
+    tried="3.2.",
+    wheels="Linux with Python up to 3.11",
+)

@@ -2,4 +2,12 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("dartpy", "'crankcheck[dart]'", (), True)
+DECLARATION = Declaration(
+    "dartpy",
+    "dartpy",
+    extra=True,
+    formulation="constraint impulses",
+    apart=True,
+    tried="6.20.",
+    wheels="Linux, and others from Python 3.12 on",
+)

@@ -2,4 +2,12 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("pydrake", "'crankcheck[drake]'", (), True)
+DECLARATION = Declaration(
+    "pydrake",
+    "drake",
+    extra=True,
+    formulation="soft constraints",
+    apart=True,
+    tried="1.51.",
+    wheels="Linux and macOS",
+)

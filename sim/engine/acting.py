@@ -49,7 +49,7 @@ Value = TypeVar("Value", float, Array)
 
 
 @dataclass(frozen=True)
-class PlacedBodies:
+class EngineBodies:
     """Bodies of a scene in an engine at a state; ``centre`` is the origin of each in the engine,
     and of the ground, in the frame of its link [m]."""
 
@@ -141,7 +141,7 @@ class SliderCourse:
     """Displacement of a slider [m], and pushes along its line."""
 
     def __init__(
-        self, placed: PlacedBodies, slide: Prism | Slot, dt_s: float, *, rates: bool = False
+        self, placed: EngineBodies, slide: Prism | Slot, dt_s: float, *, rates: bool = False
     ) -> None:
         self._rates = rates
         self._slide, slider, self._rider = slide, slide.slider, riding_body(slide)
@@ -179,7 +179,7 @@ class SpringSteps:
 
     def __init__(
         self,
-        placed: PlacedBodies,
+        placed: EngineBodies,
         start: Frames,
         tracks: Mapping[str, SliderCourse],
         dt_s: float,
@@ -215,7 +215,7 @@ class SpringSteps:
 
 class _OnLine:
     def __init__(
-        self, placed: PlacedBodies, spring: LineSpring, start: Frames, dt_s: float, *, rates: bool
+        self, placed: EngineBodies, spring: LineSpring, start: Frames, dt_s: float, *, rates: bool
     ) -> None:
         self.spring, self._rates = spring, rates
         first, second = (
@@ -286,7 +286,7 @@ class LoadSteps:
 
     def __init__(
         self,
-        placed: PlacedBodies,
+        placed: EngineBodies,
         start: Frames,
         slots: Mapping[str, Slot],
         tracks: Mapping[str, SliderCourse],
@@ -429,7 +429,7 @@ class Acting:
     def __init__(
         self,
         engine: str,
-        bodies: PlacedBodies,
+        bodies: EngineBodies,
         start: Frames,
         dt_s: float,
         drive: Drive,

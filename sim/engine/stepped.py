@@ -33,8 +33,8 @@ from sim.engine import (
     measure,
     tree_poses,
 )
-from sim.engine.acting import Acting, PlacedBodies, Pushes
-from sim.engine.tree_reactions import Row, forces_of, rubs
+from sim.engine.acting import Acting, EngineBodies, Pushes
+from sim.engine.tree_reactions import RateChange, forces_of, rubs
 
 TURN_BETWEEN = 1.0
 """Largest turn of a body between two looks at its angle [rad], where an engine counts no turns."""
@@ -62,7 +62,7 @@ class SteppedSession(ABC):
         self.dt, self.drive, self.start_s, self.done = dt_s, driven_by, state.time_s, 0
         self.warnings: list[str] = []
 
-    def begin(self, placed: PlacedBodies) -> None:
+    def begin(self, placed: EngineBodies) -> None:
         """Take the first look at the model, whose bodies are ``placed``."""
         self.placed = placed
         given = self.name, placed, self.frames(0.0), self.dt, self.drive
@@ -213,7 +213,7 @@ class BodySession(SteppedSession):
         centre = {GROUND: (0.0, 0.0)} | {n: pairs.centre_of(scene, n) for n in pairs.bodies(scene)}
         if self.led and driver.slider is None:
             centre[self.led] = pairs.local_point(scene, self.led, scene.driver_pivot)
-        self.bodies = PlacedBodies(scene, state, centre=centre)
+        self.bodies = EngineBodies(scene, state, centre=centre)
         self.names = pairs.bodies(scene)
         self._angles = np.array([self.where[name].theta for name in self.names])
 
@@ -295,7 +295,7 @@ class TreeSession(SteppedSession):
         self.rubbing = rubs(scene, self.tree.limbs) if self.rubs else []
         self.names = pairs.bodies(scene)
         centre = dict.fromkeys((GROUND, *self.names), (0.0, 0.0))
-        self.bodies = PlacedBodies(scene, state, centre=centre)
+        self.bodies = EngineBodies(scene, state, centre=centre)
 
     def grown(self) -> Tree:
         """Return the tree, with the rates of its coordinates at the engine's own instant."""
@@ -308,14 +308,14 @@ class TreeSession(SteppedSession):
         rubbed = {rub.joint: rub.on_second(rate[rub.row], self._pace()) for rub in self.rubbing}
         acting = self.acting
         on_bodies, on_blocks = self.pushed.on_bodies, acting.on_blocks
-        return Row(np.stack([q, rate, push]), on_bodies, on_blocks, acting.rubbed | rubbed)
+        return RateChange(np.stack([q, rate, push]), on_bodies, on_blocks, acting.rubbed | rubbed)
 
     def acted(self, rows: Sequence[object], poses: Poses) -> Forces:
         return forces_of(
             self.scene,
             self.tree.limbs,
             self.rubbing,
-            cast(Sequence[Row], rows),
+            cast(Sequence[RateChange], rows),
             poses.time_s,
             self.dt,
             driven=self.drive != "free",

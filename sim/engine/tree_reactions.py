@@ -75,7 +75,7 @@ def rubs(scene: Scene, limbs: Sequence[Limb]) -> list[Rub]:
 
 
 @dataclass(frozen=True)
-class Row:
+class RateChange:
     """A state after a step: joint coordinates, rates and accelerations (3, n), NaN before the first
     step; actions on bodies and on blocks that the step was given, and friction by joint."""
 
@@ -89,7 +89,7 @@ def forces_of(
     scene: Scene,
     limbs: Sequence[Limb],
     rubbing: Sequence[Rub],
-    rows: Sequence[Row],
+    rows: Sequence[RateChange],
     time_s: Array,
     dt_s: float,
     *,

@@ -3,5 +3,9 @@
 from sim.registry import Declaration
 
 DECLARATION = Declaration(
-    "exudyn", "'crankcheck[exudyn]'", ("snippet", "knobs", "remedies", "force_recipe"), True
+    "exudyn",
+    "exudyn",
+    ("snippet", "knobs", "remedies", "force_recipe"),
+    extra=True,
+    formulation="constraint equations",
 )

@@ -6,4 +6,5 @@ DECLARATION = Declaration(
     "mujoco",
     "mujoco",
     ("snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"),
+    formulation="soft constraints",
 )

@@ -3,5 +3,8 @@
 from sim.registry import Declaration
 
 DECLARATION = Declaration(
-    "pymunk", "pymunk", ("snippet", "knobs", "remedies", "spoiler", "force_recipe")
+    "pymunk",
+    "pymunk",
+    ("snippet", "knobs", "remedies", "spoiler", "force_recipe"),
+    formulation="constraint impulses",
 )

@@ -13,7 +13,7 @@ from models.scene import GROUND
 from models.scene import joints as pairs
 from models.scene.joints import End, Frame, less
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
-from sim.engine.acting import PlacedBodies, Pushes
+from sim.engine.acting import EngineBodies, Pushes
 from sim.engine.ties import slide_of, spring_ends
 
 
@@ -23,7 +23,7 @@ def moves_freely(body: pymunk.Body) -> bool:
 
 
 @dataclass(frozen=True)
-class SpaceBodies(PlacedBodies):
+class SpaceBodies(EngineBodies):
     """Moving bodies of a scene in a space, by name in the order they were added."""
 
     space: pymunk.Space

@@ -2,5 +2,12 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("rapier3d", "'crankcheck[rapier]'", (), True)
-"""Rapier: free bodies, joints solved by impulses in sub-steps, in single precision."""
+DECLARATION = Declaration(
+    "rapier3d",
+    "rapier3d",
+    extra=True,
+    formulation="constraint impulses",
+    precision="single",
+    apart=True,
+    tried="0.36.",
+)

@@ -19,6 +19,7 @@ from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Pushes, SliderCourse
 from sim.engine.stepped import BodySession
 from sim.engine.ties import hinges, refuse_driver_angle, refuse_massless, slide_of
+from sim.rapier import DECLARATION
 from sim.rapier import settings as own
 
 rp: Any = import_module("rapier3d")  # so that types do not depend on what is installed
@@ -298,6 +299,6 @@ ENGINE = Engine(
     applies_loads=True,
     applies_constant_friction=True,
     applies_springs=True,
-    precision="single",
+    precision=DECLARATION.precision,
     floor=2e-6,
 )

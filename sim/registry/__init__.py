@@ -3,13 +3,13 @@
 import importlib
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Literal, cast
 
 from models.errors import EngineError
-from sim.engine import Engine
+from sim.engine import Engine, Precision
 from sim.own_engine.known import own_engine
 from sim.own_engine.watched import installed
 
@@ -29,6 +29,9 @@ FIRST = next(iter(ENGINES))
 """Default engine where one is enough."""
 Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"]
 """Optional parts of an engine."""
+Formulation = Literal["soft constraints", "constraint impulses", "constraint equations", "own"]
+"""Ways of holding a loop: by forces that give way; by impulses that correct velocities, once or in
+sweeps; by the equations of the joints, solved in each step; one that is not known here."""
 
 
 class BrokenEngineError(EngineError):
@@ -39,17 +42,24 @@ class BrokenEngineError(EngineError):
 class Declaration:
     """Content of an engine's folder; its ``__init__`` has it as ``DECLARATION``.
 
-    ``package`` is the name for Python's import, ``install`` for pip; an ``extra`` is no part of a
-    plain install of crankcheck, and runs only by name. The adapter is the value ``ENGINE`` of the
-    file ``engine``; each capability in ``offers`` has a file of its name too, with a value of that
-    name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer`, `Reader` or
-    `ForceRecipe`.
+    ``package`` is the name for Python's import, ``distribution`` for pip; an ``extra`` is no part
+    of a plain install of crankcheck, and runs only by name. The adapter is the value ``ENGINE`` of
+    the file ``engine``; each capability in ``offers`` has a file of its name too, with a value of
+    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer`,
+    `Reader` or `ForceRecipe`. An engine that runs ``apart`` may end its process: it gets one of its
+    own. ``tried`` starts every version that was compared with the reference, ``wheels`` says for
+    which systems there are any, where not for all.
     """
 
     package: str
-    install: str
+    distribution: str
     offers: tuple[Capability, ...] = ()
     extra: bool = False
+    formulation: Formulation = "own"
+    precision: Precision = "double"
+    apart: bool = False
+    tried: str = ""
+    wheels: str = ""
 
 
 OWN = Declaration("", "", extra=True)
@@ -66,6 +76,11 @@ class Availability:
     install: str
     broken: str = ""
 
+    @property
+    def absence(self) -> str:
+        """The reason why it does not run here."""
+        return self.broken or f"not installed; {self.install}"
+
 
 def declaration(name: str) -> Declaration:
     """Return the declaration of an engine's folder; a user's own engine has its adapter alone.
@@ -74,6 +89,11 @@ def declaration(name: str) -> Declaration:
         own_engine(name, ENGINES)
         return OWN
     return cast(Declaration, importlib.import_module(ENGINES[name], __package__).DECLARATION)
+
+
+def apart(names: Iterable[str]) -> bool:
+    """True if any of the engines may end its process; so may all of users."""
+    return any(name not in ENGINES or declaration(name).apart for name in names)
 
 
 def usual() -> list[str]:
@@ -158,8 +178,22 @@ def _module_name(value: object) -> str:
 
 
 def install_command(name: str) -> str:
-    """Return the command that installs an engine's package."""
-    return f"{sys.executable} -m pip install {declaration(name).install}"
+    """Return the command that installs an engine's package, and the systems that have wheels."""
+    own = declaration(name)
+    what = f"'crankcheck[{name}]'" if own.extra else own.distribution
+    only = f" ({own.wheels} alone)" if own.wheels else ""
+    return f"{sys.executable} -m pip install {what}{only}"
+
+
+def other_version(name: str) -> str:
+    """Return a warning of a version of an engine that was never compared; empty for a tried one."""
+    own = declaration(name)
+    if not own.tried or (found := engine(name).version()).startswith(own.tried):
+        return ""
+    return (
+        f"{name} {found}: tried with {own.tried}; defaults of its settings and instants of its "
+        f"velocities and forces may differ: see `crankcheck engines check {name}`"
+    )
 
 
 def available() -> tuple[Availability, ...]:

@@ -2,4 +2,12 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("opensim", "'crankcheck[simbody]'", (), True)
+DECLARATION = Declaration(
+    "opensim",
+    "opensim",
+    extra=True,
+    formulation="constraint equations",
+    apart=True,
+    tried="4.6",
+    wheels="Python 3.11 to 3.13, but not Linux on arm64",
+)

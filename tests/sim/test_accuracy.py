@@ -11,9 +11,9 @@ from models.files.reading import load_scene, parse_scene
 from models.scene import Scene
 from models.scene.laws import Accelerating
 from sim.engine import Run
-from sim.registry import ENGINES
 from sim.registry import engine as engine_of
 from tests.worlds import runs
+from tests.worlds.engines import FULL
 from tests.worlds.runs import driven_by, tuned
 
 FOURBAR = "fourbar-lecture-1"
@@ -138,7 +138,7 @@ def test_mujoco_as_shipped_converges_to_a_wrong_answer() -> None:
     assert coarse < 1.5 * fine
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", FULL)
 @pytest.mark.parametrize("name", KINDS)
 def test_tuned_errors_and_gaps_fall_at_least_with_the_square_of_the_step(
     name: str, engine: str
@@ -152,7 +152,7 @@ def test_tuned_errors_and_gaps_fall_at_least_with_the_square_of_the_step(
     assert gaps[1] < 2e-4 * scene.longest_m
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", FULL)
 @pytest.mark.parametrize("guide", [OFFSET_LEVER, TELESCOPE], ids=["offset lever", "telescope"])
 def test_guides_that_move_and_lie_off_their_centres_are_held_as_well(
     guide: str, engine: str
@@ -164,7 +164,7 @@ def test_guides_that_move_and_lie_off_their_centres_are_held_as_well(
     assert max(gap.max() for gap in fine.gaps.values()) < 3e-5
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", FULL)
 @pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
 def test_another_law_is_exact_at_the_samples(engine: str, profile: str) -> None:
     scene = driven_by(TURNING_ROUND)

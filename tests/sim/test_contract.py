@@ -12,8 +12,9 @@ from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, put_to
 from reports.contract.subject import Subject, numbers
 from sim.engine import BodyPose, Facts
-from sim.registry import ENGINES, engine
+from sim.registry import engine
 from sim.run.check import refuse_other_model
+from tests.worlds.engines import FULL
 from tests.worlds.runs import opened, start_of
 from tests.worlds.tiers import slowly
 
@@ -23,7 +24,7 @@ REFUSED = {("mujoco", "EC86"): "slotted-lever"}
 """A scene that an engine refuses in one clause alone: friction in the pin that closes its loop."""
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 @pytest.mark.parametrize("clause", CLAUSES)
 @pytest.mark.parametrize(
     "scenes", [("shaper",), slowly(SCENES, reason="kinds of joints that are made of the same")]

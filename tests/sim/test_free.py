@@ -22,10 +22,10 @@ from models.scene.laws import ConstantSpeed, Oscillating
 from reports.contract.subject import numbers
 from sim.engine import Engine, Poses, Run
 from sim.engine.drive import pace, period
-from sim.registry import ENGINES
 from sim.run import run
 from sim.run.check import refuse_other_model
 from tests.worlds import runs
+from tests.worlds.engines import FULL
 from tests.worlds.tiers import slow
 
 DT_S = 1e-3
@@ -55,7 +55,7 @@ def opened(adapter: Engine | str, chain: WindowChain) -> Any:
     return runs.opened(chain.scene(), adapter, **given)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 def test_free_sessions_step_as_they_record_and_go_on_where_they_were(name: str) -> None:
     stepped, recorded, whole = (opened(name, WindowChain(2)) for _ in range(3))
     stepped.step(60)
@@ -80,7 +80,7 @@ def test_rods_and_windows_fall_as_their_equation_says(
     assert fine < most
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 def test_the_law_of_the_driver_plays_no_part(name: str) -> None:
     """Neither in the motion, nor in what step is too long or what speed is too high."""
     chain = WindowChain(1)
@@ -111,7 +111,7 @@ def test_what_hangs_on_the_crank_of_a_free_model_is_refused(fake_engine: ModuleT
 def test_the_pace_of_free_motion_comes_from_the_state_and_from_gravity() -> None:
     """And what steps are too long for it."""
     chain = WindowChain(1)
-    for name in ENGINES:
+    for name in FULL:
         with pytest.raises(EngineError, match=r"dt: 0\.5 s leaves 4 steps in a period of 2\.006 s"):
             ran(chain, name, dt_s=0.5)
     scene, state = chain.scene(), start_of(chain)
@@ -166,7 +166,7 @@ def test_the_energy_of_a_run_is_that_of_the_closed_form_at_the_instants_of_the_v
 
 
 def test_of_a_driven_mechanism_no_energy_is_told() -> None:
-    for name in ENGINES:
+    for name in FULL:
         assert runs.ran(load_scene("shaper"), name, dt_s=1e-3, steps=10).energy is None
 
 

@@ -26,10 +26,11 @@ from models.scene.characteristics import FourierSum, Pulse
 from models.scene.driver import Controlled
 from models.scene.laws import ConstantSpeed
 from models.scene.loads import Load
-from sim.registry import ENGINES, engine
+from sim.registry import engine
 from sim.run.check import refuse_unknown_forces
 from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic
 from tests.analytic.multibody.scenes import FIVE_BAR, PARALLELOGRAM, SLIDER_CRANK, scene
+from tests.worlds.engines import FULL
 from tests.worlds.tiers import slowly
 
 PULSE = load_scene("fourbar-elastic-pulse")
@@ -224,7 +225,7 @@ def test_nobody_takes_a_controlled_crank_for_one_that_is_told() -> None:
     state = solve(SCENE, np.zeros(1), bound=False).state()
     with pytest.raises(CrankcheckError, match="without giving way"):
         build(SCENE, state)
-    for name in ENGINES:
+    for name in FULL:
         with pytest.raises(CrankcheckError, match="its driver is controlled"):
             refuse_unknown_forces(SCENE, engine(name), with_forces=False)
 

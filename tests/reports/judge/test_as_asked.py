@@ -20,8 +20,9 @@ from reports.judge.rules.reference import LEAST, too_good
 from reports.selftest.fault import integrates
 from sim.engine import Run
 from sim.engine.settings import resolved
-from sim.registry import ENGINES, engine
+from sim.registry import engine
 from sim.run import run, setup
+from tests.worlds.engines import FULL
 from tests.worlds.facts import with_facts
 from tests.worlds.fake.engine import FakeEngine
 from tests.worlds.tiers import few
@@ -40,7 +41,7 @@ def said(asked: Cell, *runner: CellRunner) -> str:
     return next((f.text for f in checked.failures if f.rule == "CC117"), "")
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 @pytest.mark.parametrize("drive", ["prescribed", "servo"])
 @pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
 def test_the_run_asked_for_is_taken(name: str, profile: str, drive: str) -> None:
@@ -95,7 +96,7 @@ def test_a_wrong_start_is_named(kind: str, body: str, place: str, share: float, 
     assert f"start: {kind[:-1]} {body} begins {share * size:.2g} {unit} off" in found
 
 
-@pytest.mark.parametrize("name", [name for name in ENGINES if integrates(name)])
+@pytest.mark.parametrize("name", [name for name in FULL if integrates(name)])
 @pytest.mark.parametrize("part", [1, 2])
 def test_a_finer_run_is_a_run_of_its_own(name: str, part: int) -> None:
     """With its step cut into so many parts a run stands in place of the others, with their
@@ -142,7 +143,7 @@ def test_the_bodies_that_a_four_bar_moves_unevenly_are_all_but_its_crank() -> No
 def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(each: str) -> None:
     """With room for a factor of ten, so that no setting that somebody finds is blamed."""
     scene = load_scene(each)  # once: its truth is found once
-    for name, profile, steps in product(ENGINES, ("tuned", "as-shipped"), (45, 720)):
+    for name, profile, steps in product(FULL, ("tuned", "as-shipped"), (45, 720)):
         errors = examined(of_turns(scene, name, steps, profile=profile))[0].errors
         assert errors.of_scene.uneven
         wide = {body: 10.0 * far for body, far in errors.of_scene.uneven.items()}

@@ -23,8 +23,8 @@ from sim.engine import Poses
 from sim.engine.drive import chords, pushes, start_speed
 from sim.engine.measure import energy, gaps, motion, spring_lengths
 from sim.engine.tree_poses import body_poses
-from sim.registry import ENGINES
 from sim.run.check import refuse_other_model
+from tests.worlds.engines import FULL
 from tests.worlds.runs import acted_on, ran, start_of
 
 
@@ -176,7 +176,7 @@ DRIVEN = {
 }
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", FULL)
 @pytest.mark.parametrize("where", DRIVEN)
 def test_springs_of_a_driven_mechanism_are_borne_by_its_drive(where: str, engine: str) -> None:
     """By the work of all that moves; pymunk's own springs are of first order."""

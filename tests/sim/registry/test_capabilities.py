@@ -35,7 +35,7 @@ from tests.worlds.runs import ran, tuned
     (lambda: snippet("fake", {}, 100), "it has no snippet; use mujoco or pymunk or exudyn"),
     (lambda: spoiler("fake"), "it has no spoiler; use mujoco or pymunk"),
     (lambda: registry.capability("pymunk", "viewer"), "it has no viewer; use mujoco"),
-    (lambda: snippet("bullet", {}, 100), "'bullet': unknown; there are mujoco, pymunk, exudyn"),
+    (lambda: snippet("chrono", {}, 100), "'chrono': unknown; there are mujoco, pymunk, exudyn"),
 ])  # fmt: skip
 def test_a_capability_that_is_lacking_is_named_with_who_has_it(
     ask: Callable[[], object], lacks: str, monkeypatch: pytest.MonkeyPatch

@@ -20,9 +20,10 @@ from models.scene.characteristics import Constant
 from models.scene.hard import double_parallelogram
 from models.scene.loads import Load
 from sim.engine import Facts, Run
-from sim.registry import ENGINES, available, declaration, engine
+from sim.registry import ENGINES, available, declaration, engine, other_version
 from sim.run import time_run
 from tests.worlds import runs
+from tests.worlds.engines import FULL, HERE
 from tests.worlds.runs import acted_on, massless, start_of
 
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -35,7 +36,7 @@ def ran(
     return runs.ran(scene, engine, profile, well=False, **{"dt_s": 1e-3, "steps": 1000, **given})
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", HERE)
 def test_sample_times_are_multiples_of_the_step(name: str) -> None:
     samples, steps = 800, 2401
     result = ran(engine=name, steps=steps, every=3)
@@ -46,7 +47,7 @@ def test_sample_times_are_multiples_of_the_step(name: str) -> None:
     assert result.cost.us_per_step == pytest.approx(1e6 * result.cost.wall_s / steps)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", HERE)
 def test_a_scene_with_loads_is_not_run_as_if_it_had_none(name: str) -> None:
     lacking = replace(engine(name), applies_loads=False, forces_of="nothing")
     pushed = acted_on(FOURBAR, Load("push", "rocker", None, Constant(1.0)))
@@ -145,7 +146,7 @@ def test_an_engine_that_raises_or_refuses_is_a_row_but_another_model(
         ran(engine=fake_engine.FakeEngine(solve, changes=heavier))
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 @pytest.mark.parametrize(
     ("link", "drive"), [("rocker", "prescribed"), ("crank", "servo"), ("crank", "free")]
 )
@@ -161,7 +162,7 @@ def test_a_link_without_mass_is_unsupported_and_named_unless_it_is_driven(
         assert ran(scene, name, steps=100).status == "ok"
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 def test_a_point_that_only_massless_blocks_share_is_named(name: str) -> None:
     result = ran(massless(load_scene("tangent")), name)
     assert result.status == "unsupported"
@@ -201,7 +202,7 @@ def test_settings_are_overridden_one_by_one_and_stored_as_the_engine_holds_them(
     assert shipped.settings["iterations"] == 10
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 def test_what_was_asked_for_runs_again_to_the_same_end(name: str) -> None:
     first = ran(engine=name, profile="as-shipped", settings={"iterations": 9})
     again = ran(engine=name, profile="tuned", settings=first.asked)
@@ -213,11 +214,13 @@ def test_what_was_asked_for_runs_again_to_the_same_end(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_an_engine_that_is_not_installed_names_the_command(
+def test_an_engine_that_is_not_installed_names_the_command_and_its_systems(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    install = declaration(name).install
-    monkeypatch.setitem(sys.modules, name, None)
+    own = declaration(name)
+    install = f"'crankcheck[{name}]'" if own.extra else own.distribution
+    install += f" ({own.wheels} alone)" if own.wheels else ""
+    monkeypatch.setitem(sys.modules, own.package, None)
     for module in [each for each in sys.modules if each.startswith(f"sim.{name}.")]:
         monkeypatch.delitem(sys.modules, module)
     missing = rf"engine {name}: not installed; .* -m pip install {re.escape(install)}"
@@ -226,11 +229,24 @@ def test_an_engine_that_is_not_installed_names_the_command(
     told = {info.name: info for info in available()}
     assert told[name].version is None
     assert told[name].install.endswith(f" -m pip install {install}")
-    assert all(info.version for other, info in told.items() if other != name)
+    assert all(told[other].version for other in HERE if other != name)
+
+
+@pytest.mark.parametrize("name", HERE)
+def test_a_version_that_was_never_tried_is_named(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert other_version(name) == ""
+    if not declaration(name).tried:
+        return
+    newer = replace(engine(name), version=lambda: "99.1")
+    monkeypatch.setattr(sys.modules[f"sim.{name}.engine"], "ENGINE", newer)
+    assert other_version(name).startswith(f"{name} 99.1: tried with {declaration(name).tried}")
 
 
 def test_importing_sim_loads_no_engine() -> None:
-    code = f"import sim.run, sys; print([n for n in {[*ENGINES]} if n in sys.modules])"
+    packages = [declaration(name).package for name in ENGINES]
+    code = f"import sim.run, sys; print([n for n in {packages} if n in sys.modules])"
     root = Path(__file__).parents[3]
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True
@@ -238,7 +254,7 @@ def test_importing_sim_loads_no_engine() -> None:
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 def test_timing_repeats_and_says_whether_it_logged(name: str) -> None:
     start = start_of(FOURBAR)
     bare = time_run(FOURBAR, start, name, dt_s=1e-3, steps=200, repeats=3)
@@ -272,7 +288,7 @@ def test_the_collector_is_off_while_timing_and_as_before_afterwards(
 SCENE = double_parallelogram("double-parallelogram", source="test")
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", FULL)
 def test_engines_carry_a_redundant_link_along(name: str) -> None:
     """From 31 to 146 deg of the crank, between the flat positions."""
     result = runs.ran(SCENE, name, dt_s=1e-3, steps=200)

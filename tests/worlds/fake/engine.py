@@ -17,6 +17,7 @@ from models.motion import Motion, State
 from models.scene import GROUND, Scene
 from models.scene.joints import blocks, bodies, centre_of, mass_of, sliding_angle
 from sim.engine import (
+    AT_ROUNDING,
     BodyPose,
     Drive,
     Facts,
@@ -24,6 +25,7 @@ from sim.engine import (
     Log,
     Placing,
     Poses,
+    Precision,
     Profile,
     Setting,
     Settings,
@@ -54,6 +56,8 @@ class FakeEngine:
     reports_accelerations: bool = True
     order: int = 2
     forces_of: ForcesOf = "nothing"
+    precision: Precision = "double"
+    floor: float = AT_ROUNDING
     applies_loads: bool = False
     applies_constant_friction: bool = False
     applies_springs: bool = False
