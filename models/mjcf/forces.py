@@ -172,7 +172,7 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
         start, end = (0.0 if b == GROUND else state.theta[b] for b in spring.bodies)
         shift = after - before + joints.whole_turns(spring, end - start)
     else:
-        signs, shift = {_sliding(tree, spring.slider): 1}, 0.0
+        signs, shift = {sliding_joint(tree.limbs, spring.slider): 1}, 0.0
     if not signs:  # they never turn against each other; a tendon asks for a joint all the same
         signs = {next(freedom.name for limb in tree.limbs for freedom in limb.freedoms): 0}
     slack = spring.free - shift
@@ -195,11 +195,9 @@ def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
     return hinges, angle
 
 
-def _sliding(tree: Tree, slider: str) -> str:
+def sliding_joint(limbs: Sequence[Limb], slider: str) -> str:
     """Return the joint for the displacement of a slider; all slides are in the tree."""
-    freedoms = next(
-        limb.freedoms for limb in tree.limbs if limb.slider and limb.slider.name == slider
-    )
+    freedoms = next(limb.freedoms for limb in limbs if limb.slider and limb.slider.name == slider)
     return next(freedom.name for freedom in freedoms if freedom.kind == "slide")
 
 

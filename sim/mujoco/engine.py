@@ -4,8 +4,7 @@ The crank is driven by its armature, or an actuator (`models.mjcf.options`, `mod
 whose control comes from `sim.engine.drive`.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -16,13 +15,14 @@ from models.mjcf import document, options
 from models.mjcf.forces import SpringTendon, planned, spring_tendons
 from models.mjcf.tree import Tree, driven_freedom, plan
 from models.motion import State
-from models.scene import Point, Scene
-from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue, tree_poses
+from models.scene import Scene
+from sim.engine import BodyPose, Drive, Engine, Facts, Log, Settings, SettingValue
 from sim.engine import drive as drives
 from sim.engine.settings import SettingError
+from sim.engine.tree_poses import body_poses
 from sim.mujoco import settings as own
 from sim.mujoco.loading import Loading
-from sim.mujoco.reactions import JointForces, TreeReactions
+from sim.mujoco.reactions import JointForces, TreeReactions, joint_forces
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 
 
@@ -35,25 +35,21 @@ class MujocoSession(SteppedModel):
         super().__init__(state.time_s, dt_s, own.velocity_shift(settings, drive))
         self._scene, self._settings, self._drive = scene, settings, drive
         chosen = own.writing(scene, settings, dt_s, drive)
-        self._tree = tree = _tree(scene, state, chosen)
-        self._limbs = tree.limbs
-        self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
+        self._chosen, self._tree = chosen, _tree(scene, state, chosen)
         with heard(self._warnings.append):
-            model = compiled(document.build(scene, state, chosen, tree))
+            model = compiled(document.build(scene, state, chosen, self._tree))
         self._weights = model.body_invweight0.copy()
         model.body_invweight0[:] *= own.weight_share(scene, settings, drive)
         self._hold(model, keyframe=0)
-        self._servo = chosen.servo_gain is not None
+        self._stays = not model.nu
         self._controlled = options.has_control(scene, chosen)
-        self._free = chosen.free
-        staged = self._free and own.integrator(settings, drive) == "RK4"
-        self._loading = Loading(
-            scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else None
-        )
-        self._tendons = spring_tendons(scene, state, tree)
-        driven, sense = driven_freedom(scene, tree.limbs)
-        self._crank = int(self._model.joint(driven).dofadr[0])
-        if not self._free:
+        staged = dt_s if chosen.free and own.integrator(settings, drive) == "RK4" else 0.0
+        self._loading = Loading(scene, model, self._tree.limbs, drive, state.time_s, staged)
+        self._following = self._loading.following
+        self._tendons = spring_tendons(scene, state, self._tree)
+        driven, sense = driven_freedom(scene, self._tree.limbs)
+        self._crank = int(model.joint(driven).dofadr[0])
+        if not chosen.free:
             start = drives.start_speed(scene.driver.law, state.time_s, dt_s, self._shift)
             self._data.qvel[self._crank] = sense * start
         self._pushes = np.empty(0)
@@ -61,32 +57,29 @@ class MujocoSession(SteppedModel):
 
     def facts(self) -> Facts:
         """Read the model as MuJoCo holds it now."""
-        model = self._model
-        names = [limb.body for limb in self._limbs]
-        opt = model.opt
+        model, opt = self._model, self._model.opt
         share = float(model.body_invweight0.sum() / self._weights.sum())
         counted = int(opt.iterations), float(f"{share:.12g}")
         settings: dict[str, SettingValue] = {
             **own.used(self._settings, self._drive),
             **own.holds(self._settings, self._dt, self._drive),
-            "close": self._closed,
+            "close": ", ".join(dict.fromkeys(c.point for c in self._tree.closures)),
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
             **own.held(self._scene, self._settings, self._drive, *counted),
             "integrator": own.INTEGRATORS[int(opt.integrator)],
         }
         if model.neq:
-            settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
-            settings["solref_dampratio"] = float(model.eq_solref[0, 1])
-            impedance = ("solimp_dmin", "solimp_dmax", "solimp_width")
-            settings |= zip(impedance, map(float, model.eq_solimp[0, :3]), strict=True)
+            found = (*model.eq_solref[0], *model.eq_solimp[0, :3])
+            settings |= zip(own.OF_LOOPS, map(float, found), strict=True)
+        bodies = {limb.body: model.body(limb.body) for limb in self._tree.limbs}
         return Facts(
             version=VERSION,
-            mass_kg={n: float(model.body(n).mass[0]) for n in names},
-            inertia_kg_m2={n: self._inertia(n) for n in names},
-            centre_m={n: _pair(model.body(n).ipos) for n in names},
+            mass_kg={name: float(body.mass[0]) for name, body in bodies.items()},
+            inertia_kg_m2={name: self._inertia(name) for name in bodies},
+            centre_m={n: (float(b.ipos[0]), float(b.ipos[1])) for n, b in bodies.items()},
             gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
-            start=self._start(),
+            start=self.read(),
             settings=settings,
             velocity_shift=self._shift,
             acceleration_shift=0.0,
@@ -95,10 +88,10 @@ class MujocoSession(SteppedModel):
 
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log, as `record`, with the forces of `mj_forward` at each kept state."""
-        joint_forces = JointForces(self._model, self._limbs, self._loading.first, self._tendons)
-        log = self._recorded(steps, every, joint_forces.look)
-        forces = TreeReactions(self._scene, self._tree, log.poses, joint_forces).forces()
-        return replace(log, forces=forces)
+        states: list[JointForces] = []
+        log = self.record(steps, every, lambda *at: states.append(joint_forces(*at)))
+        built = TreeReactions(self._scene, self._tree, log.poses, states, self._tendons)
+        return replace(log, forces=built.forces())
 
     def _spring(self, tendon: SpringTendon) -> tuple[float, float, float]:
         """Return rate, damping and slack length or angle of a spring, as in `Facts`."""
@@ -109,7 +102,7 @@ class MujocoSession(SteppedModel):
     def _inertia(self, body: str) -> float:
         """Return the inertia about the centre of mass; a free crank's hinge counts as well."""
         inertia = float(self._model.body(body).inertia[2])
-        if self._free and body == self._scene.driver.link:
+        if self._chosen.free and body == self._scene.driver.link:
             inertia += float(self._model.dof_armature[self._crank])
         return inertia
 
@@ -117,26 +110,13 @@ class MujocoSession(SteppedModel):
         with self._loading.in_stages(self._done, steps):
             return super()._roll(steps)
 
-    @property
-    def _stays(self) -> bool:
-        return not self._model.nu
+    def _controls(self, steps: int) -> Array:
+        """Return the controls of each of the next steps.
 
-    def _start(self) -> Poses:
-        """Return the current state; the opening has computed the accelerations of the first."""
-        if self._done or self._model.nu:  # by the law's control, which the opening left out
-            return self.read()
-        return self._placed(self._full_state()[None], np.zeros(1), self._data.qacc[None].copy())
-
-    def _controls(self, steps: int) -> Array | None:
-        """Return the controls of each of the next steps; None where the model has no actuator.
-
-        A load that is known ahead keeps through a step its size in the middle of the velocity's
-        step. At the start of a step of RK4 it would come half a step late: of first order, where
-        this is of second. In free motion a step of RK4 sees it in its stages instead
-        (`Loading.in_stages`), which is of fourth.
+        A load that is known ahead has in a step the size of the middle of the velocity's step; that
+        of the start of a step of RK4 would be half a step late, and of first order. In free motion
+        a step of RK4 sees it in its stages instead (`Loading.in_stages`).
         """
-        if not self._model.nu:
-            return None
         middle = self._done + np.arange(steps, dtype=np.float64) + 0.5 + self._shift
         loads = self._loading.at_times(self._start_s + self._dt * middle)
         return np.hstack([self._driving(steps), loads]) if self._controlled else loads
@@ -144,39 +124,26 @@ class MujocoSession(SteppedModel):
     def _driving(self, steps: int) -> Array:
         """Return the control of the crank in each of the next steps, (steps, 1)."""
         law, end = self._scene.driver.law, self._done + steps
-        if self._servo:  # the speed at the end of the step is its mean speed
+        if self._chosen.servo_gain is not None:
+            # The speed at the end of the step is its mean.
             return drives.chords(law, self._start_s, self._dt, self._done, end - 1)[:, None]
         if len(self._pushes) < end + 1:
             longer = max(end + 1, 2 * len(self._pushes))
             self._pushes = drives.pushes(law, self._start_s, self._dt, longer, self._shift)
         return self._pushes[self._done : end, None]
 
-    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        """Return the poses of states with their joint accelerations (T, nv)."""
-        lag = self._shift * self._dt
-        poses = tree_poses.body_poses(self._limbs, *self._joints(states), push, lag)
-        return Poses(self._start_s + self._dt * at, poses, lag)
+    def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
+        return body_poses(self._tree.limbs, q, rate, push, lag_s)
 
-    def _control_at(self, at: Array) -> Array | None:
+    def _control_at(self, at: Array) -> Array:
         """Return the law's own speed or acceleration at the steps, and the sizes of the loads."""
-        if not self._model.nu:
-            return None
         time_s = self._start_s + self._dt * at
         loads = self._loading.at_times(time_s)
         if not self._controlled:
             return loads
         _, omega, alpha = self._scene.driver.law.at(time_s)
-        return np.column_stack([omega if self._servo else alpha, loads])
-
-    @contextmanager
-    def _at_work(self) -> Iterator[None]:
-        """Let loads follow the motion while MuJoCo works."""
-        with super()._at_work(), self._loading.following():
-            yield
-
-
-def _pair(vector: Array) -> Point:
-    return float(vector[0]), float(vector[1])
+        driving = alpha if self._chosen.servo_gain is None else omega
+        return np.column_stack([driving, loads])
 
 
 def _tree(scene: Scene, state: State, chosen: options.Writing) -> Tree:

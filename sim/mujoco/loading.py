@@ -1,7 +1,7 @@
 """Sizes of a scene's loads while MuJoCo steps, as the controls of their actuators."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
@@ -10,65 +10,15 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
+from models.mjcf.forces import sliding_joint
 from models.mjcf.tree import Limb, driven_freedom
 from models.scene import Scene
-from models.scene.characteristics import Characteristic, Constant
+from models.scene.characteristics import Constant
 from models.scene.loads import Load
 from sim.engine import Drive, load_magnitudes
 
 Parts = tuple[float, float, float]
 """Parts of a load, at the begin, the middle and the end of a step."""
-
-
-class StrokeShares:
-    """Parts of loads on forward strokes in the steps from ``first`` on, of sliders with their rates
-    at these places of the velocities.
-
-    Such a load jumps where the speed of a slider changes its sign. Stages that use their own speed
-    see some of the jump, at any instant of it, and the step falls to first order. RK4 adds up a
-    step as Simpson's rule does, from its begin, middle and end; a load that acts for the first
-    share s of the step keeps its impulse, and its moments with time and the square of time, in the
-    parts
-
-        begin  6 s - 9 s^2 + 4 s^3        middle  3 s^2 - 2 s^3        end  4 s^3 - 3 s^2
-
-    The impulse alone is not enough: at a dead centre the slider turns back where the load has no
-    lever, which grows from there. The rate of the speed belongs to the stage before, the end of the
-    last step.
-    """
-
-    def __init__(self, places: Mapping[str, int], dt_s: float, first: int) -> None:
-        self._places, self._dt = places, dt_s
-        self._last_half = 2 * first  # as after a start: no middle was before
-        self._parts: dict[str, Parts] = {}
-
-    def at(self, data: Any) -> Mapping[str, float]:
-        """Return the parts by slider, in MuJoCo's present stage; every stage has to call it."""
-        half = round(2.0 * float(data.time) / self._dt)
-        stage = 1 if half % 2 else 2 if self._last_half == half - 1 else 0
-        if stage == 0:
-            self._parts = {
-                name: forward_parts(float(data.qvel[k]), self._dt * float(data.qacc[k]))
-                for name, k in self._places.items()
-            }
-        self._last_half = half
-        return {name: parts[stage] for name, parts in self._parts.items()}
-
-
-def forward_parts(speed: float, change: float) -> Parts:
-    """Return the parts of a load that acts in forward motion, of a step that begins at a speed and
-    changes it evenly by so much."""
-    after = speed + change
-    if speed * after >= 0.0:
-        whole = float(speed > 0.0 or (speed == 0.0 and after > 0.0))
-        return whole, whole, whole
-    s = abs(speed / change)
-    until = (s * (6.0 - 9.0 * s + 4.0 * s * s), s * s * (3.0 - 2.0 * s), s * s * (4.0 * s - 3.0))
-    if speed > 0.0:
-        return until
-    return 1.0 - until[0], 1.0 - until[1], 1.0 - until[2]
-
-
 INSIDE = 1e-9
 """Distance within its step, in steps, at which the end stages evaluate the load: above the rounding
 of times, below any error."""
@@ -76,64 +26,70 @@ STAGES = np.array([INSIDE, 0.5, 1.0 - INSIDE])
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
-class LoadStages:
-    """Sizes of ``loads`` in the stages of the steps ``first`` to ``first + count - 1``, and the
-    stage of MuJoCo's clock.
-
-    A stage is at the start of its step, in the middle or at the end::
-
-        start + dt (n + c)      c = 0, 1/2, 1
+class StageClock:
+    """The step of RK4, counted from ``first`` on, and its stage, by MuJoCo's clock: stage 0 at its
+    start, 1, evaluated twice, in the middle, 2 at its end.
 
     Two steps share an instant, and each sees its own side of it: a jump on the grid belongs to the
-    step that it begins. Grid and stage are found by the number of the step, as MuJoCo's clock adds
-    up rounding. A step with a jump or kink has the stages of the parabola with the load's moments
-    with 1, c and c^2 over the step. Simpson's rule, which is RK4 for a course over time, then gives
-    speed and position as the load does, except for the effect of the motion in the step on it. RK4
-    evaluates the forces at the start, twice in the middle, and at the end of each step.
+    step that it begins. Halves of steps are counted, as the clock adds up rounding.
     """
 
-    def __init__(
-        self, loads: Sequence[Load], start_s: float, dt_s: float, first: int, count: int
-    ) -> None:
-        self._first, self._last, self._halves_per_s = first, count - 1, 2.0 / dt_s
-        sizes = [stage_sizes(load, start_s, dt_s, first, count) for load in loads]
-        # Lists, as a callback reads a number of an array ten times as slowly.
-        self._sizes: list[list[list[float]]] = np.stack(sizes, axis=2).tolist()
+    def __init__(self, dt_s: float, first: int) -> None:
+        self._halves_per_s, self._first = 2.0 / dt_s, first
         self._last_half = 2 * first  # as after a start: no middle was before
 
-    def at(self, clock_s: float) -> list[float]:
-        """Return the sizes in the stage of MuJoCo's clock; every stage has to call it, in turn."""
+    def at(self, clock_s: float) -> tuple[int, int]:
+        """Return step and stage of an evaluation; every one has to call it, in turn."""
         half = round(self._halves_per_s * clock_s)
         step, stage = half // 2 - self._first, half % 2
         if stage == 0 and self._last_half == half - 1:  # after the middle comes the end
             step, stage = step - 1, 2
         self._last_half = half
-        # MuJoCo puts a state that diverges back to time 0; such a run is thrown away.
-        return self._sizes[min(max(step, 0), self._last)][stage]
+        return step, stage
+
+
+def forward_parts(speed: float, change: float) -> Parts:
+    """Return the parts of a load that acts in forward motion, of a step that begins at a speed and
+    changes it evenly by so much.
+
+    Such a load jumps where the speed of its slider changes its sign. Stages that use their own
+    speed see some of the jump, at any instant of it, and the step falls to first order. RK4 adds up
+    a step as Simpson's rule does; a load that acts for the first share s of the step keeps its
+    impulse, and its moments with time and the square of time, in the parts
+
+        begin  6 s - 9 s^2 + 4 s^3        middle  3 s^2 - 2 s^3        end  4 s^3 - 3 s^2
+
+    The impulse alone is not enough: at a dead centre the slider turns back where the load has no
+    lever, which grows from there.
+    """
+    after = speed + change
+    if speed * after >= 0.0:
+        whole = float(speed > 0.0 or (speed == 0.0 and after > 0.0))
+        return whole, whole, whole
+    s = abs(speed / change)
+    until = (s * (6.0 - 9.0 * s + 4.0 * s * s), s * s * (3.0 - 2.0 * s), s * s * (4.0 * s - 3.0))
+    return until if speed > 0.0 else (1.0 - until[0], 1.0 - until[1], 1.0 - until[2])
 
 
 def stage_sizes(load: Load, start_s: float, dt_s: float, first: int, count: int) -> Array:
-    """Return the sizes (count, 3) of a load over time in the stages of some steps [N or N m]."""
+    """Return the sizes (count, 3) of a load over time in the stages of some steps [N or N m].
+
+    A step with a jump or kink has the stages of the parabola with the load's moments with 1, c and
+    c^2 over the step, c from 0 to 1. Simpson's rule, which is RK4 for a course over time, then
+    gives speed and position as the load does, except for the effect of the motion on it.
+    """
     begins = start_s + dt_s * np.arange(first, first + count)
     times = begins[:, None] + dt_s * STAGES
     sizes = load.magnitude(times.ravel()).reshape(times.shape)
-    for step, cuts in _cut_steps(load.characteristic, start_s, dt_s, first, count).items():
-        sizes[step - first] = _parabola(load, start_s + dt_s * step, dt_s, cuts)
-    return np.asarray(sizes)
-
-
-def _cut_steps(
-    course: Characteristic, start_s: float, dt_s: float, first: int, count: int
-) -> dict[int, list[float]]:
-    """Return the steps with a kink within, and its places in the step, between 0 and 1."""
     cuts: dict[int, list[float]] = {}
-    end_s = start_s + dt_s * (first + count)
-    for kink in course.kinks_between(start_s + dt_s * first, end_s):
+    for kink in load.characteristic.kinks_between(begins[0], start_s + dt_s * (first + count)):
         place = (kink - start_s) / dt_s
         step = math.floor(place)
         if first <= step < first + count and INSIDE < place - step < 1.0 - INSIDE:
             cuts.setdefault(step, []).append(place - step)
-    return cuts
+    for step, places in cuts.items():
+        sizes[step - first] = _parabola(load, start_s + dt_s * step, dt_s, places)
+    return np.asarray(sizes)
 
 
 def _parabola(load: Load, begin_s: float, dt_s: float, cuts: Sequence[float]) -> Array:
@@ -153,10 +109,9 @@ class Loading:
     """Controls of the loads, the last of the model's controls.
 
     Loads known ahead are a control of each step (`at_times`), in C throughout. A callback
-    (`following`) sets loads that depend on the motion in every evaluation of the forces, four times
-    a step of RK4, from the state of then; that costs some microseconds each. The callback also sets
-    loads over time if steps of RK4 of ``stages_dt_s`` [s] are to see them in their stages
-    (`in_stages`), and loads of one stroke with their share of the step.
+    (`following`) sets loads that depend on the motion in every evaluation of the forces, from the
+    state of then; that costs some microseconds each. It also sets loads over time, and loads of one
+    stroke, as steps of RK4 of ``stages_dt_s`` [s] are to see them in their stages (`in_stages`).
     """
 
     def __init__(
@@ -166,32 +121,30 @@ class Loading:
         limbs: tuple[Limb, ...],
         drive: Drive,
         start_s: float,
-        stages_dt_s: float | None = None,
+        stages_dt_s: float = 0.0,
     ) -> None:
         self.loads = tuple(scene.loads.values())
         self._scene, self._start_s = scene, start_s
         self.first = int(model.nu) - len(self.loads)
-        of_motion = [not load_magnitudes.known_ahead(load, drive) for load in self.loads]
-        self._of_motion = [k for k, follows in enumerate(of_motion) if follows]
-        self._dt = stages_dt_s or 0.0
+        self._dt, known = stages_dt_s, load_magnitudes.known_ahead
+        self._of_motion = [k for k, load in enumerate(self.loads) if not known(load, drive)]
         self._of_time = [
             k
             for k, load in enumerate(self.loads)
-            if self._dt and not of_motion[k] and not isinstance(load.characteristic, Constant)
+            if self._dt and known(load, drive) and not isinstance(load.characteristic, Constant)
         ]
-        self._stages: LoadStages | None = None
-        self._shares: StrokeShares | None = None
+        self._clock: StageClock | None = None
+        # Lists, as a callback reads a number of an array ten times as slowly.
+        self._sizes: list[list[list[float]]] = []
+        self._parts: dict[str, Parts] = {}
         driven, self._sense = driven_freedom(scene, limbs)
         self._crank = int(model.joint(driven).qposadr[0])
         self._turning = {
             load.body: int(model.body(load.body).id) for load in self.loads if load.over == "omega"
         }
         self._slides = {
-            limb.slider.name: int(model.joint(freedom.name).qposadr[0])
-            for limb in limbs
-            if limb.slider is not None
-            for freedom in limb.freedoms
-            if freedom.kind == "slide"
+            slider: int(model.joint(sliding_joint(limbs, slider)).qposadr[0])
+            for slider in scene.sliders
         }
         self._of_strokes = {
             load.name: replace(load, stroke="both")
@@ -212,7 +165,7 @@ class Loading:
     @contextmanager
     def following(self) -> Iterator[None]:
         """Let loads follow the motion while MuJoCo works; its callback is one for all models."""
-        if not self._of_motion:
+        if not (self._of_motion or self._of_time):
             yield
             return
         mujoco.set_mjcb_control(self._follow)
@@ -225,38 +178,37 @@ class Loading:
     def in_stages(self, first: int, count: int) -> Iterator[None]:
         """Set loads over time in their stages, and loads of one stroke by their share of the step,
         while MuJoCo takes ``count`` steps from the step ``first`` on."""
-        if not (self._of_time or self._of_strokes):
-            yield
-            return
-        before = mujoco.get_mjcb_control()
-        loads = [self.loads[k] for k in self._of_time]
-        if loads:
-            self._stages = LoadStages(loads, self._start_s, self._dt, first, count)
-        if self._of_strokes:
-            sliders = dict.fromkeys(str(load.slider) for load in self._of_strokes.values())
-            places = {name: self._slides[name] for name in sliders}
-            self._shares = StrokeShares(places, self._dt, first)
-        mujoco.set_mjcb_control(self._follow)
+        if self._of_time or self._of_strokes:
+            self._clock = StageClock(self._dt, first)
+        given = self._start_s, self._dt, first, count
+        sizes = [stage_sizes(self.loads[k], *given) for k in self._of_time]
+        self._sizes = np.stack(sizes, axis=2).tolist() if sizes else []
         try:
             yield
         finally:
-            self._stages = self._shares = None
-            mujoco.set_mjcb_control(before)
+            self._clock, self._sizes = None, []
 
     def _follow(self, _model: Any, data: Any) -> None:
-        controls, first = data.ctrl, self.first
-        forward = self._shares.at(data) if self._shares is not None else None
-        for k in self._of_motion:
-            load = self.loads[k]
-            if forward is None or load.name not in self._of_strokes:
-                controls[first + k] = self.size(load, data)
-                continue
-            share = forward[str(load.slider)]
-            share = share if load.stroke == "forward" else 1.0 - share
-            controls[first + k] = share * self.size(self._of_strokes[load.name], data)
-        if self._stages is not None:
-            for k, size in zip(self._of_time, self._stages.at(data.time), strict=True):
+        controls, first, clock = data.ctrl, self.first, self._clock
+        step, stage = (0, 0) if clock is None else clock.at(data.time)
+        if self._sizes:
+            # MuJoCo puts a state that diverges back to time 0; such a run is thrown away.
+            for k, size in zip(self._of_time, self._sizes[max(step, 0)][stage], strict=True):
                 controls[first + k] = size
+        if not self._of_motion:
+            return
+        if clock is not None and stage == 0:  # the rate of the speed is that of the stage before
+            for name, load in self._of_strokes.items():
+                k = self._slides[str(load.slider)]
+                change = self._dt * float(data.qacc[k])
+                self._parts[name] = forward_parts(float(data.qvel[k]), change)
+        for k in self._of_motion:
+            load, share = self.loads[k], 1.0
+            if clock is not None and load.name in self._of_strokes:
+                forward = self._parts[load.name][stage]
+                share = forward if load.stroke == "forward" else 1.0 - forward
+                load = self._of_strokes[load.name]
+            controls[first + k] = share * self.size(load, data)
 
     def size(self, load: Load, data: Any) -> float:
         """Return the size of a load in the state of the data; all slides are joints, and their

@@ -1,10 +1,8 @@
 """MuJoCo's settings: the two profiles, and the MJCF text of a set of settings."""
 
 import re
-from collections.abc import Mapping
 
-from models.mjcf import document, options
-from models.motion import State
+from models.mjcf import options
 from models.scene import Scene, joints, loads
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.engine.settings import as_held, checker
@@ -36,14 +34,10 @@ RANGES = {
 """Ranges in MuJoCo, which silently clips impedances to these."""
 MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weight_share": 4}
 """Iterations by cause, beyond those of pins as stiff as by the compiled weights."""
+OF_IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
+OF_LOOPS = ("solref_timeconst_s", "solref_dampratio", *OF_IMPEDANCE)
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
-NOT_USED: Mapping[Drive, tuple[str, ...]] = {
-    "prescribed": OF_FREE,
-    "servo": OF_FREE,
-    "free": OF_DRIVES,
-}
-"""Settings without effect by drive."""
 
 FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-7
 """Time constant of the loop closures in steps, and the share of the bodies' inverse weights, in
@@ -135,12 +129,8 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
     """Return the options of the MJCF text for the settings."""
     checked(settings)
     held = holds(settings, dt_s, drive)
-    servo = None
-    if drive == "servo":
-        scale = joints.inertia_scale(scene) * scene.pace_rad_s
-        servo = float(settings["servo_gain"]) * scale
-    dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
-    solimp = (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0)
+    scale = joints.inertia_scale(scene) * scene.pace_rad_s
+    solimp = (*(float(settings[name]) for name in OF_IMPEDANCE), 0.5, 2.0)
     damping, driven = float(settings["solref_dampratio"]), holds(settings, dt_s, "prescribed")
     return options.Writing(
         close=tuple(p.strip() for p in re.split("[+,]", str(settings["close"])) if p.strip()),
@@ -148,38 +138,34 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
             "timestep": dt_s,
             "integrator": str(held["integrator"]),
             "solver": str(settings["solver"]),
-            "iterations": _iterations(scene, settings, drive),
+            "iterations": _iterations(scene, settings, drive)[0],
             "tolerance": float(held["tolerance"]),
         },
         flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
         connect={"solref": (float(held["solref_timeconst_s"]), damping), "solimp": solimp},
         rubbing={"solref": (float(driven["solref_timeconst_s"]), damping), "solimp": solimp},
         flywheel_ratio=float(settings["flywheel_ratio"]),
-        servo_gain=servo,
+        servo_gain=float(settings["servo_gain"]) * scale if drive == "servo" else None,
         delay_s=velocity_shift(settings, drive) * dt_s,
         free=drive == "free",
     )
 
 
-def _iterations(scene: Scene, settings: Settings, drive: Drive) -> int:
-    """Return the iterations of the settings, or more where a cause needs them."""
-    asked, cause = int(settings["iterations"]), _iterating(scene, settings, drive)
-    return max(asked, MORE_ITERATIONS[cause]) if cause else asked
+def _iterations(scene: Scene, settings: Settings, drive: Drive) -> tuple[int, str]:
+    """Return the iterations of the settings, or more where a cause needs them, and the cause.
 
-
-def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
-    """Return the cause of more iterations than for pins, which give a quadratic problem.
-
-    Friction: its choice of two signs makes the solver's problem more than quadratic. Springs: the
-    integrator `discrete` solves inertia and stiffness together by conjugate gradients, as many of
-    them as there are iterations, and gives the run up where they do not converge. Lower weights in
-    free motion: the rounding of the first passes remains in so stiff a problem.
+    Pins give a quadratic problem. Friction: its choice of two signs makes the problem more than
+    quadratic. Springs: the integrator `discrete` solves inertia and stiffness together by conjugate
+    gradients, as many of them as there are iterations, and gives the run up where they do not
+    converge. Lower weights in free motion: the rounding of the first passes remains in so stiff a
+    problem.
     """
+    cause = "free_weight_share" if weight_share(scene, settings, drive) != 1 else ""
     if scene.friction:
-        return "friction"
-    if scene.springs and integrator(settings, drive) == "discrete":
-        return "springs"
-    return "free_weight_share" if weight_share(scene, settings, drive) != 1 else ""
+        cause = "friction"
+    elif scene.springs and integrator(settings, drive) == "discrete":
+        cause = "springs"
+    return max(int(settings["iterations"]), MORE_ITERATIONS.get(cause, 0)), cause
 
 
 def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
@@ -198,7 +184,7 @@ def held(
 ) -> dict[str, SettingValue]:
     """Return what is found in a model, as settings: its iterations and, in free motion, the ratio
     of the bodies' inverse weights to the compiled ones."""
-    cause, given = _iterating(scene, settings, drive), _iterations(scene, settings, drive)
+    given, cause = _iterations(scene, settings, drive)
     told = as_held("iterations", int(settings["iterations"]), given, iterations, cause)
     if drive != "free":
         return told
@@ -224,7 +210,8 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
 
 def used(settings: Settings, drive: Drive) -> Settings:
     """Return the settings that have an effect with a drive."""
-    return {name: value for name, value in settings.items() if name not in NOT_USED[drive]}
+    idle = OF_DRIVES if drive == "free" else OF_FREE
+    return {name: value for name, value in settings.items() if name not in idle}
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:
@@ -244,14 +231,3 @@ def velocity_shift(settings: Settings, drive: Drive) -> float:
 def integrator(settings: Settings, drive: Drive) -> str:
     """Return the integrator of a drive."""
     return str(settings["servo_integrator" if drive == "servo" else "integrator"])
-
-
-def text(
-    scene: Scene,
-    state: State,
-    settings: Settings,
-    dt_s: float,
-    drive: Drive = "prescribed",
-) -> str:
-    """Return the MJCF text of a run with these settings."""
-    return document.build(scene, state, writing(scene, settings, dt_s, drive))

@@ -7,9 +7,10 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
+from models.mjcf import document
 from sim.engine import Session, Settings
 from sim.mujoco.engine import MujocoSession
-from sim.mujoco.settings import text
+from sim.mujoco.settings import writing
 from sim.run.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
 
@@ -43,15 +44,12 @@ class MujocoSpoiler:
         model.site_pos[site, 0] += by_m
 
     def pull(self, session: Session, gravity_m_s2: float) -> None:
-        """Add gravity along -y, as the mechanism is in the x-y plane."""
         _own(session)._model.opt.gravity[1] -= gravity_m_s2
 
     def load(self, session: Session, share: float) -> None:
-        """Make the last body heavier."""
         _own(session)._model.body_mass[-1] *= 1.0 + share
 
     def turn(self, session: Session, angle_rad: float) -> None:
-        """Turn the last joint."""
         own = _own(session)
         own._data.qpos[-1] += angle_rad
         mujoco.mj_forward(own._model, own._data)
@@ -60,9 +58,8 @@ class MujocoSpoiler:
         """Write the post into the model and compile it again; post and bars of ``body`` are as hard
         as the joints."""
         own = _own(session)
-        spec = mujoco.MjSpec.from_string(
-            text(opening.scene, opening.state, opening.settings, opening.dt_s, opening.drive)
-        )
+        chosen = writing(opening.scene, opening.settings, opening.dt_s, opening.drive)
+        spec = mujoco.MjSpec.from_string(document.build(opening.scene, opening.state, chosen))
         spec.worldbody.add_geom(
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
             size=[post.radius_m, 0.0, 0.0],
@@ -80,7 +77,6 @@ class MujocoSpoiler:
         own._model, own._data = model, data
 
     def round_state(self, session: Session, relative: float) -> None:
-        """Round joint coordinates and their rates."""
         data = _own(session)._data
         data.qpos[:] = rounded(np.array(data.qpos), relative)
         data.qvel[:] = rounded(np.array(data.qvel), relative)
@@ -91,18 +87,15 @@ class MujocoSpoiler:
         model.dof_damping[:] += per_s * model.dof_M0
 
     def slow(self, session: Session, share: float) -> None:
-        """Add an armature."""
         model = _own(session)._model
         model.dof_armature[-1] += share * model.dof_M0[-1]
 
     def spin(self, session: Session, by_rad_s: float) -> None:
-        """Add to the rate of the last joint."""
         own = _own(session)
         own._data.qvel[-1] += by_rad_s
         mujoco.mj_forward(own._model, own._data)
 
     def quicken(self, session: Session, share: float) -> None:
-        """Scale the rates of the joints."""
         _own(session)._data.qvel[:] *= 1.0 + share
 
     def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:

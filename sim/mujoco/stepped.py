@@ -3,8 +3,8 @@
 import os
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ import numpy as np
 from mujoco import rollout
 
 from models.errors import EngineError
-from sim.engine import Log, Poses
+from sim.engine import BodyPose, Log, Poses
 
 VERSION = str(mujoco.mj_versionString())
 """Version of the C library."""
@@ -37,12 +37,17 @@ class SteppedModel(ABC):
     """A model and its data from ``start_s`` [s] on, in steps of ``dt_s`` [s]; its velocities belong
     to ``shift`` steps after its positions."""
 
+    _model: Any
+    _data: Any
+    _stays = True
+    """False if `step` needs controls that change from step to step."""
+
     def __init__(self, start_s: float, dt_s: float, shift: float) -> None:
         self._start_s, self._dt, self._shift = start_s, dt_s, shift
         self._done = 0
         self._warnings: list[str] = []
-        self._model: Any
-        self._data: Any
+        self._following: Callable[[], AbstractContextManager[None]] = nullcontext
+        """What is to be entered while MuJoCo works."""
 
     def _hold(self, model: Any, keyframe: int | None) -> None:
         """Take a compiled model, at one of its keyframes."""
@@ -55,21 +60,17 @@ class SteppedModel(ABC):
             mujoco.mj_forward(self._model, self._data)
 
     @abstractmethod
-    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        """Return the poses of states with their joint accelerations (T, nv)."""
+    def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
+        """Return the bodies from joint coordinates (T, nq), and their rates and accelerations
+        (T, nv); the rates belong to ``lag_s`` later."""
 
-    @abstractmethod
-    def _controls(self, steps: int) -> Array | None:
-        """Return the controls of each of the next steps, (steps, nu); None without any."""
+    def _controls(self, steps: int) -> Array:
+        """Return the controls of each of the next steps, (steps, nu)."""
+        return np.tile(self._data.ctrl, (steps, 1))
 
-    @abstractmethod
-    def _control_at(self, at: Array) -> Array | None:
-        """Return the controls at the steps ``at``, (T, nu); None without any."""
-
-    @property
-    def _stays(self) -> bool:
-        """True if `step` needs no control that changes from step to step."""
-        return True
+    def _control_at(self, at: Array) -> Array:
+        """Return the controls at the steps ``at``, (T, nu)."""
+        return self._controls(len(at))
 
     def step(self, steps: int) -> None:
         """Advance in C without logging."""
@@ -82,12 +83,9 @@ class SteppedModel(ABC):
                 self._roll(steps)
         self._done += steps
 
-    def record(self, steps: int, every: int) -> Log:
-        """Advance in C, log every step, keep every ``every``-th."""
-        return self._recorded(steps, every)
-
-    def _recorded(self, steps: int, every: int, look: Look | None = None) -> Log:
-        """Advance and log, as `record`; ``look`` gets each kept state after `mj_forward`."""
+    def record(self, steps: int, every: int, look: Look | None = None) -> Log:
+        """Advance in C, log every step, keep every ``every``-th; ``look`` gets each of these after
+        `mj_forward`."""
         first = self._full_state()[None]
         began = time.perf_counter()
         with self._at_work():
@@ -101,22 +99,18 @@ class SteppedModel(ABC):
         with self._at_work():
             poses = self._poses(kept[:count], at[:count], look)
         self._done += steps
-        return Log(poses, (count - 1) * every, diverged or count < len(kept), self.taken(), wall)
+        warnings = tuple(dict.fromkeys(self._warnings))
+        return Log(poses, (count - 1) * every, diverged or count < len(kept), warnings, wall)
 
     def read(self) -> Poses:
         """Read the current state."""
         with self._at_work():
             return self._poses(self._full_state()[None], np.array([float(self._done)]))
 
-    def taken(self) -> tuple[str, ...]:
-        """Return the warnings so far, each once."""
-        return tuple(dict.fromkeys(self._warnings))
-
     def _roll(self, steps: int) -> Array:
         """Return the states after each of the next steps, (steps, n)."""
         warm = self._data.qacc_warmstart[None].copy()
-        control = self._controls(steps)
-        given: dict[str, Any] = {} if control is None else {"control": control[None]}
+        given = {"control": self._controls(steps)[None]} if self._model.nu else {}
         states, _ = rollout.rollout(
             self._model,
             self._data,
@@ -133,34 +127,27 @@ class SteppedModel(ABC):
         return state
 
     def _poses(self, states: Array, at: Array, look: Look | None = None) -> Poses:
-        """Return the poses of logged states, with accelerations by `mj_forward` at each state."""
-        return self._placed(states, at, self._accelerations(states, at, look))
-
-    def _accelerations(self, states: Array, at: Array, look: Look | None) -> Array:
-        """Compute joint accelerations of the states (T, nv), on a copy of the data."""
+        """Return the poses of logged states, with accelerations by `mj_forward` at each state, on a
+        copy of the data."""
         model, data = self._model, mujoco.MjData(self._model)
-        rows = np.empty((len(states), model.nv))
-        control = self._control_at(at)
-        for row, state in enumerate(states):
+        push, control = np.empty((len(states), model.nv)), self._control_at(at) if model.nu else ()
+        for k, state in enumerate(states):
             mujoco.mj_setState(model, data, state, FULL)
-            if control is not None:
-                data.ctrl[:] = control[row]
+            if model.nu:
+                data.ctrl[:] = control[k]
             mujoco.mj_forward(model, data)
             if look is not None:
                 look(model, data)
-            rows[row] = data.qacc
+            push[k] = data.qacc
             data.qacc_warmstart[:] = data.qacc
-        return rows
-
-    def _joints(self, states: Array) -> tuple[Array, Array]:
-        """Return joint coordinates (T, nq) and their rates (T, nv) of states."""
-        nq, nv = self._model.nq, self._model.nv
-        return states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
+        rates, lag = 1 + model.nq, self._shift * self._dt
+        bodies = self._placed(states[:, 1:rates], states[:, rates : rates + model.nv], push, lag)
+        return Poses(self._start_s + self._dt * at, bodies, lag)
 
     @contextmanager
     def _at_work(self) -> Iterator[None]:
         """Collect MuJoCo's warnings while it works."""
-        with heard(self._warnings.append):
+        with heard(self._warnings.append), self._following():
             yield
 
 
@@ -175,20 +162,13 @@ def heard(hear: Callable[[str], object]) -> Iterator[None]:
         mujoco.set_mju_user_warning(before)
 
 
-def compiled(xml: str) -> Any:
-    """Compile a model. Raises EngineError with MuJoCo's own words."""
+def compiled(text: str | bytes | None = None, path: Path | None = None) -> Any:
+    """Compile a model from its text, from a file, or from a text in place of a file. Raises
+    EngineError with MuJoCo's own words."""
     try:
-        return mujoco.MjModel.from_xml_string(xml)
+        if path is None:
+            return mujoco.MjModel.from_xml_string(text)
+        with heard(lambda _: None):
+            return mujoco.MjModel.from_xml_path(str(path), {str(path): text} if text else {})
     except ValueError as error:
         raise EngineError(f"MuJoCo refuses the model: {error}") from error
-
-
-def compiled_file(path: Path, text: bytes | None = None) -> Any:
-    """Compile the model of a file, or of another text in its place. Raises EngineError with
-    MuJoCo's own words."""
-    with heard(lambda _: None):
-        try:
-            others = {} if text is None else {str(path): text}
-            return mujoco.MjModel.from_xml_path(str(path), others)
-        except ValueError as error:
-            raise EngineError(f"MuJoCo refuses the model: {error}") from error

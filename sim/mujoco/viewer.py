@@ -8,7 +8,7 @@ import numpy as np
 
 from models.mjcf import document, forces, options
 from models.motion import State
-from models.scene import Scene, laws
+from models.scene import Scene
 from sim.engine import Drive
 from sim.mujoco.loading import Loading
 from sim.registry.offers import Viewer
@@ -26,26 +26,21 @@ def show(scene: Scene, start: State) -> None:
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
     if model.nu:
-        law = scene.driver.law if options.has_control(scene, writing) else None
         drive: Drive = "free" if scene.is_free else "prescribed"
         loading = Loading(scene, model, tree.limbs, drive, 0.0)
-        mujoco.set_mjcb_control(_controlled(law, loading))
+        driven = options.has_control(scene, writing)
+
+        def control(_model: Any, data: Any) -> None:
+            if driven:
+                data.ctrl[0] = scene.driver.law.at(np.array([data.time]))[2][0]
+            for k, load in enumerate(loading.loads):
+                data.ctrl[loading.first + k] = loading.size(load, data)
+
+        mujoco.set_mjcb_control(control)
     try:
         mujoco.viewer.launch(model, state)
     finally:
         mujoco.set_mjcb_control(None)
-
-
-def _controlled(law: laws.Law | None, loading: Loading) -> Any:
-    """Return the control callback that drives the crank by a law, and sizes the loads."""
-
-    def control(_model: Any, data: Any) -> None:
-        if law is not None:
-            data.ctrl[0] = law.at(np.array([data.time]))[2][0]
-        for k, load in enumerate(loading.loads):
-            data.ctrl[loading.first + k] = loading.size(load, data)
-
-    return control
 
 
 VIEWER: Viewer = show

@@ -14,7 +14,7 @@ import numpy as np
 from models.array import Array
 from models.errors import EngineError, cut
 from models.files.inputs import UnreadableError, regular_bytes
-from sim.mujoco.stepped import compiled_file
+from sim.mujoco.stepped import compiled
 
 
 class ModelError(EngineError):
@@ -258,7 +258,7 @@ def load(path: Path) -> Any:
     """
     files(path)
     try:
-        model = compiled_file(path)
+        model = compiled(path=path)
     except EngineError as error:
         raise ModelError(f"{path}: {cut(' '.join(str(error).split()), 600)}") from None
     for kind, name in NUMBERS:

@@ -8,7 +8,7 @@ ratio, as MuJoCo's stopping rule depends on it (and not on ``stat.meaninertia``)
 
 import copy
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
@@ -20,7 +20,7 @@ from models.mjcf.tree import Limb
 from models.motion import State
 from models.scene import Scene
 from models.scene.joints import bodies
-from sim.engine import Drive, Facts, Log, Poses, Settings
+from sim.engine import BodyPose, Drive, Facts, Log, Settings
 from sim.engine.tree_poses import body_poses
 from sim.mujoco.own_model.driven_loop import is_hinge, joint_name, rigid
 from sim.mujoco.own_model.file import ModelError, body_name, name_of
@@ -28,7 +28,7 @@ from sim.mujoco.own_model.linkage import size
 from sim.mujoco.own_model.planar_model import PlanarModel, coordinates
 from sim.mujoco.own_model.variants import applied, held
 from sim.mujoco.settings import INTEGRATORS
-from sim.mujoco.stepped import VERSION, SteppedModel, heard
+from sim.mujoco.stepped import VERSION, Look, SteppedModel, heard
 from sim.registry.own_models import Tour
 
 FLYWHEEL_RATIO = 1e15
@@ -83,9 +83,9 @@ class OwnModelSession(SteppedModel):
             own = np.isin(self._model.dof_bodyid, loop.ids)
             _let_follow(self._model, self._data, {*np.flatnonzero(own), *loop.held})
 
-    def record(self, steps: int, every: int) -> Log:
+    def record(self, steps: int, every: int, look: Look | None = None) -> Log:
         """Advance and log. Raises EngineError where the driven joint has left its course."""
-        log = super().record(steps, every)
+        log = super().record(steps, every, look)
         if log.diverged:
             return log
         turned = log.poses.bodies[self._scene.driver.link].theta
@@ -114,18 +114,9 @@ class OwnModelSession(SteppedModel):
             acceleration_shift=0.0,
         )
 
-    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
-        lag = self._shift * self._dt
-        poses = body_poses(self._limbs, *self._own.seen(*self._joints(states), push), lag)
-        shown = {name: poses[limb] for name, limb in self._own.limbs.shown.items()}
-        return Poses(self._start_s + self._dt * at, shown, lag)
-
-    def _controls(self, steps: int) -> Array | None:
-        """Return the constant controls of the keyframe, or 0."""
-        return np.tile(self._data.ctrl, (steps, 1)) if self._model.nu else None
-
-    def _control_at(self, at: Array) -> Array | None:
-        return np.tile(self._data.ctrl, (len(at), 1)) if self._model.nu else None
+    def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
+        poses = body_poses(self._limbs, *self._own.seen(q, rate, push), lag_s)
+        return {name: poses[limb] for name, limb in self._own.limbs.shown.items()}
 
 
 FOLLOWING = 20

@@ -22,8 +22,8 @@ from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell, check
 from reports.own_model.assembly import ModelRequest, assembled
 from sim.mujoco.own_model.file import ModelError
+from sim.mujoco.own_model.read_model import read_model
 from sim.mujoco.own_model.variants import advice, patched
-from sim.mujoco.reader import read_model
 from sim.registry.own_models import Advised
 from tests.worlds.drawn_model import HALF, UPRIGHT, Drawing, drawn, rotation
 from tests.worlds.own_four_bar import planted

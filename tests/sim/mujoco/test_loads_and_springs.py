@@ -23,7 +23,7 @@ from models.scene.hard import WindowChain
 from models.scene.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.scene.tabulated import Tabulated
 from sim.mujoco.engine import MujocoSession
-from sim.mujoco.loading import LoadStages, forward_parts
+from sim.mujoco.loading import StageClock, forward_parts, stage_sizes
 from sim.run import run
 from sim.run.check import refuse_other_model
 from tests.analytic.multibody.scenes import SLIDER_CRANK, start_state
@@ -92,8 +92,8 @@ def test_a_jump_is_at_its_step_with_the_acceleration_after_it_however_late() -> 
     load = Load("on", "crank", None, Staircase((30.0,), (1.0,)))
     clock = float(np.cumsum(np.full(300_000, 1e-4))[-1])
     assert abs(clock - 30.0) > 1e-12
-    stages = LoadStages([load], 0.0, 1e-4, 299_999, 2)
-    seen = [stages.at(clock + 1e-4 * c)[0] for c in (-1.0, -0.5, -0.5, 0.0, 0.0, 0.5, 0.5, 1.0)]
+    stages, sizes = StageClock(1e-4, 299_999), stage_sizes(load, 0.0, 1e-4, 299_999, 2)
+    seen = [sizes[stages.at(clock + 1e-4 * c)] for c in (-1.0, -0.5, -0.5, 0.0, 0.0, 0.5, 0.5, 1.0)]
     assert seen == [0.0] * 4 + [1.0] * 4
 
 

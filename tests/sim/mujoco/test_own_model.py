@@ -20,6 +20,7 @@ from models.scene import Scene
 from reports.own_model.assembly import ModelRequest, assembled
 from sim.mujoco.own_model import session
 from sim.mujoco.own_model.file import ModelError
+from sim.mujoco.own_model.read_model import ReadModel, read_model
 from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.own_model.variants import (
     RECOMMENDED,
@@ -29,7 +30,6 @@ from sim.mujoco.own_model.variants import (
     patched,
     profiles,
 )
-from sim.mujoco.reader import ReadModel, read_model
 from sim.mujoco.settings import INTEGRATORS
 from sim.registry.own_models import Advised, Tour
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, planted, rocker
