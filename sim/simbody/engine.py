@@ -52,10 +52,10 @@ class SimbodySession(TreeSession):
             np.array([freedom.ref for freedom in self.freedoms]),
             np.array([freedom.rate for freedom in self.freedoms]),
         )
-        self.begin(self.bodies)
         now: Drive = "prescribed" if driven_by == "prescribed" else "servo"
         self.present = Acting(self.name, self.bodies, self.frames(0.0), dt_s, now, rates=True)
         """The loads and springs at the positions themselves, where forces are read."""
+        self.begin(self.bodies)
 
     def _extra(self) -> tuple[float, float]:
         """Return the mass at its pivot and the inertia of a prescribed crank that has none."""
