@@ -14,6 +14,7 @@ from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
 from models.scene.joints import block_name, centre_of, joined_at, local_point, mass_of
 from reports.contract.subject import Subject, clause, numbers
+from sim.engine import Unreported
 
 STEPS = 800
 """Number of steps in one turn."""
@@ -52,8 +53,8 @@ def _same_motion(subject: Subject) -> Iterator[str]:
     "every pin and slider has its forces, as declared, and those of a pin add up to nothing",
     "What is missing or doubled is taken for a force of 0, or for another joint's.",
     "Give Forces.pins as joined_at(scene) names them, each force that of the pin on the body, "
-    "in the ground's frame; NaN for what is not known, and at the start where forces_of is "
-    "steps.",
+    "in the ground's frame; NaN for those that Engine.unreported names, and at the start where "
+    "forces_of is steps.",
 )
 def _declared(subject: Subject) -> Iterator[str]:
     scene = subject.scene
@@ -72,9 +73,17 @@ def _declared(subject: Subject) -> Iterator[str]:
     if not any(there.any() for there in given.values()):
         yield f"forces_of is {subject.engine.forces_of}, and all forces are NaN"
     first = 0 if subject.engine.forces_of == "states" else 1
+    left_out = subject.engine.unreported(scene, "prescribed")
+    if strange := {*left_out.pins} - {*wanted} | {*left_out.sliders} - {*scene.sliders}:
+        yield f"unreported has {', '.join(sorted(strange))}, and the scene has none"
+    unreported = set(_names(forces, left_out))
     for name, there in given.items():
-        if there.any() and not there[first:].all():
-            yield f"the {name} is not finite at sample {first + int(np.argmin(there[first:]))}"
+        if name in unreported:
+            if there.any():
+                yield f"the {name} has numbers, and is unreported"
+        elif not there[first:].all() and not (forces.undetermined and not there.any()):
+            missing = first + int(np.argmin(there[first:]))
+            yield f"the {name} is not finite at sample {missing}, and not unreported"
         elif there[:first].any():
             yield f"forces_of is steps, and the {name} is told before the first of them"
     for point, by_body in forces.pins.items():
@@ -93,6 +102,16 @@ def named(forces: Forces) -> Iterator[tuple[str, Array]]:
         yield f"normal force of slider {name}", slider.normal
         yield f"moment of slider {name}", slider.moment
     yield "driving torque", forces.torque
+
+
+def _names(forces: Forces, left_out: Unreported) -> Iterator[str]:
+    """Yield the names of the series that an engine does not report, as `named` has them."""
+    for point in left_out.pins & {*forces.pins}:
+        yield from (f"force of pin {point} on {body}" for body in forces.pins[point])
+    for name in left_out.sliders:
+        yield from (f"normal force of slider {name}", f"moment of slider {name}")
+    if left_out.torque:
+        yield "driving torque"
 
 
 def largest(forces: Forces) -> float:
