@@ -17,6 +17,8 @@ from models.motion import Motion, State
 from models.scene import GROUND, Scene
 from models.scene.joints import blocks, bodies, centre_of, mass_of, sliding_angle
 from sim.engine import (
+    AT_ROUNDING,
+    REPORTED,
     BodyPose,
     Drive,
     Facts,
@@ -24,9 +26,11 @@ from sim.engine import (
     Log,
     Placing,
     Poses,
+    Precision,
     Profile,
     Setting,
     Settings,
+    Unreported,
 )
 from sim.engine.settings import check_ranges
 from sim.run.spoil import rounded
@@ -57,6 +61,9 @@ class FakeEngine:
     applies_loads: bool = False
     applies_constant_friction: bool = False
     applies_springs: bool = False
+    precision: Precision = "double"
+    floor: float = AT_ROUNDING
+    no_forces: str = ""
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
     )
@@ -74,6 +81,9 @@ class FakeEngine:
     def placing(self, settings: Settings) -> Placing:
         """It has its places from the reference."""
         return "solved"
+
+    def unreported(self, scene: Scene, drive: Drive) -> Unreported:
+        return REPORTED
 
     def in_seconds(self, settings: Settings) -> tuple[str, ...]:
         return ()
