@@ -28,8 +28,8 @@ DECLARED = "placing", "in_seconds", "floor", "forces_of", "applies_constant_fric
 NATIVE = "mujoco", "pymunk", "exudyn"
 SHARING = "rapier", "box2d", "dart"
 """Engines with loads, springs and logs of `sim.engine.stepped`, that install in a minute."""
-AT_LENGTH = "EC53", "EC55", "EC61", "EC85", "EC92", "EC93"
-"""Clauses of half a second and more in these, on what they share or what others show too."""
+AT_LENGTH = ("EC37", "EC53", "EC54", "EC55", "EC61", "EC85", "EC86", "EC92", "EC93", "EC94")
+"""Clauses that take long in these, on what they share or what others show too."""
 
 
 def _cases() -> Iterator[object]:
@@ -51,7 +51,7 @@ def installed(name: str) -> Engine:
         pytest.skip(str(error))
 
 
-@pytest.mark.parametrize(("name", "clause", "scenes"), _cases())
+@pytest.mark.parametrize(("name", "clause", "scenes"), [*_cases()])
 def test_every_engine_holds_the_contract(name: str, clause: str, scenes: Sequence[str]) -> None:
     ruling = put_to(installed(name), CLAUSES[clause], scenes)
     assert ruling.breaches == ()
