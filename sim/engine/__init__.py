@@ -47,7 +47,7 @@ class Unreported:
     def __str__(self) -> str:
         joints = [f"pin {point}" for point in sorted(self.pins)]
         joints += [f"slider {name}" for name in sorted(self.sliders)]
-        return ", ".join([*joints, *(["the drive"] * self.torque)])
+        return " and ".join([*joints, *(["the drive"] * self.torque)])
 
 
 REPORTED = Unreported()
