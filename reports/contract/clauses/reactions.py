@@ -15,6 +15,7 @@ from models.scene import GROUND, Scene
 from models.scene.joints import block_name, centre_of, joined_at, local_point, mass_of
 from reports.contract.subject import Subject, clause, numbers
 from sim.engine import Unreported
+from sim.run.check import rounding_of
 
 STEPS = 800
 """Number of steps in one turn."""
@@ -28,7 +29,7 @@ LATE = 0.25
 STEADY = 0.01
 """Change over a turn, over its size or another's change, below which the instant is unknown."""
 CLOSED = 1e-9
-"""Largest sum of all forces of a pin, over the largest."""
+"""Largest sum of all forces of a pin, over the largest, in double precision."""
 PULL = 0.5
 """Gravity for the tests of forces, over the acceleration of the longest link's end."""
 
@@ -86,10 +87,11 @@ def _declared(subject: Subject) -> Iterator[str]:
             yield f"the {name} is not finite at sample {missing}, and not unreported"
         elif there[:first].any():
             yield f"forces_of is steps, and the {name} is told before the first of them"
+    closed = max(CLOSED, rounding_of(subject.engine.precision))
     for point, by_body in forces.pins.items():
         total = np.abs(sum(by_body.values(), np.zeros(2))).max(axis=1)[first:]
         size = largest(forces)
-        if np.isfinite(total).all() and not total.max() <= CLOSED * size:
+        if np.isfinite(total).all() and not total.max() <= closed * size:
             yield f"the forces of pin {point} add up to {total.max():.2g} N, of {size:.2g} N"
 
 
