@@ -490,6 +490,9 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "at home": ("EC61", "moved by (3, -2) m", meddling(record_=_at_home)),
     "blunt": ("EC71", "open raised KeyError: 'motor'", meddling(_blunt)),
     "another motion": ("EC81", "logs another motion", of_exudyn(forces_=_shaken)),
+    "another motion under loads": (
+        "EC81", "free, with a load: record_forces of every 4th step logs another",
+        of_exudyn(forces_=lambda self, log: _shaken(self, log) if self.asked.scene.loads else log)),
     "one-sided": ("EC82", "the forces of pin C add up to", _last_pin(lambda one, two: (two, two))),
     "a gap": ("EC82", "the driving torque is not finite at sample 7", of_forces(_gap)),
     "none after all": (

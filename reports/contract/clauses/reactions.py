@@ -3,7 +3,9 @@ belong to stated instants."""
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -12,9 +14,11 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
+from models.scene.characteristics import Sine
 from models.scene.joints import block_name, centre_of, joined_at, local_point, mass_of
-from reports.contract.subject import Subject, clause, numbers
-from sim.engine import Unreported
+from models.scene.loads import Load
+from reports.contract.subject import NotTriedError, Subject, clause, numbers
+from sim.engine import ForceSession, Unreported
 from sim.run.check import rounding_of
 
 STEPS = 800
@@ -47,6 +51,23 @@ def _same_motion(subject: Subject) -> Iterator[str]:
         beside = subject.force_session(profile).record_forces(100, 4)
         if not np.array_equal(numbers(plain.poses), numbers(beside.poses), equal_nan=True):
             yield f"profile {profile}: record_forces logs another motion than record"
+    if subject.engine.applies_loads:
+        with suppress(NotTriedError):  # an engine need not have free motion
+            yield from _same_when_free(subject)
+
+
+def _same_when_free(subject: Subject) -> Iterator[str]:
+    """Yield a fault where logging, with forces or without, changes a free motion under a load."""
+    scene = subject.scene
+    link = list(scene.links)[-1]
+    wave = Sine(PULL * scene.longest_m * scene.pace_rad_s**2, 0.1 * scene.driver.law.period_s)
+    pushed = subject.in_scene(replace(scene, loads={"load": Load("load", link, None, wave)}))
+    each, some, acting = (pushed.opened(drive="free") for _ in range(3))
+    rows = numbers(each.record(60, 1).poses)[::4]
+    forces = cast(ForceSession, acting).record_forces(60, 4)
+    for words, log in (("record", some.record(60, 4)), ("record_forces", forces)):
+        if not np.array_equal(numbers(log.poses), rows, equal_nan=True):
+            yield f"free, with a load: {words} of every 4th step logs another motion"
 
 
 @clause(
