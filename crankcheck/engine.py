@@ -56,6 +56,7 @@ from sim.engine import (
     Setting,
     Settings,
     SettingValue,
+    Unreported,
     drive,
     load_magnitudes,
 )
@@ -98,6 +99,7 @@ __all__ = [
     "Slot",
     "Spring",
     "State",
+    "Unreported",
     "block_name",
     "blocks",
     "bodies",

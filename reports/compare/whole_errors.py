@@ -25,7 +25,14 @@ from reports.compare.hardness import (
 from reports.compare.tracks import length
 from reports.output.numbers import count
 from reports.quantities import named, quantity
-from reports.quantities.forces import acting, acting_at, largest_reaction, largest_torque, silent
+from reports.quantities.forces import (
+    acting,
+    acting_at,
+    largest_reaction,
+    largest_torque,
+    silent,
+    unreported,
+)
 from sim.engine import Run
 
 UNSURE = 1e-5
@@ -55,6 +62,9 @@ def force_rows(beside: Beside) -> ForceErrors:
     left: Mask = ~determined
     unsure = dict[tuple[str, str], float]()
     for track in tracks:
+        if unreported(run, track.quantity, track.body):
+            missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
+            continue
         kept: Mask = determined & (track.bound <= UNSURE * track.scale)
         if not np.any(kept):  # friction of a joint that never turns may be either way, say
             unsure[track.quantity, track.body] = float(np.max(track.bound)) / track.scale
@@ -136,6 +146,8 @@ def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[st
     (``dead``) and near change points (``passed``), with the reasons."""
     logged = acting(run)
     notes = [reference.undetermined and f"no reactions: {reference.undetermined}"]
+    if left_out := str(run.unreported):
+        notes.append(f"forces: {run.engine} does not report those of {left_out}")
     if dead:
         notes.append(
             f"forces: {count(dead, 'sample')} of {reference.time_s.size} in dead points left out, "

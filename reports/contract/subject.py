@@ -16,15 +16,17 @@ from models.scene import Same, Scene
 from models.scene.laws import Law
 from reports.compare.compare import compare, truth_of
 from reports.compare.errors import Errors
-from sim.engine import Drive, Engine, ForceSession, Poses, Run, Session, Settings
+from sim.engine import Drive, Engine, Facts, ForceSession, Poses, Run, Session, Settings
 from sim.engine.settings import SettingError, profile_of, resolved
 from sim.own_engine.watched import BrokenContractError
 from sim.run import run
+from sim.run.check import refuse_other_model, rounding_of
 
 STEPS = 600
 """Default number of steps in a period."""
 ROUNDING = 1e-10
-"""Largest difference of two ways to the same state, over the largest number in it."""
+"""Largest difference of two ways to the same state, over the largest number in it, in double
+precision."""
 
 
 class NotTriedError(Exception):
@@ -60,6 +62,20 @@ class Subject:
         """Return the step for ``steps`` steps in a period [s]."""
         return self.scene.driver.law.period_s / steps
 
+    @property
+    def rounding(self) -> float:
+        """The largest difference of two ways to the same state, over the largest number in it."""
+        return max(ROUNDING, rounding_of(self.engine.precision))
+
+    def beyond(self, limit: float) -> float:
+        """Return a limit of errors of place, at least the engine's floor."""
+        return max(limit, self.engine.floor)
+
+    def refuse_other_model(self, start: State, facts: Facts, dt_s: float, drive: Drive) -> None:
+        """Refuse a model that differs from the scene at its start. Raises EngineError."""
+        precision = self.engine.precision
+        refuse_other_model(self.scene, start, facts, dt_s, drive, precision=precision)
+
     def settings(self, profile: str = "tuned") -> Settings:
         """Return all settings of a profile."""
         return resolved(profile_of(self.engine, profile), None)
@@ -84,7 +100,8 @@ class Subject:
     def reports_forces(self) -> None:
         """Raise NotTriedError where the engine declares that it reports no forces."""
         if self.engine.forces_of == "nothing":
-            raise NotTriedError("forces_of says that it reports no forces")
+            why = self.engine.no_forces and f": {self.engine.no_forces}"
+            raise NotTriedError(f"forces_of says that it reports no forces{why}")
 
     def force_session(self, profile: str = "tuned", steps: int = STEPS) -> ForceSession:
         """Open as `opened`, for an engine that reports forces. Raises NotTriedError."""

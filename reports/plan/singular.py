@@ -167,4 +167,6 @@ def silent_note(engines: Iterable[str]) -> str:
     silent = [name for name in dict.fromkeys(engines) if not gives_forces(name)]
     if not silent:
         return ""
-    return f"forces: {' and '.join(silent)} reports none, and is run without"
+    reasons = ((name, engine(name).no_forces) for name in silent)
+    named = " and ".join(f"{name} ({why})" if why else name for name, why in reasons)
+    return f"forces: {named} reports none, and is run without"

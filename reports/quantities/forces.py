@@ -74,6 +74,14 @@ def acting_at(run: Run) -> Array | None:
     return forces.time_s
 
 
+def unreported(run: Run, quantity: str, body: str) -> bool:
+    """True for a force that the engine declares not to report."""
+    missing = run.unreported
+    if quantity == "reaction":
+        return body.partition(" on ")[0] in missing.pins
+    return missing.torque if quantity == "torque" else body in missing.sliders
+
+
 def silent(run: Run) -> bool:
     """True if the engine gives a reason for missing forces."""
     forces = acting(run)

@@ -36,6 +36,25 @@ last step, so that they are NaN at the start of a run."""
 
 
 @dataclass(frozen=True)
+class Unreported:
+    """Forces of a scene that an engine does not report: of pins by point, of sliders by name with
+    their moments, and the driving torque or force. They are NaN, and are not compared."""
+
+    pins: frozenset[str] = frozenset()
+    sliders: frozenset[str] = frozenset()
+    torque: bool = False
+
+    def __str__(self) -> str:
+        joints = [f"pin {point}" for point in sorted(self.pins)]
+        joints += [f"slider {name}" for name in sorted(self.sliders)]
+        return " and ".join([*joints, *(["the drive"] * self.torque)])
+
+
+REPORTED = Unreported()
+"""An engine that reports all forces."""
+
+
+@dataclass(frozen=True)
 class Setting:
     """An engine setting: its value, and the profile's reason; ``of_beams`` settings act on beams
     only."""
@@ -177,12 +196,13 @@ class Engine:
     set of settings; errors of integrated positions shrink as the step to the power ``order`` at
     most. ``in_seconds`` names the settings that are times, or losses in a time: without any, errors
     of position depend on the steps in a turn, not on the speed; by default it names all. Where
-    ``forces_of`` is not nothing, sessions are `ForceSession`s. Without ``applies_loads`` scenes
-    with loads are unsupported, without ``applies_constant_friction`` scenes with constant friction,
-    without ``applies_springs`` scenes with springs; with it `Facts.springs` has each spring.
-    Without ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the
-    beams. ``precision`` is that of the engine's numbers, ``floor`` the pure error of places that it
-    leaves at any step.
+    ``forces_of`` is not nothing, sessions are `ForceSession`s, and ``unreported`` gives the forces
+    of a scene that they leave out with a drive; else ``no_forces`` says why, after "NAME reports no
+    forces: ". Without ``applies_loads`` scenes with loads are unsupported, without
+    ``applies_constant_friction`` scenes with constant friction, without ``applies_springs`` scenes
+    with springs; with it `Facts.springs` has each spring. Without ``applies_beams`` elastic links
+    come only as segments; with it `Facts.beams` has the beams. ``precision`` is that of the
+    engine's numbers, ``floor`` the pure error of places that it leaves at any step.
     """
 
     name: str
@@ -202,6 +222,8 @@ class Engine:
     applies_beams: bool = False
     precision: Precision = "double"
     floor: float = AT_ROUNDING
+    unreported: Callable[[Scene, Drive], Unreported] = lambda scene, drive: REPORTED
+    no_forces: str = ""
 
 
 @dataclass(frozen=True)
@@ -249,6 +271,7 @@ class Setup:
     forces_of: ForcesOf = "nothing"
     precision: Precision = "double"
     floor: float = AT_ROUNDING
+    unreported: Unreported = REPORTED
 
 
 @dataclass(frozen=True)
@@ -262,7 +285,8 @@ class Run:
     checked against them. ``asked`` is the complete set of requested settings, for another run;
     ``settings`` the engine's own after that. ``energy`` is kept for free motion, without the work
     of loads, dampers and friction. ``with_forces`` is true if forces were requested; they are in
-    ``motion``, of the kind ``forces_of``. ``precision`` and ``floor`` are the engine's.
+    ``motion``, of the kind ``forces_of``, but those ``unreported``. ``precision`` and ``floor`` are
+    the engine's.
     """
 
     scene: str
@@ -291,3 +315,4 @@ class Run:
     forces_of: ForcesOf = "nothing"
     precision: Precision = "double"
     floor: float = AT_ROUNDING
+    unreported: Unreported = REPORTED

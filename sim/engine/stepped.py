@@ -143,13 +143,13 @@ class SteppedSession(ABC):
             times = self.done + self.acts_at + np.arange(steps, dtype=np.float64)
             self.acting.look_ahead(self.start_s + self.dt * times)
         for k in range(steps):
+            if forces is not None:
+                self.before = rows[-1] if k % every == 0 else self.numbers()
             if turns:
                 self.turn(*turns[k])
             if self.acting:
                 self.pushed = self.acting.pushes(k, self.frames(self.acts_at * self.dt))
                 self.push(self.pushed)
-            if forces is not None:
-                self.before = self.numbers()
             self.once()
             self.done += 1
             if every and (k + 1) % every == 0:

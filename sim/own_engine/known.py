@@ -4,13 +4,14 @@ Results have the name that an engine gives itself, not its spelling. Another pro
 it needs the spelling (`told`), as the name does not locate it.
 """
 
+import math
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields
 from typing import Any, get_args
 
 from models.errors import EngineError, shown, suggestion
-from sim.engine import Engine, ForcesOf, Placing, Profile, Setting
+from sim.engine import Engine, ForcesOf, Placing, Precision, Profile, Setting
 from sim.own_engine.watched import WRITTEN, found, installed, only_one, spelling_of, watched
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
@@ -28,7 +29,7 @@ SAYS = (
     "applies_beams",
 )
 """Attributes that are true or false."""
-CALLED = ("version", "check", "open", "holds", "placing", "in_seconds")
+CALLED = ("version", "check", "open", "holds", "placing", "in_seconds", "unreported")
 
 
 def looked_over(spelling: str, value: object) -> Engine:
@@ -89,6 +90,12 @@ def _faults(given: Mapping[str, Any]) -> Iterator[str]:
             yield f"{name} is {shown(said)}; give True or False"
     if (said := given.get("forces_of", "nothing")) not in get_args(ForcesOf):
         yield f"forces_of is {shown(said)}; give {' or '.join(get_args(ForcesOf))}"
+    if (said := given.get("precision", "double")) not in get_args(Precision):
+        yield f"precision is {shown(said)}; give {' or '.join(get_args(Precision))}"
+    if not isinstance(said := given.get("floor", 1.0), int | float) or not 0.0 < said < math.inf:
+        yield f"floor is {shown(said)}; give a number above 0"
+    if not isinstance(said := given.get("no_forces", ""), str):
+        yield f"no_forces is {shown(said)}; give words"
 
 
 def _profiles(profiles: object) -> Iterator[str]:

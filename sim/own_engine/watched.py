@@ -27,7 +27,18 @@ from models.errors import CrankcheckError, EngineError, cut, few, shown, suggest
 from models.motion import Forces, SliderForces, State
 from models.scene import Scene
 from models.scene.joints import bodies, joined_at
-from sim.engine import BodyPose, Drive, Engine, Facts, ForceSession, Log, Poses, Session, Settings
+from sim.engine import (
+    BodyPose,
+    Drive,
+    Engine,
+    Facts,
+    ForceSession,
+    Log,
+    Poses,
+    Session,
+    Settings,
+    Unreported,
+)
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -195,6 +206,7 @@ def watched(spelling: str, engine: Engine) -> Engine:
         check=guarded("check", engine.check, object),
         holds=guarded("holds", engine.holds, Mapping),
         in_seconds=guarded("in_seconds", engine.in_seconds, tuple),
+        unreported=guarded("unreported", engine.unreported, Unreported),
         open=opened,
     )
 

@@ -301,4 +301,5 @@ ENGINE = Engine(
     applies_springs=True,
     precision=DECLARATION.precision,
     floor=2e-6,
+    no_forces="its impulses are those of the last sub-step, in rows made orthogonal",
 )

@@ -16,6 +16,7 @@ from models.errors import EngineError, shown
 from models.motion import Forces, State
 from models.scene import Scene
 from sim.engine import (
+    REPORTED,
     BodyPose,
     Cost,
     Drive,
@@ -255,6 +256,7 @@ def setup(
         forces_of=chosen.forces_of if with_forces else "nothing",
         precision=chosen.precision,
         floor=chosen.floor,
+        unreported=chosen.unreported(scene, drive) if with_forces else REPORTED,
     )
 
 

@@ -97,7 +97,10 @@ def refuse_unknown_forces(
             "it out to run it, or use the reference alone"
         )
     if with_forces and engine.forces_of == "nothing":
-        raise EngineError(f"{engine.name} reports no forces; run it without, or another engine")
+        why = engine.no_forces and f": {engine.no_forces}"
+        raise EngineError(
+            f"{engine.name} reports no forces{why}; run it without, or another engine"
+        )
 
 
 def _matter(scene: Scene, facts: Facts, drive: Drive, same: float) -> Iterator[str]:

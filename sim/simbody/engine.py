@@ -1,7 +1,7 @@
 """Simbody: bodies hung on one another by joint coordinates, loops closed by projection."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from models.mjcf.tree import Tree, plan
 from models.motion import Forces, State
 from models.scene import Scene
 from models.scene import joints as pairs
+from models.scene.joints import Frame
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Engine, Facts, Poses, Settings
 from sim.engine.acting import Acting, Pushes
@@ -52,10 +53,10 @@ class SimbodySession(TreeSession):
             np.array([freedom.ref for freedom in self.freedoms]),
             np.array([freedom.rate for freedom in self.freedoms]),
         )
-        self.begin(self.bodies)
         now: Drive = "prescribed" if driven_by == "prescribed" else "servo"
         self.present = Acting(self.name, self.bodies, self.frames(0.0), dt_s, now, rates=True)
         """The loads and springs at the positions themselves, where forces are read."""
+        self.begin(self.bodies)
 
     def _extra(self) -> tuple[float, float]:
         """Return the mass at its pivot and the inertia of a prescribed crank that has none."""
@@ -72,7 +73,7 @@ class SimbodySession(TreeSession):
 
     def _open(self, q: Array, rate: Array) -> None:
         """Build the model, and set it to these coordinates and rates at the present step."""
-        scene = self.scene
+        scene, self.acted_at = self.scene, -1
         self.made = made.TreeModel(scene, self.tree, self.extra)
         if self.drive == "prescribed":
             self.made.prescribe(self.driven, self._course(0))
@@ -140,6 +141,7 @@ class SimbodySession(TreeSession):
             self._open(q, rate)
 
     def push(self, pushes: Pushes) -> None:
+        self.acted_at = -1
         state = self.manager.getState()
         for name, pushers in self.made.pushers.items():
             for pusher, size in zip(pushers, pushes.on_bodies[name], strict=True):
@@ -159,11 +161,18 @@ class SimbodySession(TreeSession):
         self._act_now()
         return self.look()
 
+    def frames(self, ahead_s: float) -> Mapping[str, Frame]:
+        if ahead_s:
+            self._act_now()
+        return super().frames(ahead_s)
+
     def _act_now(self) -> None:
-        """Have the loads act as at the present positions, not as in a step."""
-        if self.acting:
+        """Have the loads act as at the present positions, not as in a step; accelerations depend
+        on them."""
+        if self.acting and self.acted_at != self.done:
             self.present.look_ahead(np.array([self.start_s + self.dt * self.done]))
             self.push(self.present.pushes(0, self.frames(0.0)))
+            self.acted_at = self.done
 
     def joint_forces(self) -> Array:
         self._act_now()

@@ -27,6 +27,7 @@ from sim.engine import (
     Session,
     Setting,
     Settings,
+    Unreported,
 )
 from sim.engine.settings import SettingError
 from sim.registry import engine
@@ -373,6 +374,47 @@ def _weightless_loads(_: Engine) -> Engine:
     return replace(plain, applies_loads=True, forces_of="nothing", applies_constant_friction=False)
 
 
+def rounded_to_single(sound: Engine) -> Engine:
+    """An engine that has the numbers of a sound one in 24 bits."""
+
+    def rounded(body: BodyPose) -> BodyPose:
+        return BodyPose(**{n: np.float64(np.float32(each)) for n, each in vars(body).items()})
+
+    def few_digits(_: Asked, facts: Facts) -> Facts:
+        masses = {name: float(np.float32(mass)) for name, mass in facts.mass_kg.items()}
+        return replace(facts, mass_kg=masses, start=facts.start.changed(rounded))
+
+    return meddled(
+        sound,
+        facts_=few_digits,
+        record_=of_bodies(rounded),
+        read_=lambda _, poses: poses.changed(rounded),
+    )
+
+
+def forces_of_some(left_out: Unreported) -> Engine:
+    """An engine that reports all forces but some, and says so."""
+
+    def blanked(forces: Forces) -> Forces:
+        pins = {
+            point: {b: each * np.nan if point in left_out.pins else each for b, each in by.items()}
+            for point, by in forces.pins.items()
+        }
+        return replace(forces, pins=pins, torque=forces.torque * np.nan)
+
+    some = of_forces(blanked)(engine("exudyn"))
+    return replace(some, unreported=lambda scene, drive: left_out)
+
+
+def _declaring(**declared: Any) -> Fault:
+    """An engine of forces that declares something else."""
+    return lambda _: replace(engine("exudyn"), **declared)
+
+
+def _leaving_out(**left_out: Any) -> Fault:
+    return _declaring(unreported=lambda scene, drive: Unreported(**left_out))
+
+
 FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "no reason": ("EC11", "iterations has no reason", _without_reason),
     "one profile": (
@@ -386,9 +428,16 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "other setting held": (
         "EC14", "iterations is asked to be 150, held 7",
         of_facts(lambda f: {"settings": {**f.settings, "iterations": 7}})),
+    "digits made up": (
+        "EC15", "precision is single, and angles are rounded to",
+        lambda e: replace(e, precision="single", floor=2e-6)),
+    "digits lost": (
+        "EC15", "precision is double, and all angular velocities are numbers of 24 bits",
+        rounded_to_single),
     "heavier": (
         "EC21", "has mass_kg",
         of_facts(lambda f: {"mass_kg": {name: 1.01 * m for name, m in f.mass_kg.items()}})),
+    "rounded start": ("EC21", "has mass_kg 0.2, not 0.2", rounded_to_single),
     "from zero": (
         "EC22", "the samples are at",
         meddling(lambda asked: asked._replace(state=replace(asked.state, time_s=0.0)))),
@@ -414,6 +463,9 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
         turning(lambda b: {"omega": _late(b.omega)})),
     "slow one is off": (
         "EC41", "is not that of its places", meddling(record_=of_log(_slow_one))),
+    "shift unsaid": (
+        "EC41", "is that of +0.50 steps, and velocity_shift says +0.00",
+        of_facts(lambda f: {"velocity_shift": 0.0, "start": replace(f.start, lag_s=0.0)})),
     "lag unsaid": (
         "EC41", "Poses.lag_s is 0 steps",
         of_facts(lambda f: {"start": replace(f.start, lag_s=0.0)})),
@@ -421,21 +473,40 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
         "EC42", "are not all NaN",
         turning(lambda b: {"alpha": 0.0 * b.omega, "origin_acceleration": 0.0 * b.velocity})),
     "a little fast": ("EC51", "the crank is off by", meddling(_a_little_fast)),
+    "floor too low": (
+        "EC51", "the crank is off by",
+        lambda e: replace(rounded_to_single(e), precision="single", floor=1e-8)),
     "third order": ("EC52", "shrink as dt^2.0, and order is 3", lambda e: replace(e, order=3)),
     "handed back": (
         "EC53", "placing is integrated with order 2",
         lambda _: _Integrated(drives=("prescribed", "servo"))),
     "in seconds": ("EC54", "a thousandth as fast", _in_seconds),
+    "floor too high": (
+        "EC56", "floor is 0.0001, and with 2880 steps a turn it is off by",
+        lambda e: replace(e, floor=1e-4)),
     "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0)),
     "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(1.0)),
     "slowed": ("EC55", "without gravity, the centres of mass move", meddling(_damped(1e-9))),
     "at home": ("EC61", "moved by (3, -2) m", meddling(record_=_at_home)),
     "blunt": ("EC71", "open raised KeyError: 'motor'", meddling(_blunt)),
     "another motion": ("EC81", "logs another motion", of_exudyn(forces_=_shaken)),
+    "another motion under loads": (
+        "EC81", "free, with a load: record_forces of every 4th step logs another",
+        of_exudyn(forces_=lambda self, log: _shaken(self, log) if self.asked.scene.loads else log)),
     "one-sided": ("EC82", "the forces of pin C add up to", _last_pin(lambda one, two: (two, two))),
     "a gap": ("EC82", "the driving torque is not finite at sample 7", of_forces(_gap)),
     "none after all": (
         "EC82", "all forces are NaN", of_forces(lambda f: f.each_series(lambda x: x * np.nan))),
+    "torque unsaid": (
+        "EC82", "the driving torque is not finite at sample 0, and not unreported",
+        of_forces(lambda f: replace(f, torque=f.torque * np.nan))),
+    "torque denied": (
+        "EC82", "the driving torque has numbers, and is unreported", _leaving_out(torque=True)),
+    "pin denied": (
+        "EC82", "the force of pin C on rocker has numbers", _leaving_out(pins=frozenset("C"))),
+    "unknown pin": ("EC82", "unreported has Q, and the", _leaving_out(pins=frozenset("Q"))),
+    "of states, not steps": (
+        "EC82", "forces_of is steps, and the", _declaring(forces_of="steps")),
     "no pins": ("EC82", "pins are {}", of_forces(lambda f: replace(f, pins={}))),
     "torque's sign": (
         "EC83", "crank: a moment of", of_forces(lambda f: replace(f, torque=-f.torque))),

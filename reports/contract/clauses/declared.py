@@ -7,16 +7,22 @@ from itertools import combinations
 
 import numpy as np
 
+from models.array import Array
 from models.errors import EngineError, few, shown
 from reports.contract.subject import STEPS, Subject, clause, numbers
-from sim.engine import SettingValue
+from sim.engine import EPSILON, SettingValue
 from sim.engine.settings import SettingError, profile_of, resolved
+from sim.run.check import SAME, rounding_of
 
 PROFILES = ("as-shipped", "tuned")
 NAME = re.compile(r"[A-Za-z_]\w{0,59}")
 NONSENSE = "no-such-choice"
 UNLIKELY = (0, -1, 0.5)
 """Whole numbers that one setting or another may have, and a broken one: none has them all."""
+FINE, ROUGH_SAMPLES = 8000, 400
+"""Steps in a turn in which a motion is smooth to 1e-13 rad, and the samples of it."""
+SMOOTH = 1e-3
+"""Least rounding of an angle in single precision, over the distance of two numbers at 1 rad."""
 
 
 @clause(
@@ -132,7 +138,7 @@ def _told_back(subject: Subject) -> Iterator[str]:
         facts = subject.opened(name).facts()
         for setting, value in subject.engine.holds(given, subject.dt_s(), "prescribed").items():
             held = facts.settings.get(setting)
-            if not _same(held, value):
+            if not _same(held, value, max(SAME, rounding_of(subject.engine.precision))):
                 yield f"profile {name}: {setting} is asked to be {shown(value)}, held {shown(held)}"
     for one, other in combinations(subject.engine.profiles, 2):
         yield from _felt(subject, one, other)
@@ -153,8 +159,37 @@ def _felt(subject: Subject, one: str, other: str) -> Iterator[str]:
         )
 
 
-def _same(held: object, asked: SettingValue) -> bool:
+def _same(held: object, asked: SettingValue, rounding: float) -> bool:
     """True if a setting is the requested one, but for the loss of a number on its way."""
     if isinstance(asked, float) and isinstance(held, float):
-        return math.isclose(held, asked, rel_tol=1e-9)
+        return math.isclose(held, asked, rel_tol=rounding)
     return held == asked
+
+
+@clause(
+    "EC15",
+    "numbers have the digits that `precision` says",
+    "Limits for fewer digits hide faults, and those for more find one in every number.",
+    "Set Engine.precision: single where the engine's own numbers have 24 bits, else double.",
+    of_scenes=False,
+)
+def _digits(subject: Subject) -> Iterator[str]:
+    poses = subject.opened(steps=FINE).record(ROUGH_SAMPLES, 1).poses
+    bodies = [poses.bodies[name] for name in subject.scene.links]
+    if subject.engine.precision == "single":
+        rough = max(roughness(body.theta) for body in bodies)
+        if rough < SMOOTH * EPSILON["single"]:
+            yield (
+                f"precision is single, and angles are rounded to {rough:.1g} rad: numbers of 24 "
+                f"bits are to {EPSILON['single']:.1g}"
+            )
+        return
+    turning = [body.omega for body in bodies if np.ptp(body.omega) > 0.0]
+    if turning and all(np.array_equal(omega, np.float32(omega)) for omega in turning):
+        yield "precision is double, and all angular velocities are numbers of 24 bits"
+
+
+def roughness(series: Array) -> float:
+    """Return the rounding of even samples, from most of their fourth differences: of a smooth
+    course these fall as the fourth power of the step."""
+    return float(np.median(np.abs(np.diff(series, 4)))) / math.sqrt(70.0)  # 1 + 16 + 36 + 16 + 1

@@ -44,6 +44,7 @@ def _loads(subject: Subject) -> Iterator[str]:
     (link, point), size = moving[-1], _size(scene)
     wave = Sine(size, 0.5 * scene.driver.law.period_s, 0.4)
     couple = Sine(size * scene.longest_m, math.pi, 0.7)
+    plain = subject.acting(STEPS)
     for words, load in {
         "a force over time in the ground's frame": Load("load", link, point, wave),
         "a constant force in the body's frame": Load(
@@ -51,7 +52,7 @@ def _loads(subject: Subject) -> Iterator[str]:
         ),
         "a torque over the driver's angle": Load("load", link, None, couple, "angle"),
     }.items():
-        for text in _unfelt(subject, replace(scene, loads={"load": load}), 1.0):
+        for text in _unfelt(subject, plain, replace(scene, loads={"load": load}), 1.0):
             yield f"{words} on {link}: {text}"
 
 
@@ -110,9 +111,10 @@ def _friction(subject: Subject) -> Iterator[str]:
     pins = [point for point, names in joined_at(scene).items() if len(names) == 2]
     pins = [point for point in pins if point not in scene.sliders]
     rubbing = [(point, size * scene.longest_m) for point in pins[-1:]]
+    plain = subject.acting(STEPS)
     for joint, most in [*rubbing, *((name, size) for name in list(scene.sliders)[-1:])]:
         changed = replace(scene, friction={joint: ConstantFriction(joint, most)})
-        for text in _unfelt(subject, changed, SHARE):
+        for text in _unfelt(subject, plain, changed, SHARE):
             yield f"friction in {joint}: {text}"
 
 
@@ -122,10 +124,12 @@ def _size(scene: Scene) -> float:
     return largest(kinetostatics.forces(scene, times, bound=False, skip_dead_points=True))
 
 
-def _unfelt(subject: Subject, changed: Scene, share: float) -> Iterator[str]:
-    """Yield changes of the reference forces by a change of the scene that the engine's lack."""
+def _unfelt(subject: Subject, plain: Forces, changed: Scene, share: float) -> Iterator[str]:
+    """Yield changes of the reference forces by a change of the scene that the engine's, ``plain``
+    without it, lack."""
     scenes = (changed, subject.scene)
-    own = [subject.in_scene(each).acting(STEPS).stretch(slice(START, None)) for each in scenes]
+    each_own = subject.in_scene(changed).acting(STEPS), plain
+    own = [forces.stretch(slice(START, None)) for forces in each_own]
     true = [
         kinetostatics.forces(each, own[0].time_s, bound=False, skip_dead_points=True)
         for each in scenes

@@ -34,7 +34,6 @@ from reports.contract.oscillators import (
 )
 from reports.contract.subject import NotTriedError, Subject, clause
 from sim.engine.measure import energy, motion
-from sim.run.check import refuse_other_model
 
 PACE_OFF, DECAY_OFF, REST_OFF = 0.02, 0.2, 0.02
 """Largest errors of an oscillation: of its pace, over that of its spring; its decay, over it; and
@@ -64,7 +63,7 @@ def _held(subject: Subject) -> Iterator[str]:
         steps = PERIODS * SAMPLES * STEPS
         facts = own.opened(drive="free", start=one.state, steps=steps).facts()
         try:
-            refuse_other_model(one.scene, one.state, facts, own.dt_s(steps), "free")
+            own.refuse_other_model(one.state, facts, own.dt_s(steps), "free")
         except EngineError as error:
             yield str(error)
 

@@ -13,24 +13,27 @@ from models.scene.joints import bodies, centre_of
 from models.scene.laws import ConstantSpeed, Oscillating
 from models.scene.moved import mirrored, moved, rotated, scaled
 from reports.compare.compare import places, truth_of
-from reports.compare.errors import largest
+from reports.compare.errors import Error, largest
 from reports.contract.oscillators import centres
 from reports.contract.subject import NotTriedError, Subject, clause
 from reports.judge.halving import PLACES
 from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import convergence
-from sim.engine import Poses
+from sim.engine import AT_ROUNDING, Poses
 
 DRIVE_RAD = 1e-9
-"""Largest error of a prescribed crank."""
+"""Largest error of a prescribed crank, or the engine's floor."""
 STEPS = (180, 360, 720)
 SLACK = 0.5
 """Largest distance of a slope over three steps from its asymptotic order."""
 SOLVED = 1e-9
-"""Largest position error, as a pure number, after solving to rounding."""
+"""Largest position error, as a pure number, after solving to rounding, or the engine's floor."""
 TWICE, NONE = 2.0, 1e-9
-"""Errors of two runs that should be equal differ by less than this factor, or are negligible."""
+"""Errors of two runs that should be equal differ by less than this factor, or are negligible: by
+that or the engine's floor."""
 SPEEDS = {"fifty times as fast": 50.0, "a thousandth as fast": 1e-3, "backwards": -1.0}
+FINE, FAR = 2880, 10.0
+"""Small steps, at which the floor is at most this many times the error."""
 FALL_STEPS = 60
 FALL = 0.2
 """Fall of a body without joints meanwhile, over the longest link."""
@@ -66,7 +69,11 @@ def _drive_fault(subject: Subject, turns: float) -> str:
     scene = subject.scene
     commanded = scene.driver.law.at(done.motion.time_s)[0]
     off = float(np.abs(done.motion.links[scene.driver.link].theta - commanded).max())
-    return "" if off <= DRIVE_RAD else f"the crank is off by {off:.2g} rad over {turns:g} turns"
+    return (
+        ""
+        if off <= subject.beyond(DRIVE_RAD)
+        else f"the crank is off by {off:.2g} rad over {turns:g} turns"
+    )
 
 
 @clause(
@@ -81,15 +88,14 @@ def _shrinking(subject: Subject) -> Iterator[str]:
         raise NotTriedError("placing is solved, where errors need not shrink")
     errors, unit = [], ""
     for steps in STEPS:
-        done = subject.ran(steps, 1.0, every=steps // STEPS[0])
-        rows = places(truth_of(Same(subject.scene)).beside(done))
-        worst = largest(row for row in rows if row.quantity in PLACES)
-        if worst is None or done.status != "ok":
-            yield f"with {steps} steps a turn the run ended {done.status}: {done.reason}"
+        worst, fault = _worst_place(subject, steps)
+        if worst is None:
+            yield fault
             return
         errors.append(worst.pure)
         unit = worst.unit
-    seen = convergence([subject.dt_s(steps) for steps in STEPS], errors, unit)
+    dt_s = [subject.dt_s(steps) for steps in STEPS]
+    seen = convergence(dt_s, errors, unit, subject.beyond(AT_ROUNDING))
     told = ", ".join(f"{error:.2g}" for error in errors)
     order = subject.engine.order
     if seen.trend == "grows":
@@ -99,6 +105,16 @@ def _shrinking(subject: Subject) -> Iterator[str]:
             f"errors of place shrink as dt^{seen.order:.1f}, and order is {order}: {told} at "
             f"{STEPS} steps a turn"
         )
+
+
+def _worst_place(subject: Subject, steps: int) -> tuple[Error | None, str]:
+    """Return the largest error of place over a turn in so many steps; None with the fault."""
+    done = subject.ran(steps, 1.0, every=steps // STEPS[0])
+    rows = places(truth_of(Same(subject.scene)).beside(done))
+    worst = largest(row for row in rows if row.quantity in PLACES)
+    if worst is None or done.status != "ok":
+        return None, f"with {steps} steps a turn the run ended {done.status}: {done.reason}"
+    return worst, ""
 
 
 @clause(
@@ -118,7 +134,7 @@ def _placing(subject: Subject) -> Iterator[str]:
             return
         if placing == "solved":
             worst = largest(row for row in errors.rows if row.quantity in PLACES)
-            if worst and not worst.pure <= SOLVED:
+            if worst and not worst.pure <= subject.beyond(SOLVED):
                 yield f"placing is solved, and {worst.body} is off by {worst.pure:.2g}"
         elif near := too_good(errors, placing, engine.order):
             yield (
@@ -142,7 +158,7 @@ def _speed(subject: Subject) -> Iterator[str]:
     plain = pure_errors(subject)
     for words, factor in SPEEDS.items():
         other = subject.driven_by(replace(law, speed_rad_s=factor * law.speed_rad_s))
-        yield from unlike(plain, pure_errors(other), words)
+        yield from unlike(plain, pure_errors(other), words, subject.beyond(NONE))
 
 
 def pure_errors(subject: Subject) -> Mapping[str, float]:
@@ -156,11 +172,14 @@ def pure_errors(subject: Subject) -> Mapping[str, float]:
     return {name: row.pure for name, row in each.items() if row is not None}
 
 
-def unlike(plain: Mapping[str, float], other: Mapping[str, float], words: str) -> Iterator[str]:
-    """Yield errors that differ in a scene that is equivalent as a mechanism."""
+def unlike(
+    plain: Mapping[str, float], other: Mapping[str, float], words: str, none: float
+) -> Iterator[str]:
+    """Yield errors that differ, by more than ``none``, in a scene that is equivalent as a
+    mechanism."""
     for name in plain.keys() | other.keys():
         one, two = plain.get(name, math.inf), other.get(name, math.inf)
-        if not (one <= TWICE * two + NONE and two <= TWICE * one + NONE):
+        if not (one <= TWICE * two + none and two <= TWICE * one + none):
             yield f"{words}, {name} is off by {two:.2g}, and {one:.2g} as it is"
 
 
@@ -221,6 +240,24 @@ CHANGES: Mapping[str, Callable[[Scene], Scene]] = {
 
 
 @clause(
+    "EC56",
+    "errors of place stay near `floor`, where that is more than rounding in double precision",
+    "Below the floor nothing is seen: neither a fault nor that one engine is better.",
+    "Set Engine.floor to the error that is left at small steps, as a pure number.",
+    of_scenes=False,
+)
+def _floor(subject: Subject) -> Iterator[str]:
+    floor = subject.engine.floor
+    if floor <= AT_ROUNDING:
+        raise NotTriedError("floor is rounding in double precision")
+    worst, fault = _worst_place(subject, FINE)
+    if worst is None:
+        yield fault
+    elif not floor <= FAR * worst.pure:
+        yield f"floor is {floor:.2g}, and with {FINE} steps a turn it is off by {worst.pure:.2g}"
+
+
+@clause(
     "EC61",
     "a scene that is turned, moved, mirrored or scaled errs as much",
     "A sign or a number that suits one scene alone is seen on another, or not at all.",
@@ -230,6 +267,7 @@ def _elsewhere(subject: Subject) -> Iterator[str]:
     plain = pure_errors(subject)
     for words, change in CHANGES.items():
         try:
-            yield from unlike(plain, pure_errors(subject.in_scene(change(subject.scene))), words)
+            other = pure_errors(subject.in_scene(change(subject.scene)))
+            yield from unlike(plain, other, words, subject.beyond(NONE))
         except NotTriedError as refused:
             yield f"{words}, it is refused: {refused}"

@@ -3,7 +3,9 @@ belong to stated instants."""
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -12,8 +14,12 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
+from models.scene.characteristics import Sine
 from models.scene.joints import block_name, centre_of, joined_at, local_point, mass_of
-from reports.contract.subject import Subject, clause, numbers
+from models.scene.loads import Load
+from reports.contract.subject import NotTriedError, Subject, clause, numbers
+from sim.engine import ForceSession, Unreported
+from sim.run.check import rounding_of
 
 STEPS = 800
 """Number of steps in one turn."""
@@ -27,7 +33,7 @@ LATE = 0.25
 STEADY = 0.01
 """Change over a turn, over its size or another's change, below which the instant is unknown."""
 CLOSED = 1e-9
-"""Largest sum of all forces of a pin, over the largest."""
+"""Largest sum of all forces of a pin, over the largest, in double precision."""
 PULL = 0.5
 """Gravity for the tests of forces, over the acceleration of the longest link's end."""
 
@@ -45,6 +51,23 @@ def _same_motion(subject: Subject) -> Iterator[str]:
         beside = subject.force_session(profile).record_forces(100, 4)
         if not np.array_equal(numbers(plain.poses), numbers(beside.poses), equal_nan=True):
             yield f"profile {profile}: record_forces logs another motion than record"
+    if subject.engine.applies_loads:
+        with suppress(NotTriedError):  # an engine need not have free motion
+            yield from _same_when_free(subject)
+
+
+def _same_when_free(subject: Subject) -> Iterator[str]:
+    """Yield a fault where logging, with forces or without, changes a free motion under a load."""
+    scene = subject.scene
+    link = list(scene.links)[-1]
+    wave = Sine(PULL * scene.longest_m * scene.pace_rad_s**2, 0.1 * scene.driver.law.period_s)
+    pushed = subject.in_scene(replace(scene, loads={"load": Load("load", link, None, wave)}))
+    each, some, acting = (pushed.opened(drive="free") for _ in range(3))
+    rows = numbers(each.record(60, 1).poses)[::4]
+    forces = cast(ForceSession, acting).record_forces(60, 4)
+    for words, log in (("record", some.record(60, 4)), ("record_forces", forces)):
+        if not np.array_equal(numbers(log.poses), rows, equal_nan=True):
+            yield f"free, with a load: {words} of every 4th step logs another motion"
 
 
 @clause(
@@ -52,8 +75,8 @@ def _same_motion(subject: Subject) -> Iterator[str]:
     "every pin and slider has its forces, as declared, and those of a pin add up to nothing",
     "What is missing or doubled is taken for a force of 0, or for another joint's.",
     "Give Forces.pins as joined_at(scene) names them, each force that of the pin on the body, "
-    "in the ground's frame; NaN for what is not known, and at the start where forces_of is "
-    "steps.",
+    "in the ground's frame; NaN for those that Engine.unreported names, and at the start where "
+    "forces_of is steps.",
 )
 def _declared(subject: Subject) -> Iterator[str]:
     scene = subject.scene
@@ -72,15 +95,24 @@ def _declared(subject: Subject) -> Iterator[str]:
     if not any(there.any() for there in given.values()):
         yield f"forces_of is {subject.engine.forces_of}, and all forces are NaN"
     first = 0 if subject.engine.forces_of == "states" else 1
+    left_out = subject.engine.unreported(scene, "prescribed")
+    if strange := {*left_out.pins} - {*wanted} | {*left_out.sliders} - {*scene.sliders}:
+        yield f"unreported has {', '.join(sorted(strange))}, and the scene has none"
+    unreported = set(_names(forces, left_out))
     for name, there in given.items():
-        if there.any() and not there[first:].all():
-            yield f"the {name} is not finite at sample {first + int(np.argmin(there[first:]))}"
+        if name in unreported:
+            if there.any():
+                yield f"the {name} has numbers, and is unreported"
+        elif not there[first:].all() and not (forces.undetermined and not there.any()):
+            missing = first + int(np.argmin(there[first:]))
+            yield f"the {name} is not finite at sample {missing}, and not unreported"
         elif there[:first].any():
             yield f"forces_of is steps, and the {name} is told before the first of them"
+    closed = max(CLOSED, rounding_of(subject.engine.precision))
     for point, by_body in forces.pins.items():
         total = np.abs(sum(by_body.values(), np.zeros(2))).max(axis=1)[first:]
         size = largest(forces)
-        if np.isfinite(total).all() and not total.max() <= CLOSED * size:
+        if np.isfinite(total).all() and not total.max() <= closed * size:
             yield f"the forces of pin {point} add up to {total.max():.2g} N, of {size:.2g} N"
 
 
@@ -93,6 +125,16 @@ def named(forces: Forces) -> Iterator[tuple[str, Array]]:
         yield f"normal force of slider {name}", slider.normal
         yield f"moment of slider {name}", slider.moment
     yield "driving torque", forces.torque
+
+
+def _names(forces: Forces, left_out: Unreported) -> Iterator[str]:
+    """Yield the names of the series that an engine does not report, as `named` has them."""
+    for point in left_out.pins & {*forces.pins}:
+        yield from (f"force of pin {point} on {body}" for body in forces.pins[point])
+    for name in left_out.sliders:
+        yield from (f"normal force of slider {name}", f"moment of slider {name}")
+    if left_out.torque:
+        yield "driving torque"
 
 
 def largest(forces: Forces) -> float:

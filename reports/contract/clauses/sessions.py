@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reports.contract.subject import ROUNDING, Subject, apart, clause, numbers
+from reports.contract.subject import Subject, apart, clause, numbers
 from sim.run import stretch
 
 TURNS = 2.2
@@ -28,10 +28,10 @@ def _step_and_record(subject: Subject) -> Iterator[str]:
         stepped, recorded = subject.opened(profile), subject.opened(profile)
         stepped.step(60)
         log = recorded.record(60, 1)
-        if (off := apart(stepped.read(), recorded.read())) > ROUNDING:
+        if (off := apart(stepped.read(), recorded.read())) > subject.rounding:
             yield f"profile {profile}: after 60 steps step and record differ by {off:.2g}"
         last = stretch(log.poses, slice(-1, None))
-        if (off := apart(last, recorded.read())) > ROUNDING:
+        if (off := apart(last, recorded.read())) > subject.rounding:
             yield f"profile {profile}: the last sample and what read gives differ by {off:.2g}"
 
 
@@ -53,7 +53,7 @@ def _every_nth(subject: Subject) -> Iterator[str]:
             yield f"record(40, {every}) says {log.steps_done} steps done, diverged {log.diverged}"
         if not log.wall_s > 0.0:
             yield f"record(40, {every}) took {log.wall_s} s"
-    if (off := apart(thin.poses, stretch(full.poses, slice(None, None, 8)))) > ROUNDING:
+    if (off := apart(thin.poses, stretch(full.poses, slice(None, None, 8)))) > subject.rounding:
         yield f"logged every 8th step, the samples differ by {off:.2g} of the largest number"
 
 
@@ -78,7 +78,7 @@ def _stretches(subject: Subject) -> Iterator[str]:
             yield f"profile {profile}: the second begins at {two.poses.time_s[0]:.6g} s, not " + (
                 f"{rest.time_s[0]:.6g} s"
             )
-        elif (off := apart(rest, two.poses)) > ROUNDING:
+        elif (off := apart(rest, two.poses)) > subject.rounding:
             yield f"profile {profile}: 20 and 30 steps differ from 50 by {off:.2g}"
 
 
@@ -114,7 +114,7 @@ def _side_by_side(subject: Subject) -> Iterator[str]:
     b.record(30, 1)
     second = a.record(15, 1).poses
     for part, cut in ((first, slice(0, 16)), (second, slice(15, 31))):
-        if (off := apart(stretch(alone, cut), part)) > ROUNDING:
+        if (off := apart(stretch(alone, cut), part)) > subject.rounding:
             yield f"with another session at work beside it, it differs by {off:.2g}"
             return
 

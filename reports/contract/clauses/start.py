@@ -13,10 +13,11 @@ from reports.contract.subject import NotTriedError, Subject, clause
 from sim.engine import Drive
 from sim.engine.measure import motion
 from sim.own_engine.watched import failure
-from sim.run.check import refuse_other_model
+from sim.run.check import rounding_of
 
 PLACE = 1e-12
-"""Largest distance of a point from its place, over the longest link or coordinate."""
+"""Largest distance of a point from its place, over the longest link or coordinate, in double
+precision."""
 LATER = 0.3
 """Part of a period."""
 
@@ -43,14 +44,14 @@ def is_other(subject: Subject) -> bool:
 def _other_scene(subject: Subject, profile: str) -> str:
     facts = subject.opened(profile).facts()
     try:
-        refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")
+        subject.refuse_other_model(subject.start, facts, subject.dt_s(), "prescribed")
     except EngineError as error:
         return str(error)
     held = motion(subject.scene, facts.start).state(0)
     for point, place in subject.start.position.items():
         scale = max(subject.scene.longest_m, *map(abs, place))
         off = float(np.hypot(*np.subtract(held.position[point], place)))
-        if not off <= PLACE * scale:
+        if not off <= max(PLACE, rounding_of(subject.engine.precision)) * scale:
             return f"point {point} is off by {off:.2g} m at the start"
     return ""
 
@@ -67,14 +68,16 @@ def _at_any_time(subject: Subject) -> Iterator[str]:
     later = subject.at(LATER * subject.scene.driver.law.period_s)
     session = subject.opened(start=later)
     try:
-        refuse_other_model(subject.scene, later, session.facts(), subject.dt_s(), "prescribed")
+        subject.refuse_other_model(later, session.facts(), subject.dt_s(), "prescribed")
     except EngineError as error:
         yield f"from {later.time_s:.3g} s on: {error}"
     times = session.record(4, 2).poses.time_s
     wanted = later.time_s + subject.dt_s() * np.array([0.0, 2.0, 4.0])
     if not np.allclose(times, wanted, rtol=1e-12, atol=0.0):
         yield f"from {later.time_s:.6g} s on the samples are at {times}, not {wanted} s"
-    elif (off := _crank_off(subject, session.read().bodies, times[-1])) > PLACE**0.5:
+    elif (off := _crank_off(subject, session.read().bodies, times[-1])) > subject.beyond(
+        PLACE**0.5
+    ):
         yield f"a start at {later.time_s:.3g} s: the crank is off by {off:.2g} rad 4 steps later"
 
 
@@ -107,9 +110,9 @@ def _every_scene(subject: Subject) -> Iterator[str]:
                 continue
             try:
                 facts, _ = session.facts(), session.record(20, 1)
-                start, dt_s = subject.in_scene(scene).start, subject.in_scene(scene).dt_s()
+                own = subject.in_scene(scene)
                 if not other:
-                    refuse_other_model(scene, start, facts, dt_s, drive)
+                    own.refuse_other_model(own.start, facts, own.dt_s(), drive)
             except EngineError as error:
                 yield f"{at}: not refused, and {error}"
             except Exception as error:  # as above

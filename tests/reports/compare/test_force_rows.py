@@ -24,7 +24,7 @@ from reports.compare.whole_errors import NEAR, force_rows, near_jumps
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence
 from reports.stability.grading import CATALOGUE
-from sim.engine import Run
+from sim.engine import Run, Unreported
 from sim.run import run
 from tests.worlds.facts import with_facts
 
@@ -69,6 +69,21 @@ def test_a_stamp_half_a_step_off_is_an_error_of_first_order_and_one_of_over_a_st
     assert not _errors(_run("mujoco")).incomplete
     told = _late(_run("mujoco"), 1.01).incomplete
     assert "over a step away (361 samples of 361)" in told
+
+
+def test_forces_that_an_engine_does_not_report_are_not_compared_and_named() -> None:
+    done = replace(_run("mujoco"), unreported=Unreported(pins=frozenset("A"), torque=True))
+    for each in (done, _with(done, lambda own: replace(own, torque=own.torque * np.nan))):
+        errors = _errors(each)
+        forces = {row.body for row in errors.rows if row.quantity in ("reaction", "torque")}
+        assert forces == {"B", "C", "D"}
+        assert errors.not_reported == ("reaction of point A", "torque of driver crank")
+        assert "forces: mujoco does not report those of pin A and the drive" in errors.notes
+    sliding = load_scene("slider-crank-offset")
+    done = replace(_of(sliding, "mujoco"), unreported=Unreported(sliders=frozenset("C")))
+    errors = _errors(done, sliding)
+    assert {row.quantity for row in errors.rows if row.body == "C"} >= {"reaction", "displacement"}
+    assert errors.worst("normal") is None
 
 
 def test_forces_that_are_not_there_are_errors_of_every_pin() -> None:

@@ -1,6 +1,7 @@
 """Every clause is seen to break by a fault of its own; what comes of an engine that ends its
 process, hangs or raises; and what is printed of the clauses."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,10 +11,16 @@ from models.errors import EngineError
 from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, Ruling, named, put_to, refuses_all, show
 from reports.workers.isolated import Limits
+from sim.engine import Unreported
 from sim.registry import engine
 from tests.worlds.own_engines import fresh
 from tests.worlds.tiers import slowly
-from tests.worlds.wrong_engines import FAULTS, late_accelerations
+from tests.worlds.wrong_engines import (
+    FAULTS,
+    forces_of_some,
+    late_accelerations,
+    rounded_to_single,
+)
 
 FOURBAR = ("fourbar-lecture-1",)
 
@@ -28,6 +35,27 @@ def test_a_fault_breaks_its_clause(name: str) -> None:
 def test_accelerations_of_another_instant_are_seen() -> None:
     ruling = put_to(late_accelerations(engine("mujoco")), CLAUSES["EC42"], FOURBAR)
     assert "is that of -1.00 steps, and acceleration_shift says +0.00" in ruling.breaches[0]
+
+
+def test_single_precision_that_is_declared_breaks_nothing() -> None:
+    single = rounded_to_single(engine("pymunk"))
+    single = replace(single, precision="single", floor=2e-6)
+    for name in ("EC14", "EC15", "EC21", "EC22", "EC33", "EC51", "EC52", "EC53", "EC56", "EC61"):
+        ruling = put_to(single, CLAUSES[name], FOURBAR)
+        assert (ruling.breaches, ruling.scenes) == ((), FOURBAR), name
+
+
+def test_forces_of_some_joints_break_nothing_where_the_others_are_declared() -> None:
+    some = forces_of_some(Unreported(pins=frozenset("A"), torque=True))
+    for name in ("EC81", "EC82", "EC83", "EC84", "EC85", "EC86"):
+        ruling = put_to(some, CLAUSES[name], FOURBAR)
+        assert (ruling.breaches, ruling.scenes) == ((), FOURBAR), name
+
+
+def test_the_reason_for_no_forces_is_told() -> None:
+    silent = replace(engine("pymunk"), forces_of="nothing", no_forces="its joints are soft")
+    ruling = put_to(silent, CLAUSES["EC82"], FOURBAR)
+    assert ruling.untried[0].endswith("reports no forces: its joints are soft")
 
 
 def test_every_clause_has_a_fault_and_says_all_that_it_has_to() -> None:

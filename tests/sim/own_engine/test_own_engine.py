@@ -104,6 +104,10 @@ def test_a_module_that_fails_is_told_in_one_line(folder: Path, line: str, words:
     ("reports_accelerations=False", "reports_accelerations=0", "give True or False"),
     ("reports_accelerations=False", "applies_springs=None", "applies_springs is None; give"),
     ("reports_accelerations=False", "forces_of='all'", "forces_of is 'all'; give nothing or s"),
+    ("reports_accelerations=False", "precision='half'", "precision is 'half'; give double or s"),
+    ("reports_accelerations=False", "floor=0", "floor is 0; give a number above 0"),
+    ("reports_accelerations=False", "no_forces=None", "no_forces is None; give words"),
+    ("reports_accelerations=False", "unreported={'A'}", "unreported is a set; give a function"),
 ])  # fmt: skip
 def test_an_object_that_is_no_engine_is_told_all_that_is_wrong(
     folder: Path, old: str, new: str, words: str

@@ -49,7 +49,7 @@ def test_sample_times_are_multiples_of_the_step(name: str) -> None:
 
 @pytest.mark.parametrize("name", HERE)
 def test_a_scene_with_loads_is_not_run_as_if_it_had_none(name: str) -> None:
-    lacking = replace(engine(name), applies_loads=False, forces_of="nothing")
+    lacking = replace(engine(name), applies_loads=False, forces_of="nothing", no_forces="")
     pushed = acted_on(FOURBAR, Load("push", "rocker", None, Constant(1.0)))
     done = ran(pushed, lacking, steps=10)
     assert done.status == "unsupported"
@@ -59,6 +59,8 @@ def test_a_scene_with_loads_is_not_run_as_if_it_had_none(name: str) -> None:
     silent = ran(FOURBAR, lacking, steps=10, with_forces=True)
     assert silent.status == "unsupported"
     assert silent.reason == f"{name} reports no forces; run it without, or another engine"
+    told = ran(FOURBAR, replace(lacking, no_forces="it is soft"), steps=10, with_forces=True)
+    assert told.reason.startswith(f"{name} reports no forces: it is soft; run it without")
 
 
 def test_a_diverging_run_stops_early_quietly_and_says_when(

@@ -18,6 +18,7 @@ from models.scene import GROUND, Scene
 from models.scene.joints import blocks, bodies, centre_of, mass_of, sliding_angle
 from sim.engine import (
     AT_ROUNDING,
+    REPORTED,
     BodyPose,
     Drive,
     Facts,
@@ -29,6 +30,7 @@ from sim.engine import (
     Profile,
     Setting,
     Settings,
+    Unreported,
 )
 from sim.engine.settings import check_ranges
 from sim.run.spoil import rounded
@@ -61,6 +63,9 @@ class FakeEngine:
     applies_loads: bool = False
     applies_constant_friction: bool = False
     applies_springs: bool = False
+    precision: Precision = "double"
+    floor: float = AT_ROUNDING
+    no_forces: str = ""
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
     )
@@ -78,6 +83,9 @@ class FakeEngine:
     def placing(self, settings: Settings) -> Placing:
         """It has its places from the reference."""
         return "solved"
+
+    def unreported(self, scene: Scene, drive: Drive) -> Unreported:
+        return REPORTED
 
     def in_seconds(self, settings: Settings) -> tuple[str, ...]:
         return ()
