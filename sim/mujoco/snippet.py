@@ -6,7 +6,7 @@ from sim.engine import Drive, Settings, SettingValue
 from sim.mujoco.settings import AS_SHIPPED, holds
 from sim.registry.offers import SnippetWriter, Stepping, alone, comment
 
-IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
+CONNECT = ("solref_timeconst_s", "solref_dampratio", "solimp_dmin", "solimp_dmax", "solimp_width")
 LOOP_CLASS = "crankcheck-loop"
 """Default class of the connects that close the mechanism, and of nothing else."""
 DRIVES: Mapping[Drive, tuple[str, ...]] = {
@@ -21,15 +21,14 @@ DRIVES: Mapping[Drive, tuple[str, ...]] = {
         "Drive: <velocity joint=... kv=.../> on the crank's hinge, kv = {servo_gain:g} speed (sum "
         "over all bodies of mass L^2 + inertia), L the longest link.",
     ),
-    "free": ("Drive: none. All hinges start with the angles and speeds of the start.",),
+    "free": (
+        "Drive: none. All hinges start with the angles and speeds of the start.",
+        "Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
+        "else for the bodies of the mechanism alone: without it loops give way more, and with so "
+        "gentle a solref by far more.",
+    ),
 }
 """Drive of the crank in the measured runs."""
-WEIGHTS = (
-    "Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
-    "else for the bodies of the mechanism alone: without it loops give way more, and with so "
-    "gentle a solref by far more."
-)
-"""Setting of free motion that MJCF lacks."""
 
 
 def mujoco_snippet(
@@ -64,26 +63,25 @@ def mujoco_snippet(
             f"So long a step makes contacts softer: for their solref of {usual:g} s MuJoCo takes 2 "
             "timestep."
         )
+    ratio, stop = _short(asked["flywheel_ratio"]), _short(asked["tolerance"])
     share = _short(asked["free_inverse_weight_share"])
-    driven = DRIVES[drive] + (WEIGHTS,) * (drive == "free" and share != "1")
-    words = {"ratio": _short(asked["flywheel_ratio"]), "stop": _short(asked["tolerance"])}
-    words |= {"share": share, **asked}
+    driven = [text.format(ratio=ratio, stop=stop, share=share, **asked) for text in DRIVES[drive]]
+    if drive == "free" and share == "1":  # nothing to scale
+        driven.pop()
     return [
         *comment(*head, where, xml=True),
         *connect,
         *comment(*of_step, xml=True),
         f"<option{_attributes(timestep=repr(dt_s), integrator=complete['integrator'])}/>",
-        *comment(*_alone(complete, defaults), *(text.format(**words) for text in driven), xml=True),
+        *comment(*_alone(complete, defaults), *driven, xml=True),
     ]
 
 
 def _connect(complete: Settings, defaults: Settings) -> list[str]:
-    """Write the class of the connects, unless it is MuJoCo's own; complete, as the model's own
-    defaults would fill the rest."""
-    names = ("solref_timeconst_s", "solref_dampratio", *IMPEDANCE)
-    if all(complete[name] == defaults[name] for name in names):
+    """Write the class of the connects, if any: complete, as the model's defaults fill the rest."""
+    if all(complete[name] == defaults[name] for name in CONNECT):
         return []
-    timeconst, damping, *impedance = (float(complete[name]) for name in names)
+    timeconst, damping, *impedance = (float(complete[name]) for name in CONNECT)
     solimp = " ".join([*(f"{value:g}" for value in impedance), "0.5", "2"])
     return [
         "<default>",
@@ -111,16 +109,16 @@ def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
 def _alone(complete: Settings, defaults: Settings) -> list[str]:
     """Write the option element for a model of the mechanism alone."""
     other = {name: value for name, value in complete.items() if value != defaults[name]}
-    row = {name: other[name] for name in ("solver", "iterations") if name in other}
     if "tolerance" in other:
-        row["tolerance"] = _short(other["tolerance"])
+        other["tolerance"] = _short(other["tolerance"])
+    row = {name: other[name] for name in ("solver", "iterations", "tolerance") if name in other}
     named = {"islands": "island", "contact": "contact"}
     flags = {flag: other[name] for name, flag in named.items() if name in other}
     lines = [f"<option{_attributes(**row)}/>"] if row else []
     if flags:
         lines = [f"<option{_attributes(**row)}>", f"  <flag{_attributes(**flags)}/>", "</option>"]
     harm = "Without contacts bodies fall through each other; with them the numbers are the same."
-    return [*alone("model", lines), *([harm] if "contact" in flags else [])]
+    return alone("model", lines) + [harm] * ("contact" in flags)
 
 
 def _short(value: SettingValue) -> str:

@@ -189,9 +189,8 @@ def comment(*paragraphs: str, xml: bool = False) -> list[str]:
     hyphens may not stand together."""
     first, more, end = ("<!-- ", "     ", " -->") if xml else ("# ", "# ", "")
     lines: list[str] = []
-    for text in paragraphs:
-        if xml:
-            text = text.replace("--", "- -").replace("--", "- -")
+    for paragraph in paragraphs:
+        text = paragraph.replace("--", "- -").replace("--", "- -") if xml else paragraph
         wrapped = textwrap.wrap(text, WIDTH - len(more), break_on_hyphens=False)
         lines += [text] if text.startswith(INSET) else wrapped
     marked = [(more if k else first) + line for k, line in enumerate(lines)]
