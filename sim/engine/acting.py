@@ -24,6 +24,8 @@ from models.scene.joints import (
     Prism,
     Slot,
     block_name,
+    bodies,
+    centre_of,
     joints,
     less,
     local_point,
@@ -59,7 +61,16 @@ class PlacedBodies:
 
     def anchor(self, body: str, point: str) -> Point:
         """Return a named point in the coordinates of its body in the engine [m]."""
-        return less(local_point(self.scene, body, point), self.centre[body])
+        return self.from_centre(body, local_point(self.scene, body, point))
+
+    def from_centre(self, body: str, place: Point) -> Point:
+        """Return a place in the frame of a link in the coordinates of its body in the engine."""
+        return less(place, self.centre[body])
+
+
+def centres(scene: Scene) -> dict[str, Point]:
+    """Return the centre of mass of every body, and the origin of the ground, as `PlacedBodies`."""
+    return {GROUND: (0.0, 0.0)} | {name: centre_of(scene, name) for name in bodies(scene)}
 
 
 class Pushes:
@@ -219,7 +230,7 @@ class _OnLine:
     ) -> None:
         self.spring, self._rates = spring, rates
         first, second = (
-            (body, less(place, placed.centre[body]))
+            (body, placed.from_centre(body, place))
             for body, place in spring_ends(placed.scene, spring)
         )
         self._ends = first, second

@@ -33,7 +33,7 @@ from sim.engine import (
     measure,
     tree_poses,
 )
-from sim.engine.acting import Acting, PlacedBodies, Pushes
+from sim.engine.acting import Acting, PlacedBodies, Pushes, centres
 from sim.engine.tree_reactions import Row, forces_of, rubs
 
 TURN_BETWEEN = 1.0
@@ -210,7 +210,7 @@ class BodySession(SteppedSession):
         self.led = driver.link if driven_by == "prescribed" and not driver.is_inner else None
         """The body that is led along the driver's law, kinematic in most engines."""
         self.where = pairs.frames(scene, state, self.shift * dt_s)
-        centre = {GROUND: (0.0, 0.0)} | {n: pairs.centre_of(scene, n) for n in pairs.bodies(scene)}
+        centre = centres(scene)
         if self.led and driver.slider is None:
             centre[self.led] = pairs.local_point(scene, self.led, scene.driver_pivot)
         self.bodies = PlacedBodies(scene, state, centre=centre)

@@ -179,16 +179,16 @@ class ExudynSession:
 
     def facts(self) -> Facts:
         """Read the system as exudyn holds it now; its bodies have their centres at their nodes."""
-        held_masses = self._model.masses()
-        nodes = system.node_masses(self._model)
+        bodies = {n: self._system.GetObject(body) for n, body in self._model.body.items()}
+        masses = {name: float(own["mass"]) for name, own in bodies.items()}
         loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
         gravity = loads[0] if loads else (0.0, 0.0)
         settings = self._settings if self._scene.beams else of_rigid(self._settings)
         return Facts(
             version=system.VERSION,
-            mass_kg={name: mass for name, (mass, _) in held_masses.items()} | nodes,
-            inertia_kg_m2={name: inertia for name, (_, inertia) in held_masses.items()},
-            centre_m=dict(self._model.centre),
+            mass_kg=masses | system.node_masses(self._model),
+            inertia_kg_m2={name: float(own["inertia"]) for name, own in bodies.items()},
+            centre_m={name: self._model.centre[name] for name in self._model.node},
             gravity_m_s2=(float(gravity[0]), float(gravity[1])),
             start=self.read(),
             settings=dict(settings) | held(self._asked, self._solver, self._settings),

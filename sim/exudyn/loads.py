@@ -8,13 +8,19 @@ from typing import Any
 import numpy as np
 
 from models.errors import CrankcheckError, EngineError, few
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Point, Scene, Slider
 from models.scene.characteristics import Constant, Staircase
-from models.scene.joints import block_name, bodies, joints, riding_body, sliding_angle
+from models.scene.joints import (
+    block_name,
+    bodies,
+    joints,
+    riding_body,
+    sliding_angle,
+    sliding_body,
+)
 from models.scene.loads import Load
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
-from sim.engine.ties import slide_of
 from sim.exudyn.system import ANGLE, Index, PlaneSystem, exu, items
 
 KIND = exu.OutputVariableType
@@ -23,15 +29,12 @@ KIND = exu.OutputVariableType
 class Present:
     """Present state of a system, for actions that depend on it."""
 
-    def __init__(self, made: PlaneSystem) -> None:
-        self._scene, self._made = made.scene, made
+    def __init__(self, applied: "Applied") -> None:
+        self._scene, self._made = applied.scene, applied.made
         # Markers of the sliding point and of the point that the line passes through.
         self._ends = {
-            slide.slider.name: (
-                made.marker(riding_body(slide), slide.slider.point),
-                made.marker_at(slide.slider.on, slide.slider.through_m),
-            )
-            for slide in joints(made.scene).slides
+            slider.name: (applied.tip(slider), self._made.marker_at(slider.on, slider.through_m))
+            for slider in (slide.slider for slide in joints(self._scene).slides)
         }
 
     def angle(self, system: Any, body: str) -> tuple[float, float]:
@@ -52,15 +55,13 @@ class Present:
     def slider(self, system: Any, name: str) -> tuple[float, float]:
         """Return displacement [m] and speed [m/s] of a slider, against its guide."""
         tip, start = self._ends[name]
-        x, y = self._apart(system, tip, start, KIND.Position)
-        u, v = self._apart(system, tip, start, KIND.Velocity)
+        (x, y), (u, v) = (
+            (system.GetMarkerOutput(tip, what) - system.GetMarkerOutput(start, what)).tolist()[:2]
+            for what in (KIND.Position, KIND.Velocity)
+        )
         c, s = self.line(system, name)
         _, omega = self.angle(system, self._scene.sliders[name].on)
         return c * x + s * y, c * (u + omega * y) + s * (v - omega * x)
-
-    def _apart(self, system: Any, tip: Index, start: Index, what: Any) -> Point:
-        x, y, _ = system.GetMarkerOutput(tip, what) - system.GetMarkerOutput(start, what)
-        return float(x), float(y)
 
 
 Size = Callable[[Any, float], float]
@@ -81,31 +82,30 @@ class Applied:
 
     def __init__(self, made: PlaneSystem) -> None:
         self.scene, self.made = made.scene, made
-        self.massless = {
-            block_name(slot.slider): slot.slider.name for slot in joints(made.scene).slots
-        }
+        self.massless = {block_name(slot.slider): slot for slot in joints(made.scene).slots}
         """Sliders whose block is no body in exudyn, by the name of the block."""
         self.fault = ""
 
     @cached_property
     def present(self) -> Present:
         """The present state of the system."""
-        return Present(self.made)
+        return Present(self)
 
     def turning(self, body: str) -> str:
         """Return the body that a body turns with: for a block without mass, its guide."""
-        slider = self.massless.get(body)
-        return body if slider is None else self.scene.sliders[slider].on
+        slot = self.massless.get(body)
+        return body if slot is None else slot.slider.on
 
     def on(self, body: str, point: str) -> Index:
         """Return a marker at a point of a body, or of the riding body of a block without mass."""
-        slider = self.massless.get(body)
-        return self.made.marker(body, point) if slider is None else self.tip(slider)
+        slot = self.massless.get(body)
+        if slot is not None:
+            body, point = riding_body(slot), slot.slider.point
+        return self.made.marker(body, self.made.anchor(body, point))
 
-    def tip(self, slider: str) -> Index:
+    def tip(self, slider: Slider) -> Index:
         """Return a marker at the sliding point."""
-        rider = riding_body(slide_of(self.scene, slider))
-        return self.made.marker(rider, self.scene.sliders[slider].point)
+        return self.on(sliding_body(slider), slider.point)
 
     def force(self, marker: Index, force: Vector | Point, *, in_body: bool = False) -> None:
         """Add a force, in the frame of the ground or of the body."""
@@ -180,7 +180,7 @@ def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> 
             continue
         marker, in_body = applied.on(load.body, load.point), load.frame == "body"
         if in_body and load.body in massless:
-            slider = scene.sliders[massless[load.body]]
+            slider = massless[load.body].slider
             turned = load.direction_rad + sliding_angle(slider) - slider.direction_rad
             along = partial(applied.present.line, name=slider.name, turned_rad=turned)
             applied.force(marker, _pointing(size, along))

@@ -114,7 +114,7 @@ def _rub_line(applied: Applied, friction: ConstantFriction, still: float) -> Non
 
         return force
 
-    applied.force(applied.tip(slider.name), along(1.0))
+    applied.force(applied.tip(slider), along(1.0))
     if slider.on != GROUND:
         applied.force(applied.made.marker_at(slider.on, slider.through_m), along(-1.0))
 

@@ -17,13 +17,17 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
+from itertools import pairwise
 from typing import Any
 
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene, elastic
 from models.scene import joints as pairs
-from sim.engine.ties import Hinge, hinges, refuse_massless
+from sim.engine import EPSILON
+from sim.engine.acting import PlacedBodies, centres
+from sim.engine.ties import Hinge, refuse_massless
+from sim.exudyn import rows
 
 SAID = re.compile(r"Python WARNING|Python ERROR")
 """Beginning of each of exudyn's messages about a run."""
@@ -60,48 +64,44 @@ Index = Any
 
 
 @dataclass(frozen=True)
-class PlaneSystem:
+class PlaneSystem(PlacedBodies):
     """A system before its assembly: the bodies by name, in the order they were added.
 
-    ``centre`` is the place of a body's node in the frame of its link [m], ``start_rad`` the angle
-    of a body or the ground at the start. ``hinge`` has the joints of pins, ``prismatic`` the joint
-    of each slider; ``weight`` is the load of each body's gravity. Nodes of beams are in ``node``
-    alone, and their angles at the start [rad] in ``looked``; the elements of each beam are in
-    ``elements``. A system lives as long as its ``container``.
+    ``start_rad`` is the angle of a body or the ground at the start. ``hinge`` has the joints of
+    pins, ``prismatic`` the joint of each slider; ``weight`` is the load of each body's gravity.
+    Nodes of beams are in ``node`` alone, and their angles at the start [rad] in ``looked``; the
+    elements of each beam are in ``elements``. A system lives as long as its ``container``.
     """
 
-    scene: Scene
     start_rad: Mapping[str, float]
     container: Any
     system: Any
     ground: Index
     body: dict[str, Index] = field(default_factory=dict)
     node: dict[str, Index] = field(default_factory=dict)
-    centre: dict[str, Point] = field(default_factory=dict)
     hinge: dict[Hinge, Index] = field(default_factory=dict)
     prismatic: dict[str, Index] = field(default_factory=dict)
     weight: dict[str, Index] = field(default_factory=dict)
     looked: dict[str, float] = field(default_factory=dict)
     elements: dict[str, list[Index]] = field(default_factory=dict)
 
-    def marker(self, name: str, point: str) -> Index:
-        """Add a marker at a point of a body or of the ground."""
-        return self.marker_at(name, pairs.local_point(self.scene, name, point))
-
-    def marker_at(self, name: str, place: Point) -> Index:
-        """Add a marker at a place in the frame of a body or of the ground [m]."""
-        x, y = pairs.less(place, self.centre.get(name, (0.0, 0.0)))
+    def marker(self, name: str, anchor: Point) -> Index:
+        """Add a marker at a place of a body or of the ground, from its node [m]."""
         if name in self.looked:
-            if (x, y) != (0.0, 0.0):
+            if anchor != (0.0, 0.0):
                 raise EngineError(
-                    f"{name}: something acts {y:g} m beside it; exudyn's beams take forces on "
-                    "their line, give that link segments (--springs plain)"
+                    f"{name}: something acts {anchor[1]:g} m beside it; exudyn's beams take forces "
+                    "on their line, give that link segments (--springs plain)"
                 )
             return self.system.AddMarker(items.MarkerNodeRigid(nodeNumber=self.node[name]))
         body = self.ground if name == GROUND else self.body[name]
         return self.system.AddMarker(
-            items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, y, 0.0])
+            items.MarkerBodyRigid(bodyNumber=body, localPosition=[*anchor, 0.0])
         )
+
+    def marker_at(self, name: str, place: Point) -> Index:
+        """Add a marker at a place in the frame of a link or of the ground [m]."""
+        return self.marker(name, self.from_centre(name, place))
 
     def coordinate_marker(self, name: str, coordinate: int = ANGLE) -> Index:
         """Add a marker of a coordinate of a body's node, or of the ground, which is 0; angles count
@@ -131,21 +131,11 @@ class PlaneSystem:
                 items.LoadMassProportional(markerNumber=marker, loadVector=[*gravity, 0.0])
             )
 
-    def masses(self) -> Mapping[str, tuple[float, float]]:
-        """Return mass [kg] and inertia about the centre of mass [kg m^2] of the bodies, as exudyn
-        has them."""
-        held = {name: self.system.GetObject(body) for name, body in self.body.items()}
-        return {name: (float(o["mass"]), float(o["inertia"])) for name, o in held.items()}
-
-
-EPSILON = 2.0**-52
-
 
 def add_node(made: PlaneSystem, name: str, frame: pairs.Frame, state: State) -> None:
     """Add a node of a beam: its place, and its tangent, longer than 1 by the strain there."""
     c, s = math.cos(frame.theta), math.sin(frame.theta)
     long, faster = 1.0 + state.strain.get(name, 0.0), state.strain_rate.get(name, 0.0)
-    made.centre[name] = (0.0, 0.0)
     made.node[name] = made.system.AddNode(
         items.NodePoint2DSlope1(
             referenceCoordinates=[*frame.origin, long * c, long * s],
@@ -180,7 +170,7 @@ def add_elements(made: PlaneSystem, beam: elastic.Beam) -> None:
                 nodeNumbers=[made.node[near], made.node[far]],
             )
         )
-        for near, far in zip(beam.nodes, beam.nodes[1:], strict=False)
+        for near, far in pairwise(beam.nodes)
     ]
     for i, element in enumerate(made.elements[beam.name]):
         made.weigh(f"{beam.name} {i}", element)
@@ -191,9 +181,7 @@ def held_beams(made: PlaneSystem) -> Mapping[str, tuple[elastic.Beam, ...]]:
     return {
         name: tuple(
             _held(made.system.GetObject(element), name, pair)
-            for element, pair in zip(
-                made.elements[name], zip(beam.nodes, beam.nodes[1:], strict=False), strict=True
-            )
+            for element, pair in zip(made.elements[name], pairwise(beam.nodes), strict=True)
         )
         for name, beam in made.scene.beams.items()
     }
@@ -226,12 +214,15 @@ def node_masses(made: PlaneSystem) -> dict[str, float]:
     return found
 
 
+ROUNDING = EPSILON["double"]
+
+
 def rounding_n(scene: Scene, state: State) -> float:
     """Return the rounding of the axial force of a beam [N]: its strain is a difference of positions
     over the length of an element. 0 without beams."""
     reach = max([scene.longest_m, *(math.hypot(*place) for place in state.position.values())])
     return max(
-        (EPSILON * beam.axial_n * reach / beam.element_m for beam in scene.beams.values()),
+        (ROUNDING * beam.axial_n * reach / beam.element_m for beam in scene.beams.values()),
         default=0.0,
     )
 
@@ -243,7 +234,7 @@ def inertia_rounding_n(scene: Scene, state: State) -> float:
     size = scene.longest_m
     paces = [math.hypot(*velocity) / size for velocity in state.velocity.values()]
     pace = max([*paces, *map(abs, state.omega.values())])
-    return EPSILON * heaviest * pace**2 * max(size, size**2)
+    return ROUNDING * heaviest * pace**2 * max(size, size**2)
 
 
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
@@ -260,24 +251,17 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     where = pairs.frames(scene, state)
     start_rad = {name: frame.theta for name, frame in where.items()}
     ground = system.AddObject(items.ObjectGround())
-    made = PlaneSystem(scene, start_rad, container, system, ground)
+    made = PlaneSystem(scene, state, start_rad, container, system, ground, centre=centres(scene))
     held = {prism.body for prism in pairs.joints(scene).prisms}
     nodes = {node for beam in scene.beams.values() for node in beam.nodes}
-    for name in pairs.bodies(scene):
+    for name, (mass, inertia, place, rates) in rows.body_rows(scene, state).items():
         if name in nodes:
             add_node(made, name, where[name], state)
             continue
-        mass, inertia = pairs.mass_of(scene, name)
         if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
             refuse_massless("exudyn", name, mass, inertia, turns=name not in held)
-        frame, centre = where[name], pairs.centre_of(scene, name)
-        place = frame.at(centre)
-        made.centre[name] = centre
         made.node[name] = system.AddNode(
-            items.NodeRigidBody2D(
-                referenceCoordinates=[*place, frame.theta],
-                initialVelocities=[*frame.velocity_at(place), frame.omega],
-            )
+            items.NodeRigidBody2D(referenceCoordinates=place, initialVelocities=rates)
         )
         made.body[name] = system.AddObject(
             items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=made.node[name])
@@ -285,28 +269,16 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
         made.weigh(name, made.body[name])
     for beam in scene.beams.values():
         add_elements(made, beam)
-    _join(made)
-    return made
-
-
-def _join(made: PlaneSystem) -> None:
-    for hinge in hinges(made.scene, GROUND):
-        ends = [made.marker(body, hinge.point) for body in (hinge.first, hinge.other)]
-        joint = items.ObjectJointRevolute2D(markerNumbers=ends)
-        made.hinge[hinge] = made.system.AddObject(joint)
-    for slide in pairs.joints(made.scene).slides:
-        slider, keeps = slide.slider, isinstance(slide, pairs.Prism)
-        rider, guide = pairs.riding_body(slide), slider.on
-        kept_angle = pairs.sliding_angle(slider) if keeps else 0.0
-        axis = pairs.turned((1.0, 0.0), slider.direction_rad - kept_angle)
-        normal = pairs.turned((0.0, 1.0), slider.direction_rad)
-        joint = items.ObjectJointPrismatic2D(
-            markerNumbers=[
-                made.marker(rider, slider.point),
-                made.marker_at(guide, slider.through_m),
-            ],
-            axisMarker0=[*axis, 0.0],
-            normalMarker1=[*normal, 0.0],
-            constrainRotation=keeps,
+    for hinge, *anchors in rows.pin_rows(made):
+        ends = list(map(made.marker, (hinge.first, hinge.other), anchors))
+        made.hinge[hinge] = system.AddObject(items.ObjectJointRevolute2D(markerNumbers=ends))
+    for name, (rider, tip, guide, through, axis, normal, keeps) in rows.line_rows(made).items():
+        made.prismatic[name] = system.AddObject(
+            items.ObjectJointPrismatic2D(
+                markerNumbers=[made.marker(rider, tip), made.marker(guide, through)],
+                axisMarker0=axis,
+                normalMarker1=normal,
+                constrainRotation=keeps,
+            )
         )
-        made.prismatic[slider.name] = made.system.AddObject(joint)
+    return made
