@@ -240,28 +240,12 @@ class BodySession(SteppedSession):
     def poses(self, rows: Array, time_s: Array) -> Poses:
         lag = self.shift * self.dt
         centre = self.bodies.centre
-        found = {n: centred(rows[:, k], centre[n], lag) for k, n in enumerate(self.names)}
+        place, rate = rows[:, :, :3], rows[:, :, 3:]
+        found = {
+            name: measure.centred(place[:, k], rate[:, k], None, centre[name], lag)
+            for k, name in enumerate(self.names)
+        }
         return Poses(time_s, found, lag)
-
-
-def centred(row: Array, centre: Point, lag_s: float = 0.0) -> BodyPose:
-    """Return the frame of a link from the origin of its body in an engine, at ``centre`` of it.
-
-    Parameters
-    ----------
-    row : Array
-        x, y, angle, and their rates, which belong to ``lag_s`` later, (T, 6).
-    """
-    theta, omega = row[:, 2], row[:, 5]
-    return BodyPose(
-        origin=row[:, 0:2] - measure.arms(theta, centre),
-        theta=theta,
-        velocity=row[:, 3:5]
-        - omega[:, None] * measure.across(measure.arms(theta + lag_s * omega, centre)),
-        omega=omega,
-        origin_acceleration=np.full((len(theta), 2), np.nan),
-        alpha=np.full(len(theta), np.nan),
-    )
 
 
 def refuse_driver_between(scene: Scene, engine: str, why: str) -> None:

@@ -1,16 +1,15 @@
 """exudyn: bodies in absolute coordinates, all joints constraints, solved for by implicit steps."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
 from models.motion import State
-from models.scene import Point, Scene
+from models.scene import Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings, measure
 from sim.exudyn import crank_drive, passive, system
 from sim.exudyn.loads import Applied, apply_loads, follows_rates
@@ -20,9 +19,14 @@ from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_d
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
 
 
-def widths(made: system.PlaneSystem) -> list[int]:
-    """Return the number of coordinates of each node: x, y, angle, or x, y and the tangent's."""
-    return [4 if name in made.looked else 3 for name in made.node]
+def node_levels(
+    made: system.PlaneSystem, levels: Sequence[Array]
+) -> Iterator[tuple[str, Array, Array, Array]]:
+    """Yield each node with its coordinates, their rates and accelerations, (T, width) each, from
+    the samples of these of each node in turn; exudyn counts coordinates from its reference."""
+    for row, (name, node) in enumerate(made.node.items()):
+        moved, rate, push = levels[len(LEVELS) * row : len(LEVELS) * (row + 1)]
+        yield name, moved + made.system.GetNode(node)["referenceCoordinates"], rate, push
 
 
 def beam_angles(
@@ -32,9 +36,8 @@ def beam_angles(
     direction ``looked`` [rad] and each within half a turn of the one before: samples of every step
     are needed, or turns are lost."""
     angles = {}
-    for row, (name, node) in enumerate(made.node.items()):
+    for name, place, _, _ in node_levels(made, levels) if looked else ():
         if name in looked:
-            place = levels[len(LEVELS) * row] + made.system.GetNode(node)["referenceCoordinates"]
             angle = np.arctan2(place[:, 3], place[:, 2])
             angles[name] = np.unwrap(np.concatenate([[looked[name]], angle]))[1:]
     return angles
@@ -43,32 +46,13 @@ def beam_angles(
 def body_poses(
     made: system.PlaneSystem, levels: Sequence[Array], angles: Mapping[str, Array]
 ) -> dict[str, BodyPose]:
-    """Return poses by body, from samples (T, width) of the three levels of each node in turn, and
-    from the ``angles`` (T,) of nodes of beams."""
-    poses = {}
-    for row, (name, node) in enumerate(made.node.items()):
-        moved, rate, push = (levels[len(LEVELS) * row + k] for k in range(len(LEVELS)))
-        place = moved + made.system.GetNode(node)["referenceCoordinates"]
-        if name in angles:
-            poses[name] = _tangent_pose(place, rate, push, angles[name])
-        else:
-            poses[name] = _pose(place, rate, push, made.centre[name])
-    return poses
-
-
-def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
-    """Return the frame with the node at ``centre``, from coordinates and their rates."""
-    theta, omega, alpha = place[:, 2], rate[:, 2], push[:, 2]
-    arm = measure.arms(theta, centre)
-    turned = measure.across(arm)
-    return BodyPose(
-        origin=place[:, :2] - arm,
-        theta=theta,
-        velocity=rate[:, :2] - omega[:, None] * turned,
-        omega=omega,
-        origin_acceleration=push[:, :2] - alpha[:, None] * turned + omega[:, None] ** 2 * arm,
-        alpha=alpha,
-    )
+    """Return poses by body; nodes of beams have these ``angles`` (T,)."""
+    return {
+        name: _tangent_pose(place, rate, push, angles[name])
+        if name in angles
+        else measure.centred(place, rate, push, made.centre[name])
+        for name, place, rate, push in node_levels(made, levels)
+    }
 
 
 def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyPose:
@@ -104,7 +88,7 @@ class ExudynSession:
                 f"dt: found {dt_s:g} s; exudyn ends a step to 1e-10 s, so it takes "
                 f"{LEAST_DT_S:g} s or more"
             )
-        crank_drive.refuse_undriven(scene, drive)
+        crank_drive.driven_coordinate(scene, drive)  # refuses
         settings = of_drive(settings, drive)
         self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
         self._start_s, self._done = state.time_s, 0
@@ -118,7 +102,18 @@ class ExudynSession:
             passive.apply_friction(self._applied, drive)
             self._springs = passive.Springs(self._applied)
             self._crank = crank_drive.CrankDrive(self._model, settings, drive, state.time_s, dt_s)
-            self._sensors = self._sense()
+            self._sensors = [
+                self._system.AddSensor(
+                    system.items.SensorNode(
+                        nodeNumber=node,
+                        storeInternal=True,
+                        writeToFile=False,
+                        outputVariableType=getattr(system.exu.OutputVariableType, level),
+                    )
+                )
+                for node in self._model.node.values()
+                for level in LEVELS
+            ]
             self._system.Assemble()
             self._asked = simulation(
                 settings,
@@ -126,33 +121,14 @@ class ExudynSession:
                 of_rates=follows_rates(scene, drive),
                 rounding_n=system.rounding_n(scene, state),
             )
-            self._solver = self._initialized(system.inertia_rounding_n(scene, state))
+            inertia_n = system.inertia_rounding_n(scene, state)
+            try:
+                self._solver = initialized(self._system, self._asked, settings, inertia_n)
+            except ValueError as error:  # as exudyn has it: a load has no size at the start
+                raise EngineError(self._applied.fault) if self._applied.fault else error from None
             course = self._crank.course
             first = None if course is None else self._set_off(course)
             self._multipliers = Multipliers(self._system, first)
-
-    def _initialized(self, inertia_n: float) -> Any:
-        """Make the solver. Raises EngineError for a load that has no size at the start."""
-        try:
-            return initialized(self._system, self._asked, self._settings, inertia_n)
-        except ValueError:  # as exudyn has it
-            if self._applied.fault:
-                raise EngineError(self._applied.fault) from None
-            raise
-
-    def _sense(self) -> list[Any]:
-        return [
-            self._system.AddSensor(
-                system.items.SensorNode(
-                    nodeNumber=node,
-                    storeInternal=True,
-                    writeToFile=False,
-                    outputVariableType=getattr(system.exu.OutputVariableType, level),
-                )
-            )
-            for node in self._model.node.values()
-            for level in LEVELS
-        ]
 
     def _set_off(self, course: crank_drive.CrankCourse) -> Array:
         """Set rates that fit the crank's, and accelerations that fit its own; return their
@@ -223,7 +199,8 @@ class ExudynSession:
         count = len(at) if good.all() else int(np.argmin(good))
         angles = {name: own[rows][:count] for name, own in angles.items()}
         self._looked |= {name: float(own[-1]) for name, own in angles.items() if count}
-        poses = self._shown([own[:count] for own in levels], at[:count], angles)
+        shown = body_poses(self._model, [own[:count] for own in levels], angles)
+        poses = Poses(self._start_s + self._dt * at[:count], shown)
         diverged = bool(stopped) or count < len(at)
         warnings = tuple(dict.fromkeys(self._heard))
         return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
@@ -242,16 +219,13 @@ class ExudynSession:
     def read(self) -> Poses:
         """Read the current state."""
         state = self._system.systemData
-        ends = np.cumsum(widths(self._model))[:-1]
+        widths = [4 if name in self._looked else 3 for name in self._model.node]
+        ends = np.cumsum(widths)[:-1]
         levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
         of_nodes = [own[None] for node in zip(*levels, strict=True) for own in node]
         angles = beam_angles(self._model, self._looked, of_nodes)
-        return self._shown(of_nodes, np.array([float(self._done)]), angles)
-
-    def _shown(self, levels: Sequence[Array], at: Array, angles: Mapping[str, Array]) -> Poses:
-        """Return the poses of samples, after so many steps, from the three levels of each node in
-        turn, and from the angles of nodes of beams."""
-        return Poses(self._start_s + self._dt * at, body_poses(self._model, levels, angles))
+        now = np.array([self._start_s + self._dt * self._done])
+        return Poses(now, body_poses(self._model, of_nodes, angles))
 
     def _advance(self, steps: int, *, log: bool) -> str:
         """Step in one go or, where steps may be cut, so that each ends in time. Return exudyn's own

@@ -109,37 +109,39 @@ class Applied:
 
     def force(self, marker: Index, force: Vector | Point, *, in_body: bool = False) -> None:
         """Add a force, in the frame of the ground or of the body."""
-        vector = (lambda *now: (*force(*now), 0.0)) if callable(force) else (*force, 0.0)
-        self._add(items.LoadForceVector, marker, vector, bodyFixed=in_body)
+        vector = (lambda *now: [*force(*now), 0.0]) if callable(force) else [*force, 0.0]
+        self._add(items.LoadForceVector(markerNumber=marker, bodyFixed=in_body), vector)
 
     def torque(self, body: str, torque: Size | float) -> None:
         """Add a torque on a body or a block; the ground feels none."""
         turning = self.turning(body)
-        if turning == GROUND:
-            return
-        marker = self.made.marker_at(turning, (0.0, 0.0))
-        vector = (lambda *now: (0.0, 0.0, torque(*now))) if callable(torque) else (0.0, 0.0, torque)
-        self._add(items.LoadTorqueVector, marker, vector)
+        if turning != GROUND:
+            marker = self.made.marker_at(turning, (0.0, 0.0))
+            none = 0.0, 0.0
+            told = (lambda *now: [*none, torque(*now)]) if callable(torque) else [*none, torque]
+            self._add(items.LoadTorqueVector(markerNumber=marker), told)
 
-    def _add(self, load: Any, marker: Index, vector: Any, **more: object) -> None:
+    def _add(self, load: Any, vector: Callable[[Any, float], list[float]] | list[float]) -> None:
         """Add a load of three numbers, or of a function of the system and of time."""
 
         def called(system: Any, time_s: float, _: object) -> list[float]:
+            assert callable(vector)
             try:
-                return list(vector(system, time_s))
+                return vector(system, time_s)
             except CrankcheckError as error:
                 self.fault = str(error)  # exudyn would show it with a traceback
                 raise
 
         if callable(vector):
-            more["loadVectorUserFunction"] = called
+            load.loadVectorUserFunction = called
         else:
-            more["loadVector"] = list(vector)
-        self.made.system.AddLoad(load(markerNumber=marker, **more))
+            load.loadVector = vector
+        self.made.system.AddLoad(load)
 
 
-class StepMeans:
-    """Mean of a staircase about each step's end, with weights that fall to 0 at a step's distance.
+def step_mean(stairs: Staircase, start_s: float, dt_s: float, time_s: float) -> float:
+    """Return the mean of a staircase about the end of a step, or the start, with weights that fall
+    to 0 at a step's distance [N or N m].
 
     A step weighs its two ends alike, so that a jump that only one of them feels acts half a step
     too early or too late, at any place in the step; with these means the impulse over both steps is
@@ -147,29 +149,22 @@ class StepMeans:
     counts from there.
     """
 
-    def __init__(self, stairs: Staircase, start_s: float, dt_s: float) -> None:
-        self._start_s, self._dt = start_s, dt_s
-        rises = zip(stairs.places, stairs.values, (0.0, *stairs.values), strict=False)
-        self._jumps = [(place, value - before) for place, value, before in rises]
-
-    def at(self, time_s: float) -> float:
-        """Return the mean at the end of a step, or at the start [N or N m]."""
-        return math.fsum(height * self._share(time_s, place) for place, height in self._jumps)
-
-    def _share(self, time_s: float, place: float) -> float:
-        if place <= self._start_s:
+    def share(place: float) -> float:
+        if place <= start_s:
             return 1.0
-        since = min(max((time_s - place) / self._dt, -1.0), 1.0)
-        if time_s <= self._start_s:  # the available half of the mean
+        since = min(max((time_s - place) / dt_s, -1.0), 1.0)
+        if time_s <= start_s:  # the available half of the mean
             return (1.0 + since) ** 2
         return 1.0 - 0.5 * (1.0 - since) ** 2 if since > 0.0 else 0.5 * (1.0 + since) ** 2
+
+    rises = zip(stairs.places, stairs.values, (0.0, *stairs.values), strict=False)
+    return math.fsum((value - before) * share(place) for place, value, before in rises)
 
 
 def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> None:
     """Add all loads. Raises EngineError for a load on an unknown body."""
-    scene, massless = applied.scene, applied.massless
-    known = [*bodies(scene), *massless]
-    for load in scene.loads.values():
+    known = [*bodies(applied.scene), *applied.massless]
+    for load in applied.scene.loads.values():
         if load.body not in known:
             raise EngineError(
                 f"loads.{load.name}: found body {load.body}; use one of {few(known, 12)}"
@@ -179,14 +174,12 @@ def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> 
             applied.torque(load.body, size)
             continue
         marker, in_body = applied.on(load.body, load.point), load.frame == "body"
-        if in_body and load.body in massless:
-            slider = massless[load.body].slider
+        direction: Any = math.cos(load.direction_rad), math.sin(load.direction_rad)
+        if in_body and load.body in applied.massless:
+            slider, in_body = applied.massless[load.body].slider, False
             turned = load.direction_rad + sliding_angle(slider) - slider.direction_rad
-            along = partial(applied.present.line, name=slider.name, turned_rad=turned)
-            applied.force(marker, _pointing(size, along))
-        else:
-            direction = math.cos(load.direction_rad), math.sin(load.direction_rad)
-            applied.force(marker, _pointing(size, direction), in_body=in_body)
+            direction = partial(applied.present.line, name=slider.name, turned_rad=turned)
+        applied.force(marker, _pointing(size, direction), in_body=in_body)
 
 
 def follows_rates(scene: Scene, drive: Drive) -> bool:
@@ -199,19 +192,19 @@ def follows_rates(scene: Scene, drive: Drive) -> bool:
 def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: float) -> Size | float:
     """Return the size of a load: a number for a constant one.
 
-    If the load moves the mechanism, a jump in time keeps its impulse (`StepMeans`); with a
+    If the load moves the mechanism, a jump in time keeps its impulse (`step_mean`); with a
     prescribed crank all forces belong to the instant.
     """
-    scene = applied.scene
-    if isinstance(load.characteristic, Constant) and load.stroke == "both":
-        return load.characteristic.value
+    scene, own = applied.scene, load.characteristic
+    if isinstance(own, Constant) and load.stroke == "both":
+        return own.value
     if known_ahead(load, drive):
-        if isinstance(load.characteristic, Staircase) and drive != "prescribed":
-            means = StepMeans(load.characteristic, start_s, dt_s)
-            return lambda _, time_s: means.at(start_s + time_s)
+        if isinstance(own, Staircase) and drive != "prescribed":
+            return lambda _, time_s: step_mean(own, start_s, dt_s, start_s + time_s)
         # Computed once in a step.
         at = lru_cache(1)(lambda time_s: float(ahead(scene, load, np.array([time_s]))[0]))
         return lambda _, time_s: at(start_s + time_s)
+
     present = applied.present
 
     def of_present(system: Any, time_s: float) -> float:
@@ -225,12 +218,10 @@ def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: floa
 
 def _pointing(size: Size | float, direction: Callable[[Any], Point] | Point) -> Any:
     """Return a force of a size in a direction, each a number or a function of the present state."""
-    if not callable(size) and not callable(direction):
-        return size * direction[0], size * direction[1]
 
     def vector(system: Any, time_s: float) -> Point:
         force = size(system, time_s) if callable(size) else size
         c, s = direction(system) if callable(direction) else direction
         return force * c, force * s
 
-    return vector
+    return vector if callable(size) or callable(direction) else vector(None, 0.0)

@@ -1,6 +1,6 @@
 """Springs of a scene in exudyn, and its friction, as forces against the motion."""
 
-from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,8 @@ from models.errors import EngineError
 from models.scene import GROUND, Point, Scene, joints
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, Spring
 from sim.engine import Drive, ties
-from sim.exudyn.loads import Applied, Size
+from sim.exudyn.loads import Applied
 from sim.exudyn.system import Index, items
-
-Held = tuple[float, float, float]
-"""Rate, damping, and slack length or angle."""
 
 
 class Springs:
@@ -27,39 +24,36 @@ class Springs:
 
     def __init__(self, applied: Applied) -> None:
         self._applied, self._made = applied, applied.made
-        self._index: dict[str, Index] = {}
         self._ahead: dict[str, float] = {}
-        for name, spring in applied.scene.springs.items():
-            self._index[name] = self._made.system.AddObject(self._item(spring))
+        self._index: dict[str, Index] = {
+            name: self._made.system.AddObject(self._item(spring))
+            for name, spring in applied.scene.springs.items()
+        }
 
     def _item(self, spring: Spring) -> object:
         """Make a spring; angles of nodes count from the start."""
-        held = {"stiffness": spring.rate, "damping": spring.damping}
+        made = self._made
+        own: dict[str, Any] = {"stiffness": spring.rate, "damping": spring.damping}
         if isinstance(spring, PinSpring):
-            turning = [self._applied.turning(body) for body in spring.bodies]
-            opened = self._made.start_rad[turning[1]] - self._made.start_rad[turning[0]]
+            first, second = map(self._applied.turning, spring.bodies)
+            opened = made.start_rad[second] - made.start_rad[first]
             ahead = self._ahead[spring.name] = opened + joints.whole_turns(spring, opened)
-            ends = [self._made.coordinate_marker(body) for body in turning]
-            return items.ObjectConnectorCoordinateSpringDamper(
-                markerNumbers=ends, offset=spring.free - ahead, **held
-            )
-        ends = [self._made.marker_at(*end) for end in ties.spring_ends(self._applied.scene, spring)]
+            own["markerNumbers"] = [made.coordinate_marker(body) for body in (first, second)]
+            return items.ObjectConnectorCoordinateSpringDamper(offset=spring.free - ahead, **own)
+        own["markerNumbers"] = [made.marker_at(*e) for e in ties.spring_ends(made.scene, spring)]
         if isinstance(spring, LineSpring):
-            return items.ObjectConnectorSpringDamper(
-                markerNumbers=ends, referenceLength=spring.free, **held
-            )
-        axis = joints.turned((1.0, 0.0), self._applied.scene.sliders[spring.slider].direction_rad)
-        return items.ObjectConnectorLinearSpringDamper(
-            markerNumbers=ends, offset=spring.free, axisMarker0=[*axis, 0.0], **held
-        )
+            return items.ObjectConnectorSpringDamper(referenceLength=spring.free, **own)
+        axis = joints.turned((1.0, 0.0), made.scene.sliders[spring.slider].direction_rad)
+        own["axisMarker0"] = [*axis, 0.0]
+        return items.ObjectConnectorLinearSpringDamper(offset=spring.free, **own)
 
-    def held(self) -> Mapping[str, Held]:
-        """Return the springs as exudyn has them."""
+    def held(self) -> dict[str, tuple[float, float, float]]:
+        """Return rate, damping and slack length or angle of the springs, as exudyn has them."""
         told = {}
         for name, index in self._index.items():
             own = self._made.system.GetObject(index)
-            free = own["offset"] if "offset" in own else own["referenceLength"]
-            free = float(free) + self._ahead.get(name, 0.0)
+            free = float(own["offset"] if "offset" in own else own["referenceLength"])
+            free += self._ahead.get(name, 0.0)
             told[name] = (float(own["stiffness"]), float(own["damping"]), free)
         return told
 
@@ -86,18 +80,13 @@ def apply_friction(applied: Applied, drive: Drive) -> None:
 
 
 def _rub_pin(applied: Applied, friction: ConstantFriction, still: float) -> None:
-    ends, present = joints.joined_at(applied.scene)[friction.joint], applied.present
-    turning = [applied.turning(body) for body in ends]
+    def torque(own: str, other: str, system: Any, _: float) -> float:
+        rate = applied.present.angle(system, own)[1] - applied.present.angle(system, other)[1]
+        return float(against(friction.size, rate, still))
 
-    def on(side: int) -> Size:
-        def torque(system: Any, _: float) -> float:
-            own, other = (present.angle(system, turning[k])[1] for k in (side, 1 - side))
-            return float(against(friction.size, own - other, still))
-
-        return torque
-
-    for side in (0, 1):
-        applied.torque(ends[side], on(side))
+    first, second = map(applied.turning, joints.joined_at(applied.scene)[friction.joint][:2])
+    applied.torque(first, partial(torque, first, second))
+    applied.torque(second, partial(torque, second, first))
 
 
 def _rub_line(applied: Applied, friction: ConstantFriction, still: float) -> None:
@@ -105,18 +94,16 @@ def _rub_line(applied: Applied, friction: ConstantFriction, still: float) -> Non
     slider, present = applied.scene.sliders[friction.joint], applied.present
     least = still * applied.scene.longest_m
 
-    def along(sign: float) -> Any:
-        def force(system: Any, _: float) -> Point:
-            _, speed = present.slider(system, slider.name)
-            size = sign * float(against(friction.size, speed, least))
-            c, s = present.line(system, slider.name)
-            return size * c, size * s
+    def force(sign: float, system: Any, _: float) -> Point:
+        _, speed = present.slider(system, slider.name)
+        size = sign * float(against(friction.size, speed, least))
+        c, s = present.line(system, slider.name)
+        return size * c, size * s
 
-        return force
-
-    applied.force(applied.tip(slider), along(1.0))
+    applied.force(applied.tip(slider), partial(force, 1.0))
     if slider.on != GROUND:
-        applied.force(applied.made.marker_at(slider.on, slider.through_m), along(-1.0))
+        guide = applied.made.marker_at(slider.on, slider.through_m)
+        applied.force(guide, partial(force, -1.0))
 
 
 def still_rad_s(scene: Scene) -> float:

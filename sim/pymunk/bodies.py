@@ -18,10 +18,9 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Scene
 from models.scene.joints import FIXED, Frame, whole_turns
 from models.scene.loads import SegmentSpring
-from sim.engine import BodyPose, measure
 from sim.engine.acting import Course, Frames
 from sim.pymunk.space import SpaceModel
 
@@ -47,21 +46,6 @@ def rows_of(model: SpaceModel) -> dict[str, int]:
     pymunk.batch.get_space_bodies(model.space, pymunk.batch.BodyFields.BODY_ID, buffer)
     order = np.frombuffer(buffer.int_buf(), dtype=np.uintp).tolist()
     return {name: order.index(body.id) for name, body in model.bodies.items()}
-
-
-def pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
-    """Return the frame with the origin of the pymunk body at ``centre``; no accelerations."""
-    theta, omega = row[:, 2], row[:, 5]
-    none = np.full(len(theta), np.nan)
-    return BodyPose(
-        origin=row[:, 0:2] - measure.arms(theta, centre),
-        theta=theta,
-        velocity=row[:, 3:5]
-        - omega[:, None] * measure.across(measure.arms(theta + lag_s * omega, centre)),
-        omega=omega,
-        origin_acceleration=np.full((len(theta), 2), np.nan),
-        alpha=none,
-    )
 
 
 def frames_at_end(model: SpaceModel, dt_s: float) -> Frames:

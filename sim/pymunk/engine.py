@@ -13,11 +13,12 @@ from models.motion import State
 from models.scene import Point, Scene, laws
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
+from sim.engine.measure import centred
 from sim.engine.settings import as_held
 from sim.pymunk import settings as own
 from sim.pymunk.acting import SpaceActing
 from sim.pymunk.arcs import Arcs
-from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, finite, pose, rows_of
+from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, finite, rows_of
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
@@ -213,7 +214,7 @@ class PymunkSession:
         """Return the poses of the links' own frames from the bodies' centres of gravity."""
         lag = VELOCITY_SHIFT * self._dt
         poses = {
-            name: pose(rows[:, row], self._model.centre[name], lag)
+            name: centred(rows[:, row, :3], rows[:, row, 3:], None, self._model.centre[name], lag)
             for name, row in self._rows.items()
         }
         return Poses(self._start_s + self._dt * at, poses, lag)
