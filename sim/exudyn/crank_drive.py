@@ -7,7 +7,6 @@ sliding body; for the drive the angle of the crank.
 """
 
 import math
-from typing import Any, cast
 
 import numpy as np
 
@@ -22,8 +21,8 @@ from sim.engine import Drive, Poses, Settings, momentum_balance
 from sim.engine import drive as drives
 from sim.engine.measure import body_paths, directions, motion
 from sim.engine.ties import Hinge, block_guides, refuse_driver_angle
-from sim.exudyn import passive, solver
-from sim.exudyn.system import ANGLE, Index, PlaneSystem, items
+from sim.exudyn import acting, solver
+from sim.exudyn.system import ANGLE, Index, PlaneSystem
 
 
 class CrankCourse:
@@ -113,10 +112,11 @@ class CrankDrive:
     def __init__(
         self, made: PlaneSystem, settings: Settings, drive: Drive, start_s: float, dt_s: float
     ) -> None:
-        driver, self._system = made.scene.driver, made.system
+        driver = made.scene.driver
         self._law, self._link, self._start_s = driver.law, driver.link, start_s
         self.course: CrankCourse | None = None
-        self._gain, self._constraint = 0.0, cast(Index, None)
+        self._gain = 0.0
+        self._constraint: Index = None
         if drive == "free":
             return
         coordinate, sense = driven_coordinate(made.scene, drive)
@@ -125,7 +125,7 @@ class CrankDrive:
         if drive == "servo":
             gain = float(settings["servo_gain"]) * pairs.inertia_scale(made.scene)
             self._gain = gain * self._law.peak_speed_rad_s
-            self._add_motor(ends)
+            self._add_motor(made, ends)
             return
         told: dict[str, object] = {"factor1": sense} if sense < 0.0 else {}
         if isinstance(self._law, ConstantSpeed):
@@ -133,22 +133,18 @@ class CrankDrive:
         else:
             self.course = course = CrankCourse(self._law, start_s, dt_s)
             told |= {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
-        joint = items.ObjectConnectorCoordinate(markerNumbers=ends, **told)
-        self._constraint = self._system.AddObject(joint)
+        self._constraint = made.add("ObjectConnectorCoordinate", markerNumbers=ends, **told)
 
-    def _add_motor(self, ends: list[Any]) -> None:
+    def _add_motor(self, made: PlaneSystem, ends: list[Index]) -> None:
         """Add a damper to the ground, and its torque at the law's speed."""
         law, gain, start_s = self._law, self._gain, self._start_s
-        damper = items.ObjectConnectorCoordinateSpringDamper(markerNumbers=ends, damping=gain)
-        self._system.AddObject(damper)
+        made.add("ObjectConnectorCoordinateSpringDamper", markerNumbers=ends, damping=gain)
 
         def torque(_system: object, time_s: float, _load: float) -> float:
             return gain * float(law.at(np.array(start_s + time_s))[1])
 
-        load = items.LoadCoordinate(markerNumber=ends[1], load=torque(None, 0.0, 0.0))
-        if not isinstance(law, ConstantSpeed):
-            load.loadUserFunction = torque
-        self._system.AddLoad(load)
+        told = {} if isinstance(law, ConstantSpeed) else {"loadUserFunction": torque}
+        made.add("LoadCoordinate", markerNumber=ends[1], load=torque(None, 0.0, 0.0), **told)
 
     def torque(self, poses: Poses, lambdas: Array, multipliers: solver.Multipliers) -> Array:
         """Return the torque on the crank [N m], or the force on a slider along its line [N], at
@@ -181,7 +177,7 @@ class BlockLoads:
             self._scene,
             self._motion.sliders[slider.name],
         )
-        line, still = self.line_rad(slider), passive.still_rad_s(scene)
+        line, still = self.line_rad(slider), acting.still_rad_s(scene)
         force, torque, along = np.zeros((len(line), 2)), np.zeros(len(line)), directions(line)
         for load in (one for one in scene.loads.values() if one.body == block):
             if load.point is None:
@@ -194,11 +190,11 @@ class BlockLoads:
             assert isinstance(one, ConstantFriction)
             if one.joint == slider.name:
                 least = still * scene.longest_m
-                force += passive.against(one.size, slid.speed, least)[:, None] * along
+                force += acting.against(one.size, slid.speed, least)[:, None] * along
             elif one.joint == slider.point and one.joint not in scene.sliders:
                 (other,) = (b for b in pairs.joined_at(scene)[slider.point] if b != block)
                 rate = self._omega(slider.on) - self._omega(other)
-                torque += passive.against(one.size, rate, still)
+                torque += acting.against(one.size, rate, still)
         for spring in scene.springs.values():
             if isinstance(spring, SlideSpring) and spring.slider == slider.name:
                 pull = spring.rate * (slid.displacement - spring.free)

@@ -11,8 +11,7 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings, measure
-from sim.exudyn import crank_drive, passive, system
-from sim.exudyn.loads import Applied, apply_loads, follows_rates
+from sim.exudyn import acting, crank_drive, system
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 
@@ -97,19 +96,18 @@ class ExudynSession:
             self._model = system.build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
             self._looked = dict(self._model.looked)
-            self._applied = Applied(self._model)
-            apply_loads(self._applied, state.time_s, drive, dt_s)
-            passive.apply_friction(self._applied, drive)
-            self._springs = passive.Springs(self._applied)
+            self._applied = acting.Applied(self._model)
+            acting.apply_loads(self._applied, state.time_s, drive, dt_s)
+            acting.apply_friction(self._applied, drive)
+            self._springs = acting.Springs(self._applied)
             self._crank = crank_drive.CrankDrive(self._model, settings, drive, state.time_s, dt_s)
             self._sensors = [
-                self._system.AddSensor(
-                    system.items.SensorNode(
-                        nodeNumber=node,
-                        storeInternal=True,
-                        writeToFile=False,
-                        outputVariableType=getattr(system.exu.OutputVariableType, level),
-                    )
+                self._model.add(
+                    "SensorNode",
+                    nodeNumber=node,
+                    storeInternal=True,
+                    writeToFile=False,
+                    outputVariableType=getattr(system.exu.OutputVariableType, level),
                 )
                 for node in self._model.node.values()
                 for level in LEVELS
@@ -118,7 +116,7 @@ class ExudynSession:
             self._asked = simulation(
                 settings,
                 dt_s,
-                of_rates=follows_rates(scene, drive),
+                of_rates=acting.follows_rates(scene, drive),
                 rounding_n=system.rounding_n(scene, state),
             )
             inertia_n = system.inertia_rounding_n(scene, state)
@@ -138,18 +136,16 @@ class ExudynSession:
         trapezoidal rule would alternate about the true ones ever after.
         """
         own, rates = system.exu.ConfigurationType.Initial, self._system.systemData
-        law = self._scene.driver.law
-        _, omega, alpha = (float(x) for x in law.at(np.array(self._start_s)))
+        alphas = self._asked.timeIntegration.generalizedAlpha
+        _, omega, alpha = (float(x) for x in self._scene.driver.law.at(np.array(self._start_s)))
         ratio = per_drive(self._solver, self._system)
-        if self._asked.timeIntegration.generalizedAlpha.useIndex2Constraints:
-            told = course.speed(None, 0.0, None, 0.0)
-            rates.SetODE2Coordinates_t(
-                np.add(rates.GetODE2Coordinates_t(own), (told - omega) * ratio), own
-            )
+        if alphas.useIndex2Constraints:
+            faster = (course.speed(None, 0.0, None, 0.0) - omega) * ratio
+            rates.SetODE2Coordinates_t(np.add(rates.GetODE2Coordinates_t(own), faster), own)
         push: Array = np.add(rates.GetODE2Coordinates_tt(), alpha * ratio)
         rates.SetODE2Coordinates_tt(push, own)
         first = multipliers(self._solver, self._system, push)
-        self._asked.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
+        alphas.computeInitialAccelerations = False
         self._solver.InitializeSolver(self._system, self._asked)
         return first
 

@@ -6,7 +6,7 @@ from models.scene import GROUND, Scene, laws
 from sim.engine import Settings
 from sim.engine.acting import PlacedBodies, centres
 from sim.exudyn import rows
-from sim.exudyn.settings import BY_NEED, NEWTON
+from sim.exudyn.settings import BY_NEED, assignments
 from sim.registry.offers import ForceRecipe, written
 
 PROGRAM = '''"""{title}"""
@@ -153,20 +153,16 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
 
 
 def _settings(settings: Settings) -> list[str]:
-    lines = [f"stepping.adaptiveStep = {settings['adaptive_step'] == 'enable'}"]
-    if settings["integrator"] == "GeneralizedAlpha":
-        radius = float(settings["spectral_radius"])
-        lines.append(f"stepping.generalizedAlpha.spectralRadius = {radius!r}")
-    jacobian, linear = settings["jacobian"], str(settings["linear_solver"])
+    own = assignments(settings)
+    # Joints and drive determine all coordinates of these scenes.
+    own["newton.residualMode"] = int(settings["residual"] != "forces")
+    if settings["integrator"] != "GeneralizedAlpha":
+        del own["generalizedAlpha.spectralRadius"]
+    linear = settings["linear_solver"]
     redundant = linear == BY_NEED or settings["ignore_singular"] == "enable"
     solver = "EigenDense" if linear == BY_NEED else linear
     return [
-        *lines,
-        *(f"stepping.newton.{own} = {settings[name]!r}" for name, own in NEWTON.items()),
-        # Joints and drive determine all coordinates of these scenes.
-        f"stepping.newton.residualMode = {int(settings['residual'] != 'forces')}",
-        f"stepping.newton.useModifiedNewton = {jacobian != 'each-iteration'}",
-        f"stepping.newton.modifiedNewtonJacUpdatePerStep = {jacobian == 'each-step'}",
+        *(f"stepping.{path} = {value!r}" for path, value in own.items()),
         f"simulationSettings.linearSolver.solverType = exu.LinearSolverType.{solver}",
         f"simulationSettings.linearSolver.ignoreSingularJacobian = {redundant}",
     ]

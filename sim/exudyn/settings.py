@@ -1,6 +1,6 @@
 """exudyn's settings: the two profiles, and their form in its own structures."""
 
-from sim.engine import Drive, Placing, Profile, Setting, Settings
+from sim.engine import Drive, Placing, Profile, Setting, Settings, SettingValue
 from sim.engine.settings import checker
 
 INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
@@ -12,10 +12,9 @@ RESIDUALS = ("forces", "increments")
 in an iteration."""
 LINEAR_SOLVERS = ("EXUdense", "EigenDense", "EigenSparse")
 BY_NEED = "by-need"
-"""Choices of crankcheck: EXUdense, or EigenDense where joints are redundant at the start, or
-EigenSparse for more than `MOST_DENSE` coordinates and constraints; and increments where joints and
-drive determine all coordinates at the start, or forces."""
+"""Choices of crankcheck by the system at the start; see the reasons of `TUNED`."""
 MOST_DENSE = 60
+"""Largest number of coordinates and constraints for a dense solver."""
 NEWTON = {
     "relative_tolerance": "relativeTolerance",
     "absolute_tolerance": "absoluteTolerance",
@@ -148,3 +147,17 @@ def of_rigid(settings: Settings) -> Settings:
 def placing(settings: Settings) -> Placing:
     """Return the source of positions: with joints closed in their rates they are integrated."""
     return "integrated" if settings["integrator"] == "TrapezoidalIndex2" else "solved"
+
+
+def assignments(settings: Settings) -> dict[str, SettingValue]:
+    """Return exudyn's own settings of time integration, by their paths in it, that a complete set
+    determines by itself."""
+    jacobian = settings["jacobian"]
+    return {
+        "adaptiveStep": settings["adaptive_step"] == "enable",
+        "generalizedAlpha.spectralRadius": settings["spectral_radius"],
+        **{f"newton.{own}": settings[name] for name, own in NEWTON.items()},
+        "newton.residualMode": int(settings["residual"] == "increments"),
+        "newton.useModifiedNewton": jacobian != "each-iteration",
+        "newton.modifiedNewtonJacUpdatePerStep": jacobian == "each-step",
+    }

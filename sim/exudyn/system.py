@@ -1,11 +1,10 @@
 """The exudyn system of a scene: a rigid body in the plane per link, a joint per pin and line;
 and the package itself, with its output.
 
-The node of a body is at its centre of mass, whose place in the link's own frame is kept. All bodies
-have three coordinates, the driven crank too: its drive is one more constraint. A pin of k bodies is
-k - 1 hinges. A pair on a line is a prismatic joint whose second marker, on the guide, lies on the
-line; with a massless block it leaves the angle free. The nodes of beams have a tangent in place of
-an angle.
+The node of a body is at its centre of mass. All bodies have three coordinates, the driven crank
+too: its drive is one more constraint. A pin of k bodies is k - 1 hinges. A pair on a line is a
+prismatic joint whose second marker, on the guide, lies on the line; with a massless block it leaves
+the angle free. The nodes of beams have a tangent in place of an angle.
 
 Its type stubs leave out ``self`` and its items are untyped, so all of it is `Any` here.
 """
@@ -61,6 +60,7 @@ ANGLE = 2
 """Coordinate of a node that is its angle."""
 Index = Any
 """exudyn's own numbers of nodes, objects, markers and loads."""
+GROUPS = ("Node", "Object", "Marker", "Load", "Sensor")
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,13 @@ class PlaneSystem(PlacedBodies):
     looked: dict[str, float] = field(default_factory=dict)
     elements: dict[str, list[Index]] = field(default_factory=dict)
 
+    def add(self, kind: str, **numbers: object) -> Index:
+        """Add an item of exudyn by its class name, such as ``NodePointGround``."""
+        group = next(
+            g for g in ("Node", "Object", "Marker", "Load", "Sensor") if kind.startswith(g)
+        )
+        return getattr(self.system, f"Add{group}")(getattr(items, kind)(**numbers))
+
     def marker(self, name: str, anchor: Point) -> Index:
         """Add a marker at a place of a body or of the ground, from its node [m]."""
         if name in self.looked:
@@ -93,11 +100,9 @@ class PlaneSystem(PlacedBodies):
                     f"{name}: something acts {anchor[1]:g} m beside it; exudyn's beams take forces "
                     "on their line, give that link segments (--springs plain)"
                 )
-            return self.system.AddMarker(items.MarkerNodeRigid(nodeNumber=self.node[name]))
+            return self.add("MarkerNodeRigid", nodeNumber=self.node[name])
         body = self.ground if name == GROUND else self.body[name]
-        return self.system.AddMarker(
-            items.MarkerBodyRigid(bodyNumber=body, localPosition=[*anchor, 0.0])
-        )
+        return self.add("MarkerBodyRigid", bodyNumber=body, localPosition=[*anchor, 0.0])
 
     def marker_at(self, name: str, place: Point) -> Index:
         """Add a marker at a place in the frame of a link or of the ground [m]."""
@@ -115,36 +120,30 @@ class PlaneSystem(PlacedBodies):
                 "that link segments (--springs plain)"
             )
         if name == GROUND:
-            node, coordinate = self.system.AddNode(items.NodePointGround()), 0
+            node, coordinate = self.add("NodePointGround"), 0
         else:
             node = self.node[name]
-        return self.system.AddMarker(
-            items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)
-        )
+        return self.add("MarkerNodeCoordinate", nodeNumber=node, coordinate=coordinate)
 
     def weigh(self, name: str, body: Index) -> None:
         """Add gravity to a body or an element."""
-        gravity = self.scene.gravity_m_s2
+        gravity = [*self.scene.gravity_m_s2, 0.0]
         if any(gravity):
-            marker = self.system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-            self.weight[name] = self.system.AddLoad(
-                items.LoadMassProportional(markerNumber=marker, loadVector=[*gravity, 0.0])
+            at = self.add("MarkerBodyMass", bodyNumber=body)
+            self.weight[name] = self.add(
+                "LoadMassProportional", markerNumber=at, loadVector=gravity
             )
 
 
-def add_node(made: PlaneSystem, name: str, frame: pairs.Frame, state: State) -> None:
+def add_node(made: PlaneSystem, name: str, frame: pairs.Frame) -> None:
     """Add a node of a beam: its place, and its tangent, longer than 1 by the strain there."""
     c, s = math.cos(frame.theta), math.sin(frame.theta)
-    long, faster = 1.0 + state.strain.get(name, 0.0), state.strain_rate.get(name, 0.0)
-    made.node[name] = made.system.AddNode(
-        items.NodePoint2DSlope1(
-            referenceCoordinates=[*frame.origin, long * c, long * s],
-            initialVelocities=[
-                *frame.velocity,
-                faster * c - long * frame.omega * s,
-                faster * s + long * frame.omega * c,
-            ],
-        )
+    long, faster = 1.0 + made.state.strain.get(name, 0.0), made.state.strain_rate.get(name, 0.0)
+    growing = faster * c - long * frame.omega * s, faster * s + long * frame.omega * c
+    made.node[name] = made.add(
+        "NodePoint2DSlope1",
+        referenceCoordinates=[*frame.origin, long * c, long * s],
+        initialVelocities=[*frame.velocity, *growing],
     )
     made.looked[name] = frame.theta
 
@@ -159,18 +158,17 @@ def add_elements(made: PlaneSystem, beam: elastic.Beam) -> None:
     Sound and Vibration 318 (2008).
     """
     made.elements[beam.name] = [
-        made.system.AddObject(
-            items.ObjectANCFCable2D(
-                length=beam.element_m,
-                massPerLength=beam.density_kg_m,
-                bendingStiffness=beam.flexural_n_m2,
-                axialStiffness=beam.axial_n,
-                bendingDamping=beam.damping_s * beam.flexural_n_m2,
-                axialDamping=beam.damping_s * beam.axial_n,
-                nodeNumbers=[made.node[near], made.node[far]],
-            )
+        made.add(
+            "ObjectANCFCable2D",
+            length=beam.element_m,
+            massPerLength=beam.density_kg_m,
+            bendingStiffness=beam.flexural_n_m2,
+            axialStiffness=beam.axial_n,
+            bendingDamping=beam.damping_s * beam.flexural_n_m2,
+            axialDamping=beam.damping_s * beam.axial_n,
+            nodeNumbers=[made.node[node] for node in pair],
         )
-        for near, far in pairwise(beam.nodes)
+        for pair in pairwise(beam.nodes)
     ]
     for i, element in enumerate(made.elements[beam.name]):
         made.weigh(f"{beam.name} {i}", element)
@@ -189,18 +187,11 @@ def held_beams(made: PlaneSystem) -> Mapping[str, tuple[elastic.Beam, ...]]:
 
 def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> elastic.Beam:
     """Return an element; its damping is NaN where its two dampings differ in time."""
-    flexural, axial = float(own["bendingStiffness"]), float(own["axialStiffness"])
-    times = float(own["bendingDamping"]) / flexural, float(own["axialDamping"]) / axial
-    one = math.isclose(*times, rel_tol=1e-12)
-    return elastic.Beam(
-        name,
-        nodes,
-        float(own["length"]),
-        float(own["massPerLength"]),
-        flexural,
-        axial,
-        times[0] if one else math.nan,
-    )
+    names = "length", "massPerLength", "bendingStiffness", "axialStiffness"
+    length, density, flexural, axial = (float(own[each]) for each in names)
+    damping = float(own["bendingDamping"]) / flexural, float(own["axialDamping"]) / axial
+    damping_s = damping[0] if math.isclose(*damping, rel_tol=1e-12) else math.nan
+    return elastic.Beam(name, nodes, length, density, flexural, axial, damping_s)
 
 
 def node_masses(made: PlaneSystem) -> dict[str, float]:
@@ -221,10 +212,8 @@ def rounding_n(scene: Scene, state: State) -> float:
     """Return the rounding of the axial force of a beam [N]: its strain is a difference of positions
     over the length of an element. 0 without beams."""
     reach = max([scene.longest_m, *(math.hypot(*place) for place in state.position.values())])
-    return max(
-        (ROUNDING * beam.axial_n * reach / beam.element_m for beam in scene.beams.values()),
-        default=0.0,
-    )
+    pulls = [ROUNDING * one.axial_n * reach / one.element_m for one in scene.beams.values()]
+    return max(pulls, default=0.0)
 
 
 def inertia_rounding_n(scene: Scene, state: State) -> float:
@@ -240,11 +229,8 @@ def inertia_rounding_n(scene: Scene, state: State) -> float:
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     """Build the system of ``scene`` at ``state``, without a drive.
 
-    Raises
-    ------
-    EngineError
-        A link without mass that has to move freely (a ``prescribed`` crank need not have any), or
-        a massless block that no body carries.
+    Raises EngineError for a link without mass that has to move freely (a ``prescribed`` crank need
+    not have any), and for a massless block that no body carries.
     """
     container = exu.SystemContainer()
     system = container.AddSystem()
@@ -256,29 +242,25 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     nodes = {node for beam in scene.beams.values() for node in beam.nodes}
     for name, (mass, inertia, place, rates) in rows.body_rows(scene, state).items():
         if name in nodes:
-            add_node(made, name, where[name], state)
+            add_node(made, name, where[name])
             continue
         if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
             refuse_massless("exudyn", name, mass, inertia, turns=name not in held)
-        made.node[name] = system.AddNode(
-            items.NodeRigidBody2D(referenceCoordinates=place, initialVelocities=rates)
-        )
-        made.body[name] = system.AddObject(
-            items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=made.node[name])
-        )
-        made.weigh(name, made.body[name])
+        node = made.add("NodeRigidBody2D", referenceCoordinates=place, initialVelocities=rates)
+        body = made.add("ObjectRigidBody2D", mass=mass, inertia=inertia, nodeNumber=node)
+        made.node[name], made.body[name] = node, body
+        made.weigh(name, body)
     for beam in scene.beams.values():
         add_elements(made, beam)
     for hinge, *anchors in rows.pin_rows(made):
         ends = list(map(made.marker, (hinge.first, hinge.other), anchors))
-        made.hinge[hinge] = system.AddObject(items.ObjectJointRevolute2D(markerNumbers=ends))
+        made.hinge[hinge] = made.add("ObjectJointRevolute2D", markerNumbers=ends)
     for name, (rider, tip, guide, through, axis, normal, keeps) in rows.line_rows(made).items():
-        made.prismatic[name] = system.AddObject(
-            items.ObjectJointPrismatic2D(
-                markerNumbers=[made.marker(rider, tip), made.marker(guide, through)],
-                axisMarker0=axis,
-                normalMarker1=normal,
-                constrainRotation=keeps,
-            )
+        made.prismatic[name] = made.add(
+            "ObjectJointPrismatic2D",
+            markerNumbers=[made.marker(rider, tip), made.marker(guide, through)],
+            axisMarker0=axis,
+            normalMarker1=normal,
+            constrainRotation=keeps,
         )
     return made
