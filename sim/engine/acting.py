@@ -37,7 +37,7 @@ from models.scene.joints import (
 from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
-from sim.engine.ties import spring_ends
+from sim.engine.ties import Hinge, spring_ends
 
 Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""
@@ -66,6 +66,17 @@ class PlacedBodies:
     def from_centre(self, body: str, place: Point) -> Point:
         """Return a place in the frame of a link in the coordinates of its body in the engine."""
         return less(place, self.centre[body])
+
+    def hinge_ends(self, hinge: Hinge) -> tuple[End, End]:
+        """Return the two bodies of a hinge, with its place on each."""
+        first, other = hinge.first, hinge.other
+        return (first, self.anchor(first, hinge.point)), (other, self.anchor(other, hinge.point))
+
+    def line_ends(self, slide: Prism | Slot) -> tuple[End, End]:
+        """Return a sliding body with its point, and its guide with a place on the line."""
+        slider, rider = slide.slider, riding_body(slide)
+        start = self.from_centre(slider.on, slider.through_m)
+        return (rider, self.anchor(rider, slider.point)), (slider.on, start)
 
 
 def centres(scene: Scene) -> dict[str, Point]:
@@ -154,11 +165,8 @@ class SliderCourse:
     def __init__(
         self, placed: PlacedBodies, slide: Prism | Slot, dt_s: float, *, rates: bool = False
     ) -> None:
-        self._rates = rates
-        self._slide, slider, self._rider = slide, slide.slider, riding_body(slide)
-        self._guide = slider.on
-        self._anchor = placed.anchor(self._rider, slider.point)
-        self._start = less(slider.through_m, placed.centre[slider.on])
+        self._rates, self._slide, slider = rates, slide, slide.slider
+        (self._rider, self._anchor), (self._guide, self._start) = placed.line_ends(slide)
         self._along = turned((1.0, 0.0), slider.direction_rad)
         self.course = Course(placed.state.displacement[slider.name], dt_s)
 

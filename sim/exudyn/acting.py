@@ -21,27 +21,26 @@ from sim.exudyn.system import ANGLE, Index, PlaneSystem, exu
 KIND = exu.OutputVariableType
 Size = Callable[[Any, float], float] | float
 """A size [N or N m], or one by the system and the time on exudyn's clock."""
-Axis = tuple[float, float, float]
+Vector = tuple[float, float, float]
+Axis = Vector | Callable[[Any], Vector]
+"""A direction, or one by the system."""
 
 
 class Applied:
     """Adds forces and torques to the system ``made``: numbers, or callbacks of exudyn. ``fault`` is
     the reason why one of them has lost its size.
 
-    exudyn calls with the time and in the present state of its Newton's method, so that a load
-    belongs to the end of the step, as all forces of an implicit step. A block without mass is no
-    body here: a force on it acts on the body whose point rides on the line, a torque on the guide,
-    with which it turns.
+    exudyn calls in the present state of its Newton's method, so that a load belongs to the end of
+    the step. A block without mass is no body here: a force on it acts on the body whose point rides
+    on the line, a torque on the guide, with which it turns.
     """
 
     def __init__(self, made: PlaneSystem) -> None:
         self.scene, self.made = made.scene, made
         self.massless = {pairs.block_name(s.slider): s for s in pairs.joints(made.scene).slots}
         """Sliders whose block is no body in exudyn, by the name of the block."""
-        self.ends: dict[str, list[Index]] = {
-            name: made.system.GetObject(joint)["markerNumbers"]
-            for name, joint in made.prismatic.items()
-        }
+        get = made.system.GetObject
+        self.ends = {name: get(own)["markerNumbers"] for name, own in made.prismatic.items()}
         """Markers of each sliding point, and of the point that its line passes through."""
         self.fault = ""
 
@@ -54,7 +53,7 @@ class Applied:
         rate = float(system.GetNodeOutput(node, KIND.Coordinates_t)[ANGLE])
         return self.made.start_rad[body] + turned, rate
 
-    def line(self, system: Any, name: str, turned_rad: float = 0.0) -> Axis:
+    def line(self, system: Any, name: str, turned_rad: float = 0.0) -> Vector:
         """Return the present direction of the line of a slider, or one turned against it."""
         slider = self.scene.sliders[name]
         angle = self.angle(system, slider.on)[0] + slider.direction_rad + turned_rad
@@ -83,15 +82,8 @@ class Applied:
             marker = self.made.marker_at(turning, (0.0, 0.0))
             self.push("LoadTorqueVector", marker, size, (0.0, 0.0, 1.0))
 
-    def push(
-        self,
-        kind: str,
-        marker: Index,
-        size: Size,
-        axis: Callable[[Any], Axis] | Axis,
-        **more: object,
-    ) -> None:
-        """Add a load of a size along an axis; either may be a function of the present state."""
+    def push(self, kind: str, marker: Index, size: Size, axis: Axis, **more: object) -> None:
+        """Add a load of a size along an axis."""
 
         def vector(system: Any, time_s: float, _: object) -> list[float]:
             try:
@@ -113,9 +105,8 @@ def step_mean(stairs: Staircase, start_s: float, dt_s: float, time_s: float) -> 
     to 0 at a step's distance [N or N m].
 
     A step weighs its two ends alike, so that a jump that only one of them feels acts half a step
-    too early or too late, at any place in the step; with these means the impulse over both steps is
-    right, and belongs to the right instant. There is no step before ``start_s``: a jump up to then
-    counts from there.
+    too early or too late; with these means the impulse over both steps is right, at the right
+    instant. There is no step before ``start_s``: a jump up to then counts from there.
     """
 
     def share(place: float) -> float:
@@ -143,7 +134,7 @@ def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> 
             applied.torque(load.body, size)
             continue
         in_body, slot = load.frame == "body", applied.massless.get(load.body)
-        axis: Any = math.cos(load.direction_rad), math.sin(load.direction_rad), 0.0
+        axis: Axis = math.cos(load.direction_rad), math.sin(load.direction_rad), 0.0
         if slot is None:
             marker = made.marker(load.body, made.anchor(load.body, load.point))
         else:
@@ -153,12 +144,6 @@ def apply_loads(applied: Applied, start_s: float, drive: Drive, dt_s: float) -> 
             turned = load.direction_rad + pairs.sliding_angle(slider) - slider.direction_rad
             axis = partial(applied.line, name=slider.name, turned_rad=turned)
         applied.push("LoadForceVector", marker, size, axis, bodyFixed=in_body)
-
-
-def follows_rates(scene: Scene, drive: Drive) -> bool:
-    """True if a load depends on a speed that is not known before the step."""
-    follows = any(load.over in ("omega", "speed") for load in scene.loads.values())
-    return drive != "prescribed" and follows
 
 
 def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: float) -> Size:
@@ -187,21 +172,16 @@ def _size(applied: Applied, load: Load, start_s: float, drive: Drive, dt_s: floa
 
 
 class Springs:
-    """Adds the springs of a scene to a system, as exudyn's own spring-dampers, whose derivatives it
-    knows.
-
-    Between points along their line; in a pin between the angles of two nodes, which count turns;
-    along the line of a slider between the guide, whose axis turns with it, and the riding body.
-    """
+    """Adds the springs of a scene to a system, as exudyn's own spring-dampers: between points along
+    their line; in a pin between the angles of two nodes, which count turns; along the line of a
+    slider between the guide, whose axis turns with it, and the riding body."""
 
     def __init__(self, applied: Applied) -> None:
         self._applied, self._made = applied, applied.made
         self._ahead: dict[str, float] = {}
-        self._index: dict[str, Index] = {
-            name: self._added(spring) for name, spring in applied.scene.springs.items()
-        }
+        self._index = {name: self._add(own) for name, own in applied.scene.springs.items()}
 
-    def _added(self, spring: Spring) -> Index:
+    def _add(self, spring: Spring) -> Index:
         """Add a spring; angles of nodes count from the start."""
         made = self._made
         own: dict[str, Any] = {"stiffness": spring.rate, "damping": spring.damping}
@@ -210,9 +190,8 @@ class Springs:
             opened = made.start_rad[second] - made.start_rad[first]
             ahead = self._ahead[spring.name] = opened + pairs.whole_turns(spring, opened)
             own["markerNumbers"] = [made.coordinate_marker(body) for body in (first, second)]
-            return made.add(
-                "ObjectConnectorCoordinateSpringDamper", offset=spring.free - ahead, **own
-            )
+            kind, own["offset"] = "ObjectConnectorCoordinateSpringDamper", spring.free - ahead
+            return made.add(kind, **own)
         own["markerNumbers"] = [made.marker_at(*e) for e in spring_ends(made.scene, spring)]
         if isinstance(spring, LineSpring):
             return made.add("ObjectConnectorSpringDamper", referenceLength=spring.free, **own)
@@ -229,10 +208,6 @@ class Springs:
             free += self._ahead.get(name, 0.0)
             told[name] = (float(own["stiffness"]), float(own["damping"]), free)
         return told
-
-
-STILL = 1e-9
-"""Least speed with friction, over the largest speed of the driver."""
 
 
 def apply_friction(applied: Applied, drive: Drive) -> None:
@@ -277,7 +252,7 @@ def _rub_line(applied: Applied, friction: ConstantFriction, still: float) -> Non
 
 def still_rad_s(scene: Scene) -> float:
     """Return the least speed with friction; the direction of a lower one is rounding [rad/s]."""
-    return STILL * scene.pace_rad_s
+    return 1e-9 * scene.pace_rad_s
 
 
 def against(size: float, speed: Array | float, still: float) -> Array:

@@ -1,7 +1,7 @@
 """Drive of the crank in exudyn: a constraint of its angle, or a motor; and reactions of all joints.
 
 exudyn solves M q'' + C' lambda = Q at the end of each step, C' the transposed derivatives of the
-constraints: for a hinge the place of its second marker less the place of its first, in the ground's
+constraints: for a hinge the place of its second marker less that of its first, in the ground's
 frame; for a prismatic joint the guide's distance from the sliding point, and the angle of the
 sliding body; for the drive the angle of the crank.
 """
@@ -24,18 +24,19 @@ from sim.engine.ties import Hinge, block_guides, refuse_driver_angle
 from sim.exudyn import acting, solver
 from sim.exudyn.system import ANGLE, Index, PlaneSystem
 
+NEAR = 1e-6
+"""Distance from a step, over its length, within which a time counts as that step."""
+STRAIGHT = 1e-12
+"""Largest part of a unit vector across an axis that counts as along it."""
+
 
 class CrankCourse:
     """Angles and speeds of a law at the steps of a run, as functions that exudyn calls.
 
-    Joints closed in their positions take the angle. Joints closed in their rates take the speed
-    that gives it by the trapezoidal rule, ``theta' = theta + (v + v') dt / 2``. Between the steps,
-    where a failed step was cut, both are the law's own. Times count from the start of the run,
-    angles from the angle there.
+    Joints closed in their positions take the angle; those closed in their rates the speed that
+    gives it by the trapezoidal rule, ``theta' = theta + (v + v') dt / 2``. Between the steps, where
+    a failed step was cut, both are the law's own. Times and angles count from those of the start.
     """
-
-    NEAR = 1e-6
-    """Distance from a step, over its length, within which a time counts as that step."""
 
     def __init__(self, law: Law, start_s: float, dt_s: float) -> None:
         self._law, self._start_s, self._dt = law, start_s, dt_s
@@ -63,29 +64,24 @@ class CrankCourse:
     def _at(self, time_s: float, of_steps: list[float], level: int) -> float:
         exact = time_s / self._dt
         near = round(exact)
-        if abs(exact - near) < self.NEAR and near < len(of_steps):
+        if abs(exact - near) < NEAR and near < len(of_steps):
             return of_steps[near]
         return float(self._law.at(np.array(self._start_s + time_s))[level])
 
 
-STRAIGHT = 1e-12
-"""Largest part of a unit vector across an axis that counts as along it."""
-
-
 def driven_coordinate(scene: Scene, drive: Drive) -> tuple[int, float]:
-    """Return the coordinate of the driver's node that is driven, and its sense.
-
-    Raises EngineError for a joint that this adapter cannot drive in exudyn.
-    """
+    """Return the coordinate of the driver's node that is driven, and its sense. Raises EngineError
+    for a joint that this adapter cannot drive in exudyn."""
     driver = scene.driver
-    if not driver.is_crank and drive != "free":
-        refuse_driver_angle(scene, "exudyn")
-        if drive == "servo":
-            raise EngineError(
-                f"{scene.name}: exudyn is given a servo for a crank alone, and this driver is "
-                f"{driver.joint}; use --drive prescribed"
-            )
-    if driver.slider is None or drive == "free":
+    if driver.is_crank or drive == "free":
+        return ANGLE, 1.0
+    refuse_driver_angle(scene, "exudyn")
+    if drive == "servo":
+        raise EngineError(
+            f"{scene.name}: exudyn is given a servo for a crank alone, and this driver is "
+            f"{driver.joint}; use --drive prescribed"
+        )
+    if driver.slider is None:
         return ANGLE, 1.0
     slider = scene.sliders[driver.slider]
     u = pairs.turned((1.0, 0.0), slider.direction_rad)
@@ -123,8 +119,8 @@ class CrankDrive:
         nodes = (driver.base, ANGLE), (driver.link, coordinate)
         ends = [made.coordinate_marker(*node) for node in nodes]
         if drive == "servo":
-            gain = float(settings["servo_gain"]) * pairs.inertia_scale(made.scene)
-            self._gain = gain * self._law.peak_speed_rad_s
+            scale = float(settings["servo_gain"]) * pairs.inertia_scale(made.scene)
+            self._gain = scale * self._law.peak_speed_rad_s
             self._add_motor(made, ends)
             return
         told: dict[str, object] = {"factor1": sense} if sense < 0.0 else {}
@@ -157,8 +153,7 @@ class CrankDrive:
 
 
 class BlockLoads:
-    """Actions on blocks without mass, without their guides': read off the motion, as exudyn has no
-    body for them."""
+    """Actions on blocks without mass but for their guides', from the motion: exudyn has no body."""
 
     def __init__(self, scene: Scene, poses: Poses) -> None:
         self._scene, self._time_s = scene, poses.time_s
@@ -172,12 +167,8 @@ class BlockLoads:
     def on(self, slider: Slider) -> Array:
         """Return force [N] and torque [N m] on the block of a slider, (T, 3), with friction, and
         springs along the line."""
-        block, scene, slid = (
-            pairs.block_name(slider),
-            self._scene,
-            self._motion.sliders[slider.name],
-        )
-        line, still = self.line_rad(slider), acting.still_rad_s(scene)
+        scene, block, line = self._scene, pairs.block_name(slider), self.line_rad(slider)
+        slid, still = self._motion.sliders[slider.name], acting.still_rad_s(scene)
         force, torque, along = np.zeros((len(line), 2)), np.zeros(len(line)), directions(line)
         for load in (one for one in scene.loads.values() if one.body == block):
             if load.point is None:
@@ -193,17 +184,14 @@ class BlockLoads:
                 force += acting.against(one.size, slid.speed, least)[:, None] * along
             elif one.joint == slider.point and one.joint not in scene.sliders:
                 (other,) = (b for b in pairs.joined_at(scene)[slider.point] if b != block)
-                rate = self._omega(slider.on) - self._omega(other)
-                torque += acting.against(one.size, rate, still)
+                turning = slider.on, self._guides.get(other, other)
+                own, against = (self._paths[body].pose.omega for body in turning)
+                torque += acting.against(one.size, own - against, still)
         for spring in scene.springs.values():
             if isinstance(spring, SlideSpring) and spring.slider == slider.name:
                 pull = spring.rate * (slid.displacement - spring.free)
                 force -= (pull + spring.damping * slid.speed)[:, None] * along
         return np.column_stack([force, torque])
-
-    def _omega(self, body: str) -> Array:
-        """Return the rate of a body, or of the guide of a block without mass."""
-        return self._paths[self._guides.get(body, body)].pose.omega
 
     def _magnitude(self, load: Load) -> Array:
         x = {"time": self._time_s, "angle": self._paths[self._scene.driver.link].pose.theta}
@@ -219,16 +207,14 @@ def reactions(
 ) -> Forces:
     """Return the forces at the states of ``poses``, from the multipliers there, a row each."""
     blocks, ties = BlockLoads(made.scene, poses), pairs.joints(made.scene)
-    rows = {n: lambdas[:, multipliers.rows(joint)] for n, joint in made.prismatic.items()}
-    slides = made.scene.sliders
+    rows = {key: lambdas[:, multipliers.rows(made.hinge[key])] for key in made.hinge}
+    lines = {key: lambdas[:, multipliers.rows(made.prismatic[key])] for key in made.scene.sliders}
+    sliders = made.scene.sliders.items()
     pushes = momentum_balance.JointPushes(
-        hinges={
-            Hinge(hinge.point, hinge.other, hinge.first): lambdas[:, multipliers.rows(joint)]
-            for hinge, joint in made.hinge.items()
-        },
-        across={n: directions(blocks.line_rad(s) + 0.5 * math.pi) for n, s in slides.items()},
-        normals={name: rows[name][:, 0] for name in slides},
-        moments={prism.slider.name: -rows[prism.slider.name][:, 1] for prism in ties.prisms},
+        hinges={Hinge(h.point, h.other, h.first): force for h, force in rows.items()},
+        across={name: directions(blocks.line_rad(s) + 0.5 * math.pi) for name, s in sliders},
+        normals={name: push[:, 0] for name, push in lines.items()},
+        moments={prism.slider.name: -lines[prism.slider.name][:, 1] for prism in ties.prisms},
         torque=torque,
         spare=0,
     )

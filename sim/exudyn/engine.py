@@ -59,14 +59,8 @@ def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyP
     (x, y), (u, v), (a, b) = (each[:, 2:].T for each in (place, rate, push))
     far = x**2 + y**2
     omega = (x * v - y * u) / far
-    return BodyPose(
-        origin=place[:, :2],
-        theta=theta,
-        velocity=rate[:, :2],
-        omega=omega,
-        origin_acceleration=push[:, :2],
-        alpha=(x * b - y * a) / far - 2.0 * omega * (x * u + y * v) / far,
-    )
+    alpha = (x * b - y * a) / far - 2.0 * omega * (x * u + y * v) / far
+    return BodyPose(place[:, :2], theta, rate[:, :2], omega, push[:, :2], alpha)
 
 
 LEAST_DT_S = 1e-9
@@ -74,9 +68,8 @@ LEAST_DT_S = 1e-9
 
 
 class ExudynSession:
-    """A system with its solver. exudyn's clock begins at 0, at any time of the law. Turns of the
-    nodes of beams are counted from step to step in recording; over unrecorded steps, up to half a
-    turn."""
+    """A system with its solver. exudyn's clock begins at 0, at any time of the law. Turns of beams'
+    nodes are counted from step to step in recording; over unrecorded steps, up to half a turn."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
@@ -89,7 +82,7 @@ class ExudynSession:
             )
         crank_drive.driven_coordinate(scene, drive)  # refuses
         settings = of_drive(settings, drive)
-        self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
+        self._scene, self._settings, self._dt = scene, settings, dt_s
         self._start_s, self._done = state.time_s, 0
         self._heard: list[str] = []
         with system.quiet(self._heard):
@@ -101,25 +94,18 @@ class ExudynSession:
             acting.apply_friction(self._applied, drive)
             self._springs = acting.Springs(self._applied)
             self._crank = crank_drive.CrankDrive(self._model, settings, drive, state.time_s, dt_s)
+            kept = {"storeInternal": True, "writeToFile": False}
+            kinds = [getattr(system.exu.OutputVariableType, level) for level in LEVELS]
             self._sensors = [
-                self._model.add(
-                    "SensorNode",
-                    nodeNumber=node,
-                    storeInternal=True,
-                    writeToFile=False,
-                    outputVariableType=getattr(system.exu.OutputVariableType, level),
-                )
+                self._model.add("SensorNode", nodeNumber=node, outputVariableType=kind, **kept)
                 for node in self._model.node.values()
-                for level in LEVELS
+                for kind in kinds
             ]
             self._system.Assemble()
-            self._asked = simulation(
-                settings,
-                dt_s,
-                of_rates=acting.follows_rates(scene, drive),
-                rounding_n=system.rounding_n(scene, state),
-            )
-            inertia_n = system.inertia_rounding_n(scene, state)
+            beam_n, inertia_n = system.roundings_n(scene, state)
+            follow = any(load.over in ("omega", "speed") for load in scene.loads.values())
+            rates = follow and drive != "prescribed"  # which are not known before a step
+            self._asked = simulation(settings, dt_s, of_rates=rates, rounding_n=beam_n)
             try:
                 self._solver = initialized(self._system, self._asked, settings, inertia_n)
             except ValueError as error:  # as exudyn has it: a load has no size at the start
@@ -130,11 +116,8 @@ class ExudynSession:
 
     def _set_off(self, course: crank_drive.CrankCourse) -> Array:
         """Set rates that fit the crank's, and accelerations that fit its own; return their
-        multipliers, which exudyn does not compute then.
-
-        exudyn leaves the part of a driver's acceleration out of its initial ones, and the
-        trapezoidal rule would alternate about the true ones ever after.
-        """
+        multipliers. exudyn leaves the part of a driver's acceleration out of its initial ones, and
+        the trapezoidal rule would alternate about the true ones ever after."""
         own, rates = system.exu.ConfigurationType.Initial, self._system.systemData
         alphas = self._asked.timeIntegration.generalizedAlpha
         _, omega, alpha = (float(x) for x in self._scene.driver.law.at(np.array(self._start_s)))
@@ -151,23 +134,25 @@ class ExudynSession:
 
     def facts(self) -> Facts:
         """Read the system as exudyn holds it now; its bodies have their centres at their nodes."""
-        bodies = {n: self._system.GetObject(body) for n, body in self._model.body.items()}
+        model, get = self._model, self._system.GetObject
+        bodies = {name: get(model.body[name]) for name in model.node if name in model.body}
         masses = {name: float(own["mass"]) for name, own in bodies.items()}
-        loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
-        gravity = loads[0] if loads else (0.0, 0.0)
-        settings = self._settings if self._scene.beams else of_rigid(self._settings)
+        loads = [self._system.GetLoad(load)["loadVector"] for load in model.weights]
+        x, y, _ = loads[0] if loads else (0.0, 0.0, 0.0)
+        beams = system.held_beams(model)
+        settings = self._settings if beams else of_rigid(self._settings)
         return Facts(
             version=system.VERSION,
-            mass_kg=masses | system.node_masses(self._model),
+            mass_kg=masses | system.node_masses(beams),
             inertia_kg_m2={name: float(own["inertia"]) for name, own in bodies.items()},
-            centre_m={name: self._model.centre[name] for name in self._model.node},
-            gravity_m_s2=(float(gravity[0]), float(gravity[1])),
+            centre_m={name: model.centre[name] for name in model.node},
+            gravity_m_s2=(float(x), float(y)),
             start=self.read(),
             settings=dict(settings) | held(self._asked, self._solver, self._settings),
             velocity_shift=0.0,
             acceleration_shift=0.0,
             springs=self._springs.held(),
-            beams=system.held_beams(self._model),
+            beams=beams,
         )
 
     def step(self, steps: int) -> None:
@@ -197,9 +182,8 @@ class ExudynSession:
         self._looked |= {name: float(own[-1]) for name, own in angles.items() if count}
         shown = body_poses(self._model, [own[:count] for own in levels], angles)
         poses = Poses(self._start_s + self._dt * at[:count], shown)
-        diverged = bool(stopped) or count < len(at)
-        warnings = tuple(dict.fromkeys(self._heard))
-        return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
+        lost, warnings = bool(stopped) or count < len(at), tuple(dict.fromkeys(self._heard))
+        return Log(poses, (count - 1) * every, lost, warnings, wall, stopped)
 
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log, as `record`, with the multipliers of each state as forces."""
@@ -215,8 +199,7 @@ class ExudynSession:
     def read(self) -> Poses:
         """Read the current state."""
         state = self._system.systemData
-        widths = [4 if name in self._looked else 3 for name in self._model.node]
-        ends = np.cumsum(widths)[:-1]
+        ends = np.cumsum([4 if name in self._looked else 3 for name in self._model.node])[:-1]
         levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
         of_nodes = [own[None] for node in zip(*levels, strict=True) for own in node]
         angles = beam_angles(self._model, self._looked, of_nodes)

@@ -5,6 +5,7 @@ from models.motion import State
 from models.scene import GROUND, Scene, laws
 from sim.engine import Settings
 from sim.engine.acting import PlacedBodies, centres
+from sim.engine.ties import hinges
 from sim.exudyn import rows
 from sim.exudyn.settings import BY_NEED, assignments
 from sim.registry.offers import ForceRecipe, written
@@ -132,10 +133,7 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
             "out, or use another scene"
         )
     placed = PlacedBodies(scene, state, centre=centres(scene))
-    pins = [
-        (hinge.point, hinge.first, start, hinge.other, end)
-        for hinge, start, end in rows.pin_rows(placed)
-    ]
+    pins = ((h.point, *a, *b) for h in hinges(scene, GROUND) for a, b in [placed.hinge_ends(h)])
     return PROGRAM.format(
         title=f"Reactions in the pins, and driving torque, of {scene.name} in exudyn.",
         speed=law.speed_rad_s,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
-from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, NEWTON, TOLERANCES, of_drive
+from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, assignments, of_drive
 from sim.registry.offers import SnippetWriter, Stepping, alone, comment
 
 DRIVES: Mapping[Drive, str] = {
@@ -16,6 +16,10 @@ DRIVES: Mapping[Drive, str] = {
     "free": "Drive: none. All start with the places, velocities and accelerations of the start.",
 }
 """Drive of the crank in the measured runs."""
+RADIUS = "generalizedAlpha.spectralRadius"
+TOLERANCES = ("newton.relativeTolerance", "newton.absoluteTolerance")
+REST = (*TOLERANCES, "newton.maxIterations", "adaptiveStep", "newton.residualMode")
+"""Settings of time integration that are written for a system of the mechanism alone."""
 
 
 def exudyn_snippet(
@@ -44,41 +48,24 @@ def exudyn_snippet(
         "stepping.numberOfSteps = round((stepping.endTime - stepping.startTime) / dt)",
         f"stepping.solverType = exu.DynamicSolverType.{complete['integrator']}",
     ]
-    damped = complete["integrator"] == "GeneralizedAlpha"
-    if damped and complete["spectral_radius"] != defaults["spectral_radius"]:
-        radius = float(complete["spectral_radius"])
-        lines.append(f"stepping.generalizedAlpha.spectralRadius = {radius!r}")
-    driven = DRIVES[drive].format(gain=float(complete["servo_gain"]))
-    return [*lines, *_newton(complete, defaults), *comment(*_alone(complete, defaults), driven)]
-
-
-def _newton(complete: Settings, defaults: Settings) -> list[str]:
-    """Write the tolerances of Newton's method, if lower than by default, and its matrix."""
-    lines = []
-    for name in TOLERANCES:
-        if float(complete[name]) < float(defaults[name]):
-            own = f"stepping.newton.{NEWTON[name]}"
-            lines.append(f"{own} = min({own}, {float(complete[name])!r})")
+    own, usual = assignments(complete), assignments(defaults)
+    other = {path: value for path, value in own.items() if value != usual[path]}
+    lower = [path for path in TOLERANCES if own[path] < usual[path]]
+    if complete["integrator"] == "GeneralizedAlpha" and RADIUS in other:
+        lines.append(f"stepping.{RADIUS} = {own[RADIUS]!r}")
+    lines += [f"stepping.{path} = min(stepping.{path}, {own[path]!r})" for path in lower]
     if complete["jacobian"] == "each-step":
         lines.append("stepping.newton.modifiedNewtonJacUpdatePerStep = True  # faster here")
     if complete["jacobian"] == "each-iteration":
         lines.append("stepping.newton.useModifiedNewton = False")
-    return lines
+    rest = [f"stepping.{path} = {own[path]!r}" for path in REST if path in {*other} - {*lower}]
+    driven = DRIVES[drive].format(gain=float(complete["servo_gain"]))
+    return [*lines, *comment(*_alone(rest, complete, defaults), driven)]
 
 
-def _alone(complete: Settings, defaults: Settings) -> list[str]:
-    """Write the settings of the measured runs for a system of the mechanism alone."""
-    lines = [
-        f"stepping.newton.{NEWTON[name]} = {float(complete[name])!r}"
-        for name in TOLERANCES
-        if float(complete[name]) > float(defaults[name])
-    ]
-    if complete["iterations"] != defaults["iterations"]:
-        lines.append(f"stepping.newton.maxIterations = {int(complete['iterations'])}")
-    if complete["adaptive_step"] == "disable":
-        lines.append("stepping.adaptiveStep = False")
-    if complete["residual"] == "increments":
-        lines.append("stepping.newton.residualMode = 1")
+def _alone(lines: list[str], complete: Settings, defaults: Settings) -> list[str]:
+    """Write the settings of the measured runs for a system of the mechanism alone, after ``lines``
+    on its time integration."""
     linear, solver = "simulationSettings.linearSolver", complete["linear_solver"]
     by_need = solver == BY_NEED
     if solver != defaults["linear_solver"] and not by_need:

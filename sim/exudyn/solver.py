@@ -40,8 +40,7 @@ def simulation(
         setattr(reduce(getattr, folders, stepping), name, value)
     least = float(settings["beam_rounding"]) * rounding_n
     stepping.newton.absoluteTolerance = max(float(settings["absolute_tolerance"]), least)
-    linear = str(settings["linear_solver"])
-    if linear != BY_NEED:
+    if (linear := str(settings["linear_solver"])) != BY_NEED:
         asked.linearSolver.solverType = getattr(exu.LinearSolverType, linear)
     asked.linearSolver.ignoreSingularJacobian = settings["ignore_singular"] == "enable"
     return asked
@@ -74,8 +73,7 @@ def initialized(system: Any, asked: Any, settings: Settings, inertia_n: float = 
             if enough and _rank(constraints(solver, system, of_rates=1.0)) == size:
                 newton.residualMode = 1
             else:
-                least = ROUNDINGS * inertia_n
-                newton.absoluteTolerance = max(newton.absoluteTolerance, least)
+                newton.absoluteTolerance = max(newton.absoluteTolerance, ROUNDINGS * inertia_n)
     solver.InitializeSolver(system, asked)
     return solver
 
@@ -126,9 +124,8 @@ def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
 def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]:
     """Return the settings by crankcheck's names, as the solver and its input hold them.
 
-    The chosen ``residual`` is ``residual_used``, and so for ``linear_solver``;
-    ``loads_jacobian_used`` is there where loads depend on speeds, ``absolute_tolerance_used`` where
-    rounding sets it.
+    Choices by need are ``residual_used`` and ``linear_solver_used``; ``loads_jacobian_used`` is
+    there where loads depend on speeds, ``absolute_tolerance_used`` where rounding sets it.
     """
     newton, linear = solver.newton, asked.linearSolver
     trapezoidal = asked.timeIntegration.generalizedAlpha.useIndex2Constraints
@@ -153,10 +150,8 @@ def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]
 
 
 class Multipliers:
-    """Multipliers at the end of each of exudyn's steps.
-
-    ``first`` are the multipliers of the start, where the system does not hold them itself.
-    """
+    """Multipliers at the end of each of exudyn's steps; ``first`` are those of the start, where the
+    system does not hold them itself."""
 
     def __init__(self, system: Any, first: Array | None) -> None:
         self._system, self._first = system, first

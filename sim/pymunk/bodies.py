@@ -6,9 +6,6 @@ this is the leapfrog, of second order with the forces at the end of the step::
 
     x(t + dt) = x(t) + dt v(t + dt/2)
     v(t + 3/2 dt) = v(t + dt/2) + dt a(x, v, t + dt)
-
-The velocity at that instant itself, for dampers and motors, would be half by the step to come. It
-is taken from the last three positions, to the second order.
 """
 
 from collections.abc import Sequence
@@ -32,12 +29,6 @@ FIELDS = (
 )
 WIDTH = 6
 """Numbers per body: x, y, angle, vx, vy, omega."""
-
-
-def finite(rows: Array) -> int:
-    """Return the number of finite samples (T, bodies, numbers) before the first other one."""
-    good = np.isfinite(rows).all(axis=(1, 2))
-    return len(rows) if good.all() else int(np.argmin(good))
 
 
 def rows_of(model: SpaceModel) -> dict[str, int]:

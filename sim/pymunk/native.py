@@ -11,7 +11,7 @@ from models.array import Array
 from models.errors import EngineError
 from models.scene import GROUND
 from models.scene import joints as pairs
-from models.scene.joints import End, Frame, less
+from models.scene.joints import End, Frame
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 from sim.engine.acting import PlacedBodies, Pushes
 from sim.engine.ties import block_guides, slide_of, spring_ends
@@ -175,8 +175,8 @@ def _between(
     own = pymunk.DampedSpring(
         placed.body(first),
         placed.body(second),
-        less(here, placed.centre[first]),
-        less(there, placed.centre[second]),
+        placed.from_centre(first, here),
+        placed.from_centre(second, there),
         spring.free - q_at_zero,
         spring.rate,
         spring.damping,
