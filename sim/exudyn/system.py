@@ -59,6 +59,7 @@ ANGLE = 2
 """Coordinate of a node that is its angle."""
 Index = Any
 """exudyn's own numbers of nodes, objects, markers and loads."""
+ADDERS = {kind[0]: f"Add{kind}" for kind in ("Node", "Object", "Marker", "Load", "Sensor")}
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,7 @@ class PlaneSystem(PlacedBodies):
 
     def add(self, kind: str, **numbers: object) -> Index:
         """Add an item of exudyn by its class name, such as ``NodePointGround``."""
-        group = re.findall("[A-Z][a-z]+", kind)[0]
-        return getattr(self.system, f"Add{group}")(getattr(items, kind)(**numbers))
+        return getattr(self.system, ADDERS[kind[0]])(getattr(items, kind)(**numbers))
 
     def marker(self, name: str, anchor: Point) -> Index:
         """Add a marker at a place of a body or of the ground, from its node [m]."""
