@@ -315,10 +315,10 @@ def test_engines_and_tables_outside_their_rooms_are_seen_by_name_and_import(hous
     (house / "reports" / "page" / "a.py").write_text(
         '"""About MuJoCo."""\nif name == "mujoco":\n    from sim import pymunk\n    pymunk_work()\n'
     )
-    (house / "reports" / "requests" / "sweep.py").write_text('a = "such as mujoco"\nb = "mujoco"\n')
+    (house / "reports" / "requests" / "options.py").write_text('a = "of MuJoCo"\nb = "mujoco"\n')
     (house / "sim" / "pymunk" / "a.py").write_text('name = "pymunk"\n')
     seen = [fault.partition(" ")[0] for fault in namings(house) if " names " in fault]
-    assert seen == [*(f"reports/page/a.py:{n}" for n in (2, 3, 4)), "reports/requests/sweep.py:2"]
+    assert seen == [*(f"reports/page/a.py:{n}" for n in (2, 3, 4)), "reports/requests/options.py:2"]
     (house / "sim" / "mujoco" / "a.py").write_text("import mujoco\n")
     (house / "reports" / "page" / "a.py").write_text("import mujoco, pandas\n")
     (house / "analytic" / "dyads" / "a.py").write_text("def f():\n    import pandas\n")

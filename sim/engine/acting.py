@@ -24,6 +24,8 @@ from models.scene.joints import (
     Prism,
     Slot,
     block_name,
+    bodies,
+    centre_of,
     joints,
     less,
     local_point,
@@ -35,7 +37,7 @@ from models.scene.joints import (
 from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
-from sim.engine.ties import spring_ends
+from sim.engine.ties import Hinge, spring_ends
 
 Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""
@@ -59,7 +61,27 @@ class EngineBodies:
 
     def anchor(self, body: str, point: str) -> Point:
         """Return a named point in the coordinates of its body in the engine [m]."""
-        return less(local_point(self.scene, body, point), self.centre[body])
+        return self.from_centre(body, local_point(self.scene, body, point))
+
+    def from_centre(self, body: str, place: Point) -> Point:
+        """Return a place in the frame of a link in the coordinates of its body in the engine."""
+        return less(place, self.centre[body])
+
+    def hinge_ends(self, hinge: Hinge) -> tuple[End, End]:
+        """Return the two bodies of a hinge, with its place on each."""
+        first, other = hinge.first, hinge.other
+        return (first, self.anchor(first, hinge.point)), (other, self.anchor(other, hinge.point))
+
+    def line_ends(self, slide: Prism | Slot) -> tuple[End, End]:
+        """Return a sliding body with its point, and its guide with a place on the line."""
+        slider, rider = slide.slider, riding_body(slide)
+        start = self.from_centre(slider.on, slider.through_m)
+        return (rider, self.anchor(rider, slider.point)), (slider.on, start)
+
+
+def centres(scene: Scene) -> dict[str, Point]:
+    """Return the centre of mass of every body, and the origin of the ground, as `EngineBodies`."""
+    return {GROUND: (0.0, 0.0)} | {name: centre_of(scene, name) for name in bodies(scene)}
 
 
 class Pushes:
@@ -143,11 +165,8 @@ class SliderCourse:
     def __init__(
         self, placed: EngineBodies, slide: Prism | Slot, dt_s: float, *, rates: bool = False
     ) -> None:
-        self._rates = rates
-        self._slide, slider, self._rider = slide, slide.slider, riding_body(slide)
-        self._guide = slider.on
-        self._anchor = placed.anchor(self._rider, slider.point)
-        self._start = less(slider.through_m, placed.centre[slider.on])
+        self._rates, self._slide, slider = rates, slide, slide.slider
+        (self._rider, self._anchor), (self._guide, self._start) = placed.line_ends(slide)
         self._along = turned((1.0, 0.0), slider.direction_rad)
         self.course = Course(placed.state.displacement[slider.name], dt_s)
 
@@ -219,7 +238,7 @@ class _OnLine:
     ) -> None:
         self.spring, self._rates = spring, rates
         first, second = (
-            (body, less(place, placed.centre[body]))
+            (body, placed.from_centre(body, place))
             for body, place in spring_ends(placed.scene, spring)
         )
         self._ends = first, second

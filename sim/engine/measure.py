@@ -117,6 +117,29 @@ def arms(theta: Array, local: Point) -> Array:
     return _pairs(c * local[0] - s * local[1], s * local[0] + c * local[1])
 
 
+def centred(
+    place: Array, rate: Array, push: Array | None, centre: Point, lag_s: float = 0.0
+) -> BodyPose:
+    """Return the frame of a link whose body in an engine has its origin at ``centre`` of it.
+
+    Parameters
+    ----------
+    place, rate, push : Array
+        x, y, angle, their rates, which belong to ``lag_s`` later, and accelerations if known, (T,
+        3) each.
+    """
+    theta, omega = place[:, 2], rate[:, 2]
+    arm = arms(theta, centre)
+    turned = across(arm if lag_s == 0.0 else arms(theta + lag_s * omega, centre))
+    if push is None:
+        pulled, alpha = np.full((len(theta), 2), np.nan), np.full(len(theta), np.nan)
+    else:
+        alpha = push[:, 2]
+        pulled = push[:, :2] - alpha[:, None] * turned + omega[:, None] ** 2 * arm
+    velocity = rate[:, :2] - omega[:, None] * turned
+    return BodyPose(place[:, :2] - arm, theta, velocity, omega, pulled, alpha)
+
+
 def across(vector: Array) -> Array:
     """Return the vectors (T, 2) turned by a quarter turn, counter-clockwise."""
     return _pairs(-vector[:, 1], vector[:, 0])

@@ -33,7 +33,7 @@ from sim.engine import (
     measure,
     tree_poses,
 )
-from sim.engine.acting import Acting, EngineBodies, Pushes
+from sim.engine.acting import Acting, EngineBodies, Pushes, centres
 from sim.engine.tree_reactions import RateChange, forces_of, rubs
 
 TURN_BETWEEN = 1.0
@@ -210,7 +210,7 @@ class BodySession(SteppedSession):
         self.led = driver.link if driven_by == "prescribed" and not driver.is_inner else None
         """The body that is led along the driver's law, kinematic in most engines."""
         self.where = pairs.frames(scene, state, self.shift * dt_s)
-        centre = {GROUND: (0.0, 0.0)} | {n: pairs.centre_of(scene, n) for n in pairs.bodies(scene)}
+        centre = centres(scene)
         if self.led and driver.slider is None:
             centre[self.led] = pairs.local_point(scene, self.led, scene.driver_pivot)
         self.bodies = EngineBodies(scene, state, centre=centre)
@@ -240,28 +240,12 @@ class BodySession(SteppedSession):
     def poses(self, rows: Array, time_s: Array) -> Poses:
         lag = self.shift * self.dt
         centre = self.bodies.centre
-        found = {n: centred(rows[:, k], centre[n], lag) for k, n in enumerate(self.names)}
+        place, rate = rows[:, :, :3], rows[:, :, 3:]
+        found = {
+            name: measure.centred(place[:, k], rate[:, k], None, centre[name], lag)
+            for k, name in enumerate(self.names)
+        }
         return Poses(time_s, found, lag)
-
-
-def centred(row: Array, centre: Point, lag_s: float = 0.0) -> BodyPose:
-    """Return the frame of a link from the origin of its body in an engine, at ``centre`` of it.
-
-    Parameters
-    ----------
-    row : Array
-        x, y, angle, and their rates, which belong to ``lag_s`` later, (T, 6).
-    """
-    theta, omega = row[:, 2], row[:, 5]
-    return BodyPose(
-        origin=row[:, 0:2] - measure.arms(theta, centre),
-        theta=theta,
-        velocity=row[:, 3:5]
-        - omega[:, None] * measure.across(measure.arms(theta + lag_s * omega, centre)),
-        omega=omega,
-        origin_acceleration=np.full((len(theta), 2), np.nan),
-        alpha=np.full(len(theta), np.nan),
-    )
 
 
 def refuse_driver_between(scene: Scene, engine: str, why: str) -> None:
@@ -288,7 +272,7 @@ class TreeSession(SteppedSession):
         self.freedoms = [own for limb in self.tree.limbs for own in limb.freedoms]
         """The joint coordinates, in the order of the limbs and of each one's joints."""
         self.driven, self.sense = 0, 1.0
-        """Row of the driven coordinate, and its sense against the driver's own."""
+        """RateChange of the driven coordinate, and its sense against the driver's own."""
         if driven_by != "free":
             driven, self.sense = driven_freedom(scene, self.tree.limbs)
             self.driven = next(k for k, own in enumerate(self.freedoms) if own.name == driven)

@@ -6,7 +6,16 @@ from dataclasses import dataclass
 
 from models.errors import EngineError
 from models.scene import Scene, loads
-from models.scene.joints import End, Prism, Slot, joints, line_ends, local_point, riding_body
+from models.scene.joints import (
+    End,
+    Prism,
+    Slot,
+    block_name,
+    joints,
+    line_ends,
+    local_point,
+    riding_body,
+)
 
 
 @dataclass(frozen=True)
@@ -30,6 +39,11 @@ def hinges(scene: Scene, *firm: str) -> Iterator[Hinge]:
 def slide_of(scene: Scene, slider: str) -> Prism | Slot:
     """Return the joint of a slider."""
     return next(slide for slide in joints(scene).slides if slide.slider.name == slider)
+
+
+def block_guides(scene: Scene) -> dict[str, str]:
+    """Return the guide of each block without mass, which turns with it, by the block's name."""
+    return {block_name(slot.slider): slot.slider.on for slot in joints(scene).slots}
 
 
 def spring_ends(scene: Scene, spring: loads.Spring) -> tuple[End, End]:

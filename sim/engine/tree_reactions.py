@@ -21,7 +21,7 @@ from models.scene.loads import ConstantFriction
 from sim.engine import BodyPose, measure, tree_poses
 from sim.engine.acting import Push
 from sim.engine.momentum_balance import MomentumGain, forces_by_body, joint_pushes
-from sim.engine.ties import hinges, slide_of
+from sim.engine.ties import block_guides, hinges, slide_of
 
 STUCK = 1e-9
 """Largest rate of a joint, over the pace times the scene's length in a slider, that counts as
@@ -52,8 +52,7 @@ def rubs(scene: Scene, limbs: Sequence[Limb]) -> list[Rub]:
     (`models.mjcf.forces.planned`)."""
     found = []
     freedoms = [(limb, freedom) for limb in limbs for freedom in limb.freedoms]
-    guides = {pairs.block_name(slider): slider.on for slider in scene.sliders.values()}
-    guides |= {name: name for name in pairs.bodies(scene)}
+    guides = block_guides(scene)
     for one in scene.friction.values():
         if not isinstance(one, ConstantFriction):
             continue

@@ -1,14 +1,12 @@
-"""Drive of the crank in exudyn: a constraint of its angle, or a motor; its torque, and the
-reactions of all joints.
+"""Drive of the crank in exudyn: a constraint of its angle, or a motor; and reactions of all joints.
 
 exudyn solves M q'' + C' lambda = Q at the end of each step, C' the transposed derivatives of the
-constraints: for a hinge the place of its second marker less the place of its first, in the ground's
+constraints: for a hinge the place of its second marker less that of its first, in the ground's
 frame; for a prismatic joint the guide's distance from the sliding point, and the angle of the
 sliding body; for the drive the angle of the crank.
 """
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -22,29 +20,23 @@ from models.scene.loads import ConstantFriction, Load, SlideSpring
 from sim.engine import Drive, Poses, Settings, momentum_balance
 from sim.engine import drive as drives
 from sim.engine.measure import body_paths, directions, motion
-from sim.engine.ties import Hinge, refuse_driver_angle
-from sim.exudyn import passive, solver
-from sim.exudyn.system import ANGLE, Index, PlaneSystem, items
+from sim.engine.ties import Hinge, block_guides, refuse_driver_angle
+from sim.exudyn import acting, solver
+from sim.exudyn.system import ANGLE, Index, PlaneSystem
 
-
-def speeds(law: Law, start_s: float, dt_s: float, steps: int) -> Array:
-    """Return the angular velocity [rad/s] at the start and after each of the ``steps`` that gives
-    the angles of the law by the trapezoidal rule, ``theta' = theta + (v + v') dt / 2``: joints
-    closed in their rates take it, joints closed in their positions take the angle."""
-    first = drives.start_speed(law, start_s, dt_s, 0.0)
-    gained = np.cumsum(drives.pushes(law, start_s, dt_s, steps, 0.0))
-    return first + dt_s * np.concatenate([[0.0], gained])
+NEAR = 1e-6
+"""Distance from a step, over its length, within which a time counts as that step."""
+STRAIGHT = 1e-12
+"""Largest part of a unit vector across an axis that counts as along it."""
 
 
 class CrankCourse:
     """Angles and speeds of a law at the steps of a run, as functions that exudyn calls.
 
-    Between the steps, where a failed step was cut, they are the law's own. Times count from the
-    start of the run, angles from the angle there.
+    Joints closed in their positions take the angle; those closed in their rates the speed that
+    gives it by the trapezoidal rule, ``theta' = theta + (v + v') dt / 2``. Between the steps, where
+    a failed step was cut, both are the law's own. Times and angles count from those of the start.
     """
-
-    NEAR = 1e-6
-    """Distance from a step, over its length, within which a time counts as that step."""
 
     def __init__(self, law: Law, start_s: float, dt_s: float) -> None:
         self._law, self._start_s, self._dt = law, start_s, dt_s
@@ -56,10 +48,10 @@ class CrankCourse:
     def reach(self, steps: int) -> None:
         """Prepare so many steps from the start."""
         if len(self._angles) <= steps:
-            longer = max(steps, 2 * len(self._angles))
-            turned = drives.angles(self._law, self._start_s, self._dt, 0, longer)
-            self._angles = turned.tolist()
-            self._speeds = speeds(self._law, self._start_s, self._dt, longer).tolist()
+            given, longer = (self._law, self._start_s, self._dt), max(steps, 2 * len(self._angles))
+            self._angles = drives.angles(*given, 0, longer).tolist()
+            gained = np.concatenate([[0.0], np.cumsum(drives.pushes(*given, longer, 0.0))])
+            self._speeds = (drives.start_speed(*given, 0.0) + self._dt * gained).tolist()
 
     def angle(self, _system: object, time_s: float, _item: object, _offset: float) -> float:
         """Return the angle at a time [rad]."""
@@ -72,20 +64,17 @@ class CrankCourse:
     def _at(self, time_s: float, of_steps: list[float], level: int) -> float:
         exact = time_s / self._dt
         near = round(exact)
-        if abs(exact - near) < self.NEAR and near < len(of_steps):
+        if abs(exact - near) < NEAR and near < len(of_steps):
             return of_steps[near]
         return float(self._law.at(np.array(self._start_s + time_s))[level])
 
 
-STRAIGHT = 1e-12
-"""Largest part of a unit vector across an axis that counts as along it."""
-
-
-def refuse_undriven(scene: Scene, drive: Drive) -> None:
-    """Refuse a joint that this adapter cannot drive in exudyn. Raises EngineError."""
+def driven_coordinate(scene: Scene, drive: Drive) -> tuple[int, float]:
+    """Return the coordinate of the driver's node that is driven, and its sense. Raises EngineError
+    for a joint that this adapter cannot drive in exudyn."""
     driver = scene.driver
     if driver.is_crank or drive == "free":
-        return
+        return ANGLE, 1.0
     refuse_driver_angle(scene, "exudyn")
     if drive == "servo":
         raise EngineError(
@@ -93,29 +82,21 @@ def refuse_undriven(scene: Scene, drive: Drive) -> None:
             f"{driver.joint}; use --drive prescribed"
         )
     if driver.slider is None:
-        return
+        return ANGLE, 1.0
     slider = scene.sliders[driver.slider]
-    if driver.is_inner or (slider.link is None and slider.mass_kg == 0.0):
-        what = "lies between two moving bodies" if driver.is_inner else "has no mass_kg"
+    u = pairs.turned((1.0, 0.0), slider.direction_rad)
+    along = 0 if abs(u[0]) > abs(u[1]) else 1
+    fault = ""
+    if driver.is_inner:
+        fault = f"slider {driver.slider} lies between two moving bodies;"
+    elif slider.link is None and slider.mass_kg == 0.0:
+        fault = f"slider {driver.slider} has no mass_kg;"
+    elif abs(u[1 - along]) > STRAIGHT:
+        fault = f"the line of {driver.slider} goes along neither x nor y; turn the scene, or"
+    if fault:
         raise EngineError(
             f"{scene.name}: exudyn is given a driven slider as a coordinate of its body, and "
-            f"slider {driver.slider} {what}; take another engine"
-        )
-    slider_axis(scene)
-
-
-def slider_axis(scene: Scene) -> tuple[int, float]:
-    """Return the coordinate of the driven slider, 0 or 1, and its sense. Raises EngineError for an
-    oblique line, which no coordinate follows."""
-    driver = scene.driver
-    assert driver.slider is not None
-    u = pairs.turned((1.0, 0.0), scene.sliders[driver.slider].direction_rad)
-    along = 0 if abs(u[0]) > abs(u[1]) else 1
-    if abs(u[1 - along]) > STRAIGHT:
-        raise EngineError(
-            f"{scene.name}: exudyn is given a driven slider as a coordinate of its body, and the "
-            f"line of {driver.slider} goes along neither x nor y; turn the scene, or take another "
-            "engine"
+            f"{fault} take another engine"
         )
     return along, math.copysign(1.0, u[along])
 
@@ -127,61 +108,39 @@ class CrankDrive:
     def __init__(
         self, made: PlaneSystem, settings: Settings, drive: Drive, start_s: float, dt_s: float
     ) -> None:
-        scene, driver = made.scene, made.scene.driver
+        driver = made.scene.driver
         self._law, self._link, self._start_s = driver.law, driver.link, start_s
-        self._system = made.system
-        self._sense = 1.0
         self.course: CrankCourse | None = None
         self._gain = 0.0
         self._constraint: Index = None
         if drive == "free":
             return
-        coordinate = ANGLE
-        if driver.slider is not None:
-            coordinate, self._sense = slider_axis(scene)
-        ends = [
-            made.coordinate_marker(driver.base),
-            made.coordinate_marker(driver.link, coordinate),
-        ]
+        coordinate, sense = driven_coordinate(made.scene, drive)
+        nodes = (driver.base, ANGLE), (driver.link, coordinate)
+        ends = [made.coordinate_marker(*node) for node in nodes]
         if drive == "servo":
-            gain = float(settings["servo_gain"]) * pairs.inertia_scale(scene)
-            self._gain = gain * self._law.peak_speed_rad_s
-            self._add_motor(ends)
-        else:
-            self._constrain(ends, dt_s)
-
-    def _constrain(self, ends: list[Any], dt_s: float) -> None:
-        """Add a constraint of the speed, or of the angle where the speed changes."""
-        told: dict[str, object]
+            scale = float(settings["servo_gain"]) * pairs.inertia_scale(made.scene)
+            self._gain = scale * self._law.peak_speed_rad_s
+            self._add_motor(made, ends)
+            return
+        told: dict[str, object] = {"factor1": sense} if sense < 0.0 else {}
         if isinstance(self._law, ConstantSpeed):
-            told = {"velocityLevel": True, "offset": self._law.speed_rad_s}
+            told |= {"velocityLevel": True, "offset": self._law.speed_rad_s}
         else:
-            self.course = course = CrankCourse(self._law, self._start_s, dt_s)
-            told = {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
-        if self._sense < 0.0:
-            told["factor1"] = self._sense
-        self._constraint = self._system.AddObject(
-            items.ObjectConnectorCoordinate(markerNumbers=ends, **told)
-        )
+            self.course = course = CrankCourse(self._law, start_s, dt_s)
+            told |= {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
+        self._constraint = made.add("ObjectConnectorCoordinate", markerNumbers=ends, **told)
 
-    def _add_motor(self, ends: list[Any]) -> None:
+    def _add_motor(self, made: PlaneSystem, ends: list[Index]) -> None:
         """Add a damper to the ground, and its torque at the law's speed."""
         law, gain, start_s = self._law, self._gain, self._start_s
-        self._system.AddObject(
-            items.ObjectConnectorCoordinateSpringDamper(markerNumbers=ends, damping=gain)
-        )
+        made.add("ObjectConnectorCoordinateSpringDamper", markerNumbers=ends, damping=gain)
 
         def torque(_system: object, time_s: float, _load: float) -> float:
             return gain * float(law.at(np.array(start_s + time_s))[1])
 
-        steady = isinstance(law, ConstantSpeed)
-        self._system.AddLoad(
-            items.LoadCoordinate(
-                markerNumber=ends[1],
-                load=torque(None, 0.0, 0.0),
-                loadUserFunction=0 if steady else torque,
-            )
-        )
+        told = {} if isinstance(law, ConstantSpeed) else {"loadUserFunction": torque}
+        made.add("LoadCoordinate", markerNumber=ends[1], load=torque(None, 0.0, 0.0), **told)
 
     def torque(self, poses: Poses, lambdas: Array, multipliers: solver.Multipliers) -> Array:
         """Return the torque on the crank [N m], or the force on a slider along its line [N], at
@@ -194,79 +153,51 @@ class CrankDrive:
 
 
 class BlockLoads:
-    """Actions on blocks without mass, without their guides': read off the motion, as exudyn has no
-    body for them."""
+    """Actions on blocks without mass but for their guides', from the motion: exudyn has no body."""
 
     def __init__(self, scene: Scene, poses: Poses) -> None:
         self._scene, self._time_s = scene, poses.time_s
-        self._paths = body_paths(poses)
+        self._paths, self._guides = body_paths(poses), block_guides(scene)
         self._motion = motion(scene, poses)
-        self._still = passive.still_rad_s(scene)
 
     def line_rad(self, slider: Slider) -> Array:
         """Return the direction of a line."""
         return self._paths[slider.on].pose.theta + slider.direction_rad
 
     def on(self, slider: Slider) -> Array:
-        """Return force [N] and torque [N m] on the block of a slider, (T, 3)."""
-        return np.column_stack([self._force(slider), self._torque(slider)])
-
-    def _force(self, slider: Slider) -> Array:
-        """Return all forces, with friction and springs of the line."""
-        line, slid = self.line_rad(slider), self._motion.sliders[slider.name]
-        total = np.zeros((len(line), 2))
-        for load in self._of(slider):
-            if load.point is not None:
-                turned = line - slider.direction_rad + pairs.sliding_angle(slider)
-                angle = load.direction_rad + (turned if load.frame == "body" else 0.0 * line)
-                total += self._magnitude(load)[:, None] * directions(angle)
-        for friction in self._rubbing(slider.name):
-            still = self._still * self._scene.longest_m
-            total += passive.against(friction.size, slid.speed, still)[:, None] * directions(line)
-        for spring in self._scene.springs.values():
+        """Return force [N] and torque [N m] on the block of a slider, (T, 3), with friction, and
+        springs along the line."""
+        scene, block, line = self._scene, pairs.block_name(slider), self.line_rad(slider)
+        slid, still = self._motion.sliders[slider.name], acting.still_rad_s(scene)
+        force, torque, along = np.zeros((len(line), 2)), np.zeros(len(line)), directions(line)
+        for load in (one for one in scene.loads.values() if one.body == block):
+            if load.point is None:
+                torque += self._magnitude(load)
+                continue
+            turned = line - slider.direction_rad + pairs.sliding_angle(slider)
+            angle = load.direction_rad + (turned if load.frame == "body" else 0.0 * line)
+            force += self._magnitude(load)[:, None] * directions(angle)
+        for one in scene.friction.values():
+            assert isinstance(one, ConstantFriction)
+            if one.joint == slider.name:
+                least = still * scene.longest_m
+                force += acting.against(one.size, slid.speed, least)[:, None] * along
+            elif one.joint == slider.point and one.joint not in scene.sliders:
+                (other,) = (b for b in pairs.joined_at(scene)[slider.point] if b != block)
+                turning = slider.on, self._guides.get(other, other)
+                own, against = (self._paths[body].pose.omega for body in turning)
+                torque += acting.against(one.size, own - against, still)
+        for spring in scene.springs.values():
             if isinstance(spring, SlideSpring) and spring.slider == slider.name:
                 pull = spring.rate * (slid.displacement - spring.free)
-                total -= (pull + spring.damping * slid.speed)[:, None] * directions(line)
-        return total
-
-    def _torque(self, slider: Slider) -> Array:
-        """Return all torques, with friction of the pin."""
-        total = np.zeros(len(self._time_s))
-        for load in self._of(slider):
-            if load.point is None:
-                total += self._magnitude(load)
-        if slider.point not in self._scene.sliders:  # else its friction is a line's
-            for friction in self._rubbing(slider.point):
-                block = pairs.block_name(slider)
-                (other,) = (b for b in pairs.joined_at(self._scene)[slider.point] if b != block)
-                rate = self._omega(slider.on) - self._omega(other)
-                total += passive.against(friction.size, rate, self._still)
-        return total
-
-    def _omega(self, body: str) -> Array:
-        """Return the rate of a body, or of the guide of a block without mass."""
-        guides = {pairs.block_name(slider): slider.on for slider in self._scene.sliders.values()}
-        turning = body if body in self._paths else guides[body]
-        return self._paths[turning].pose.omega
-
-    def _of(self, slider: Slider) -> list[Load]:
-        name = pairs.block_name(slider)
-        return [load for load in self._scene.loads.values() if load.body == name]
-
-    def _rubbing(self, joint: str) -> list[ConstantFriction]:
-        return [
-            friction
-            for friction in self._scene.friction.values()
-            if isinstance(friction, ConstantFriction) and friction.joint == joint
-        ]
+                force -= (pull + spring.damping * slid.speed)[:, None] * along
+        return np.column_stack([force, torque])
 
     def _magnitude(self, load: Load) -> Array:
-        slid = self._motion.sliders.get(load.slider or "")
-        if load.over == "omega":
-            return load.magnitude(self._paths[load.body].pose.omega)
         x = {"time": self._time_s, "angle": self._paths[self._scene.driver.link].pose.theta}
-        if slid is None:
+        if load.slider is None:
             return load.magnitude(x[load.over])
+        slid = self._motion.sliders[load.slider]
         x |= {"displacement": slid.displacement, "speed": slid.speed}
         return load.magnitude(x[load.over], slid.speed)
 
@@ -275,20 +206,15 @@ def reactions(
     made: PlaneSystem, multipliers: solver.Multipliers, lambdas: Array, poses: Poses, torque: Array
 ) -> Forces:
     """Return the forces at the states of ``poses``, from the multipliers there, a row each."""
-    blocks = BlockLoads(made.scene, poses)
-    slides, ties = made.scene.sliders.values(), pairs.joints(made.scene)
-    on_lines = {
-        slider.name: lambdas[:, multipliers.rows(made.prismatic[slider.name])].T
-        for slider in slides
-    }
+    blocks, ties = BlockLoads(made.scene, poses), pairs.joints(made.scene)
+    rows = {key: lambdas[:, multipliers.rows(made.hinge[key])] for key in made.hinge}
+    lines = {key: lambdas[:, multipliers.rows(made.prismatic[key])] for key in made.scene.sliders}
+    sliders = made.scene.sliders.items()
     pushes = momentum_balance.JointPushes(
-        hinges={
-            Hinge(hinge.point, hinge.other, hinge.first): lambdas[:, multipliers.rows(joint)]
-            for hinge, joint in made.hinge.items()
-        },
-        across={s.name: directions(blocks.line_rad(s) + 0.5 * math.pi) for s in slides},
-        normals={name: normal for name, (normal, _) in on_lines.items()},
-        moments={prism.slider.name: -on_lines[prism.slider.name][1] for prism in ties.prisms},
+        hinges={Hinge(h.point, h.other, h.first): force for h, force in rows.items()},
+        across={name: directions(blocks.line_rad(s) + 0.5 * math.pi) for name, s in sliders},
+        normals={name: push[:, 0] for name, push in lines.items()},
+        moments={prism.slider.name: -lines[prism.slider.name][:, 1] for prism in ties.prisms},
         torque=torque,
         spare=0,
     )

@@ -1,28 +1,31 @@
 """exudyn: bodies in absolute coordinates, all joints constraints, solved for by implicit steps."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
 from models.motion import State
-from models.scene import Point, Scene
+from models.scene import Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings, measure
-from sim.exudyn import crank_drive, passive, system
-from sim.exudyn.loads import Applied, apply_loads, follows_rates
+from sim.exudyn import acting, crank_drive, system
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
 
 
-def widths(made: system.PlaneSystem) -> list[int]:
-    """Return the number of coordinates of each node: x, y, angle, or x, y and the tangent's."""
-    return [4 if name in made.looked else 3 for name in made.node]
+def node_levels(
+    made: system.PlaneSystem, levels: Sequence[Array]
+) -> Iterator[tuple[str, Array, Array, Array]]:
+    """Yield each node with its coordinates, their rates and accelerations, (T, width) each, from
+    the samples of these of each node in turn; exudyn counts coordinates from its reference."""
+    for row, (name, node) in enumerate(made.node.items()):
+        moved, rate, push = levels[len(LEVELS) * row : len(LEVELS) * (row + 1)]
+        yield name, moved + made.system.GetNode(node)["referenceCoordinates"], rate, push
 
 
 def beam_angles(
@@ -32,9 +35,8 @@ def beam_angles(
     direction ``looked`` [rad] and each within half a turn of the one before: samples of every step
     are needed, or turns are lost."""
     angles = {}
-    for row, (name, node) in enumerate(made.node.items()):
+    for name, place, _, _ in node_levels(made, levels) if looked else ():
         if name in looked:
-            place = levels[len(LEVELS) * row] + made.system.GetNode(node)["referenceCoordinates"]
             angle = np.arctan2(place[:, 3], place[:, 2])
             angles[name] = np.unwrap(np.concatenate([[looked[name]], angle]))[1:]
     return angles
@@ -43,32 +45,13 @@ def beam_angles(
 def body_poses(
     made: system.PlaneSystem, levels: Sequence[Array], angles: Mapping[str, Array]
 ) -> dict[str, BodyPose]:
-    """Return poses by body, from samples (T, width) of the three levels of each node in turn, and
-    from the ``angles`` (T,) of nodes of beams."""
-    poses = {}
-    for row, (name, node) in enumerate(made.node.items()):
-        moved, rate, push = (levels[len(LEVELS) * row + k] for k in range(len(LEVELS)))
-        place = moved + made.system.GetNode(node)["referenceCoordinates"]
-        if name in angles:
-            poses[name] = _tangent_pose(place, rate, push, angles[name])
-        else:
-            poses[name] = _pose(place, rate, push, made.centre[name])
-    return poses
-
-
-def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
-    """Return the frame with the node at ``centre``, from coordinates and their rates."""
-    theta, omega, alpha = place[:, 2], rate[:, 2], push[:, 2]
-    arm = measure.arms(theta, centre)
-    turned = measure.across(arm)
-    return BodyPose(
-        origin=place[:, :2] - arm,
-        theta=theta,
-        velocity=rate[:, :2] - omega[:, None] * turned,
-        omega=omega,
-        origin_acceleration=push[:, :2] - alpha[:, None] * turned + omega[:, None] ** 2 * arm,
-        alpha=alpha,
-    )
+    """Return poses by body; nodes of beams have these ``angles`` (T,)."""
+    return {
+        name: _tangent_pose(place, rate, push, angles[name])
+        if name in angles
+        else measure.centred(place, rate, push, made.centre[name])
+        for name, place, rate, push in node_levels(made, levels)
+    }
 
 
 def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyPose:
@@ -76,14 +59,8 @@ def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyP
     (x, y), (u, v), (a, b) = (each[:, 2:].T for each in (place, rate, push))
     far = x**2 + y**2
     omega = (x * v - y * u) / far
-    return BodyPose(
-        origin=place[:, :2],
-        theta=theta,
-        velocity=rate[:, :2],
-        omega=omega,
-        origin_acceleration=push[:, :2],
-        alpha=(x * b - y * a) / far - 2.0 * omega * (x * u + y * v) / far,
-    )
+    alpha = (x * b - y * a) / far - 2.0 * omega * (x * u + y * v) / far
+    return BodyPose(place[:, :2], theta, rate[:, :2], omega, push[:, :2], alpha)
 
 
 LEAST_DT_S = 1e-9
@@ -91,9 +68,8 @@ LEAST_DT_S = 1e-9
 
 
 class ExudynSession:
-    """A system with its solver. exudyn's clock begins at 0, at any time of the law. Turns of the
-    nodes of beams are counted from step to step in recording; over unrecorded steps, up to half a
-    turn."""
+    """A system with its solver. exudyn's clock begins at 0, at any time of the law. Turns of beams'
+    nodes are counted from step to step in recording; over unrecorded steps, up to half a turn."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
@@ -104,98 +80,79 @@ class ExudynSession:
                 f"dt: found {dt_s:g} s; exudyn ends a step to 1e-10 s, so it takes "
                 f"{LEAST_DT_S:g} s or more"
             )
-        crank_drive.refuse_undriven(scene, drive)
+        crank_drive.driven_coordinate(scene, drive)  # refuses
         settings = of_drive(settings, drive)
-        self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
+        self._scene, self._settings, self._dt = scene, settings, dt_s
         self._start_s, self._done = state.time_s, 0
         self._heard: list[str] = []
         with system.quiet(self._heard):
             self._model = system.build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
             self._looked = dict(self._model.looked)
-            self._applied = Applied(self._model)
-            apply_loads(self._applied, state.time_s, drive, dt_s)
-            passive.apply_friction(self._applied, drive)
-            self._springs = passive.Springs(self._applied)
+            self._applied = acting.Applied(self._model)
+            acting.apply_loads(self._applied, state.time_s, drive, dt_s)
+            acting.apply_friction(self._applied, drive)
+            self._springs = acting.Springs(self._applied)
             self._crank = crank_drive.CrankDrive(self._model, settings, drive, state.time_s, dt_s)
-            self._sensors = self._sense()
+            kept = {"storeInternal": True, "writeToFile": False}
+            kinds = [getattr(system.exu.OutputVariableType, level) for level in LEVELS]
+            self._sensors = [
+                self._model.add("SensorNode", nodeNumber=node, outputVariableType=kind, **kept)
+                for node in self._model.node.values()
+                for kind in kinds
+            ]
             self._system.Assemble()
-            self._asked = simulation(
-                settings,
-                dt_s,
-                of_rates=follows_rates(scene, drive),
-                rounding_n=system.rounding_n(scene, state),
-            )
-            self._solver = self._initialized(system.inertia_rounding_n(scene, state))
+            beam_n, inertia_n = system.roundings_n(scene, state)
+            follow = any(load.over in ("omega", "speed") for load in scene.loads.values())
+            rates = follow and drive != "prescribed"  # which are not known before a step
+            self._asked = simulation(settings, dt_s, of_rates=rates, rounding_n=beam_n)
+            try:
+                self._solver = initialized(self._system, self._asked, settings, inertia_n)
+            except ValueError as error:  # as exudyn has it: a load has no size at the start
+                raise EngineError(self._applied.fault) if self._applied.fault else error from None
             course = self._crank.course
             first = None if course is None else self._set_off(course)
             self._multipliers = Multipliers(self._system, first)
 
-    def _initialized(self, inertia_n: float) -> Any:
-        """Make the solver. Raises EngineError for a load that has no size at the start."""
-        try:
-            return initialized(self._system, self._asked, self._settings, inertia_n)
-        except ValueError:  # as exudyn has it
-            if self._applied.fault:
-                raise EngineError(self._applied.fault) from None
-            raise
-
-    def _sense(self) -> list[Any]:
-        return [
-            self._system.AddSensor(
-                system.items.SensorNode(
-                    nodeNumber=node,
-                    storeInternal=True,
-                    writeToFile=False,
-                    outputVariableType=getattr(system.exu.OutputVariableType, level),
-                )
-            )
-            for node in self._model.node.values()
-            for level in LEVELS
-        ]
-
     def _set_off(self, course: crank_drive.CrankCourse) -> Array:
         """Set rates that fit the crank's, and accelerations that fit its own; return their
-        multipliers, which exudyn does not compute then.
-
-        exudyn leaves the part of a driver's acceleration out of its initial ones, and the
-        trapezoidal rule would alternate about the true ones ever after.
-        """
+        multipliers. exudyn leaves the part of a driver's acceleration out of its initial ones, and
+        the trapezoidal rule would alternate about the true ones ever after."""
         own, rates = system.exu.ConfigurationType.Initial, self._system.systemData
-        law = self._scene.driver.law
-        _, omega, alpha = (float(x) for x in law.at(np.array(self._start_s)))
+        alphas = self._asked.timeIntegration.generalizedAlpha
+        _, omega, alpha = (float(x) for x in self._scene.driver.law.at(np.array(self._start_s)))
         ratio = per_drive(self._solver, self._system)
-        if self._asked.timeIntegration.generalizedAlpha.useIndex2Constraints:
-            told = course.speed(None, 0.0, None, 0.0)
-            rates.SetODE2Coordinates_t(
-                np.add(rates.GetODE2Coordinates_t(own), (told - omega) * ratio), own
-            )
+        if alphas.useIndex2Constraints:
+            faster = (course.speed(None, 0.0, None, 0.0) - omega) * ratio
+            rates.SetODE2Coordinates_t(np.add(rates.GetODE2Coordinates_t(own), faster), own)
         push: Array = np.add(rates.GetODE2Coordinates_tt(), alpha * ratio)
         rates.SetODE2Coordinates_tt(push, own)
         first = multipliers(self._solver, self._system, push)
-        self._asked.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
+        alphas.computeInitialAccelerations = False
         self._solver.InitializeSolver(self._system, self._asked)
         return first
 
     def facts(self) -> Facts:
         """Read the system as exudyn holds it now; its bodies have their centres at their nodes."""
-        held_masses = self._model.masses()
-        nodes = system.node_masses(self._model)
-        loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
-        gravity = loads[0] if loads else (0.0, 0.0)
-        settings = self._settings if self._scene.beams else of_rigid(self._settings)
+        model, get = self._model, self._system.GetObject
+        bodies = {name: get(model.body[name]) for name in model.node if name in model.body}
+        masses = {name: float(own["mass"]) for name, own in bodies.items()}
+        loads = [self._system.GetLoad(load)["loadVector"] for load in model.weights]
+        x, y, _ = loads[0] if loads else (0.0, 0.0, 0.0)
+        beams = system.held_beams(model)
+        settings = self._settings if beams else of_rigid(self._settings)
         return Facts(
             version=system.VERSION,
-            mass_kg={name: mass for name, (mass, _) in held_masses.items()} | nodes,
-            inertia_kg_m2={name: inertia for name, (_, inertia) in held_masses.items()},
-            centre_m=dict(self._model.centre),
-            gravity_m_s2=(float(gravity[0]), float(gravity[1])),
+            mass_kg=masses | system.node_masses(beams),
+            inertia_kg_m2={name: float(own["inertia"]) for name, own in bodies.items()},
+            centre_m={name: model.centre[name] for name in model.node},
+            gravity_m_s2=(float(x), float(y)),
             start=self.read(),
             settings=dict(settings) | held(self._asked, self._solver, self._settings),
             velocity_shift=0.0,
             acceleration_shift=0.0,
             springs=self._springs.held(),
-            beams=system.held_beams(self._model),
+            beams=beams,
         )
 
     def step(self, steps: int) -> None:
@@ -223,10 +180,10 @@ class ExudynSession:
         count = len(at) if good.all() else int(np.argmin(good))
         angles = {name: own[rows][:count] for name, own in angles.items()}
         self._looked |= {name: float(own[-1]) for name, own in angles.items() if count}
-        poses = self._shown([own[:count] for own in levels], at[:count], angles)
-        diverged = bool(stopped) or count < len(at)
-        warnings = tuple(dict.fromkeys(self._heard))
-        return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
+        shown = body_poses(self._model, [own[:count] for own in levels], angles)
+        poses = Poses(self._start_s + self._dt * at[:count], shown)
+        lost, warnings = bool(stopped) or count < len(at), tuple(dict.fromkeys(self._heard))
+        return Log(poses, (count - 1) * every, lost, warnings, wall, stopped)
 
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log, as `record`, with the multipliers of each state as forces."""
@@ -242,16 +199,12 @@ class ExudynSession:
     def read(self) -> Poses:
         """Read the current state."""
         state = self._system.systemData
-        ends = np.cumsum(widths(self._model))[:-1]
+        ends = np.cumsum([4 if name in self._looked else 3 for name in self._model.node])[:-1]
         levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
         of_nodes = [own[None] for node in zip(*levels, strict=True) for own in node]
         angles = beam_angles(self._model, self._looked, of_nodes)
-        return self._shown(of_nodes, np.array([float(self._done)]), angles)
-
-    def _shown(self, levels: Sequence[Array], at: Array, angles: Mapping[str, Array]) -> Poses:
-        """Return the poses of samples, after so many steps, from the three levels of each node in
-        turn, and from the angles of nodes of beams."""
-        return Poses(self._start_s + self._dt * at, body_poses(self._model, levels, angles))
+        now = np.array([self._start_s + self._dt * self._done])
+        return Poses(now, body_poses(self._model, of_nodes, angles))
 
     def _advance(self, steps: int, *, log: bool) -> str:
         """Step in one go or, where steps may be cut, so that each ends in time. Return exudyn's own

@@ -1,13 +1,13 @@
 """Program that reads forces out of exudyn: it holds a scene, as a user would write it."""
 
-from collections.abc import Iterator
-
 from models.errors import EngineError
 from models.motion import State
-from models.scene import GROUND, Point, Scene, laws
-from models.scene import joints as pairs
-from sim.engine import Settings, ties
-from sim.exudyn.settings import BY_NEED, NEWTON
+from models.scene import GROUND, Scene, laws
+from sim.engine import Settings
+from sim.engine.acting import EngineBodies, centres
+from sim.engine.ties import hinges
+from sim.exudyn import rows
+from sim.exudyn.settings import BY_NEED, assignments
 from sim.registry.offers import ForceRecipe, written
 
 PROGRAM = '''"""{title}"""
@@ -119,31 +119,30 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
     """Write the program for scenes without loads, springs and friction, at constant speed. See
     `ForceRecipe`."""
     law = scene.driver.law
-    lacking = [
-        what
-        for what, there in (
-            ("loads", scene.loads),
-            ("a driver that is no crank", not scene.driver.is_crank),
-            ("springs", scene.springs),
-            ("friction", scene.friction),
-            ("a driver whose speed changes", not isinstance(law, laws.ConstantSpeed)),
-        )
-        if there
-    ]
-    if lacking or not isinstance(law, laws.ConstantSpeed):
+    lacking = {
+        "loads": scene.loads,
+        "a driver that is no crank": not scene.driver.is_crank,
+        "springs": scene.springs,
+        "friction": scene.friction,
+        "a driver whose speed changes": not isinstance(law, laws.ConstantSpeed),
+    }
+    words = [what for what, there in lacking.items() if there]
+    if words or not isinstance(law, laws.ConstantSpeed):
         raise EngineError(
-            f"{scene.name}: the recipe of exudyn does not cover {' and '.join(lacking)}; take that "
+            f"{scene.name}: the recipe of exudyn does not cover {' and '.join(words)}; take that "
             "out, or use another scene"
         )
+    placed = EngineBodies(scene, state, centre=centres(scene))
+    pins = ((h.point, *a, *b) for h in hinges(scene, GROUND) for a, b in [placed.hinge_ends(h)])
     return PROGRAM.format(
         title=f"Reactions in the pins, and driving torque, of {scene.name} in exudyn.",
         speed=law.speed_rad_s,
         dt=dt_s,
         steps=round(law.period_s / dt_s),
         gravity=[*scene.gravity_m_s2, 0.0],
-        bodies=written(_bodies(scene, state)),
-        pins=written(_pins(scene)),
-        lines=written(_lines(scene)),
+        bodies=written(rows.body_rows(scene, state)),
+        pins=written(pins),
+        lines=written(rows.line_rows(placed).values()),
         ground=GROUND,
         driver=scene.driver.link,
         settings="\n".join(_settings(settings)),
@@ -151,57 +150,17 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
     )
 
 
-def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
-    rows: dict[str, tuple[object, ...]] = {}
-    for name, frame in pairs.frames(scene, state).items():
-        if name in pairs.bodies(scene):
-            place = frame.at(pairs.centre_of(scene, name))
-            rates = [*frame.velocity_at(place), frame.omega]
-            rows[name] = (*pairs.mass_of(scene, name), [*place, frame.theta], rates)
-    return rows
-
-
-def _pins(scene: Scene) -> Iterator[tuple[object, ...]]:
-    for hinge in ties.hinges(scene, GROUND):
-        start, end = (
-            _from_centre(scene, body, pairs.local_point(scene, body, hinge.point))
-            for body in (hinge.first, hinge.other)
-        )
-        yield hinge.point, hinge.first, start, hinge.other, end
-
-
-def _lines(scene: Scene) -> Iterator[tuple[object, ...]]:
-    """Yield the pairs on lines; a block without mass is a point on a line, which may turn."""
-    for slide in pairs.joints(scene).slides:
-        slider, rider = slide.slider, pairs.riding_body(slide)
-        keeps = isinstance(slide, pairs.Prism)
-        tip = _from_centre(scene, rider, pairs.local_point(scene, rider, slider.point))
-        through = _from_centre(scene, slider.on, slider.through_m)
-        own = slider.direction_rad - (pairs.sliding_angle(slider) if keeps else 0.0)
-        axis = [*pairs.turned((1.0, 0.0), own), 0.0]
-        normal = [*pairs.turned((0.0, 1.0), slider.direction_rad), 0.0]
-        yield rider, tip, slider.on, through, axis, normal, keeps
-
-
-def _from_centre(scene: Scene, body: str, place: Point) -> Point:
-    return place if body == GROUND else pairs.less(place, pairs.centre_of(scene, body))
-
-
 def _settings(settings: Settings) -> list[str]:
-    lines = [f"stepping.adaptiveStep = {settings['adaptive_step'] == 'enable'}"]
-    if settings["integrator"] == "GeneralizedAlpha":
-        radius = float(settings["spectral_radius"])
-        lines.append(f"stepping.generalizedAlpha.spectralRadius = {radius!r}")
-    jacobian, linear = settings["jacobian"], str(settings["linear_solver"])
+    own = assignments(settings)
+    # Joints and drive determine all coordinates of these scenes.
+    own["newton.residualMode"] = int(settings["residual"] != "forces")
+    if settings["integrator"] != "GeneralizedAlpha":
+        del own["generalizedAlpha.spectralRadius"]
+    linear = settings["linear_solver"]
     redundant = linear == BY_NEED or settings["ignore_singular"] == "enable"
     solver = "EigenDense" if linear == BY_NEED else linear
     return [
-        *lines,
-        *(f"stepping.newton.{own} = {settings[name]!r}" for name, own in NEWTON.items()),
-        # Joints and drive determine all coordinates of these scenes.
-        f"stepping.newton.residualMode = {int(settings['residual'] != 'forces')}",
-        f"stepping.newton.useModifiedNewton = {jacobian != 'each-iteration'}",
-        f"stepping.newton.modifiedNewtonJacUpdatePerStep = {jacobian == 'each-step'}",
+        *(f"stepping.{path} = {value!r}" for path, value in own.items()),
         f"simulationSettings.linearSolver.solverType = exu.LinearSolverType.{solver}",
         f"simulationSettings.linearSolver.ignoreSingularJacobian = {redundant}",
     ]

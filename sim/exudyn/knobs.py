@@ -6,6 +6,7 @@ from models.motion import State
 from models.scene import Scene
 from models.scene.joints import bodies, joints
 from sim.engine import Settings
+from sim.engine.ties import hinges
 from sim.exudyn.settings import BY_NEED, INTEGRATORS, JACOBIANS
 from sim.registry.offers import Knob, SearchSpace, Work
 
@@ -16,18 +17,17 @@ DIGITS_PER_ITERATION = 8.0
 
 def unknowns(scene: Scene) -> int:
     """Return the number of coordinates and constraints, including the crank's."""
-    ties = joints(scene)
-    pins = sum(len(pin.bodies) - 1 for pin in ties.pins)
-    return 3 * len(bodies(scene)) + 2 * (pins + len(ties.slides)) + 1
+    pins, slides = [*hinges(scene)], joints(scene).slides
+    return 3 * len(bodies(scene)) + 2 * (len(pins) + len(slides)) + 1
 
 
 def counts(scene: Scene, settings: Settings) -> tuple[float, float, float]:
     """Return 1; iterations in a step, times all unknowns; and matrices, times all their pairs."""
-    jacobian, size = str(settings["jacobian"]), unknowns(scene)
+    size = unknowns(scene)
     digits = -math.log10(max(float(settings["relative_tolerance"]), 1e-16))
     iterations = 1.0 + digits / DIGITS_PER_ITERATION
     # One matrix at least, as steps are requested one by one (see `sim.exudyn.settings`).
-    matrices = iterations if jacobian == "each-iteration" else 1.0
+    matrices = iterations if settings["jacobian"] == "each-iteration" else 1.0
     return 1.0, iterations * size, matrices * size**2
 
 

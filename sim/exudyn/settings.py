@@ -1,5 +1,7 @@
 """exudyn's settings: the two profiles, and their form in its own structures."""
 
+from typing import Any
+
 from sim.engine import Drive, Placing, Profile, Setting, Settings
 from sim.engine.settings import checker
 
@@ -8,13 +10,9 @@ INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
 JACOBIANS = ("as-needed", "each-step", "each-iteration")
 """Updates of the matrix of Newton's method: where it converges slowly, at each step, or always."""
 RESIDUALS = ("forces", "increments")
-"""Residuals of Newton's method: forces and gaps, in N and m alike, or changes of the coordinates
-in an iteration."""
-LINEAR_SOLVERS = ("EXUdense", "EigenDense", "EigenSparse")
+"""Residuals of Newton's method: forces and gaps in N and m alike, or changes of the coordinates."""
 BY_NEED = "by-need"
-"""Choices of crankcheck: EXUdense, or EigenDense where joints are redundant at the start, or
-EigenSparse for more than `MOST_DENSE` coordinates and constraints; and increments where joints and
-drive determine all coordinates at the start, or forces."""
+"""Choices of crankcheck by the system at the start; see the reasons of `TUNED`."""
 MOST_DENSE = 60
 NEWTON = {
     "relative_tolerance": "relativeTolerance",
@@ -22,21 +20,18 @@ NEWTON = {
     "iterations": "maxIterations",
 }
 """exudyn's own names of the settings of Newton's method."""
-TOLERANCES = ("relative_tolerance", "absolute_tolerance")
 SWITCH = ("enable", "disable")
 CHOICES = {
     "integrator": INTEGRATORS,
     "jacobian": JACOBIANS,
     "adaptive_step": SWITCH,
     "residual": (*RESIDUALS, BY_NEED),
-    "linear_solver": (*LINEAR_SOLVERS, BY_NEED),
+    "linear_solver": ("EXUdense", "EigenDense", "EigenSparse", BY_NEED),
     "ignore_singular": SWITCH,
 }
 RANGES = {
-    "spectral_radius": (0.0, 1.0),
-    "free_spectral_radius": (0.0, 1.0),
-    "relative_tolerance": (0.0, 1.0),
-    "absolute_tolerance": (0.0, 1.0),
+    **dict.fromkeys(("spectral_radius", "free_spectral_radius"), (0.0, 1.0)),
+    **dict.fromkeys(("relative_tolerance", "absolute_tolerance"), (0.0, 1.0)),
     "iterations": (1, 1_000_000),
     "beam_rounding": (0.0, 1e9),
     "servo_gain": (1e-9, 1e15),
@@ -148,3 +143,16 @@ def of_rigid(settings: Settings) -> Settings:
 def placing(settings: Settings) -> Placing:
     """Return the source of positions: with joints closed in their rates they are integrated."""
     return "integrated" if settings["integrator"] == "TrapezoidalIndex2" else "solved"
+
+
+def assignments(settings: Settings) -> dict[str, Any]:
+    """Return exudyn's own settings of time integration, by their paths in it, that a complete set
+    determines by itself."""
+    return {
+        "adaptiveStep": settings["adaptive_step"] == "enable",
+        "generalizedAlpha.spectralRadius": settings["spectral_radius"],
+        **{f"newton.{own}": settings[name] for name, own in NEWTON.items()},
+        "newton.residualMode": int(settings["residual"] == "increments"),
+        "newton.useModifiedNewton": settings["jacobian"] != "each-iteration",
+        "newton.modifiedNewtonJacUpdatePerStep": settings["jacobian"] == "each-step",
+    }

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from models.array import Array
 from sim.engine import Settings, SettingValue
-from sim.exudyn.settings import BY_NEED, MOST_DENSE, NEWTON, RESIDUALS
+from sim.exudyn.settings import BY_NEED, MOST_DENSE, NEWTON, RESIDUALS, assignments
 from sim.exudyn.system import Index, exu, quiet
 
 FREE = 1e-9
@@ -22,8 +23,7 @@ def simulation(
 
     Its sensors keep every step, and no step is longer than ``dt_s``. With loads ``of_rates``
     Newton's method takes their change in a step into account: without, it does not converge for a
-    steep motor. A residual below the rounding of the forces of beams is never reached: with a lower
-    tolerance steps fail and are cut, and each cut excites vibration.
+    steep motor. With beams the tolerance stays above the rounding ``rounding_n`` of their forces.
     """
     asked = exu.SimulationSettings()
     asked.solution.file.write = False
@@ -32,21 +32,15 @@ def simulation(
     stepping.verboseMode = 0
     stepping.numberOfSteps, stepping.endTime = 1, dt_s
     stepping.computeLoadsJacobian = 2 if of_rates else 0
-    stepping.adaptiveStep = settings["adaptive_step"] == "enable"
     trapezoidal = settings["integrator"] == "TrapezoidalIndex2"
     stepping.generalizedAlpha.useNewmark = trapezoidal  # as exudyn's own SolveDynamic sets both
     stepping.generalizedAlpha.useIndex2Constraints = trapezoidal
-    stepping.generalizedAlpha.spectralRadius = float(settings["spectral_radius"])
-    newton = stepping.newton
-    newton.relativeTolerance = float(settings["relative_tolerance"])
+    for path, value in assignments(settings).items():
+        *folders, name = path.split(".")
+        setattr(reduce(getattr, folders, stepping), name, value)
     least = float(settings["beam_rounding"]) * rounding_n
-    newton.absoluteTolerance = max(float(settings["absolute_tolerance"]), least)
-    newton.maxIterations = int(settings["iterations"])
-    newton.residualMode = int(settings["residual"] == "increments")
-    newton.useModifiedNewton = settings["jacobian"] != "each-iteration"
-    newton.modifiedNewtonJacUpdatePerStep = settings["jacobian"] == "each-step"
-    linear = str(settings["linear_solver"])
-    if linear != BY_NEED:
+    stepping.newton.absoluteTolerance = max(float(settings["absolute_tolerance"]), least)
+    if (linear := str(settings["linear_solver"])) != BY_NEED:
         asked.linearSolver.solverType = getattr(exu.LinearSolverType, linear)
     asked.linearSolver.ignoreSingularJacobian = settings["ignore_singular"] == "enable"
     return asked
@@ -59,33 +53,29 @@ of the largest reaction, which was up to 20 times the inertia of random mechanis
 
 def initialized(system: Any, asked: Any, settings: Settings, inertia_n: float = 0.0) -> Any:
     """Make a solver of the system, at its start, with the linear solver and the residual that it
-    needs if these are ``by-need``. A residual of forces stays above the rounding ``inertia_n`` of
-    inertia: one below it is never reached."""
+    needs if these are ``by-need``; a residual of forces below the rounding ``inertia_n`` of inertia
+    is never reached."""
     solver = exu.MainSolverImplicitSecondOrder()
     if BY_NEED in (settings["linear_solver"], settings["residual"]):
         with quiet([]):  # it warns of the redundancy that is looked for here
             solver.InitializeSolver(system, asked)
         if settings["linear_solver"] == BY_NEED:
-            asked.linearSolver.solverType = _needed(solver, constraints(solver, system))
+            held_by, kinds = constraints(solver, system), exu.LinearSolverType
+            own = kinds.EXUdense
+            if solver.GetODE2size() + solver.GetAEsize() > MOST_DENSE:
+                own = kinds.EigenSparse
+            elif _rank(held_by) < np.count_nonzero(np.any(held_by != 0.0, axis=1)):
+                own = kinds.EigenDense
+            asked.linearSolver.solverType = own
         if settings["residual"] == BY_NEED:
             newton, size = asked.timeIntegration.newton, solver.GetODE2size()
             enough = solver.GetAEsize() >= size
             if enough and _rank(constraints(solver, system, of_rates=1.0)) == size:
                 newton.residualMode = 1
             else:
-                least = ROUNDINGS * inertia_n
-                newton.absoluteTolerance = max(newton.absoluteTolerance, least)
+                newton.absoluteTolerance = max(newton.absoluteTolerance, ROUNDINGS * inertia_n)
     solver.InitializeSolver(system, asked)
     return solver
-
-
-def _needed(solver: Any, held_by: Array) -> Any:
-    """Choose the linear solver by the system's size and by redundancy of its constraints."""
-    if solver.GetODE2size() + solver.GetAEsize() > MOST_DENSE:
-        return exu.LinearSolverType.EigenSparse
-    if _rank(held_by) < np.count_nonzero(np.any(held_by != 0.0, axis=1)):
-        return exu.LinearSolverType.EigenDense
-    return exu.LinearSolverType.EXUdense
 
 
 def _rank(held_by: Array) -> int:
@@ -96,8 +86,8 @@ def _rank(held_by: Array) -> int:
 
 def constraints(solver: Any, system: Any, of_rates: float = 0.0) -> Array:
     """Return the present derivatives of the constraints with respect to the coordinates, and those
-    with respect to their rates times ``of_rates`` (a constant speed has no others), a row each;
-    afterwards the solver has to be initialized again."""
+    with respect to their rates times ``of_rates`` (a constant speed has no others), a row each.
+    The solver has to be initialized again after this, `per_drive` and `multipliers`."""
     count = solver.GetODE2size()
     size = count + solver.GetAEsize()
     solver.SetSystemJacobian(np.zeros((size, size)))
@@ -107,10 +97,7 @@ def constraints(solver: Any, system: Any, of_rates: float = 0.0) -> Array:
 
 def per_drive(solver: Any, system: Any) -> Array:
     """Return the accelerations of all coordinates over the drive's, the last of the constraints;
-    afterwards the solver has to be initialized again.
-
-    With bending links the constraints leave some coordinates free, which follow by their inertia.
-    """
+    these leave some coordinates of bending links free, which follow by their inertia."""
     held_by = constraints(solver, system)
     asked = np.zeros(len(held_by))
     asked[-1] = 1.0
@@ -125,8 +112,7 @@ def per_drive(solver: Any, system: Any) -> Array:
 
 
 def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
-    """Return the multipliers of the constraints for accelerations, at the present state; afterwards
-    the solver has to be initialized again."""
+    """Return the multipliers of the constraints for accelerations, at the present state."""
     held_by = constraints(solver, system)
     solver.ComputeMassMatrix(system)
     solver.ComputeODE2RHS(system)
@@ -138,9 +124,8 @@ def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
 def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]:
     """Return the settings by crankcheck's names, as the solver and its input hold them.
 
-    The chosen ``residual`` is ``residual_used``, and so for ``linear_solver``;
-    ``loads_jacobian_used`` is there where loads depend on speeds, ``absolute_tolerance_used`` where
-    rounding sets it.
+    Choices by need are ``residual_used`` and ``linear_solver_used``; ``loads_jacobian_used`` is
+    there where loads depend on speeds, ``absolute_tolerance_used`` where rounding sets it.
     """
     newton, linear = solver.newton, asked.linearSolver
     trapezoidal = asked.timeIntegration.generalizedAlpha.useIndex2Constraints
@@ -165,10 +150,8 @@ def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]
 
 
 class Multipliers:
-    """Multipliers at the end of each of exudyn's steps.
-
-    ``first`` are the multipliers of the start, where the system does not hold them itself.
-    """
+    """Multipliers at the end of each of exudyn's steps; ``first`` are those of the start, where the
+    system does not hold them itself."""
 
     def __init__(self, system: Any, first: Array | None) -> None:
         self._system, self._first = system, first
@@ -186,22 +169,21 @@ class Multipliers:
         now = np.array(state.GetAECoordinates())
         self._times_s = [float(state.GetTime())]
         self._rows = [now if steps_done or self._first is None else self._first]
-        self._system.SetPostStepUserFunction(self._keep)
+
+        def keep(system: Any, time_s: float) -> bool:
+            if time_s > self._times_s[-1]:  # a stretch calls it at its own start as well
+                self._times_s.append(time_s)
+                self._rows.append(np.array(system.systemData.GetAECoordinates()))
+            return True
+
+        self._system.SetPostStepUserFunction(keep)
         try:
             yield
         finally:
             self._system.SetPostStepUserFunction(0)
 
-    def _keep(self, system: Any, time_s: float) -> bool:
-        """Keep a step, as exudyn's callback; a stretch calls it at its own start as well."""
-        if time_s > self._times_s[-1]:
-            self._times_s.append(time_s)
-            self._rows.append(np.array(system.systemData.GetAECoordinates()))
-        return True
-
     def at(self, time_s: Array) -> Array:
         """Return the multipliers of some of the steps, by times on exudyn's clock; a row each."""
         clock = np.array(self._times_s)
-        # The last part of a cut step ends at the step.
-        near = 0.5 * (clock[1:] + clock[:-1])
+        near = 0.5 * (clock[1:] + clock[:-1])  # the last part of a cut step ends at the step
         return np.array(self._rows)[np.searchsorted(near, time_s)]

@@ -1,13 +1,11 @@
 """The exudyn system of a scene: a rigid body in the plane per link, a joint per pin and line;
 and the package itself, with its output.
 
-The node of a body is at its centre of mass, whose place in the link's own frame is kept. All bodies
-have three coordinates, the driven crank too: its drive is one more constraint. A pin of k bodies is
-k - 1 hinges. A pair on a line is a prismatic joint whose second marker, on the guide, lies on the
-line; with a massless block it leaves the angle free. The nodes of beams have a tangent in place of
-an angle.
-
-Its type stubs leave out ``self`` and its items are untyped, so all of it is `Any` here.
+The node of a body is at its centre of mass. All bodies have three coordinates, the driven crank
+too: its drive is one more constraint. A pair on a line is a prismatic joint whose second marker, on
+the guide, lies on the line; with a massless block it leaves the angle free. The nodes of beams have
+a tangent in place of an angle. exudyn's type stubs leave out ``self`` and its items are untyped, so
+all of it is `Any` here.
 """
 
 import contextlib
@@ -17,13 +15,17 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
+from itertools import chain, pairwise
 from typing import Any
 
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene, elastic
 from models.scene import joints as pairs
+from sim.engine import EPSILON
+from sim.engine.acting import EngineBodies, centres
 from sim.engine.ties import Hinge, hinges, refuse_massless
+from sim.exudyn import rows
 
 SAID = re.compile(r"Python WARNING|Python ERROR")
 """Beginning of each of exudyn's messages about a run."""
@@ -57,256 +59,183 @@ ANGLE = 2
 """Coordinate of a node that is its angle."""
 Index = Any
 """exudyn's own numbers of nodes, objects, markers and loads."""
+ADDERS = {kind[0]: f"Add{kind}" for kind in ("Node", "Object", "Marker", "Load", "Sensor")}
 
 
 @dataclass(frozen=True)
-class PlaneSystem:
-    """A system before its assembly: the bodies by name, in the order they were added.
+class PlaneSystem(EngineBodies):
+    """A system before its assembly: the ground and the bodies by name, as they were added.
 
-    ``centre`` is the place of a body's node in the frame of its link [m], ``start_rad`` the angle
-    of a body or the ground at the start. ``hinge`` has the joints of pins, ``prismatic`` the joint
-    of each slider; ``weight`` is the load of each body's gravity. Nodes of beams are in ``node``
-    alone, and their angles at the start [rad] in ``looked``; the elements of each beam are in
-    ``elements``. A system lives as long as its ``container``.
+    ``start_rad`` is the angle of a body or the ground at the start. ``hinge`` has the joints of
+    pins, ``prismatic`` the joint of each slider; ``weights`` are the loads of gravity.
+    Nodes of beams are in ``node`` alone, and their angles at the start [rad] in ``looked``; the
+    elements of each beam are in ``elements``. A system lives as long as its ``container``.
     """
 
-    scene: Scene
     start_rad: Mapping[str, float]
     container: Any
     system: Any
-    ground: Index
     body: dict[str, Index] = field(default_factory=dict)
     node: dict[str, Index] = field(default_factory=dict)
-    centre: dict[str, Point] = field(default_factory=dict)
     hinge: dict[Hinge, Index] = field(default_factory=dict)
     prismatic: dict[str, Index] = field(default_factory=dict)
-    weight: dict[str, Index] = field(default_factory=dict)
+    weights: list[Index] = field(default_factory=list)
     looked: dict[str, float] = field(default_factory=dict)
     elements: dict[str, list[Index]] = field(default_factory=dict)
 
-    def marker(self, name: str, point: str) -> Index:
-        """Add a marker at a point of a body or of the ground."""
-        return self.marker_at(name, pairs.local_point(self.scene, name, point))
+    def add(self, kind: str, **numbers: object) -> Index:
+        """Add an item of exudyn by its class name, such as ``NodePointGround``."""
+        return getattr(self.system, ADDERS[kind[0]])(getattr(items, kind)(**numbers))
+
+    def marker(self, name: str, anchor: Point) -> Index:
+        """Add a marker at a place of a body or of the ground, from its node [m]."""
+        if name in self.looked:
+            if anchor != (0.0, 0.0):
+                raise EngineError(
+                    f"{name}: something acts {anchor[1]:g} m beside it; exudyn's beams take forces "
+                    "on their line, give that link segments (--springs plain)"
+                )
+            return self.add("MarkerNodeRigid", nodeNumber=self.node[name])
+        place = [*anchor, 0.0]
+        return self.add("MarkerBodyRigid", bodyNumber=self.body[name], localPosition=place)
 
     def marker_at(self, name: str, place: Point) -> Index:
-        """Add a marker at a place in the frame of a body or of the ground [m]."""
-        x, y = pairs.less(place, self.centre.get(name, (0.0, 0.0)))
-        if name in self.looked:
-            if (x, y) != (0.0, 0.0):
-                raise EngineError(
-                    f"{name}: something acts {y:g} m beside it; exudyn's beams take forces on "
-                    "their line, give that link segments (--springs plain)"
-                )
-            return self.system.AddMarker(items.MarkerNodeRigid(nodeNumber=self.node[name]))
-        body = self.ground if name == GROUND else self.body[name]
-        return self.system.AddMarker(
-            items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, y, 0.0])
-        )
+        """Add a marker at a place in the frame of a link or of the ground [m]."""
+        return self.marker(name, self.from_centre(name, place))
 
     def coordinate_marker(self, name: str, coordinate: int = ANGLE) -> Index:
         """Add a marker of a coordinate of a body's node, or of the ground, which is 0; angles count
-        from the start.
-
-        Raises EngineError for the node of a beam, whose angle is no coordinate.
-        """
+        from the start. Raises EngineError for the node of a beam, whose angle is no coordinate."""
         if name in self.looked and coordinate == ANGLE:
             raise EngineError(
                 f"{name}: something turns it, and the nodes of exudyn's beams have no angle; give "
                 "that link segments (--springs plain)"
             )
         if name == GROUND:
-            node, coordinate = self.system.AddNode(items.NodePointGround()), 0
+            node, coordinate = self.add("NodePointGround"), 0
         else:
             node = self.node[name]
-        return self.system.AddMarker(
-            items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)
-        )
+        return self.add("MarkerNodeCoordinate", nodeNumber=node, coordinate=coordinate)
 
-    def weigh(self, name: str, body: Index) -> None:
+    def weigh(self, body: Index) -> None:
         """Add gravity to a body or an element."""
-        gravity = self.scene.gravity_m_s2
+        gravity = [*self.scene.gravity_m_s2, 0.0]
         if any(gravity):
-            marker = self.system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-            self.weight[name] = self.system.AddLoad(
-                items.LoadMassProportional(markerNumber=marker, loadVector=[*gravity, 0.0])
-            )
-
-    def masses(self) -> Mapping[str, tuple[float, float]]:
-        """Return mass [kg] and inertia about the centre of mass [kg m^2] of the bodies, as exudyn
-        has them."""
-        held = {name: self.system.GetObject(body) for name, body in self.body.items()}
-        return {name: (float(o["mass"]), float(o["inertia"])) for name, o in held.items()}
+            marker = self.add("MarkerBodyMass", bodyNumber=body)
+            load = self.add("LoadMassProportional", markerNumber=marker, loadVector=gravity)
+            self.weights.append(load)
 
 
-EPSILON = 2.0**-52
-
-
-def add_node(made: PlaneSystem, name: str, frame: pairs.Frame, state: State) -> None:
+def add_node(made: PlaneSystem, name: str, place: list[float], rates: list[float]) -> None:
     """Add a node of a beam: its place, and its tangent, longer than 1 by the strain there."""
-    c, s = math.cos(frame.theta), math.sin(frame.theta)
-    long, faster = 1.0 + state.strain.get(name, 0.0), state.strain_rate.get(name, 0.0)
-    made.centre[name] = (0.0, 0.0)
-    made.node[name] = made.system.AddNode(
-        items.NodePoint2DSlope1(
-            referenceCoordinates=[*frame.origin, long * c, long * s],
-            initialVelocities=[
-                *frame.velocity,
-                faster * c - long * frame.omega * s,
-                faster * s + long * frame.omega * c,
-            ],
-        )
+    (x, y, theta), (u, v, omega) = place, rates
+    c, s = math.cos(theta), math.sin(theta)
+    long, faster = 1.0 + made.state.strain.get(name, 0.0), made.state.strain_rate.get(name, 0.0)
+    made.node[name] = made.add(
+        "NodePoint2DSlope1",
+        referenceCoordinates=[x, y, long * c, long * s],
+        initialVelocities=[u, v, faster * c - long * omega * s, faster * s + long * omega * c],
     )
-    made.looked[name] = frame.theta
+    made.looked[name] = theta
 
 
 def add_elements(made: PlaneSystem, beam: elastic.Beam) -> None:
     """Add the elements between the nodes of a beam, straight at rest for any place of these.
 
     An element is a cubic in its own length (absolute nodal coordinates); it bends by EI times the
-    curvature of its axis over its stretch, and stretches by EA (|r'| - 1). Source: exudyn's own
-    manual, ObjectANCFCable2D and NodePoint2DSlope1; J. Gerstmayr, H. Irschik, On the correct
-    representation of bending and axial deformation in the absolute nodal coordinate formulation, J.
-    Sound and Vibration 318 (2008).
+    curvature of its axis over its stretch, and stretches by EA (|r'| - 1). Source: exudyn's manual,
+    ObjectANCFCable2D; J. Gerstmayr, H. Irschik, J. Sound and Vibration 318 (2008).
     """
     made.elements[beam.name] = [
-        made.system.AddObject(
-            items.ObjectANCFCable2D(
-                length=beam.element_m,
-                massPerLength=beam.density_kg_m,
-                bendingStiffness=beam.flexural_n_m2,
-                axialStiffness=beam.axial_n,
-                bendingDamping=beam.damping_s * beam.flexural_n_m2,
-                axialDamping=beam.damping_s * beam.axial_n,
-                nodeNumbers=[made.node[near], made.node[far]],
-            )
+        made.add(
+            "ObjectANCFCable2D",
+            length=beam.element_m,
+            massPerLength=beam.density_kg_m,
+            bendingStiffness=beam.flexural_n_m2,
+            axialStiffness=beam.axial_n,
+            bendingDamping=beam.damping_s * beam.flexural_n_m2,
+            axialDamping=beam.damping_s * beam.axial_n,
+            nodeNumbers=[made.node[node] for node in pair],
         )
-        for near, far in zip(beam.nodes, beam.nodes[1:], strict=False)
+        for pair in pairwise(beam.nodes)
     ]
-    for i, element in enumerate(made.elements[beam.name]):
-        made.weigh(f"{beam.name} {i}", element)
+    for element in made.elements[beam.name]:
+        made.weigh(element)
 
 
 def held_beams(made: PlaneSystem) -> Mapping[str, tuple[elastic.Beam, ...]]:
     """Return exudyn's values of each beam, by element: a beam of one element each."""
-    return {
-        name: tuple(
-            _held(made.system.GetObject(element), name, pair)
-            for element, pair in zip(
-                made.elements[name], zip(beam.nodes, beam.nodes[1:], strict=False), strict=True
-            )
-        )
-        for name, beam in made.scene.beams.items()
-    }
+
+    def held(beam: elastic.Beam) -> Iterator[elastic.Beam]:
+        for element, pair in zip(made.elements[beam.name], pairwise(beam.nodes), strict=True):
+            yield _held(made.system.GetObject(element), beam.name, pair)
+
+    return {name: tuple(held(beam)) for name, beam in made.scene.beams.items()}
 
 
 def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> elastic.Beam:
     """Return an element; its damping is NaN where its two dampings differ in time."""
-    flexural, axial = float(own["bendingStiffness"]), float(own["axialStiffness"])
-    times = float(own["bendingDamping"]) / flexural, float(own["axialDamping"]) / axial
-    one = math.isclose(*times, rel_tol=1e-12)
-    return elastic.Beam(
-        name,
-        nodes,
-        float(own["length"]),
-        float(own["massPerLength"]),
-        flexural,
-        axial,
-        times[0] if one else math.nan,
-    )
+    names = "length", "massPerLength", "bendingStiffness", "axialStiffness"
+    length, density, flexural, axial = (float(own[each]) for each in names)
+    damping = float(own["bendingDamping"]) / flexural, float(own["axialDamping"]) / axial
+    damping_s = damping[0] if math.isclose(*damping, rel_tol=1e-12) else math.nan
+    return elastic.Beam(name, nodes, length, density, flexural, axial, damping_s)
 
 
-def node_masses(made: PlaneSystem) -> dict[str, float]:
-    """Return the mass of each node [kg], half of the adjacent elements' in exudyn."""
+def node_masses(beams: Mapping[str, tuple[elastic.Beam, ...]]) -> dict[str, float]:
+    """Return the mass of each node of `held_beams` [kg]: half of its elements'."""
     found: dict[str, float] = {}
-    for elements in held_beams(made).values():
-        for one in elements:
-            for node in one.nodes:
-                half = 0.5 * one.density_kg_m * one.length_m
-                found[node] = found.get(node, 0.0) + half
+    for one in chain.from_iterable(beams.values()):
+        for node in one.nodes:
+            found[node] = found.get(node, 0.0) + 0.5 * one.density_kg_m * one.length_m
     return found
 
 
-def rounding_n(scene: Scene, state: State) -> float:
-    """Return the rounding of the axial force of a beam [N]: its strain is a difference of positions
-    over the length of an element. 0 without beams."""
-    reach = max([scene.longest_m, *(math.hypot(*place) for place in state.position.values())])
-    return max(
-        (EPSILON * beam.axial_n * reach / beam.element_m for beam in scene.beams.values()),
-        default=0.0,
-    )
-
-
-def inertia_rounding_n(scene: Scene, state: State) -> float:
-    """Return the rounding of the inertia of the heaviest body [N, N m]: m L w^2 and m L^2 w^2, at
-    the largest rate of the start."""
+def roundings_n(scene: Scene, state: State) -> tuple[float, float]:
+    """Return the rounding of the axial force of a beam [N], 0 without any: its strain is a
+    difference of positions over the length of an element; and that of the inertia of the heaviest
+    body [N, N m]: m L w^2 and m L^2 w^2, at the largest rate of the start."""
+    size, one = scene.longest_m, EPSILON["double"]
+    reach = max([size, *(math.hypot(*place) for place in state.position.values())])
+    pulls = [one * beam.axial_n * reach / beam.element_m for beam in scene.beams.values()]
     heaviest = max((pairs.mass_of(scene, body)[0] for body in pairs.bodies(scene)), default=0.0)
-    size = scene.longest_m
     paces = [math.hypot(*velocity) / size for velocity in state.velocity.values()]
     pace = max([*paces, *map(abs, state.omega.values())])
-    return EPSILON * heaviest * pace**2 * max(size, size**2)
+    return max(pulls, default=0.0), one * heaviest * pace**2 * max(size, size**2)
 
 
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
-    """Build the system of ``scene`` at ``state``, without a drive.
-
-    Raises
-    ------
-    EngineError
-        A link without mass that has to move freely (a ``prescribed`` crank need not have any), or
-        a massless block that no body carries.
-    """
-    container = exu.SystemContainer()
+    """Build the system of ``scene`` at ``state``, without a drive. Raises EngineError for a link
+    without mass that has to move freely (a ``prescribed`` crank need not have any), and for a
+    massless block that no body carries."""
+    container, own = exu.SystemContainer(), rows.body_rows(scene, state)
+    start_rad = {GROUND: 0.0} | {name: place[2] for name, (_, _, place, _) in own.items()}
     system = container.AddSystem()
-    where = pairs.frames(scene, state)
-    start_rad = {name: frame.theta for name, frame in where.items()}
-    ground = system.AddObject(items.ObjectGround())
-    made = PlaneSystem(scene, start_rad, container, system, ground)
+    made = PlaneSystem(scene, state, start_rad, container, system, centre=centres(scene))
+    made.body[GROUND] = made.add("ObjectGround")
     held = {prism.body for prism in pairs.joints(scene).prisms}
     nodes = {node for beam in scene.beams.values() for node in beam.nodes}
-    for name in pairs.bodies(scene):
+    for name, (mass, inertia, place, rates) in own.items():
         if name in nodes:
-            add_node(made, name, where[name], state)
+            add_node(made, name, place, rates)
             continue
-        mass, inertia = pairs.mass_of(scene, name)
         if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
             refuse_massless("exudyn", name, mass, inertia, turns=name not in held)
-        frame, centre = where[name], pairs.centre_of(scene, name)
-        place = frame.at(centre)
-        made.centre[name] = centre
-        made.node[name] = system.AddNode(
-            items.NodeRigidBody2D(
-                referenceCoordinates=[*place, frame.theta],
-                initialVelocities=[*frame.velocity_at(place), frame.omega],
-            )
-        )
-        made.body[name] = system.AddObject(
-            items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=made.node[name])
-        )
-        made.weigh(name, made.body[name])
+        node = made.add("NodeRigidBody2D", referenceCoordinates=place, initialVelocities=rates)
+        body = made.add("ObjectRigidBody2D", mass=mass, inertia=inertia, nodeNumber=node)
+        made.node[name], made.body[name] = node, body
+        made.weigh(body)
     for beam in scene.beams.values():
         add_elements(made, beam)
-    _join(made)
-    return made
-
-
-def _join(made: PlaneSystem) -> None:
-    for hinge in hinges(made.scene, GROUND):
-        ends = [made.marker(body, hinge.point) for body in (hinge.first, hinge.other)]
-        joint = items.ObjectJointRevolute2D(markerNumbers=ends)
-        made.hinge[hinge] = made.system.AddObject(joint)
-    for slide in pairs.joints(made.scene).slides:
-        slider, keeps = slide.slider, isinstance(slide, pairs.Prism)
-        rider, guide = pairs.riding_body(slide), slider.on
-        kept_angle = pairs.sliding_angle(slider) if keeps else 0.0
-        axis = pairs.turned((1.0, 0.0), slider.direction_rad - kept_angle)
-        normal = pairs.turned((0.0, 1.0), slider.direction_rad)
-        joint = items.ObjectJointPrismatic2D(
-            markerNumbers=[
-                made.marker(rider, slider.point),
-                made.marker_at(guide, slider.through_m),
-            ],
-            axisMarker0=[*axis, 0.0],
-            normalMarker1=[*normal, 0.0],
+    for hinge in hinges(scene, GROUND):
+        ends = [made.marker(*end) for end in made.hinge_ends(hinge)]
+        made.hinge[hinge] = made.add("ObjectJointRevolute2D", markerNumbers=ends)
+    for name, (rider, tip, guide, through, axis, normal, keeps) in rows.line_rows(made).items():
+        made.prismatic[name] = made.add(
+            "ObjectJointPrismatic2D",
+            markerNumbers=[made.marker(rider, tip), made.marker(guide, through)],
+            axisMarker0=axis,
+            normalMarker1=normal,
             constrainRotation=keeps,
         )
-        made.prismatic[slider.name] = made.system.AddObject(joint)
+    return made

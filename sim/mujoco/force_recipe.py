@@ -72,13 +72,8 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
     _check_held(scene)
     chosen = writing(scene, settings, dt_s, "prescribed")
     tree = planned(scene, state, chosen.close, delay_s=chosen.delay_s)
-    loops = _signed(
-        scene,
-        (
-            (closure.point, closure.bodies[0], f"{closure.point}: {' to '.join(closure.bodies)}")
-            for closure in tree.closures
-        ),
-    )
+    names = {one: f"{one.point}: {' to '.join(one.bodies)}" for one in tree.closures}
+    loops = _signed(scene, ((one.point, one.bodies[0], name) for one, name in names.items()))
     if not loops:
         raise EngineError(
             f"{scene.name}: no loop closes at a pin of two bodies, whose reaction this recipe "
@@ -100,33 +95,27 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
 
 def _check_held(scene: Scene) -> None:
     """Refuse free motion, and loads and laws that need a control at each step."""
-    if scene.is_free:
-        raise EngineError(
-            f"{scene.name}: nothing drives it, and the recipe reads the torque of a drive; take a "
-            "scene of constant speed"
-        )
-    if not scene.driver.is_crank:
-        raise EngineError(
-            f"{scene.name}: its driver is {scene.driver.joint}, and the recipe reads the torque of "
-            "a crank; take a scene whose driver is a link at the ground"
-        )
-    varying = [
+    varying = ["driver"] * (not isinstance(scene.driver.law, laws.ConstantSpeed))
+    varying += [
         f"loads.{load.name}"
         for load in scene.loads.values()
         if not isinstance(load.characteristic, characteristics.Constant) or load.stroke != "both"
     ]
-    if not isinstance(scene.driver.law, laws.ConstantSpeed):
-        varying.insert(0, "driver")
-    if varying:
-        raise EngineError(
-            f"{scene.name}: {', '.join(varying)} comes as a control of each step, which the recipe "
-            "leaves out; take a scene of constant speed and constant loads"
-        )
+    faults = {
+        "nothing drives it, and the recipe reads the torque of a drive; take a scene of constant "
+        "speed": scene.is_free,
+        f"its driver is {scene.driver.joint}, and the recipe reads the torque of a crank; take a "
+        "scene whose driver is a link at the ground": not scene.driver.is_crank,
+        f"{', '.join(varying)} comes as a control of each step, which the recipe leaves out; take "
+        "a scene of constant speed and constant loads": bool(varying),
+    }
+    for fault in (text for text, there in faults.items() if there):
+        raise EngineError(f"{scene.name}: {fault}")
 
 
 def _signed(scene: Scene, ties: Iterable[tuple[str, str, str]]) -> dict[str, tuple[str, int]]:
-    """Return, by pin and its second body, the names of ties at pins of two bodies, and the sign of
-    their force there; a tie is a point, the body that it pushes, and a name."""
+    """Return names and signs of the ties (point, pushed body, name) at pins of two bodies, by pin
+    and its second body."""
     pins = joints.joined_at(scene)
     return {
         f"{point}.{pins[point][1]}": (name, 1 if body == pins[point][1] else -1)

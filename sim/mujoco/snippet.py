@@ -1,17 +1,34 @@
 """MuJoCo settings as MJCF."""
 
-import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
 from sim.mujoco.settings import AS_SHIPPED, holds
-from sim.registry.offers import ALONE, WIDTH, SnippetWriter, Stepping
+from sim.registry.offers import SnippetWriter, Stepping, alone, comment
 
-IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
-INSET = "  "
-"""Indent of an element within a comment: it keeps its own line."""
+CONNECT = ("solref_timeconst_s", "solref_dampratio", "solimp_dmin", "solimp_dmax", "solimp_width")
 LOOP_CLASS = "crankcheck-loop"
 """Default class of the connects that close the mechanism, and of nothing else."""
+DRIVES: Mapping[Drive, tuple[str, ...]] = {
+    "prescribed": (
+        "Drive: the crank's hinge has armature = {ratio} (sum over all bodies of mass L^2 + "
+        "inertia), L the longest link: a flywheel that keeps the speed it starts with (qvel). The "
+        "other hinges start with the speeds that go with it.",
+        "tolerance is {stop} / {ratio}: MuJoCo scales it by the inertia of the model, "
+        "flywheel included, and would stop too early. A drive of your own needs neither.",
+    ),
+    "servo": (
+        "Drive: <velocity joint=... kv=.../> on the crank's hinge, kv = {servo_gain:g} speed (sum "
+        "over all bodies of mass L^2 + inertia), L the longest link.",
+    ),
+    "free": (
+        "Drive: none. All hinges start with the angles and speeds of the start.",
+        "Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
+        "else for the bodies of the mechanism alone: without it loops give way more, and with so "
+        "gentle a solref by far more.",
+    ),
+}
+"""Drive of the crank in the measured runs."""
 
 
 def mujoco_snippet(
@@ -26,7 +43,11 @@ def mujoco_snippet(
     dt_s = stepping.dt_s
     complete = {**asked, **holds(asked, dt_s, drive)}
     connect = _connect(complete, defaults)
-    whole = {"timestep": repr(dt_s), "integrator": str(complete["integrator"])}
+    where = "Paste at the end of the mujoco element."
+    if connect:
+        where += f' Write class="{LOOP_CLASS}" on each connect that closes the mechanism.'
+    if complete["close"]:
+        where += f" Close the loops at {complete['close']}."
     of_step = [
         "Step and integrator are the whole model's: all that it holds is stepped so.",
         _how_to_scale(complete, stepping, drive),
@@ -42,42 +63,30 @@ def mujoco_snippet(
             f"So long a step makes contacts softer: for their solref of {usual:g} s MuJoCo takes 2 "
             "timestep."
         )
+    ratio, stop = _short(asked["flywheel_ratio"]), _short(asked["tolerance"])
+    share = _short(asked["free_inverse_weight_share"])
+    driven = [text.format(ratio=ratio, stop=stop, share=share, **asked) for text in DRIVES[drive]]
+    if drive == "free" and share == "1":  # nothing to scale
+        driven.pop()
     return [
-        *_comment([*head, _where(complete, paired=bool(connect))]),
+        *comment(*head, where, xml=True),
         *connect,
-        *_comment(of_step),
-        f"<option{_attributes(whole)}/>",
-        *_comment(_alone(complete, defaults) + DRIVES[drive](asked)),
+        *comment(*of_step, xml=True),
+        f"<option{_attributes(timestep=repr(dt_s), integrator=complete['integrator'])}/>",
+        *comment(*_alone(complete, defaults), *driven, xml=True),
     ]
 
 
-def _where(complete: Settings, *, paired: bool) -> str:
-    """Say where to paste, and how the loop gets its own settings."""
-    text = "Paste at the end of the mujoco element."
-    if paired:
-        text += f' Write class="{LOOP_CLASS}" on each connect that closes the mechanism.'
-    if complete["close"]:
-        text += f" Close the loops at {complete['close']}."
-    return text
-
-
 def _connect(complete: Settings, defaults: Settings) -> list[str]:
-    """Write the class of the connects, unless it is MuJoCo's own; complete, as the model's own
-    defaults would fill the rest."""
-    timeconst = float(complete["solref_timeconst_s"])
-    damping = float(complete["solref_dampratio"])
-    impedance = tuple(complete[name] for name in IMPEDANCE)
-    own = (defaults["solref_timeconst_s"], defaults["solref_dampratio"])
-    if (timeconst, damping) == own and impedance == tuple(defaults[name] for name in IMPEDANCE):
+    """Write the class of the connects, if any: complete, as the model's defaults fill the rest."""
+    if all(complete[name] == defaults[name] for name in CONNECT):
         return []
-    row = {
-        "solref": f"{timeconst!r} {damping:g}",
-        "solimp": " ".join([*(f"{value:g}" for value in impedance), "0.5", "2"]),
-    }
+    timeconst, damping, *impedance = (float(complete[name]) for name in CONNECT)
+    solimp = " ".join([*(f"{value:g}" for value in impedance), "0.5", "2"])
     return [
         "<default>",
         f'  <default class="{LOOP_CLASS}">',
-        f"    <equality{_attributes(row)}/>",
+        f"    <equality{_attributes(solref=f'{timeconst!r} {damping:g}', solimp=solimp)}/>",
         "  </default>",
         "</default>",
     ]
@@ -85,84 +94,31 @@ def _connect(complete: Settings, defaults: Settings) -> list[str]:
 
 def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
     """Say how to scale the step for another crank speed, or for free motion."""
+    number = stepping.substeps
+    how = {
+        "nothing": f"Let go: timestep = {stepping.dt_s:g} s",
+        "turns": stepping.scaled_by_speed("timestep"),
+        "frames": f"A frame of {stepping.frame} is {number} of these steps: mj_step(model, data, "
+        f"nstep={number}). {stepping.scaled_in_frames('them')}: timestep = frame / their number",
+    }
     steps = float(complete["solref_timeconst_steps"])
     stiff = f", and solref = {steps:g} timestep." if steps else "."
-    counted = stepping.counted_in(drive)
-    if counted == "nothing":
-        return f"Let go: timestep = {stepping.dt_s:g} s{stiff}"
-    if counted == "turns":
-        return stepping.scaled_by_speed("timestep") + stiff
-    number, more = stepping.substeps, stepping.scaled_in_frames("them")
-    return (
-        f"A frame of {stepping.frame} is {number} of these steps: mj_step(model, data, "
-        f"nstep={number}). {more}: timestep = frame / their number{stiff}"
-    )
+    return how[stepping.counted_in(drive)] + stiff
 
 
 def _alone(complete: Settings, defaults: Settings) -> list[str]:
     """Write the option element for a model of the mechanism alone."""
-    row = {
-        name: str(complete[name])
-        for name in ("solver", "iterations")
-        if complete[name] != defaults[name]
-    }
-    if complete["tolerance"] != defaults["tolerance"]:
-        row["tolerance"] = _short(complete["tolerance"])
-    flags = {
-        flag: str(complete[name])
-        for name, flag in (("islands", "island"), ("contact", "contact"))
-        if complete[name] != defaults[name]
-    }
-    if not row and not flags:
-        return []
-    lines = [f"<option{_attributes(row)}/>"]
+    other = {name: value for name, value in complete.items() if value != defaults[name]}
+    if "tolerance" in other:
+        other["tolerance"] = _short(other["tolerance"])
+    row = {name: other[name] for name in ("solver", "iterations", "tolerance") if name in other}
+    named = {"islands": "island", "contact": "contact"}
+    flags = {flag: other[name] for name, flag in named.items() if name in other}
+    lines = [f"<option{_attributes(**row)}/>"] if row else []
     if flags:
-        lines = [f"<option{_attributes(row)}>", f"  <flag{_attributes(flags)}/>", "</option>"]
+        lines = [f"<option{_attributes(**row)}>", f"  <flag{_attributes(**flags)}/>", "</option>"]
     harm = "Without contacts bodies fall through each other; with them the numbers are the same."
-    return [
-        ALONE.format("model"),
-        *(INSET + line for line in lines),
-        *([harm] if "contact" in flags else []),
-    ]
-
-
-def _flywheel(complete: Settings) -> list[str]:
-    ratio, tolerance = _short(complete["flywheel_ratio"]), _short(complete["tolerance"])
-    return [
-        f"Drive: the crank's hinge has armature = {ratio} (sum over all bodies of mass L^2 + "
-        "inertia), L the longest link: a flywheel that keeps the speed it starts with (qvel). The "
-        "other hinges start with the speeds that go with it.",
-        f"tolerance is {tolerance} / {ratio}: MuJoCo scales it by the inertia of the model, "
-        "flywheel included, and would stop too early. A drive of your own needs neither.",
-    ]
-
-
-def _servo(complete: Settings) -> list[str]:
-    return [
-        "Drive: <velocity joint=... kv=.../> on the crank's hinge, kv = "
-        f"{complete['servo_gain']:g} speed (sum over all bodies of mass L^2 + inertia), L the "
-        "longest link."
-    ]
-
-
-def _free(complete: Settings) -> list[str]:
-    """Describe the start of free motion, and its settings outside MJCF."""
-    share = _short(complete["free_inverse_weight_share"])
-    scaled = (
-        f"Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
-        "else for the bodies of the mechanism alone: without it loops give way more, and with so "
-        "gentle a solref by far more."
-    )
-    start = "Drive: none. All hinges start with the angles and speeds of the start."
-    return [start, *([scaled] if share != "1" else [])]
-
-
-DRIVES: Mapping[Drive, Callable[[Settings], list[str]]] = {
-    "prescribed": _flywheel,
-    "servo": _servo,
-    "free": _free,
-}
-"""Description of the drive in the measured runs."""
+    return alone("model", lines) + [harm] * ("contact" in flags)
 
 
 def _short(value: SettingValue) -> str:
@@ -170,21 +126,8 @@ def _short(value: SettingValue) -> str:
     return f"{float(value):g}".replace("e+", "e").replace("e-0", "e-")
 
 
-def _attributes(row: Mapping[str, str]) -> str:
+def _attributes(**row: SettingValue) -> str:
     return "".join(f' {name}="{value}"' for name, value in row.items())
-
-
-def _comment(paragraphs: Sequence[str]) -> list[str]:
-    """Write paragraphs as an XML comment, in which two hyphens may not stand together."""
-    lines: list[str] = []
-    for paragraph in paragraphs:
-        text = paragraph.replace("--", "- -").replace("--", "- -")
-        whole = text.startswith(INSET)
-        lines += [text] if whole else textwrap.wrap(text, WIDTH - 5, break_on_hyphens=False)
-    if not lines:
-        return []
-    lines = [("<!-- " if i == 0 else "     ") + line for i, line in enumerate(lines)]
-    return [*lines[:-1], f"{lines[-1]} -->"]
 
 
 SNIPPET = SnippetWriter("xml", AS_SHIPPED, mujoco_snippet)

@@ -6,9 +6,6 @@ this is the leapfrog, of second order with the forces at the end of the step::
 
     x(t + dt) = x(t) + dt v(t + dt/2)
     v(t + 3/2 dt) = v(t + dt/2) + dt a(x, v, t + dt)
-
-The velocity at that instant itself, for dampers and motors, would be half by the step to come. It
-is taken from the last three positions, to the second order.
 """
 
 from collections.abc import Sequence
@@ -18,10 +15,9 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Scene
 from models.scene.joints import FIXED, Frame, whole_turns
 from models.scene.loads import SegmentSpring
-from sim.engine import BodyPose, measure
 from sim.engine.acting import Course, Frames
 from sim.pymunk.space import SpaceModel
 
@@ -35,33 +31,12 @@ WIDTH = 6
 """Numbers per body: x, y, angle, vx, vy, omega."""
 
 
-def finite(rows: Array) -> int:
-    """Return the number of finite samples (T, bodies, numbers) before the first other one."""
-    good = np.isfinite(rows).all(axis=(1, 2))
-    return len(rows) if good.all() else int(np.argmin(good))
-
-
 def rows_of(model: SpaceModel) -> dict[str, int]:
     """Return the row of each body in a batch; the static body of the space has one too."""
     buffer = pymunk.batch.Buffer()
     pymunk.batch.get_space_bodies(model.space, pymunk.batch.BodyFields.BODY_ID, buffer)
     order = np.frombuffer(buffer.int_buf(), dtype=np.uintp).tolist()
     return {name: order.index(body.id) for name, body in model.bodies.items()}
-
-
-def pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
-    """Return the frame with the origin of the pymunk body at ``centre``; no accelerations."""
-    theta, omega = row[:, 2], row[:, 5]
-    none = np.full(len(theta), np.nan)
-    return BodyPose(
-        origin=row[:, 0:2] - measure.arms(theta, centre),
-        theta=theta,
-        velocity=row[:, 3:5]
-        - omega[:, None] * measure.across(measure.arms(theta + lag_s * omega, centre)),
-        omega=omega,
-        origin_acceleration=np.full((len(theta), 2), np.nan),
-        alpha=none,
-    )
 
 
 def frames_at_end(model: SpaceModel, dt_s: float) -> Frames:

@@ -47,10 +47,7 @@ def held_by_iterations(scene: Scene, settings: Settings) -> bool:
 def iterations(settings: Settings, model: space.SpaceModel) -> int:
     """Return the iterations of the settings, or more where the chain of a scene needs them.
 
-    Raises
-    ------
-    EngineError
-        More than `MOST` are needed, and fewer requested.
+    Raises EngineError where more than `MOST` are needed, and fewer requested.
     """
     asked = int(settings["iterations"])
     if not held_by_iterations(model.scene, settings):

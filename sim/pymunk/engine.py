@@ -13,11 +13,12 @@ from models.motion import State
 from models.scene import Point, Scene, laws
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
+from sim.engine.measure import centred
 from sim.engine.settings import as_held
 from sim.pymunk import settings as own
 from sim.pymunk.acting import SpaceActing
 from sim.pymunk.arcs import Arcs
-from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, finite, pose, rows_of
+from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, rows_of
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
@@ -57,9 +58,9 @@ class PymunkSession:
         law = scene.driver.law
         inner = scene.driver.is_inner and drive == "prescribed"
         self._coasts = drive == "free" or (isinstance(law, laws.ConstantSpeed) and not inner)
-        self._driven = driven_joint(self._model, dt_s, drive)
+        self._turn = driven_joint(self._model, dt_s, drive)
         if drive != "free":
-            self._driven.turn(None, drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
+            self._turn(None, drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
@@ -100,8 +101,7 @@ class PymunkSession:
 
     def record(self, steps: int, every: int) -> Log:
         """Advance and log; one batch call per logged step appends all bodies to one buffer."""
-        log, _ = self._recorded(steps, every)
-        return log
+        return self._recorded(steps, every)[0]
 
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log with the forces of each logged step; the first sample has none."""
@@ -125,7 +125,8 @@ class PymunkSession:
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         wall = time.perf_counter() - began
         rows = rows.reshape(each * (len(at) - 1) + 1, -1, WIDTH)
-        count = finite(rows[::each])
+        good = np.isfinite(rows[::each]).all(axis=(1, 2))
+        count = len(at) if good.all() else int(np.argmin(good))
         poses = self._poses(rows[::each][:count], at[:count])
         return Log(poses, (count - 1) * every, count < len(at), (), wall), rows
 
@@ -187,7 +188,7 @@ class PymunkSession:
         the crank is set back by the next step's turn and ends at the law's angle, with the speed of
         the next step.
         """
-        space, dt, turn = self._space, self._dt, self._driven.turn
+        space, dt, turn = self._space, self._dt, self._turn
         turns = [] if self._coasts else self._turns(steps)
         acting = self._acting if self._acting else None
         if acting is not None:
@@ -213,7 +214,7 @@ class PymunkSession:
         """Return the poses of the links' own frames from the bodies' centres of gravity."""
         lag = VELOCITY_SHIFT * self._dt
         poses = {
-            name: pose(rows[:, row], self._model.centre[name], lag)
+            name: centred(rows[:, row, :3], rows[:, row, 3:], None, self._model.centre[name], lag)
             for name, row in self._rows.items()
         }
         return Poses(self._start_s + self._dt * at, poses, lag)

@@ -9,8 +9,9 @@ import pymunk
 from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene, laws
-from models.scene.joints import Slot, bodies, centre_of, joints, less, mass_of, riding_body, turned
+from models.scene.joints import Slot, bodies, centre_of, joints, mass_of, turned
 from sim.engine import Settings
+from sim.engine.ties import hinges
 from sim.pymunk.engine import VELOCITY_SHIFT
 from sim.pymunk.settings import checked
 from sim.pymunk.space import SpaceModel, build
@@ -43,12 +44,15 @@ def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
         "FAR": repr(2.0 * scene.longest_m),
         "SLIDES": _rows(_slides(model)),
     }
-    return re.sub("<([A-Z_]+)>", lambda found: texts[found[1]], program(bool(scene.sliders)))
+    text = PROGRAM
+    for part, own in (("<SLIDERS>", SLIDERS), ("<ACROSS>", ACROSS)):
+        text = text.replace(part, own if scene.sliders else "")
+    return re.sub("<([A-Z_]+)>", lambda found: texts[found[1]], text)
 
 
 def _check_covered(scene: Scene) -> None:
-    acting = {"loads": scene.loads, "springs": scene.springs, "friction": scene.friction}
-    extra = [f"{table}.{name}" for table, named in acting.items() for name in named]
+    tables = {"loads": scene.loads, "springs": scene.springs, "friction": scene.friction}
+    extra = [f"{table}.{name}" for table, named in tables.items() for name in named]
     if scene.is_free:
         extra.append("a driver that is let go")
     elif not scene.driver.is_crank:
@@ -60,10 +64,8 @@ def _check_covered(scene: Scene) -> None:
             f"{scene.name}: the recipe of pymunk leaves out {', '.join(extra)}; take them out, or "
             "run the scene itself with forces"
         )
-    ties = joints(scene)
-    pairs = sum(len(pin.bodies) - 1 for pin in ties.pins)
-    unknown = 2 * pairs + 2 * len(ties.prisms) + len(ties.slots) + 1
-    if unknown > 3 * len(bodies(scene)):
+    ties, pins = joints(scene), [*hinges(scene)]
+    if 2 * len(pins) + 2 * len(ties.prisms) + len(ties.slots) + 1 > 3 * len(bodies(scene)):
         raise EngineError(
             f"{scene.name}: its redundant links leave the reactions open, and a recipe "
             "shows how to read them; take a scene without"
@@ -73,7 +75,7 @@ def _check_covered(scene: Scene) -> None:
 def _crank(model: SpaceModel) -> str:
     """Return name and mass of the crank, and the way from its pivot to its centre of mass."""
     name = model.scene.driver.link
-    centre = less(centre_of(model.scene, name), model.centre[name])
+    centre = model.from_centre(name, centre_of(model.scene, name))
     return repr((name, mass_of(model.scene, name)[0], centre))
 
 
@@ -113,8 +115,8 @@ def _slides(model: SpaceModel) -> Iterator[str]:
         if isinstance(gear, pymunk.GearJoint):
             kept = gear.phase
         along = turned((1.0, 0.0), slider.direction_rad)
-        start = less(slider.through_m, model.centre[slider.on])
-        yield repr((slider.on, riding_body(slide), anchor, start, along, ends, kept))
+        (rider, _), (guide, start) = model.line_ends(slide)
+        yield repr((guide, rider, anchor, start, along, ends, kept))
 
 
 def _read(model: SpaceModel) -> list[int]:
@@ -133,12 +135,6 @@ def _rows(items: Iterable[str]) -> str:
 
 
 FORCE_RECIPE: ForceRecipe = pymunk_force_recipe
-
-
-def program(sliders: bool) -> str:
-    """Return the program with ``<NAME>`` and other placeholders; with sliders or without."""
-    text = PROGRAM.replace("<SLIDERS>", SLIDERS if sliders else "")
-    return text.replace("<ACROSS>", ACROSS if sliders else "")
 
 
 PROGRAM = '''\

@@ -11,10 +11,10 @@ from models.array import Array
 from models.errors import EngineError
 from models.scene import GROUND
 from models.scene import joints as pairs
-from models.scene.joints import End, Frame, less
+from models.scene.joints import End, Frame
 from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 from sim.engine.acting import EngineBodies, Pushes
-from sim.engine.ties import slide_of, spring_ends
+from sim.engine.ties import block_guides, slide_of, spring_ends
 
 
 def moves_freely(body: pymunk.Body) -> bool:
@@ -78,8 +78,7 @@ class PinFriction:
 def pin_friction(placed: SpaceBodies) -> tuple[PinFriction, ...]:
     """Make the constant friction of the pins of a scene. Raises EngineError for a pin without
     exactly two bodies."""
-    scene, rubs = placed.scene, []
-    guides = {pairs.block_name(slot.slider): slot.slider.on for slot in pairs.joints(scene).slots}
+    scene, rubs, guides = placed.scene, [], block_guides(placed.scene)
     for joint, law in scene.friction.items():
         if not isinstance(law, ConstantFriction) or joint in scene.sliders:
             continue
@@ -176,8 +175,8 @@ def _between(
     own = pymunk.DampedSpring(
         placed.body(first),
         placed.body(second),
-        less(here, placed.centre[first]),
-        less(there, placed.centre[second]),
+        placed.from_centre(first, here),
+        placed.from_centre(second, there),
         spring.free - q_at_zero,
         spring.rate,
         spring.damping,

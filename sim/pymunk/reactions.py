@@ -23,6 +23,7 @@ from models.array import Array
 from models.motion import Forces
 from models.scene.joints import centre_of, mass_of, turned
 from sim.engine.acting import Push, Pushes
+from sim.engine.measure import across, arms
 from sim.engine.momentum_balance import JointPushes, MomentumGain, forces_by_body, joint_pushes
 from sim.pymunk.native import moves_freely
 from sim.pymunk.space import SpaceModel
@@ -143,16 +144,15 @@ class Reactions:
         """Return the same for the kinematic crank, or slider, which has no mass in pymunk: with the
         scene's mass, about its pivot or its centre of mass, in the motion of its law."""
         mass, inertia = mass_of(self._scene, name)
-        (x, y), pivot = centre_of(self._scene, name), self._model.centre[name]
-        arm = MomentumGain(pivot, np.empty(0), theta, np.empty(0), np.empty(0)).arm((x, y))
+        arm = arms(theta, self._model.from_centre(name, centre_of(self._scene, name)))
         _, omega, alpha = (each[:, None] for each in self._scene.driver.law.at(time_s))
         if self._scene.driver.slider is not None:
             u = turned((1.0, 0.0), self._scene.sliders[self._scene.driver.slider].direction_rad)
             pull = mass * (alpha * np.array(u) - np.array(self._scene.gravity_m_s2))
             return np.column_stack([pull, np.zeros(len(time_s))])
-        across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-        force = mass * (alpha * across - omega**2 * arm - np.array(self._scene.gravity_m_s2))
-        moment = inertia * alpha[:, 0] + np.sum(across * force, axis=1)
+        left = across(arm)
+        force = mass * (alpha * left - omega**2 * arm - np.array(self._scene.gravity_m_s2))
+        moment = inertia * alpha[:, 0] + np.sum(left * force, axis=1)
         return np.column_stack([force, moment])
 
     def _contradictions(self, pushes: JointPushes, time_s: Array, same: float) -> Iterator[str]:

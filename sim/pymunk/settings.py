@@ -55,16 +55,8 @@ TUNED = Profile(
         ),
     },
 )
-
-
-RANGES = {
-    "iterations": (1, 1_000_000),
-    "error_bias": (0.0, 1.0),
-    "damping": (0.0, 1.0),
-}
+RANGES = {"iterations": (1, 1_000_000), "error_bias": (0.0, 1.0), "damping": (0.0, 1.0)}
 """Ranges in Chipmunk; some values outside of them end the process."""
-
-
 CHOICES = {
     "lines": ("groove", "exact"),
     "springs": ("native", "forces"),

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
 from sim.pymunk.settings import AS_SHIPPED
-from sim.registry.offers import ALONE, SnippetWriter, Stepping, comment
+from sim.registry.offers import SnippetWriter, Stepping, alone, comment
 
 DRIVES: Mapping[Drive, str] = {
     "prescribed": "Drive: the crank is a kinematic body with its origin on its pivot and a "
@@ -48,13 +48,17 @@ def pymunk_snippet(
             f"    joint.error_bias = {float(complete['error_bias'])!r}",
         ]
     lines += comment(*_notes(complete, defaults, drive))
-    if (iterations := int(complete["iterations"])) > int(defaults["iterations"]):
-        lines.append(
-            f"space.iterations = max(space.iterations, {iterations})  # the whole space's, "
-            "contacts' too"
-        )
-    alone = _alone(complete, defaults)
-    return [*lines, *alone, *_steps(stepping, drive), *comment(DRIVES[drive])]
+    only = []
+    iterations = int(complete["iterations"])
+    if iterations > int(defaults["iterations"]):
+        most = f"space.iterations = max(space.iterations, {iterations})"
+        lines.append(f"{most}  # the whole space's, contacts' too")
+    elif iterations < int(defaults["iterations"]):
+        only.append(f"space.iterations = {complete['iterations']!r}")
+    if complete["damping"] != defaults["damping"]:
+        only.append(f"space.damping = {complete['damping']!r}")
+    lines += comment(*alone("space", only))
+    return [*lines, *_steps(stepping, drive), *comment(DRIVES[drive])]
 
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
@@ -94,16 +98,6 @@ def _notes(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
             "at which they were measured."
         )
     return notes
-
-
-def _alone(complete: Settings, defaults: Settings) -> list[str]:
-    """Write the settings of the measured runs for a space of the mechanism alone."""
-    lines = []
-    if int(complete["iterations"]) < int(defaults["iterations"]):
-        lines.append(f"#   space.iterations = {complete['iterations']!r}")
-    if complete["damping"] != defaults["damping"]:
-        lines.append(f"#   space.damping = {complete['damping']!r}")
-    return [*comment(ALONE.format("space")), *lines] if lines else []
 
 
 SNIPPET = SnippetWriter("python", AS_SHIPPED, pymunk_snippet)

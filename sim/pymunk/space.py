@@ -1,12 +1,10 @@
 """The pymunk space of a scene: a body per link, joints as constraints, no shapes;
 and a point on a line where the groove joint is in error.
 
-Bodies have their origin at the centre of gravity, as Chipmunk needs it; `Body.local` keeps the
-place of the link's own frame. A driven crank is a kinematic body on its pivot. A massless slider
-block is a groove for the point of its link. A body that slides on the ground cannot turn: it gets
-an infinite moment; on a moving guide a gear of ratio 1 holds its angle.
-
-A groove is in error where pushed bodies turn; the reason and the remedy follow.
+Bodies have their origin at the centre of gravity, as Chipmunk needs it. A driven crank is a
+kinematic body on its pivot. A massless slider block is a groove for the point of its link. A body
+that slides on the ground cannot turn: it gets an infinite moment; on a moving guide a gear of ratio
+1 holds its angle.
 
 Chipmunk's groove joint solves for both components of the impulse and then drops the one along the
 line. Unless a push along the line moves the bodies along the line alone, the sliding speed leaks
@@ -18,6 +16,7 @@ by one scalar constraint across the line.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import pymunk
 
@@ -25,7 +24,7 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene, span
 from models.scene import joints as pairs
-from models.scene.joints import Prism, Slot, less, turned
+from models.scene.joints import Prism, Slot, turned
 from sim.engine import Drive
 from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 from sim.pymunk import native
@@ -108,10 +107,8 @@ def build(
     error. ``with_springs`` the space has the scene's springs. Velocities belong to ``delay_s``
     later (see `models.scene.joints.frames`).
 
-    Raises
-    ------
-    EngineError
-        A link without mass that has to move freely, or a massless block that no body carries.
+    Raises EngineError for a link without mass that has to move freely, and for a massless block
+    that no body carries.
     """
     driver = scene.driver
     _check_drive(scene, drive)
@@ -121,10 +118,8 @@ def build(
     if pinned and drive != "free":
         ends = placed.body(driver.link), placed.body(driver.base)
         motor = pymunk.SimpleMotor(*ends, ends[0].angular_velocity - ends[1].angular_velocity)
-        _add(placed, motor)
     pivots = _pins(placed, pinned=pinned)
-    for pivot in pivots.values():
-        _add(placed, pivot)
+    _add(placed, motor, *pivots.values())
     lines: dict[str, pymunk.Constraint] = {}
     gears: dict[str, pymunk.Constraint] = {}
     for slide in pairs.joints(scene).slides:
@@ -132,25 +127,14 @@ def build(
         if name == driver.slider and not pinned:
             continue  # a kinematic body, at a prescribed position
         lines[name] = _line(placed, slide, exact_lines)
-        _add(placed, lines[name])
         if isinstance(slide, Prism) and slide.slider.on != GROUND:
             gears[name] = _gear(placed, slide)
-            _add(placed, gears[name])
+        _add(placed, lines[name], gears.get(name))
     rubs = native.pin_friction(placed)
-    for rub in rubs:
-        _add(placed, rub.motor)
     springs = native.native_springs(placed, _reach(scene)) if with_springs else {}
-    for spring in springs.values():
-        _add(placed, spring.constraint)
-    return SpaceModel(
-        **vars(placed),
-        motor=motor,
-        hinges=pivots,
-        lines=lines,
-        gears=gears,
-        rubs=rubs,
-        springs=springs,
-    )
+    _add(placed, *(one.motor for one in rubs), *(one.constraint for one in springs.values()))
+    joints: dict[str, Any] = {"hinges": pivots, "lines": lines, "gears": gears}
+    return SpaceModel(**vars(placed), motor=motor, **joints, rubs=rubs, springs=springs)
 
 
 def _placed(
@@ -176,9 +160,9 @@ def _placed(
     return placed
 
 
-def _add(placed: native.SpaceBodies, constraint: pymunk.Constraint | None) -> None:
-    """Add a constraint, if there is one, without collision bookkeeping; there are no shapes."""
-    if constraint is not None:
+def _add(placed: native.SpaceBodies, *constraints: pymunk.Constraint | None) -> None:
+    """Add constraints, where there are any, without collision bookkeeping; there are no shapes."""
+    for constraint in filter(None, constraints):
         constraint.collide_bodies = False
         placed.space.add(constraint)
 
@@ -217,23 +201,19 @@ def _pins(placed: native.SpaceBodies, *, pinned: bool) -> dict[Hinge, pymunk.Con
     made: dict[Hinge, pymunk.Constraint | None] = {}
     # Immovable bodies first, so that all others hang on the firmest.
     for hinge in hinges(scene, *([GROUND] if driver.is_inner else [GROUND, driver.link])):
-        names = hinge.first, hinge.other
-        driven = set(names) == {GROUND, driver.link} and not pinned
+        (first, a), (other, b) = placed.hinge_ends(hinge)
+        driven = {first, other} == {GROUND, driver.link} and not pinned
         if driven and hinge.point == scene.driver_pivot:
             made[hinge] = None
-            continue
-        first, other = map(placed.body, names)
-        a, b = (placed.anchor(name, hinge.point) for name in names)
-        made[hinge] = pymunk.PivotJoint(first, other, a, b)
+        else:
+            made[hinge] = pymunk.PivotJoint(placed.body(first), placed.body(other), a, b)
     return made
 
 
 def _line(placed: native.SpaceBodies, slide: Prism | Slot, exact_lines: bool) -> pymunk.Constraint:
-    scene, slider, rider = placed.scene, slide.slider, pairs.riding_body(slide)
-    guide, body = placed.body(slider.on), placed.body(rider)
-    anchor = placed.anchor(rider, slider.point)
-    along_line = turned((1.0, 0.0), slider.direction_rad)
-    start = less(slider.through_m, placed.centre[slider.on])
+    scene, along_line = placed.scene, turned((1.0, 0.0), slide.slider.direction_rad)
+    (rider, anchor), (on, start) = placed.line_ends(slide)
+    guide, body = placed.body(on), placed.body(rider)
     off = abs(along_line[0] * start[1] - along_line[1] * start[0])
     small = 1e-12 * scene.longest_m
     sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
@@ -270,4 +250,4 @@ def _groove(placed: native.SpaceBodies, slide: Prism | Slot) -> list[Point]:
     now, _ = pairs.along(slider, where[slider.on], place, (0.0, 0.0))
     u, (x, y) = turned((1.0, 0.0), slider.direction_rad), slider.through_m
     ends = now - _reach(scene), now + _reach(scene)
-    return [less((x + s * u[0], y + s * u[1]), placed.centre[slider.on]) for s in ends]
+    return [placed.from_centre(slider.on, (x + s * u[0], y + s * u[1])) for s in ends]

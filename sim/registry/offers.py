@@ -174,17 +174,27 @@ def snippet_writer(engine: str) -> SnippetWriter:
 
 WIDTH = 96
 """Most characters in a line of a snippet."""
-ALONE = "ONLY TO MEASURE AS WE DID, in a {} with nothing else in it:"
-"""Title of what would change the rest of a user's model."""
+INSET = "  "
+"""Indent of a line of code within a comment: it keeps its own line."""
 
 
-def comment(*paragraphs: str) -> list[str]:
-    """Return the paragraphs as comment lines of Python."""
+def alone(whole: str, lines: Sequence[str]) -> list[str]:
+    """Return paragraphs of a comment: lines that would change the rest of a user's model."""
+    title = f"ONLY TO MEASURE AS WE DID, in a {whole} with nothing else in it:"
+    return [title, *(INSET + line for line in lines)] if lines else []
+
+
+def comment(*paragraphs: str, xml: bool = False) -> list[str]:
+    """Return the paragraphs as comment lines of Python, or as one comment of XML, in which two
+    hyphens may not stand together."""
+    first, more, end = ("<!-- ", "     ", " -->") if xml else ("# ", "# ", "")
     lines: list[str] = []
     for paragraph in paragraphs:
-        wrapped = textwrap.wrap(paragraph, WIDTH - 2, break_on_hyphens=False)
-        lines += [f"# {line}" for line in wrapped]
-    return lines
+        text = paragraph.replace("--", "- -").replace("--", "- -") if xml else paragraph
+        wrapped = textwrap.wrap(text, WIDTH - len(more), break_on_hyphens=False)
+        lines += [text] if text.startswith(INSET) else wrapped
+    marked = [(more if k else first) + line for k, line in enumerate(lines)]
+    return [*marked[:-1], marked[-1] + end] if marked else []
 
 
 def snippet(

@@ -63,8 +63,6 @@ class FakeEngine:
     applies_loads: bool = False
     applies_constant_friction: bool = False
     applies_springs: bool = False
-    precision: Precision = "double"
-    floor: float = AT_ROUNDING
     no_forces: str = ""
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
