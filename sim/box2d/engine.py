@@ -20,6 +20,7 @@ from sim.engine.ties import hinges, refuse_driver_angle, refuse_massless
 
 b2: Any = import_module("pyb2d3")  # ships no stubs
 VERSION = version("pyb2d3")
+SLOW_S = 1.0 / 64.0
 
 
 class Box2dSession(BodySession):
@@ -34,7 +35,11 @@ class Box2dSession(BodySession):
         refuse_driver_angle(scene, self.name)
         super().__init__(scene, state, settings, dt_s, driven_by)
         self.substeps = int(settings["substeps"])
-        self.world = b2.World(gravity=scene.gravity_m_s2)
+        self.pace = 1.0
+        if settings["joints"] == "stiffest":
+            self.pace = 2.0 ** math.ceil(math.log2(SLOW_S * self.substeps / dt_s))
+        gx, gy = scene.gravity_m_s2
+        self.world = b2.World(gravity=(gx / self.pace**2, gy / self.pace**2))
         self.world.sleeping_enabled = False
         self.world.continuous_enabled = False
         self.body: dict[str, Any] = {GROUND: self.world.create_static_body()}
@@ -48,10 +53,11 @@ class Box2dSession(BodySession):
     def _body(self, name: str) -> Any:
         frame, centre = self.where[name], self.bodies.centre[name]
         place = frame.at(centre)
+        u, v = frame.velocity_at(place)
         given = {
             "position": place,
-            "linear_velocity": frame.velocity_at(place),
-            "angular_velocity": frame.omega,
+            "linear_velocity": (u / self.pace, v / self.pace),
+            "angular_velocity": frame.omega / self.pace,
             "enable_sleep": False,
         }
         if name == self.led:
@@ -106,9 +112,10 @@ class Box2dSession(BodySession):
             self.world.create_prismatic_joint(*bodies, **ends, reference_angle=angle)
 
     def once(self) -> None:
-        self.world.step(self.dt, self.substeps)
+        self.world.step(self.pace * self.dt, self.substeps)
 
     def turn(self, place: float | None, speed: float) -> None:
+        speed /= self.pace
         if self.motor is not None:
             self.motor.motor_speed = self.sense * speed
             return
@@ -120,7 +127,7 @@ class Box2dSession(BodySession):
 
     def push(self, pushes: Pushes) -> None:
         for name in self.names:
-            fx, fy, moment = pushes.on_bodies[name]
+            fx, fy, moment = (each / self.pace**2 for each in pushes.on_bodies[name])
             self.body[name].apply_force_to_center((fx, fy))
             self.body[name].apply_torque(moment)
 
@@ -131,6 +138,7 @@ class Box2dSession(BodySession):
             row[:2], turned_by = body.position, body.rotation
             row[2] = math.atan2(turned_by.s, turned_by.c)
             row[3:5], row[5] = body.linear_velocity, body.angular_velocity
+        rows[:, 3:] *= self.pace
         return rows
 
     def facts(self) -> Facts:
@@ -142,7 +150,7 @@ class Box2dSession(BodySession):
                 matter[name] = own_mass.mass, inertia
         centre = {name: self.bodies.centre[name] for name in matter}
         gravity = self.world.gravity
-        return self.told(VERSION, matter, centre, (gravity[0], gravity[1]), {})
+        return self.told(VERSION, matter, centre, (self.pace**2 * gravity[0], self.pace**2 * gravity[1]), {})
 
 
 def rotation(angle: float) -> Any:
