@@ -150,7 +150,9 @@ class Box2dSession(BodySession):
                 matter[name] = own_mass.mass, inertia
         centre = {name: self.bodies.centre[name] for name in matter}
         gravity = self.world.gravity
-        return self.told(VERSION, matter, centre, (self.pace**2 * gravity[0], self.pace**2 * gravity[1]), {})
+        return self.told(
+            VERSION, matter, centre, (self.pace**2 * gravity[0], self.pace**2 * gravity[1]), {}
+        )
 
 
 def rotation(angle: float) -> Any:
