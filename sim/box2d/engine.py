@@ -8,25 +8,27 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
+from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene import joints as pairs
-from models.scene.joints import Prism, Slot, less, turned
+from models.scene.joints import Frame, Prism, Slot, less, turned
 from sim.box2d import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
-from sim.engine.acting import Pushes
-from sim.engine.stepped import BodySession
-from sim.engine.ties import hinges, refuse_driver_angle, refuse_massless
+from sim.engine.acting import Push, Pushes
+from sim.engine.heavy_driver import HeavyDriverSession
+from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 
 b2: Any = import_module("pyb2d3")  # ships no stubs
 VERSION = version("pyb2d3")
 SLOW_S = 1.0 / 64.0
 
 
-class Box2dSession(BodySession):
+class Box2dSession(HeavyDriverSession):
     """A session with one world."""
 
     name = "box2d"
+    tangent = 3.0
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
@@ -34,7 +36,6 @@ class Box2dSession(BodySession):
         own.checked(settings)
         refuse_driver_angle(scene, self.name)
         super().__init__(scene, state, settings, dt_s, driven_by)
-        self.substeps = int(settings["substeps"])
         self.pace = 1.0
         if settings["joints"] == "stiffest":
             self.pace = 2.0 ** math.ceil(math.log2(SLOW_S * self.substeps / dt_s))
@@ -43,60 +44,75 @@ class Box2dSession(BodySession):
         self.world.sleeping_enabled = False
         self.world.continuous_enabled = False
         self.body: dict[str, Any] = {GROUND: self.world.create_static_body()}
-        self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
-        for name in self.names:
-            self.body[name] = self._body(name)
+        self.body |= {n: self._body(n) for n in self.names if n != self.led}
+        if self.led:
+            size = self.heavy, self.heavy if scene.driver.slider is None else math.inf
+            self.body[self.led] = self._placed(self.led_frame, *size, gravity_scale=0.0)
         self.motor: Any = None
         self._join()
         self.begin(self.bodies)
 
     def _body(self, name: str) -> Any:
-        frame, centre = self.where[name], self.bodies.centre[name]
-        place = frame.at(centre)
-        u, v = frame.velocity_at(place)
-        given = {
-            "position": place,
-            "linear_velocity": (u / self.pace, v / self.pace),
-            "angular_velocity": frame.omega / self.pace,
-            "enable_sleep": False,
-        }
-        if name == self.led:
-            body = self.world.create_kinematic_body(**given)
-            body.set_transform(place, rotation(frame.theta))
-            return body
+        frame, turns = self.where[name], name not in self.fixed
         mass, inertia = pairs.mass_of(self.scene, name)
-        turns = name not in self.fixed
         refuse_massless(self.name, name, mass, inertia, turns=turns)
-        body = self.world.create_dynamic_body(**given, fixed_rotation=not turns)
+        place = frame.at(self.bodies.centre[name])
+        at = Frame(place, frame.theta, frame.velocity_at(place), frame.omega)
+        return self._placed(at, mass, inertia if turns else math.inf)
+
+    def _placed(self, frame: Frame, mass: float, inertia: float, **more: float) -> Any:
+        """Add a body with its centre of mass at the origin of its frame."""
+        turns = inertia < math.inf
+        body = self.world.create_dynamic_body(
+            position=frame.origin, enable_sleep=False, fixed_rotation=not turns, **more
+        )
         matter = b2.MassData()
-        matter.mass, matter.rotational_inertia, matter.center = mass, inertia, (0.0, 0.0)
+        matter.mass, matter.center = mass, (0.0, 0.0)
+        matter.rotational_inertia = inertia if turns else 0.0
         body.mass_data = matter
-        body.set_transform(place, rotation(frame.theta))
+        self._set(body, frame)
         return body
+
+    def _set(self, body: Any, frame: Frame) -> None:
+        body.set_transform(frame.origin, rotation(frame.theta))
+        u, v = frame.velocity
+        body.linear_velocity = u / self.pace, v / self.pace
+        body.angular_velocity = frame.omega / self.pace
 
     def _join(self) -> None:
         scene, driver = self.scene, self.scene.driver
         firm = (GROUND,) if driver.is_inner else (GROUND, driver.link)
+        has_motor = self.drive != "free" and not self.led
         for hinge in hinges(scene, *firm):
             names = hinge.first, hinge.other
             driving = hinge.point == scene.driver_pivot and set(names) == {driver.link, driver.base}
-            if driving and self.led:
-                continue
-            joint = self.world.create_revolute_joint(
-                self.body[names[0]],
-                self.body[names[1]],
-                local_anchor_a=self.bodies.anchor(names[0], hinge.point),
-                local_anchor_b=self.bodies.anchor(names[1], hinge.point),
-                enable_motor=driving and self.drive != "free",
-                max_motor_torque=float(self.settings["motor_n_m"]),
-            )
-            if driving:
-                self.motor, self.sense = joint, 1.0 if names[1] == driver.link else -1.0
+            if not (driving and self.led):
+                joint = self._pin(hinge, driven=driving and has_motor)
+                if driving:
+                    self.motor, self.sense = joint, 1.0 if names[1] == driver.link else -1.0
         for slide in pairs.joints(scene).slides:
-            if not (self.led and slide.slider.name == driver.slider):
-                self._slide(slide)
+            if slide.slider.name != driver.slider or not self.led:
+                self._slide(slide, driven=slide.slider.name == driver.slider and has_motor)
+            elif isinstance(slide, Slot):
+                rider = pairs.riding_body(slide)
+                self.world.create_revolute_joint(
+                    self.body[self.led],
+                    self.body[rider],
+                    local_anchor_a=(0.0, 0.0),
+                    local_anchor_b=self.bodies.anchor(rider, slide.slider.point),
+                )
 
-    def _slide(self, slide: Prism | Slot) -> None:
+    def _pin(self, hinge: Hinge, *, driven: bool) -> Any:
+        return self.world.create_revolute_joint(
+            self.body[hinge.first],
+            self.body[hinge.other],
+            local_anchor_a=self.bodies.anchor(hinge.first, hinge.point),
+            local_anchor_b=self.bodies.anchor(hinge.other, hinge.point),
+            enable_motor=driven,
+            max_motor_torque=float(self.settings["motor_n_m"]) / self.pace**2,
+        )
+
+    def _slide(self, slide: Prism | Slot, *, driven: bool) -> None:
         slider, rider = slide.slider, pairs.riding_body(slide)
         ends = {
             "local_anchor_a": less(slider.through_m, self.bodies.centre[slider.on]),
@@ -105,31 +121,43 @@ class Box2dSession(BodySession):
             "enable_spring": False,
         }
         bodies = self.body[slider.on], self.body[rider]
-        if isinstance(slide, Slot):
-            self.world.create_wheel_joint(*bodies, **ends)
+        if isinstance(slide, Prism):
+            joint = self.world.create_prismatic_joint(
+                *bodies,
+                **ends,
+                reference_angle=pairs.sliding_angle(slider),
+                enable_motor=driven,
+                max_motor_force=float(self.settings["motor_n_m"]) / self.pace**2,
+            )
+            if driven:
+                self.motor, self.sense = joint, 1.0
+        elif driven:
+            raise EngineError(
+                f"{self.scene.name}: its driver is the slider {slider.name}, a block without mass; "
+                "box2d moves no point along a line by a motor; give the block a mass"
+            )
         else:
-            angle = pairs.sliding_angle(slider)
-            self.world.create_prismatic_joint(*bodies, **ends, reference_angle=angle)
+            self.world.create_wheel_joint(*bodies, **ends)
 
     def once(self) -> None:
         self.world.step(self.pace * self.dt, self.substeps)
 
-    def turn(self, place: float | None, speed: float) -> None:
-        speed /= self.pace
-        if self.motor is not None:
-            self.motor.motor_speed = self.sense * speed
-            return
-        body, driver = self.body[self.scene.driver.link], self.scene.driver
-        if driver.slider is None:
-            if place is not None:
-                body.set_transform(body.position, rotation(place))
-            body.angular_velocity = speed
+    def run_motor(self, speed: float) -> None:
+        self.motor.motor_speed = self.sense * speed / self.pace
+
+    def lead(self, frame: Frame, push: Push) -> None:
+        self._set(self.body[str(self.led)], frame)
+        self._push(str(self.led), push)
 
     def push(self, pushes: Pushes) -> None:
-        for name in self.names:
-            fx, fy, moment = (each / self.pace**2 for each in pushes.on_bodies[name])
-            self.body[name].apply_force_to_center((fx, fy))
-            self.body[name].apply_torque(moment)
+        for name in (name for name in self.names if name != self.led):
+            self._push(name, pushes.on_bodies[name])
+
+    def _push(self, name: str, push: Push) -> None:
+        """Act on a body in the next step alone."""
+        fx, fy, moment = (each / self.pace**2 for each in push)
+        self.body[name].apply_force_to_center((fx, fy))
+        self.body[name].apply_torque(moment)
 
     def look(self) -> Array:
         rows = np.empty((len(self.names), 6))
