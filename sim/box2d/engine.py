@@ -35,6 +35,10 @@ class Box2dSession(HeavyDriverSession):
     ) -> None:
         own.checked(settings)
         refuse_driver_angle(scene, self.name)
+        substeps = int(settings["substeps"])
+        # A sub-step moves by the velocities at its end.
+        self.shift = -0.5 / substeps if driven_by == "free" else 0.0
+        self.acts_at = 0.5 - 0.5 / substeps
         super().__init__(scene, state, settings, dt_s, driven_by)
         self.pace = 1.0
         if settings["joints"] == "stiffest":
