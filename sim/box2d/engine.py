@@ -21,7 +21,8 @@ from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 
 b2: Any = import_module("pyb2d3")  # ships no stubs
 VERSION = version("pyb2d3")
-SLOW_S = 1.0 / 64.0
+JOINT_HZ = 60.0
+"""Rate of the springs that are Box2D's joints, but at most an eighth of that of its sub-steps."""
 
 
 class Box2dSession(HeavyDriverSession):
@@ -41,8 +42,9 @@ class Box2dSession(HeavyDriverSession):
         self.acts_at = 0.5 - 0.5 / substeps
         super().__init__(scene, state, settings, dt_s, driven_by)
         self.pace = 1.0
-        if settings["joints"] == "stiffest":
-            self.pace = 2.0 ** math.ceil(math.log2(SLOW_S * self.substeps / dt_s))
+        """Unit of time here over the world's: what gives its joints another rate than 60 Hz."""
+        if swings := float(settings["joint_swings"]):
+            self.pace = 2.0 ** round(math.log2(swings / (JOINT_HZ * dt_s)))
         gx, gy = scene.gravity_m_s2
         self.world = b2.World(gravity=(gx / self.pace**2, gy / self.pace**2))
         self.world.sleeping_enabled = False
@@ -50,8 +52,8 @@ class Box2dSession(HeavyDriverSession):
         self.body: dict[str, Any] = {GROUND: self.world.create_static_body()}
         self.body |= {n: self._body(n) for n in self.names if n != self.led}
         if self.led:
-            size = self.heavy, self.heavy if scene.driver.slider is None else math.inf
-            self.body[self.led] = self._placed(self.led_frame, *size, gravity_scale=0.0)
+            heavy = self.heavy, self.heavy
+            self.body[self.led] = self._placed(self.led_frame, *heavy, gravity_scale=0.0)
         self.motor: Any = None
         self._join()
         self.begin(self.bodies)
@@ -62,17 +64,13 @@ class Box2dSession(HeavyDriverSession):
         refuse_massless(self.name, name, mass, inertia, turns=turns)
         place = frame.at(self.bodies.centre[name])
         at = Frame(place, frame.theta, frame.velocity_at(place), frame.omega)
-        return self._placed(at, mass, inertia if turns else math.inf)
+        return self._placed(at, mass, inertia or mass * self.scene.longest_m**2)
 
     def _placed(self, frame: Frame, mass: float, inertia: float, **more: float) -> Any:
         """Add a body with its centre of mass at the origin of its frame."""
-        turns = inertia < math.inf
-        body = self.world.create_dynamic_body(
-            position=frame.origin, enable_sleep=False, fixed_rotation=not turns, **more
-        )
+        body = self.world.create_dynamic_body(position=frame.origin, enable_sleep=False, **more)
         matter = b2.MassData()
-        matter.mass, matter.center = mass, (0.0, 0.0)
-        matter.rotational_inertia = inertia if turns else 0.0
+        matter.mass, matter.rotational_inertia, matter.center = mass, inertia, (0.0, 0.0)
         body.mass_data = matter
         self._set(body, frame)
         return body
@@ -95,8 +93,9 @@ class Box2dSession(HeavyDriverSession):
                 if driving:
                     self.motor, self.sense = joint, 1.0 if names[1] == driver.link else -1.0
         for slide in pairs.joints(scene).slides:
-            if slide.slider.name != driver.slider or not self.led:
-                self._slide(slide, driven=slide.slider.name == driver.slider and has_motor)
+            name = slide.slider.name
+            if name != driver.slider or not self.led:
+                self._slide(slide, driven=name == driver.slider and has_motor)
             elif isinstance(slide, Slot):
                 rider = pairs.riding_body(slide)
                 self.world.create_revolute_joint(
@@ -201,6 +200,8 @@ ENGINE = Engine(
     check=own.checked,
     open=Box2dSession,
     reports_accelerations=False,
+    in_seconds=lambda settings: () if settings["joint_swings"] else ("joint_swings",),
+    forces_of="steps",
     applies_loads=True,
     applies_springs=True,
     precision="single",

@@ -4,8 +4,12 @@ from sim.engine import Profile, Setting
 from sim.engine.settings import checker
 
 SHIPPED = {
-    "substeps": Setting(4, "default of its examples: each sweeps the joints twice"),
-    "joints": Setting("60 Hz", "default: their springs, or an eighth of the sub-steps' rate"),
+    "substeps": Setting(4, "default of its examples: in each, joints are solved twice"),
+    "joint_swings": Setting(
+        0.0,
+        "default: none in a step, but 60 Hz of the springs that are its joints; more come by "
+        "another unit of time, and at most an eighth in a sub-step",
+    ),
     "motor_n_m": Setting(1e6, "most torque [N m] or force [N] of a motor: as good as any"),
 }
 AS_SHIPPED = Profile("as-shipped", "box2d", "Box2D's own defaults", SHIPPED)
@@ -15,19 +19,19 @@ TUNED = Profile(
     "Joints as stiff as the sub-step allows, and more sub-steps",
     SHIPPED
     | {
-        "joints": Setting(
-            "stiffest",
-            "by theory: springs of 60 Hz give way by w^2 / (2 pi 60)^2 of the length at any step; "
-            "in a slower unit of time they are bound by the sub-step, and errors of second order",
+        "joint_swings": Setting(
+            100.0,
+            "by theory: 60 Hz give way by (w / 377 rad/s)^2 of the length at any step, n swings in "
+            "a step by (w dt / 2 pi n)^2; above an eighth of the sub-steps nothing changes",
         ),
         "substeps": Setting(
             20,
-            "errors fall as their square until places are rounded, rates as their number; chosen "
-            "on a four-bar with a rocker 1000 times as heavy, tried on the shipped scenes; rounded "
-            "velocities cost energy in free motion with 50",
+            "errors fall as their square, of rates as their number, until numbers are rounded: "
+            "chosen on a four-bar whose rocker is 1000 times as heavy, tried on the shipped "
+            "scenes; 50 are no better there, and rounding moves free motion more",
         ),
     },
 )
 checked = checker(
-    {"joints": ("60 Hz", "stiffest")}, {"substeps": (1, 1000), "motor_n_m": (0.0, 1e12)}
+    {}, {"substeps": (1, 1000), "joint_swings": (0.0, 1000.0), "motor_n_m": (0.0, 1e12)}
 )

@@ -4,19 +4,23 @@ a motor."""
 
 import math
 from abc import abstractmethod
-from typing import ClassVar
+from collections.abc import Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 
-from models.motion import State
-from models.scene import Point, Scene
+from models.array import Array
+from models.motion import Forces, State
+from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from models.scene.joints import Frame, less, turned
 from models.scene.laws import ConstantSpeed
-from sim.engine import Drive, Settings
+from sim.engine import Drive, Poses, Settings
 from sim.engine.acting import Push, SliderCourse
-from sim.engine.stepped import BodySession
-from sim.engine.ties import slide_of
+from sim.engine.measure import BodyPath, PointPath
+from sim.engine.momentum_balance import MomentumGain, forces_by_body, joint_pushes
+from sim.engine.stepped import BodySession, centred
+from sim.engine.ties import hinges, slide_of
 
 HEAVY = 1e9
 """Inertia of a led driver over the mechanism's: nothing that is read has as many digits."""
@@ -38,7 +42,7 @@ class HeavyDriverSession(BodySession):
     ) -> None:
         super().__init__(scene, state, settings, dt_s, driven_by)
         self.substeps = int(settings["substeps"])
-        self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == "ground"}
+        self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
         """Bodies that do not turn."""
         driver = scene.driver
         self.heavy = HEAVY * pairs.inertia_scale(scene) / scene.driver_arm_m**2
@@ -111,3 +115,39 @@ class HeavyDriverSession(BodySession):
             x, y = self.base[0] + along * u, self.base[1] + along * v
         frame = Frame((x, y), theta, (before * u, before * v), 0.0)
         self.lead(frame, (push * u, push * v, 0.0))
+
+    def joint_forces(self) -> object:
+        """Return the numbers before and after the last step, and all actions in it."""
+        acting = self.acting
+        return self.before, self.numbers(), self.pushed.on_bodies, acting.on_blocks, acting.rubbed
+
+    def acted(self, rows: Sequence[Any], poses: Poses) -> Forces:
+        """Return the forces by the momentum of the bodies, at the middle of each step.
+
+        Impulses of stiff joints in a sub-step, which engines report, repeat the rounding of places.
+        """
+        before, after = (np.array([row[k] for row in rows]) for k in (0, 1))
+        gains = {}
+        for k, name in enumerate(self.names):
+            given = np.array([row[2][name] for row in rows])
+            gains[name] = self._gain(name, before[:, k], after[:, k], given)
+        blocks = {name: np.array([row[3][name] for row in rows]) for name in rows[0][3]}
+        rubbed = {n: np.array([row[4].get(n, math.nan) for row in rows]) for n in rows[-1][4]}
+        tied = [*hinges(self.scene, GROUND)]
+        found = joint_pushes(self.scene, tied, gains, driven=self.drive != "free")
+        times = poses.time_s + self.dt * (self.shift - 0.5)
+        return forces_by_body(self.scene, found, blocks, rubbed, times)
+
+    def _gain(self, name: str, before: Array, after: Array, given: Array) -> MomentumGain:
+        """Return the action of joints and drive on a body in each step."""
+        mass, inertia = pairs.mass_of(self.scene, name)
+        own, centre = self.bodies.centre[name], pairs.centre_of(self.scene, name)
+        lag = self.shift * self.dt
+        ends = [centred(row, own, lag) for row in (before, after)]
+        start, end = (BodyPath(pose) for pose in ends)
+        gained = PointPath(end, centre).velocity - PointPath(start, centre).velocity
+        place = 0.5 * (PointPath(start, centre).position + PointPath(end, centre).position)
+        force = mass * (gained / self.dt - np.array(self.scene.gravity_m_s2)) - given[:, :2]
+        moment = inertia * (after[:, 5] - before[:, 5]) / self.dt - given[:, 2]
+        theta = 0.5 * (before[:, 2] + after[:, 2])
+        return MomentumGain(centre, place, theta, force, moment)
