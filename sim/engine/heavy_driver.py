@@ -102,6 +102,7 @@ class HeavyDriverSession(BodySession):
         # A gain in equal parts, each before the sub-step's motion.
         mean, sub = before + 0.5 * gain * (1.0 + 1.0 / self.substeps), self.dt / self.substeps
         slider, push = self.scene.driver.slider, self.heavy * gain / self.dt
+        push = 0.0 if place is None else push
         (x, y), theta = self.led_frame.origin, self.led_frame.theta
         if slider is None:
             mean -= mean**3 * sub**2 / self.tangent
@@ -136,7 +137,13 @@ class HeavyDriverSession(BodySession):
         tied = [*hinges(self.scene, GROUND)]
         found = joint_pushes(self.scene, tied, gains, driven=self.drive != "free")
         times = poses.time_s + self.dt * (self.shift - 0.5)
-        return forces_by_body(self.scene, found, blocks, rubbed, times)
+        forces = forces_by_body(self.scene, found, blocks, rubbed, times)
+        unknown = np.isnan(before).any(axis=(1, 2))  # no step led there
+
+        def without(series: Array) -> Array:
+            return np.where(unknown.reshape(-1, *[1] * (series.ndim - 1)), np.nan, series)
+
+        return forces.each_series(without)
 
     def _gain(self, name: str, before: Array, after: Array, given: Array) -> MomentumGain:
         """Return the action of joints and drive on a body in each step."""
