@@ -128,7 +128,9 @@ class Box2dSession(HeavyDriverSession):
             joint = self.world.create_prismatic_joint(
                 *bodies,
                 **ends,
-                reference_angle=pairs.sliding_angle(slider),
+                reference_angle=b2.relative_angle(
+                    rotation(pairs.sliding_angle(slider)), rotation(0.0)
+                ),
                 enable_motor=driven,
                 max_motor_force=float(self.settings["motor_n_m"]) / self.pace**2,
             )
@@ -205,5 +207,5 @@ ENGINE = Engine(
     applies_loads=True,
     applies_springs=True,
     precision="single",
-    floor=5e-6,
+    floor=2e-6,
 )
