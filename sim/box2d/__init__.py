@@ -2,4 +2,4 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("pyb2d3", "'crankcheck[box2d]'", (), True)
+DECLARATION = Declaration("pyb2d3", "'crankcheck[box2d]'", ("knobs",), True)

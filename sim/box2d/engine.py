@@ -40,7 +40,7 @@ class Box2dSession(HeavyDriverSession):
         # A sub-step moves by the velocities at its end.
         self.shift = -0.5 / substeps if driven_by == "free" else 0.0
         self.acts_at = 0.5 - 0.5 / substeps
-        super().__init__(scene, state, settings, dt_s, driven_by)
+        super().__init__(scene, state, settings, dt_s, driven_by, substeps)
         self.pace = 1.0
         """Unit of time here over the world's: what gives its joints another rate than 60 Hz."""
         if swings := float(settings["joint_swings"]):

@@ -38,10 +38,16 @@ class HeavyDriverSession(BodySession):
     tangent: ClassVar[float]
 
     def __init__(
-        self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
+        self,
+        scene: Scene,
+        state: State,
+        settings: Settings,
+        dt_s: float,
+        driven_by: Drive,
+        substeps: int,
     ) -> None:
         super().__init__(scene, state, settings, dt_s, driven_by)
-        self.substeps = int(settings["substeps"])
+        self.substeps = substeps
         self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
         """Bodies that do not turn."""
         driver = scene.driver

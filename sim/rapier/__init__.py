@@ -2,5 +2,5 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("rapier3d", "'crankcheck[rapier]'", (), True)
+DECLARATION = Declaration("rapier3d", "'crankcheck[rapier]'", ("knobs",), True)
 """Rapier: free bodies, joints solved by impulses in sub-steps, in single precision."""

@@ -37,12 +37,13 @@ class RapierSession(HeavyDriverSession):
     ) -> None:
         own.checked(settings)
         refuse_driver_angle(scene, self.name)
-        substeps = int(settings["substeps"])
+        self.of_substeps = "free_substeps" if driven_by == "free" else "substeps"
+        substeps = int(settings[self.of_substeps])
         # The last sweeps of a sub-step leave velocities that fit the positions at its start.
         self.of_velocities = "free_velocity_sweeps" if driven_by == "free" else "velocity_sweeps"
         self.shift = (-1.0 if settings[self.of_velocities] else -0.5) / substeps
         self.acts_at = 0.5 - 0.5 / substeps
-        super().__init__(scene, state, settings, dt_s, driven_by)
+        super().__init__(scene, state, settings, dt_s, driven_by, substeps)
         self.world = rp.PhysicsWorld(gravity=(*scene.gravity_m_s2, 0.0))
         self._set()
         self.handle = {GROUND: self.world.add_body(rp.RigidBody.fixed())}
@@ -60,7 +61,7 @@ class RapierSession(HeavyDriverSession):
     def _set(self) -> None:
         held, given = self.world.integration_parameters, self.settings
         held.dt = self.dt
-        held.num_solver_iterations = given["substeps"]
+        held.num_solver_iterations = given[self.of_substeps]
         held.num_internal_pgs_iterations = given["sweeps"]
         held.num_internal_stabilization_iterations = given[self.of_velocities]
         held.normalized_max_linear_velocity = 1e9
@@ -215,7 +216,7 @@ class RapierSession(HeavyDriverSession):
         centre = {name: self.bodies.centre[name] for name in matter}
         down, held = self.world.gravity, self.world.integration_parameters
         found = {
-            "substeps": held.num_solver_iterations,
+            self.of_substeps: held.num_solver_iterations,
             "sweeps": held.num_internal_pgs_iterations,
             self.of_velocities: held.num_internal_stabilization_iterations,
         }
