@@ -6,7 +6,7 @@ from models.scene.joints import joints
 from sim.engine import Settings
 from sim.registry.offers import Knob, SearchSpace, Work
 
-STEP_US, JOINT_US = 20.0, 0.7
+STEP_US, JOINT_US = 7.0, 0.09
 """Time of a step, and of a joint in a sub-step."""
 
 

@@ -6,18 +6,20 @@ from models.scene.joints import joints
 from sim.engine import Settings
 from sim.registry.offers import Knob, SearchSpace, Work
 
-STEP_US, JOINT_US = 70.0, 0.3
-"""Time of a step, and of a joint in a sweep."""
+STEP_US, SUBSTEP_US, JOINT_US = 12.0, 2.0, 0.025
+"""Time of a step, of a sub-step, and of a joint in a sweep."""
 
 
 def work(scene: Scene, start: State) -> Work:
-    """Return the cost of a step: a part for itself, and the joints once per sweep."""
+    """Return the cost of a step: a part for itself and each sub-step, and the joints once
+    per sweep."""
     ties = joints(scene)
     count = sum(len(pin.bodies) - 1 for pin in ties.pins) + len(ties.slides)
 
     def us(settings: Settings) -> float:
         sweeps = float(settings["sweeps"]) + float(settings["velocity_sweeps"])
-        return STEP_US + JOINT_US * count * float(settings["substeps"]) * sweeps
+        each = SUBSTEP_US + JOINT_US * count * sweeps
+        return STEP_US + each * float(settings["substeps"])
 
     return us
 
