@@ -25,10 +25,10 @@ TUNED = Profile(
             "a step by (w dt / 2 pi n)^2; above an eighth of the sub-steps nothing changes",
         ),
         "substeps": Setting(
-            20,
+            25,
             "errors fall as their square, of rates as their number, until numbers are rounded: "
             "chosen on a four-bar whose rocker is 1000 times as heavy, tried on the shipped "
-            "scenes; 50 are no better there, and rounding moves free motion more",
+            "scenes; 50 are no better there, and force rounding into free motion",
         ),
     },
 )
