@@ -10,7 +10,8 @@ A default is a budget by the step and the scene, from the theory of the error::
 ``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration of
 the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
 ``share`` the part that a soft constraint may leave open of an acceleration (s = 0), and so of a
-velocity (s = 1), at every step; k is the number of differentiations. ``summed`` is the rounding of
+velocity (s = 1), at every step; k is the number of differentiations, and where an engine's floor is
+above that of double precision the order of the rate: joints correct a rounded place within a step. ``summed`` is the rounding of
 the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which the mechanism
 transmits like the driver's motion: the one part that grows with the number of steps.
 
@@ -76,6 +77,7 @@ from reports.quantities import named
 from reports.quantities.limits import BENDING, EVERY, FREE
 from reports.quantities.places import WITHIN_A_STEP
 from reports.quantities.quantity import Tolerance
+from sim.engine import AT_ROUNDING
 
 CLOSED_BY_A_MOTOR = 0.1
 """Share of the budget of positions that a motor between two moving bodies may leave open."""
@@ -105,7 +107,9 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     if tolerance.bends:
         budget = links.deflecting(budget, step)
     budget = min(float(budget), tolerance.cap)
-    return float(budget + tolerance.floor + scene.floor / step**tolerance.differenced)
+    rounded = AT_ROUNDING / step**tolerance.differenced
+    rounded += (scene.floor - AT_ROUNDING) / step ** max(tolerance.rate, tolerance.differenced)
+    return float(budget + tolerance.floor + rounded)
 
 
 def _felt(tolerance: Tolerance, errors: Errors) -> float:

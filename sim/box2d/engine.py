@@ -8,90 +8,115 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
+from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene import joints as pairs
-from models.scene.joints import Prism, Slot, less, turned
+from models.scene.joints import Frame, Prism, Slot, less, turned
 from sim.box2d import DECLARATION
 from sim.box2d import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
-from sim.engine.acting import Pushes
-from sim.engine.stepped import BodySession
-from sim.engine.ties import hinges, refuse_driver_angle, refuse_massless
+from sim.engine.acting import Push, Pushes
+from sim.engine.heavy_driver import HeavyDriverSession
+from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 
 b2: Any = import_module("pyb2d3")  # ships no stubs
 VERSION = version("pyb2d3")
+JOINT_HZ = 60.0
+"""Rate of the springs that are Box2D's joints, but at most an eighth of that of its sub-steps."""
 
 
-class Box2dSession(BodySession):
+class Box2dSession(HeavyDriverSession):
     """A session with one world."""
 
     name = "box2d"
+    tangent = 3.0
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
     ) -> None:
         own.checked(settings)
         refuse_driver_angle(scene, self.name)
-        super().__init__(scene, state, settings, dt_s, driven_by)
-        self.substeps = int(settings["substeps"])
-        self.world = b2.World(gravity=scene.gravity_m_s2)
+        substeps = int(settings["substeps"])
+        # A sub-step moves by the velocities at its end.
+        self.shift = -0.5 / substeps if driven_by == "free" else 0.0
+        self.acts_at = 0.5 - 0.5 / substeps
+        super().__init__(scene, state, settings, dt_s, driven_by, substeps)
+        self.pace = 1.0
+        """Unit of time here over the world's: what gives its joints another rate than 60 Hz."""
+        if swings := float(settings["joint_swings"]):
+            self.pace = 2.0 ** round(math.log2(swings / (JOINT_HZ * dt_s)))
+        gx, gy = scene.gravity_m_s2
+        self.world = b2.World(gravity=(gx / self.pace**2, gy / self.pace**2))
         self.world.sleeping_enabled = False
         self.world.continuous_enabled = False
         self.body: dict[str, Any] = {GROUND: self.world.create_static_body()}
-        self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
-        for name in self.names:
-            self.body[name] = self._body(name)
+        self.body |= {n: self._body(n) for n in self.names if n != self.led}
+        if self.led:
+            heavy = self.heavy, self.heavy
+            self.body[self.led] = self._placed(self.led_frame, *heavy, gravity_scale=0.0)
         self.motor: Any = None
         self._join()
         self.begin(self.bodies)
 
     def _body(self, name: str) -> Any:
-        frame, centre = self.where[name], self.bodies.centre[name]
-        place = frame.at(centre)
-        given = {
-            "position": place,
-            "linear_velocity": frame.velocity_at(place),
-            "angular_velocity": frame.omega,
-            "enable_sleep": False,
-        }
-        if name == self.led:
-            body = self.world.create_kinematic_body(**given)
-            body.set_transform(place, rotation(frame.theta))
-            return body
+        frame, turns = self.where[name], name not in self.fixed
         mass, inertia = pairs.mass_of(self.scene, name)
-        turns = name not in self.fixed
         refuse_massless(self.name, name, mass, inertia, turns=turns)
-        body = self.world.create_dynamic_body(**given, fixed_rotation=not turns)
+        place = frame.at(self.bodies.centre[name])
+        at = Frame(place, frame.theta, frame.velocity_at(place), frame.omega)
+        return self._placed(at, mass, inertia or mass * self.scene.longest_m**2)
+
+    def _placed(self, frame: Frame, mass: float, inertia: float, **more: float) -> Any:
+        """Add a body with its centre of mass at the origin of its frame."""
+        body = self.world.create_dynamic_body(position=frame.origin, enable_sleep=False, **more)
         matter = b2.MassData()
         matter.mass, matter.rotational_inertia, matter.center = mass, inertia, (0.0, 0.0)
         body.mass_data = matter
-        body.set_transform(place, rotation(frame.theta))
+        self._set(body, frame)
         return body
+
+    def _set(self, body: Any, frame: Frame) -> None:
+        body.set_transform(frame.origin, rotation(frame.theta))
+        u, v = frame.velocity
+        body.linear_velocity = u / self.pace, v / self.pace
+        body.angular_velocity = frame.omega / self.pace
 
     def _join(self) -> None:
         scene, driver = self.scene, self.scene.driver
         firm = (GROUND,) if driver.is_inner else (GROUND, driver.link)
+        has_motor = self.drive != "free" and not self.led
         for hinge in hinges(scene, *firm):
             names = hinge.first, hinge.other
             driving = hinge.point == scene.driver_pivot and set(names) == {driver.link, driver.base}
-            if driving and self.led:
-                continue
-            joint = self.world.create_revolute_joint(
-                self.body[names[0]],
-                self.body[names[1]],
-                local_anchor_a=self.bodies.anchor(names[0], hinge.point),
-                local_anchor_b=self.bodies.anchor(names[1], hinge.point),
-                enable_motor=driving and self.drive != "free",
-                max_motor_torque=float(self.settings["motor_n_m"]),
-            )
-            if driving:
-                self.motor, self.sense = joint, 1.0 if names[1] == driver.link else -1.0
+            if not (driving and self.led):
+                joint = self._pin(hinge, driven=driving and has_motor)
+                if driving:
+                    self.motor, self.sense = joint, 1.0 if names[1] == driver.link else -1.0
         for slide in pairs.joints(scene).slides:
-            if not (self.led and slide.slider.name == driver.slider):
-                self._slide(slide)
+            name = slide.slider.name
+            if name != driver.slider or not self.led:
+                self._slide(slide, driven=name == driver.slider and has_motor)
+            elif isinstance(slide, Slot):
+                rider = pairs.riding_body(slide)
+                self.world.create_revolute_joint(
+                    self.body[self.led],
+                    self.body[rider],
+                    local_anchor_a=(0.0, 0.0),
+                    local_anchor_b=self.bodies.anchor(rider, slide.slider.point),
+                )
 
-    def _slide(self, slide: Prism | Slot) -> None:
+    def _pin(self, hinge: Hinge, *, driven: bool) -> Any:
+        return self.world.create_revolute_joint(
+            self.body[hinge.first],
+            self.body[hinge.other],
+            local_anchor_a=self.bodies.anchor(hinge.first, hinge.point),
+            local_anchor_b=self.bodies.anchor(hinge.other, hinge.point),
+            enable_motor=driven,
+            max_motor_torque=float(self.settings["motor_n_m"]) / self.pace**2,
+        )
+
+    def _slide(self, slide: Prism | Slot, *, driven: bool) -> None:
         slider, rider = slide.slider, pairs.riding_body(slide)
         ends = {
             "local_anchor_a": less(slider.through_m, self.bodies.centre[slider.on]),
@@ -100,30 +125,45 @@ class Box2dSession(BodySession):
             "enable_spring": False,
         }
         bodies = self.body[slider.on], self.body[rider]
-        if isinstance(slide, Slot):
-            self.world.create_wheel_joint(*bodies, **ends)
+        if isinstance(slide, Prism):
+            joint = self.world.create_prismatic_joint(
+                *bodies,
+                **ends,
+                reference_angle=b2.relative_angle(
+                    rotation(pairs.sliding_angle(slider)), rotation(0.0)
+                ),
+                enable_motor=driven,
+                max_motor_force=float(self.settings["motor_n_m"]) / self.pace**2,
+            )
+            if driven:
+                self.motor, self.sense = joint, 1.0
+        elif driven:
+            raise EngineError(
+                f"{self.scene.name}: its driver is the slider {slider.name}, a block without mass; "
+                "box2d moves no point along a line by a motor; give the block a mass"
+            )
         else:
-            angle = pairs.sliding_angle(slider)
-            self.world.create_prismatic_joint(*bodies, **ends, reference_angle=angle)
+            self.world.create_wheel_joint(*bodies, **ends)
 
     def once(self) -> None:
-        self.world.step(self.dt, self.substeps)
+        self.world.step(self.pace * self.dt, self.substeps)
 
-    def turn(self, place: float | None, speed: float) -> None:
-        if self.motor is not None:
-            self.motor.motor_speed = self.sense * speed
-            return
-        body, driver = self.body[self.scene.driver.link], self.scene.driver
-        if driver.slider is None:
-            if place is not None:
-                body.set_transform(body.position, rotation(place))
-            body.angular_velocity = speed
+    def run_motor(self, speed: float) -> None:
+        self.motor.motor_speed = self.sense * speed / self.pace
+
+    def lead(self, frame: Frame, push: Push) -> None:
+        self._set(self.body[str(self.led)], frame)
+        self._push(str(self.led), push)
 
     def push(self, pushes: Pushes) -> None:
-        for name in self.names:
-            fx, fy, moment = pushes.on_bodies[name]
-            self.body[name].apply_force_to_center((fx, fy))
-            self.body[name].apply_torque(moment)
+        for name in (name for name in self.names if name != self.led):
+            self._push(name, pushes.on_bodies[name])
+
+    def _push(self, name: str, push: Push) -> None:
+        """Act on a body in the next step alone."""
+        fx, fy, moment = (each / self.pace**2 for each in push)
+        self.body[name].apply_force_to_center((fx, fy))
+        self.body[name].apply_torque(moment)
 
     def look(self) -> Array:
         rows = np.empty((len(self.names), 6))
@@ -132,6 +172,7 @@ class Box2dSession(BodySession):
             row[:2], turned_by = body.position, body.rotation
             row[2] = math.atan2(turned_by.s, turned_by.c)
             row[3:5], row[5] = body.linear_velocity, body.angular_velocity
+        rows[:, 3:] *= self.pace
         return rows
 
     def facts(self) -> Facts:
@@ -143,7 +184,9 @@ class Box2dSession(BodySession):
                 matter[name] = own_mass.mass, inertia
         centre = {name: self.bodies.centre[name] for name in matter}
         gravity = self.world.gravity
-        return self.told(VERSION, matter, centre, (gravity[0], gravity[1]), {})
+        return self.told(
+            VERSION, matter, centre, (self.pace**2 * gravity[0], self.pace**2 * gravity[1]), {}
+        )
 
 
 def rotation(angle: float) -> Any:
@@ -160,8 +203,10 @@ ENGINE = Engine(
     check=own.checked,
     open=Box2dSession,
     reports_accelerations=False,
+    in_seconds=lambda settings: () if settings["joint_swings"] else ("joint_swings",),
+    forces_of="steps",
     applies_loads=True,
     applies_springs=True,
     precision=DECLARATION.precision,
-    floor=5e-6,
+    floor=2e-6,
 )

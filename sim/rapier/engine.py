@@ -12,12 +12,11 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
-from models.scene.joints import Frame, Prism, Slot, less, turned
-from models.scene.laws import ConstantSpeed
+from models.scene.joints import Frame, Prism, Slot, less
 from models.scene.loads import ConstantFriction
 from sim.engine import Drive, Engine, Facts, Settings
-from sim.engine.acting import Pushes, SliderCourse
-from sim.engine.stepped import BodySession
+from sim.engine.acting import Push, Pushes
+from sim.engine.heavy_driver import HeavyDriverSession
 from sim.engine.ties import hinges, refuse_driver_angle, refuse_massless, slide_of
 from sim.rapier import DECLARATION
 from sim.rapier import settings as own
@@ -26,39 +25,32 @@ rp: Any = import_module("rapier3d")  # so that types do not depend on what is in
 VERSION = version("rapier3d")
 X, Y, TURN = rp.JointAxesMask.LIN_X, rp.JointAxesMask.LIN_Y, rp.JointAxesMask.ANG_Z
 NOTHING = rp.JointAxesMask.empty()
-HEAVY = 1e9
-"""Inertia of a led driver over the mechanism's: nothing that is read has as many digits."""
-SHARE = 0.5
-"""Share of its error of place that a motor corrects in a step."""
 
 
-class RapierSession(BodySession):
-    """A session with one world, in which each step is made of semi-implicit sub-steps.
-
-    A driven crank or slider on the ground is a body so heavy that nothing moves it: unlike a
-    kinematic one it changes its speed within a step.
-    """
+class RapierSession(HeavyDriverSession):
+    """A session with one world, in which each step is made of semi-implicit sub-steps."""
 
     name = "rapier"
+    tangent = 12.0  # it turns by quaternions
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
     ) -> None:
         own.checked(settings)
         refuse_driver_angle(scene, self.name)
-        self.substeps = int(settings["substeps"])
+        self.of_substeps = "free_substeps" if driven_by == "free" else "substeps"
+        substeps = int(settings[self.of_substeps])
         # The last sweeps of a sub-step leave velocities that fit the positions at its start.
         self.of_velocities = "free_velocity_sweeps" if driven_by == "free" else "velocity_sweeps"
-        self.shift = (-1.0 if settings[self.of_velocities] else -0.5) / self.substeps
-        self.acts_at = 0.5 - 0.5 / self.substeps
-        super().__init__(scene, state, settings, dt_s, driven_by)
+        self.shift = (-1.0 if settings[self.of_velocities] else -0.5) / substeps
+        self.acts_at = 0.5 - 0.5 / substeps
+        super().__init__(scene, state, settings, dt_s, driven_by, substeps)
         self.world = rp.PhysicsWorld(gravity=(*scene.gravity_m_s2, 0.0))
         self._set()
-        self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
         self.handle = {GROUND: self.world.add_body(rp.RigidBody.fixed())}
         self.handle |= {n: self._added(n, self.where[n]) for n in self.names if n != self.led}
         if self.led:
-            self.handle[self.led] = self._led(self.led)
+            self.handle[self.led] = self._heavy()
         self.body = {name: self.world.rigid_bodies[one] for name, one in self.handle.items()}
         for body in self.body.values():
             body.recompute_mass_properties_from_colliders(self.world.colliders)
@@ -70,7 +62,7 @@ class RapierSession(BodySession):
     def _set(self) -> None:
         held, given = self.world.integration_parameters, self.settings
         held.dt = self.dt
-        held.num_solver_iterations = given["substeps"]
+        held.num_solver_iterations = given[self.of_substeps]
         held.num_internal_pgs_iterations = given["sweeps"]
         held.num_internal_stabilization_iterations = given[self.of_velocities]
         held.normalized_max_linear_velocity = 1e9
@@ -85,23 +77,10 @@ class RapierSession(BodySession):
             .enabled_rotations((False, False, turns))
         )
 
-    def _led(self, name: str) -> Any:
-        """Add the heavy driver; a block without mass is a body here too."""
-        scene, driver = self.scene, self.scene.driver
-        heavy = self.heavy = HEAVY * pairs.inertia_scale(scene) / scene.driver_arm_m**2
-        slides = driver.slider is not None
-        if driver.slider is None:
-            frame, centre = self.where[name], self.bodies.centre[name]
-        else:
-            slider = scene.sliders[driver.slider]
-            state, point = self.state, slider.point
-            frame = Frame(state.position[point], 0.0, state.velocity[point], 0.0)
-            frame = self.where.get(name, frame)
-            centre = self.bodies.centre.get(name, (0.0, 0.0))
-            way = turned((self.state.displacement[slider.name], 0.0), slider.direction_rad)
-            self.base = less(frame.at(centre), way)
+    def _heavy(self) -> Any:
+        slides = self.scene.driver.slider is not None
         return self.world.add_body(
-            self._build(frame, centre, heavy, heavy)
+            self._build(self.led_frame, (0.0, 0.0), self.heavy, self.heavy)
             .gravity_scale(0.0)
             .enabled_translations((slides, slides, False))
             .enabled_rotations((False, False, not slides))
@@ -184,12 +163,7 @@ class RapierSession(BodySession):
         scene, driver = self.scene, self.scene.driver
         self.axis = rp.JointAxis.ANG_Z if driver.slider is None else rp.JointAxis.LIN_X
         if driver.slider is not None:
-            slide = slide_of(scene, driver.slider)
-            self.track = SliderCourse(self.bodies, slide, self.dt)
-            return self._line(NOTHING, slide)
-        at = float(driver.law.at(np.array([self.start_s]))[0][0])
-        apart = self.where[driver.link].theta - self.where[driver.base].theta
-        self.ahead = math.tau * round((apart - at) / math.tau)
+            return self._line(NOTHING, slide_of(scene, driver.slider))
         return self._pin(NOTHING, (driver.base, driver.link), scene.driver_pivot)
 
     def _move(self, joint: Any, axis: Any, speed: float, most: float | None = None) -> None:
@@ -200,63 +174,30 @@ class RapierSession(BodySession):
             data.set_motor_max_force(axis, most)
         held.data = data
 
-    def _stands(self) -> float:
-        """Return the present coordinate of a driver with a motor."""
-        driver, frames = self.scene.driver, self.frames(0.0)
-        if driver.slider is None:
-            return frames[driver.link].theta - frames[driver.base].theta - self.ahead
-        self.track.follow(frames)
-        return self.track.course.value
-
     def once(self) -> None:
         self.world.step()
 
-    def turn(self, place: float | None, speed: float) -> None:
-        if self.motor is not None:
-            if place is not None and self.drive == "prescribed":
-                speed += SHARE * (place - self._stands()) / self.dt
-            self._move(self.motor, self.axis, speed)
-            return
-        before, gain, law = speed, 0.0, self.scene.driver.law
-        if not isinstance(law, ConstantSpeed):
-            now = self.start_s + self.dt * (self.done + self.shift)
-            before, after = law.at(np.array([now, now + self.dt]))[1].tolist()
-            gain = after - before
-        # A gain in equal parts, each before the sub-step's motion.
-        mean, sub = before + 0.5 * gain * (1.0 + 1.0 / self.substeps), self.dt / self.substeps
-        if self.scene.driver.slider is None:
-            mean -= mean**3 * sub**2 / 12.0  # it turns by quaternions along tangents
-        moves = self.dt * mean
-        self._lead(None if place is None else place + self.dt * speed - moves, before, gain)
+    def run_motor(self, speed: float) -> None:
+        self._move(self.motor, self.axis, speed)
 
-    def _lead(self, place: float | None, speed: float, gain: float) -> None:
-        """Set the heavy driver's coordinate and its rate, and push it to gain speed in a step."""
-        body, driver = self.body[str(self.led)], self.scene.driver
-        push = self.heavy * gain / self.dt
-        body.reset_forces()
-        body.reset_torques()
-        if driver.slider is None:
-            if place is not None:
-                body.rotation = rotation(place)
-            body.angvel = (0.0, 0.0, speed)
-            body.add_torque((0.0, 0.0, push))
-            return
-        slider = self.scene.sliders[driver.slider]
-        u, v = turned((1.0, 0.0), slider.direction_rad)
-        if place is not None:
-            x, y = self.base
-            body.translation = (x + place * u, y + place * v, 0.0)
-        body.linvel = (speed * u, speed * v, 0.0)
-        body.add_force((push * u, push * v, 0.0))
+    def lead(self, frame: Frame, push: Push) -> None:
+        body = self.body[str(self.led)]
+        if self.scene.driver.slider is None:
+            body.rotation = rotation(frame.theta)
+        else:
+            body.translation = (*frame.origin, 0.0)
+        body.linvel, body.angvel = (*frame.velocity, 0.0), (0.0, 0.0, frame.omega)
+        self._push(body, push)
 
     def push(self, pushes: Pushes) -> None:
         for name in (name for name in self.names if name != self.led):
-            fx, fy, moment = pushes.on_bodies[name]
-            body = self.body[name]
-            body.reset_forces()
-            body.reset_torques()
-            body.add_force((fx, fy, 0.0))
-            body.add_torque((0.0, 0.0, moment))
+            self._push(self.body[name], pushes.on_bodies[name])
+
+    def _push(self, body: Any, push: Push) -> None:
+        body.reset_forces()
+        body.reset_torques()
+        body.add_force((*push[:2], 0.0))
+        body.add_torque((0.0, 0.0, push[2]))
 
     def look(self) -> Array:
         rows = np.empty((len(self.names), 6))
@@ -276,7 +217,7 @@ class RapierSession(BodySession):
         centre = {name: self.bodies.centre[name] for name in matter}
         down, held = self.world.gravity, self.world.integration_parameters
         found = {
-            "substeps": held.num_solver_iterations,
+            self.of_substeps: held.num_solver_iterations,
             "sweeps": held.num_internal_pgs_iterations,
             self.of_velocities: held.num_internal_stabilization_iterations,
         }

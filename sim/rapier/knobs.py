@@ -1,0 +1,35 @@
+"""Search space of Rapier's settings, and the cost of a step with them."""
+
+from models.motion import State
+from models.scene import Scene
+from models.scene.joints import joints
+from sim.engine import Settings
+from sim.registry.offers import Knob, SearchSpace, Work
+
+STEP_US, SUBSTEP_US, JOINT_US = 12.0, 2.0, 0.025
+"""Time of a step, of a sub-step, and of a joint in a sweep."""
+
+
+def work(scene: Scene, start: State) -> Work:
+    """Return the cost of a step: a part for itself and each sub-step, and the joints once
+    per sweep."""
+    ties = joints(scene)
+    count = sum(len(pin.bodies) - 1 for pin in ties.pins) + len(ties.slides)
+
+    def us(settings: Settings) -> float:
+        sweeps = float(settings["sweeps"]) + float(settings["velocity_sweeps"])
+        each = SUBSTEP_US + JOINT_US * count * sweeps
+        return STEP_US + each * float(settings["substeps"])
+
+    return us
+
+
+KNOBS = SearchSpace(
+    knobs=(
+        Knob("substeps", (1, 2, 3, 4, 6, 8, 10, 15, 20)),
+        Knob("sweeps", (1, 2, 4, 8, 15, 30, 40, 50, 100, 200)),
+        Knob("velocity_sweeps", (0, 1, 2, 4, 8, 15, 30, 50, 100, 200)),
+    ),
+    starts=({"sweeps": 1, "velocity_sweeps": 1}, {"substeps": 1}),
+    work=work,
+)
