@@ -19,8 +19,8 @@ from reports.quantities import QUANTITIES
 from reports.results.line_fit import LineFit, fit_line, words
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
+from sim import registry
 from sim.engine import AT_ROUNDING, Drive, SettingValue
-from sim.registry import ENGINES, OWN, Declaration, declaration
 
 
 @dataclass(frozen=True)
@@ -220,9 +220,9 @@ def _timed(cells: pd.DataFrame) -> pd.DataFrame:
     return cells[cells["us_per_step"].notna()]
 
 
-def registered(engine: str) -> Declaration:
+def registered(engine: str) -> registry.Declaration:
     """Return the declaration of an engine in a store, which need not be installed or known here."""
-    return declaration(engine) if engine in ENGINES else OWN
+    return registry.declaration(engine) if engine in registry.ENGINES else registry.OWN
 
 
 FAMILY = 4

@@ -63,20 +63,6 @@ crankcheck.alone = (() => {
   };
 })();
 
-/** Rows of a container for the groups of each family; the container itself for those of none. */
-crankcheck.familyRows = (container) => {
-  const { html } = crankcheck;
-  const rows = new Map();
-  return (name = "") => {
-    if (!name) return container;
-    if (!rows.has(name)) {
-      rows.set(name, html("div"));
-      container.append(html("div", { class: "family" }, html("span", { class: "quietly" }, name), rows.get(name)));
-    }
-    return rows.get(name);
-  };
-};
-
 /**
  * Fill a container with the switches of some groups: `{title, items: [{id, label, paint, on}]}`, and
  * `note` and `family` where they have them. `changed` is called after every change. Gives `on(id)`
@@ -90,8 +76,12 @@ crankcheck.legend = (container, groups, changed) => {
   const titles = new Map(); // the titles of the boxes
   let before = null; // the boxes as they were before a group was shown alone
   container.replaceChildren();
-  const row = crankcheck.familyRows(container);
-  for (const { title, note: remark, family, items } of groups) {
+  const rows = new Map([["", container]]); // of families: the others stand in the container itself
+  for (const { family } of groups.filter((each) => each.family && !rows.has(each.family))) {
+    rows.set(family, html("div"));
+    container.append(html("div", { class: "family" }, html("span", { class: "quietly" }, family), rows.get(family)));
+  }
+  for (const { title, note: remark, family = "", items } of groups) {
     const group = html("div", { class: "group", role: "group", "aria-label": title });
     const whole = html("input", { type: "checkbox" });
     const own = items.map((item) => {
@@ -132,7 +122,7 @@ crankcheck.legend = (container, groups, changed) => {
     );
     shows.push(show);
     show(null);
-    row(family).append(group);
+    rows.get(family).append(group);
   }
   /** Only the group of this title, if it is here; null: all as it was before. */
   function only(title) {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 from reports.output.formats import table
@@ -33,18 +33,16 @@ def build(report: PageReport) -> Section | None:
     rows = complete(report)
     if not rows:
         return None
-    looks = {look.engine: look for look in report.looks.values()}
-    looks |= {look.engine: look for look in report.looks.values() if look.variant == JUDGED}
+    every = sorted(report.looks.values(), key=lambda look: look.variant == JUDGED)
+    groups = itertools.groupby(rows, lambda row: row.declared.formulation)
     return Section(
         anchor="engines",
         title="Engines",
         template="engines.html",
         words={
             "columns": COLUMNS,
-            "groups": {
-                name: list(own) for name, own in itertools.groupby(rows, lambda row: row.formulation)
-            },
-            "looks": looks,
+            "groups": {name: list(own) for name, own in groups},
+            "looks": {look.engine: look for look in every},
             "notes": notes(report),
         },
         styles=("engines.css",),
@@ -53,49 +51,40 @@ def build(report: PageReport) -> Section | None:
 
 def complete(report: PageReport) -> list[EngineRow]:
     """Return the rows of the table, with the hard cases."""
-    return [
-        replace(row, scores={**row.scores, "hard": held(report.matrix, row.engine)})
-        for row in engine_rows(report)
-    ]
+    rows = engine_rows(report)
+    return [replace(x, scores={**x.scores, "hard": held(report.matrix, x.engine)}) for x in rows]
 
 
 def held(matrix: Matrix | None, engine: str) -> Score:
     """Return the share of graded values that an engine holds, and the cases held throughout."""
-    good = {case.name: case.good for case in matrix.cases} if matrix else {}
-    runs = [
-        run
-        for run in (matrix.runs if matrix else ())
-        if (run.engine, run.profile, run.grid) == (engine, JUDGED, True) and run.case in good
-    ]
+    wanted = (engine, JUDGED, True)
+    every = matrix.runs if matrix else ()
+    runs = [run for run in every if (run.engine, run.profile, run.grid) == wanted]
     graded = [run for run in runs if run.outcome != "unsupported"]
-    if not graded:
+    if matrix is None or not graded:
         return Score(remark="unsupported" if runs else "not run")
-    well = [run.outcome in good[run.case] for run in graded]
-    failed = {run.case for run, ok in zip(graded, well, strict=True) if not ok}
+    failed = [run.case for run in graded if run.outcome not in matrix.case(run.case).good]
     cases = {run.case for run in graded}
-    remark = f"{len(cases - failed)} of {count(len(cases), 'case')} throughout"
+    remark = f"{len(cases - set(failed))} of {count(len(cases), 'case')} throughout"
     if out := len(runs) - len(graded):
         remark += f"; {count(out, 'value')} unsupported"
-    share = sum(well) / len(well)
-    return Score(share, f"{100 * share:.0f} %", remark)
+    return Score(f"{100 * (1 - len(failed) / len(graded)):.0f} %", remark)
 
 
 def notes(report: PageReport) -> list[str]:
     """Return a line on each group of columns: what its numbers are."""
-    steps = near_ms(report)
-    span = " to ".join(dict.fromkeys(map(duration, steps))) if steps else "none was run"
+    span = " to ".join(dict.fromkeys(map(duration, near_ms(report)))) or "none was run"
     return [
-        "All but the times: profile tuned, in each cell the median over the scenes, or as it says; "
-        "a dash has its reason.",
-        "Error at 1 ms: the largest error of place (rad, or of the longest link) of a run at the "
-        f"measured step nearest to 1 ms ({span}).",
-        "Order and floor: fitted to that error over the steps of each scene; the floor is the "
-        "largest that was seen.",
+        "Numbers are of profile tuned, the median over the scenes unless they say otherwise; under "
+        "a dash is its reason.",
+        "Error at 1 ms: the largest of place in a run (rad, or of the longest link), at the "
+        f"measured step nearest to 1 ms ({span}); order and floor of it: fitted per scene, the "
+        "floor is the largest.",
         "Turn to 1e-3, 1e-4: the least measured time of a turn, of all settings and steps, with "
         "every scene within that error.",
-        "Hard cases: share of the graded values that are held.",
-        "Free motion: the error of place over the sensitivity of the motion, at the finest step.",
-        "Forces: the error of the reactions, of the largest reaction, at the finest step.",
+        "Hard cases: the share of graded values that are held.",
+        "Free motion: the error of place over the sensitivity of the motion. Forces: that of the "
+        "reactions, of the largest one. Both at the finest step.",
     ]
 
 
@@ -104,20 +93,21 @@ def in_markdown(report: PageReport, room: int) -> Iterator[str]:
     rows = complete(report)
     if not rows:
         return
-    heads = [f"{name}: {head}" for name, own in COLUMNS.items() for head in own.values()]
+    names = {
+        name: f"{group}: {head}:" for group, own in COLUMNS.items() for name, head in own.items()
+    }
+    lines = [
+        [_engine(row), row.declared.formulation, *(_words(row.scores[name]) for name in names)]
+        for row in rows
+    ]
     yield "### Engines"
-    cells = ([_engine(row), row.formulation, *map(_words, _in_order(row))] for row in rows)
-    yield table(("engine", "formulation", *(f"{head}:" for head in heads)), cells, room, "engines")
+    yield table(("engine", "formulation", *heads), lines, room, "engines")
     yield "\n".join(f"- {note}" for note in notes(report))
 
 
 def _engine(row: EngineRow) -> str:
-    single = " (single precision)" if row.precision == "single" else ""
+    single = " (single precision)" * (row.declared.precision == "single")
     return f"{row.engine} {row.version}{single}"
-
-
-def _in_order(row: EngineRow) -> Sequence[Score]:
-    return [row.scores[name] for own in COLUMNS.values() for name in own]
 
 
 def _words(score: Score) -> str:
