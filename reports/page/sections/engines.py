@@ -93,9 +93,8 @@ def in_markdown(report: PageReport, room: int) -> Iterator[str]:
     rows = complete(report)
     if not rows:
         return
-    names = {
-        name: f"{group}: {head}:" for group, own in COLUMNS.items() for name, head in own.items()
-    }
+    heads = [f"{group}: {head}:" for group, own in COLUMNS.items() for head in own.values()]
+    names = [name for own in COLUMNS.values() for name in own]
     lines = [
         [_engine(row), row.declared.formulation, *(_words(row.scores[name]) for name in names)]
         for row in rows

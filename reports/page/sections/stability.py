@@ -57,9 +57,8 @@ def _summed(look: Look, held: Mapping[tuple[str, int], Holds]) -> dict[str, obje
     """Return a row of a look for all scenes, where looks are too many for columns: numbers of
     scenes that it holds at every step, and words on the others."""
     own = {scene: one for (scene, number), one in held.items() if number == look.number}
-    ran, within = (
-        {s for s, one in own.items() if getattr(one, name) == words} for name, words in ALL
-    )
+    ran = [scene for scene, one in own.items() if one.level == "all"]
+    within = [scene for scene, one in own.items() if one.within == ALL_WITHIN]
     scenes: dict[str, list[str]] = {}
     for scene, one in own.items():
         words = [one.runs] * (scene not in ran) + [one.within] * (scene not in within)
