@@ -76,8 +76,9 @@ crankcheck.legend = (container, groups, changed) => {
   const titles = new Map(); // the titles of the boxes
   let before = null; // the boxes as they were before a group was shown alone
   container.replaceChildren();
-  const rows = new Map([["", container]]); // of families: the others stand in the container itself
-  for (const { family } of groups.filter((each) => each.family && !rows.has(each.family))) {
+  const rows = new Map([["", container]]); // of families: groups of none stand in the container itself
+  for (const family of new Set(groups.map((each) => each.family ?? ""))) {
+    if (!family) continue;
     rows.set(family, html("div"));
     container.append(html("div", { class: "family" }, html("span", { class: "quietly" }, family), rows.get(family)));
   }
