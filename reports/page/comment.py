@@ -22,12 +22,12 @@ from sim.registry.offers import snippet_writer
 
 ROOM = {
     "damage": 4_000,
-    "engines": 5_000,
+    "engines": 4_000,
     "outside": 6_000,
     "set": 8_000,
-    "snippets": 12_000,
+    "snippets": 10_000,
     "times": 3_000,
-    "fits": 12_000,
+    "fits": 10_000,
     "failures": 8_000,
     "settings": 6_000,
 }

@@ -40,7 +40,7 @@ class EngineRow:
 
     engine: str
     version: str
-    declared: Declaration
+    declaration: Declaration
     scores: Mapping[str, Score]
 
 
@@ -69,8 +69,8 @@ def engine_rows(report: Report) -> list[EngineRow]:
             "forces order": _order(forces, silent),
         }
         rows.append(EngineRow(engine, version, registered(engine), scores))
-    groups = list(dict.fromkeys(row.declared.formulation for row in rows))
-    return sorted(rows, key=lambda row: groups.index(row.declared.formulation))
+    groups = list(dict.fromkeys(row.declaration.formulation for row in rows))
+    return sorted(rows, key=lambda row: groups.index(row.declaration.formulation))
 
 
 def near_ms(report: Report) -> list[float]:
@@ -90,18 +90,20 @@ def _near(line: Line) -> pd.Series[Any]:
 
 
 def _error(cells: Sequence[pd.Series[Any]], column: str, silent: str = "not run") -> Score:
-    """Return the median of an error over the scenes, and the worst; that of a run that did not end
-    well is infinite."""
-    if not cells:
-        return Score(remark=silent)
-    errors = np.array([c[column] if c["status"] == "ok" else math.inf for c in cells])
+    """Return the median of an error over the supported scenes, and the worst; that of a run that
+    did not end well is infinite."""
+    ran = [cell for cell in cells if cell["status"] != "unsupported"]
+    if not ran:
+        return Score(remark="unsupported" if cells else silent)
+    errors = np.array([c[column] if c["status"] == "ok" else math.inf for c in ran])
     errors = np.where(np.isfinite(errors), errors, math.inf)
     failed, at, median = int(np.isinf(errors).sum()), int(errors.argmax()), np.median(errors)
-    if failed == len(cells):
-        return Score(remark=Counter(str(cell["status"]) for cell in cells).most_common(1)[0][0])
-    remark = f"worst {error_text(errors[at])}, " * (len(cells) > 1) + str(cells[at]["scene"])
+    if failed == len(ran):
+        return Score(remark=Counter(str(cell["status"]) for cell in ran).most_common(1)[0][0])
+    remark = f"worst {error_text(errors[at])}, " * (len(ran) > 1) + str(ran[at]["scene"])
     if failed:
-        remark = f"fails on {failed} of {count(len(cells), 'scene')}"
+        remark = f"fails on {failed} of {count(len(ran), 'scene')}"
+    remark += f"; {len(cells) - len(ran)} unsupported" * (len(ran) < len(cells))
     return Score(error_text(median) if math.isfinite(median) else "fails", remark)
 
 

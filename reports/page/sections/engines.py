@@ -34,7 +34,7 @@ def build(report: PageReport) -> Section | None:
     if not rows:
         return None
     every = sorted(report.looks.values(), key=lambda look: look.variant == JUDGED)
-    groups = itertools.groupby(rows, lambda row: row.declared.formulation)
+    groups = itertools.groupby(rows, lambda row: row.declaration.formulation)
     return Section(
         anchor="engines",
         title="Engines",
@@ -57,13 +57,13 @@ def complete(report: PageReport) -> list[EngineRow]:
 
 def held(matrix: Matrix | None, engine: str) -> Score:
     """Return the share of graded values that an engine holds, and the cases held throughout."""
-    wanted = (engine, JUDGED, True)
-    every = matrix.runs if matrix else ()
-    runs = [run for run in every if (run.engine, run.profile, run.grid) == wanted]
+    good = {case.name: case.good for case in matrix.cases} if matrix else {}
+    own = [run for run in matrix.runs if run.engine == engine and run.grid] if matrix else []
+    runs = [run for run in own if run.profile == JUDGED and run.case in good]
     graded = [run for run in runs if run.outcome != "unsupported"]
-    if matrix is None or not graded:
+    if not graded:
         return Score(remark="unsupported" if runs else "not run")
-    failed = [run.case for run in graded if run.outcome not in matrix.case(run.case).good]
+    failed = [run.case for run in graded if run.outcome not in good[run.case]]
     cases = {run.case for run in graded}
     remark = f"{len(cases - set(failed))} of {count(len(cases), 'case')} throughout"
     if out := len(runs) - len(graded):
@@ -96,7 +96,7 @@ def in_markdown(report: PageReport, room: int) -> Iterator[str]:
     heads = [f"{group}: {head}:" for group, own in COLUMNS.items() for head in own.values()]
     names = [name for own in COLUMNS.values() for name in own]
     lines = [
-        [_engine(row), row.declared.formulation, *(_words(row.scores[name]) for name in names)]
+        [_engine(row), row.declaration.formulation, *(_words(row.scores[name]) for name in names)]
         for row in rows
     ]
     yield "### Engines"
@@ -105,7 +105,7 @@ def in_markdown(report: PageReport, room: int) -> Iterator[str]:
 
 
 def _engine(row: EngineRow) -> str:
-    single = " (single precision)" * (row.declared.precision == "single")
+    single = " (single precision)" * (row.declaration.precision == "single")
     return f"{row.engine} {row.version}{single}"
 
 

@@ -46,9 +46,11 @@ def test_few_engines_are_not_put_side_by_side() -> None:
 def test_engines_of_a_formulation_stand_together_with_their_precision() -> None:
     found = rows(*three())
     assert list(found) == ["mujoco", "drake", "box2d", "simbody"]
-    assert [name for name, row in found.items() if row.declared.precision == "single"] == ["box2d"]
+    assert [name for name, row in found.items() if row.declaration.precision == "single"] == [
+        "box2d"
+    ]
     strange = rows(*three(), line("none of ours", "a", SECOND))
-    assert strange["none of ours"].declared.formulation == "own"
+    assert strange["none of ours"].declaration.formulation == "own"
 
 
 def test_each_cell_has_a_number_or_its_reason() -> None:
