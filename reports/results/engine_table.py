@@ -113,8 +113,8 @@ def _order(own: Sequence[Line], silent: str = "not run") -> Score:
     orders = sorted(x.order for x in fits if x.kind != "grows" and math.isfinite(x.order))
     if not orders:
         return Score(remark=_kind(fits) if fits else silent)
-    told = f"{orders[0]:.1f} to {orders[-1]:.1f}" * (len(orders) > 1)
-    return Score(f"{np.median(orders):.1f}", told)
+    ends = dict.fromkeys(f"{order:.1f}" for order in (orders[0], orders[-1]))
+    return Score(f"{np.median(orders):.1f}", " to ".join(ends) * (len(ends) > 1))
 
 
 def _floor(fits: Sequence[LineFit]) -> Score:
