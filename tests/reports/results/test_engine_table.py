@@ -74,6 +74,14 @@ def test_each_cell_has_a_number_or_its_reason() -> None:
     )
 
 
+def test_scenes_that_an_engine_can_not_hold_are_told_apart() -> None:
+    parts = [part for part in three() if part[0]["engine"] != "simbody"]
+    out = [{**row, "status": "unsupported"} for row in line("simbody", "b", SECOND)]
+    near = rows(*parts, line("simbody", "a", SECOND), out)["simbody"].scores["near"]
+    assert near == Score("6.3e-4", "a; 1 unsupported")
+    assert rows(*parts, out)["simbody"].scores["near"].remark == "unsupported"
+
+
 def test_nine_engines_differ_in_marker_and_colour_and_keep_them_in_both_profiles() -> None:
     engines = [f"engine-{n}" for n in range(9)]
     parts = [line(e, "a", SECOND, variant=v) for e in engines for v in ("as-shipped", "tuned")]
