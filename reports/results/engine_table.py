@@ -33,6 +33,10 @@ class Score:
     told: str = NONE
     remark: str = "not run"
 
+    @property
+    def words(self) -> str:
+        return f"{self.told} ({self.remark})" if self.remark else self.told
+
 
 @dataclass(frozen=True)
 class EngineRow:

@@ -283,7 +283,9 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
             engine=line.engine,
             variant=line.variant if bare else called(line.variant, line.drive),
             version=line.version,
-            colour=_colour(family, place),
+            colour=family * FAMILY + place % FAMILY
+            if family < FAMILIES
+            else FAMILIES * FAMILY + (family - FAMILIES) % ALONE,
             symbol=SYMBOLS[family % len(SYMBOLS)],
             dash=DASHES[place % len(DASHES)],
             size=SIZES[place % len(SIZES)],
@@ -291,13 +293,6 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
             precision=own.precision,
         )
     return every
-
-
-def _colour(family: int, place: int) -> int:
-    """Return the colour of an engine's settings, by the places of both."""
-    if family < FAMILIES:
-        return family * FAMILY + place % FAMILY
-    return FAMILIES * FAMILY + (family - FAMILIES) % ALONE
 
 
 def label(name: Named) -> str:

@@ -43,25 +43,15 @@ crankcheck.lookGroups = (wanted, on = () => true) => {
   return [...groups.values()];
 };
 
-/** The group that is shown alone on the page, if any. */
-crankcheck.alone = (() => {
-  const legends = new Map();
-  let shown = null;
-  return {
-    /** The legend of a container; one that was there before is gone. */
-    add: (container, legend) => {
-      legends.set(container, legend);
-      legend.only(shown);
-    },
-    toggle: (title) => {
-      shown = shown === title ? null : title;
-      for (const legend of legends.values()) {
-        legend.only(shown);
-        legend.changed();
-      }
-    },
-  };
-})();
+/** The title of the group that is shown alone, if any, and what shows it in the legend of each container. */
+crankcheck.alone = {
+  legends: new Map(),
+  shown: null,
+  toggle(title) {
+    this.shown = this.shown === title ? null : title;
+    for (const legend of this.legends.values()) legend(this.shown);
+  },
+};
 
 /**
  * Fill a container with the switches of some groups: `{title, items: [{id, label, paint, on}]}`, and
@@ -73,7 +63,6 @@ crankcheck.legend = (container, groups, changed) => {
   const boxes = new Map();
   const notes = new Map();
   const shows = []; // what brings the box of each group up to date
-  const titles = new Map(); // the titles of the boxes
   let before = null; // the boxes as they were before a group was shown alone
   container.replaceChildren();
   const rows = new Map([["", container]]); // of families: groups of none stand in the container itself
@@ -90,7 +79,7 @@ crankcheck.legend = (container, groups, changed) => {
       const note = html("span", { class: "quietly" });
       box.checked = item.on;
       boxes.set(item.id, box);
-      titles.set(box, title);
+      box.dataset.of = title;
       notes.set(item.id, note);
       group.append(html("label", { class: "item" }, box, crankcheck.swatch(item), html("span", {}, item.label), note));
       return box;
@@ -105,8 +94,7 @@ crankcheck.legend = (container, groups, changed) => {
     if (title) {
       whole.dataset.group = title;
       whole.setAttribute("aria-label", `all of ${title}`);
-      const more = remark ? [html("span", { class: "quietly" }, remark)] : [];
-      group.prepend(html("span", { class: "item whole" }, whole, name, ...more));
+      group.prepend(html("span", { class: "item whole" }, whole, name, html("span", { class: "quietly" }, remark ?? "")));
       name.addEventListener("click", () => alone.toggle(title));
     }
     whole.addEventListener("change", () => {
@@ -122,18 +110,21 @@ crankcheck.legend = (container, groups, changed) => {
       }),
     );
     shows.push(show);
-    show(null);
     rows.get(family).append(group);
   }
   /** Only the group of this title, if it is here; null: all as it was before. */
   function only(title) {
     const here = groups.some((each) => each.title === title);
     if (here) before ??= new Map([...boxes.values()].map((box) => [box, box.checked]));
-    for (const box of before?.keys() ?? []) box.checked = here ? titles.get(box) === title : before.get(box);
+    for (const box of before?.keys() ?? []) box.checked = here ? box.dataset.of === title : before.get(box);
     if (!here) before = null;
     shows.forEach((show) => show(title));
   }
-  alone.add(container, { only, changed: () => changed() });
+  alone.legends.set(container, (title) => {
+    only(title);
+    changed();
+  });
+  only(alone.shown);
   return {
     on: (id) => boxes.get(id)?.checked ?? false,
     note: (id, text) => {

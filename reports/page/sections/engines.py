@@ -95,19 +95,11 @@ def in_markdown(report: PageReport, room: int) -> Iterator[str]:
         return
     heads = [f"{group}: {head}:" for group, own in COLUMNS.items() for head in own.values()]
     names = [name for own in COLUMNS.values() for name in own]
-    lines = [
-        [_engine(row), row.declaration.formulation, *(_words(row.scores[name]) for name in names)]
-        for row in rows
-    ]
+    lines = []
+    for row in rows:
+        name = f"{row.engine} {row.version}, {row.declaration.precision} precision"
+        scores = [row.scores[each].words for each in names]
+        lines.append([name, row.declaration.formulation, *scores])
     yield "### Engines"
     yield table(("engine", "formulation", *heads), lines, room, "engines")
     yield "\n".join(f"- {note}" for note in notes(report))
-
-
-def _engine(row: EngineRow) -> str:
-    single = " (single precision)" * (row.declaration.precision == "single")
-    return f"{row.engine} {row.version}{single}"
-
-
-def _words(score: Score) -> str:
-    return f"{score.told} ({score.remark})" if score.remark else score.told
