@@ -94,7 +94,8 @@ crankcheck.legend = (container, groups, changed) => {
     if (title) {
       whole.dataset.group = title;
       whole.setAttribute("aria-label", `all of ${title}`);
-      group.prepend(html("span", { class: "item whole" }, whole, name, html("span", { class: "quietly" }, remark ?? "")));
+      const more = remark ? [html("span", { class: "quietly" }, remark)] : [];
+      group.prepend(html("span", { class: "item whole" }, whole, name, ...more));
       name.addEventListener("click", () => alone.toggle(title));
     }
     whole.addEventListener("change", () => {
