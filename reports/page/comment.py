@@ -7,23 +7,27 @@ from collections.abc import Iterator
 from reports.judge.rules import RULES
 from reports.output.formats import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed, short
+from reports.page.sections.engines import in_markdown
+from reports.page.sections.section import PageReport
 from reports.page.sections.verdict import level, verdict
 from reports.protocol.length import clock_of
 from reports.results.candidates import MEANS, Costs
 from reports.results.lines import Line, called, label, named
 from reports.results.overview import Report, made, settings_of, study, versions
 from reports.results.recommend import Recommendation, noise_line, short_target
+from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 from sim.engine import Drive
 from sim.registry.offers import snippet_writer
 
 ROOM = {
     "damage": 4_000,
+    "engines": 4_000,
     "outside": 6_000,
     "set": 8_000,
-    "snippets": 12_000,
+    "snippets": 10_000,
     "times": 3_000,
-    "fits": 12_000,
+    "fits": 10_000,
     "failures": 8_000,
     "settings": 6_000,
 }
@@ -41,14 +45,16 @@ HEADS = (
 HEADLINES = {"within": "within tolerance", "out": "OUT OF TOLERANCE", "none": "no verdict"}
 
 
-def summary(stored: Stored) -> str:
-    """Return the text, below 60,000 bytes for any size of the store."""
-    report = Report(stored)
+def summary(stored: Stored, matrix: Matrix | None = None) -> str:
+    """Return the text, below 60,000 bytes for any size of the store; with the table of engines, and
+    the hard cases that were run beside the store, where it has three of them."""
+    report = PageReport(stored, matrix)
     gated = report.cells[report.cells["gated"]]
     parts = [
         f"## crankcheck: {HEADLINES[level(gated)]}",
         f"**{plain(verdict(gated))}** {_ended(report)}",
         *_damaged(report),
+        *in_markdown(report, ROOM["engines"]),
         *_outside(report),
         "### What to set",
         _recommended(report),

@@ -60,13 +60,14 @@ def report_of(folder: Path, format: Format) -> Made:
     stored = read_store(folder)
     tell(stored.notice)
     content = f"{len(stored.cells)} cells"
+    beside = _beside(folder) if hard else None
     if format == "md":
         from reports.page.comment import summary
 
-        return Made(summary(stored), content)
+        return Made(summary(stored, beside), content)
     from reports.page.build import page
 
-    return Made(page(stored, _beside(folder) if hard else None), content)
+    return Made(page(stored, beside), content)
 
 
 def _beside(folder: Path) -> Matrix | None:

@@ -19,6 +19,7 @@ from reports.quantities import QUANTITIES
 from reports.results.line_fit import LineFit, fit_line, words
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
+from sim import registry
 from sim.engine import AT_ROUNDING, Drive, SettingValue
 
 
@@ -219,10 +220,20 @@ def _timed(cells: pd.DataFrame) -> pd.DataFrame:
     return cells[cells["us_per_step"].notna()]
 
 
+def registered(engine: str) -> registry.Declaration:
+    """Return the declaration of an engine in a store, which need not be installed or known here."""
+    return registry.declaration(engine) if engine in registry.ENGINES else registry.OWN
+
+
 FAMILY = 4
 """Colours in a family; the style sheet has three families: cool, warm, and green with grey."""
 FAMILIES = 3
-SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "star")
+ALONE = 6
+"""Colours of further engines, after those of the families: one each."""
+SYMBOLS = (
+    *("circle", "square", "diamond", "triangle-up", "cross", "star"),
+    *("triangle-down", "hourglass", "x"),
+)
 """Names of the markers in Plotly; the legends draw the same."""
 DASHES = ("solid", "dash", "dot", "dashdot")
 SIZES = (11.0, 9.5, 8.0, 6.5)
@@ -233,8 +244,9 @@ SIZES = (11.0, 9.5, 8.0, 6.5)
 class Look:
     """An engine with one set of settings: its number in the page, and its marks.
 
-    Engines differ in marker and in the family of their colours, the settings of an engine in colour
-    and dash: distinct without colours as well.
+    Engines differ in marker and colour: the first three have a family of colours each, further ones
+    a colour. The settings of an engine differ in dash, and in colour within a family: distinct
+    without colours as well.
     """
 
     number: int
@@ -245,6 +257,8 @@ class Look:
     symbol: str
     dash: str
     size: float
+    formulation: str = "own"
+    precision: str = "double"
 
     @property
     def name(self) -> str:
@@ -263,15 +277,20 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
             continue
         family = engines.setdefault(line.engine, len(engines))
         place = sum(1 for engine, *_ in every if engine == line.engine)
+        own = registered(line.engine)
         every[named(line)] = Look(
             number=len(every),
             engine=line.engine,
             variant=line.variant if bare else called(line.variant, line.drive),
             version=line.version,
-            colour=family % FAMILIES * FAMILY + place % FAMILY,
+            colour=family * FAMILY + place % FAMILY
+            if family < FAMILIES
+            else FAMILIES * FAMILY + (family - FAMILIES) % ALONE,
             symbol=SYMBOLS[family % len(SYMBOLS)],
             dash=DASHES[place % len(DASHES)],
             size=SIZES[place % len(SIZES)],
+            formulation=own.formulation,
+            precision=own.precision,
         )
     return every
 

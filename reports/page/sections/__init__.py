@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import cast
 
 from reports.page.sections.copied import reading_forces, recommendation
+from reports.page.sections.engines import build as engines
 from reports.page.sections.errors import convergence, precision
 from reports.page.sections.hard import build as hard
 from reports.page.sections.motion import build as motion
@@ -30,6 +31,7 @@ def _of_driven(build: Callable[[Report], Section | None]) -> Build:
 OF_WAYS = {name: cast(WaySection, own) for name, own in own_parts("section").items()}
 """Sections of ways, by the name of the way."""
 SECTIONS: dict[str, Build] = {
+    "engines": engines,
     "verdict": verdict,
     "recommendation": _of_driven(recommendation),
     "precision": _of_driven(precision),

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from reports.drawing.moving import embedded
 from reports.output.numbers import count, error_text
 from reports.page.sections.section import PageReport, Section, fitting
+from reports.results.engine_table import FEWEST
 from reports.stability import grades, table
 from reports.stability.matrix import OUTCOMES, CaseFacts, Graded, Matrix, Outcome, Picture
 from reports.stability.running import command
@@ -41,7 +42,10 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
             "columns": chart.columns,
             "engines": Counter(column.engine for column in chart.columns),
             "groups": chart.groups,
+            "places": places(chart.columns),
+            "profiles": list(dict.fromkeys(column.profile for column in chart.columns)),
             "opened": matrix.runs[shown[0]].case if shown else None,
+            "opened_engine": matrix.runs[shown[0]].engine if shown else None,
             "legend": [
                 (sign(name), kind(name), name, meanings.get(name, "not known to this page"), number)
                 for name, number in outcomes_seen(matrix).items()
@@ -212,6 +216,16 @@ class Heat:
 
     columns: list[HeatColumn]
     groups: Mapping[str, list[tuple[CaseFacts, list[Strip]]]]
+
+
+def places(columns: Sequence[HeatColumn]) -> dict[str, list[int | None]]:
+    """Return the columns of each engine by profile, for a map with a row for each of many engines;
+    empty for few, which stand side by side."""
+    numbers = {(column.engine, column.profile): at for at, column in enumerate(columns)}
+    engines, profiles = (dict.fromkeys(name[k] for name in numbers) for k in (0, 1))
+    if len(engines) < FEWEST:
+        return {}
+    return {engine: [numbers.get((engine, each)) for each in profiles] for engine in engines}
 
 
 def kind(outcome: str) -> str:

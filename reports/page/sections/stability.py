@@ -1,13 +1,18 @@
 """Stability: the settings that hold each scene, and the step from which on they do."""
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pandas as pd
 
 from reports.page.sections.section import Section
 from reports.protocol.length import SECONDS, clock_of
+from reports.results.engine_table import FEWEST
+from reports.results.lines import Look
 from reports.results.overview import Report
+
+ALL_WITHIN = "within: all"
 
 
 @dataclass(frozen=True)
@@ -42,9 +47,26 @@ def build(report: Report) -> Section:
                 (scene, [held.get((scene, look.number)) for look in looks])
                 for scene in report.scenes
             ],
+            "summed": [_summed(look, held) for look in looks] if len(engines) >= FEWEST else [],
             "lost": [_lost(report, row) for _, row in lost.iterrows()],
         },
     )
+
+
+def _summed(look: Look, held: Mapping[tuple[str, int], Holds]) -> dict[str, object]:
+    """Return a row of a look for all scenes, where looks are too many for columns: numbers of
+    scenes that it holds at every step, and words on the others."""
+    own = {scene: one for (scene, number), one in held.items() if number == look.number}
+    ran = [scene for scene, one in own.items() if one.level == "all"]
+    within = [scene for scene, one in own.items() if one.within == ALL_WITHIN]
+    scenes: dict[str, list[str]] = {}
+    for scene, one in own.items():
+        words = [one.runs] * (scene not in ran) + [one.within] * (scene not in within)
+        scenes.setdefault("; ".join(words), []).append(scene)
+    others = {words: ", ".join(names) for words, names in scenes.items() if words}
+    level = "all" if len(ran) == len(own) else "some" if ran else "none"
+    return {"look": look, "scenes": len(own), "ran": len(ran), "within": len(within),
+            "level": level, "others": others}  # fmt: skip
 
 
 def holds(cells: pd.DataFrame) -> Holds:

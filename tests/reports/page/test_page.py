@@ -23,8 +23,9 @@ from tests.reports.page.conftest import part_of
 from tests.reports.page.hostile import Outline, shown_and_not_read, stands_alone
 from tests.reports.results.made import Row, cell, stored, untimed
 
-STORED = [name for name in SECTIONS if name not in ("hard", "reading_forces", "free", "elastic")]
-"""The sections of a driven store without forces and without hard cases beside it."""
+ABSENT = ("engines", "hard", "reading_forces", "free", "elastic")
+STORED = [name for name in SECTIONS if name not in ABSENT]
+"""The sections of a driven store of two engines without forces and without hard cases beside it."""
 
 
 def test_every_section_is_there_in_its_order_and_nothing_is_loaded(small_page: Path) -> None:
@@ -77,7 +78,9 @@ def test_the_command_names_a_file_itself_and_gives_text_to_the_terminal_or_to_a_
     said = report(small_folder, None, "html")
     assert (tmp_path / "report.html").read_text() == "<!doctype html>"
     assert re.search(r"report\.html: 24 cells, \d\.\d MB", said)
-    monkeypatch.setattr(comment, "summary", lambda stored: f"# {len(stored.cells)} cells [red]\n")
+    monkeypatch.setattr(
+        comment, "summary", lambda stored, _: f"# {len(stored.cells)} cells [red]\n"
+    )
     assert report(small_folder, None, "md") == "# 24 cells [red]\n"
     report(small_folder, tmp_path / "a.md", "md")
     assert (tmp_path / "a.md").read_text() == "# 24 cells [red]\n"

@@ -56,3 +56,27 @@ def test_every_outcome_has_a_hue_and_every_shade_is_stronger_than_the_one_before
     assert set(shades) == {*names, "blank"}
     parts = [shades[name] for name in names]
     assert all(b - a >= 0.08 for a, b in itertools.pairwise(parts))
+
+
+RED_GREEN = (
+    np.array([[0.1523, 1.0526, -0.2049], [0.1145, 0.7863, 0.0992], [-0.0039, -0.0481, 1.0520]]),
+    np.array([[0.3673, 0.8606, -0.2280], [0.2801, 0.6725, 0.0474], [-0.0118, 0.0429, 0.9689]]),
+)
+"""Linear colours as protanopes and deuteranopes see them. Source: Machado, Oliveira, Fernandes, A
+physiologically-based model for simulation of color vision deficiency, 2009."""
+LMS = np.array([[0.4122, 0.5363, 0.0514], [0.2119, 0.6807, 0.1074], [0.0883, 0.2817, 0.6300]])
+LAB = np.array([[0.2105, 0.7936, -0.0041], [1.9780, -2.4286, 0.4506], [0.0259, 0.7828, -0.8087]])
+"""From linear colours to OKLab, where a step just seen is about 0.02."""
+
+
+def test_colours_of_nine_engines_differ_for_colour_blind_readers() -> None:
+    for theme, seen in itertools.product((LIGHT, DARK), (np.eye(3), *RED_GREEN)):
+        colours = {}
+        for number in range(18):
+            hexes = theme[f"c{number}"]
+            parts = np.array([int(hexes[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+            linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+            colours[number] = LAB @ np.cbrt(LMS @ np.clip(seen @ linear, 0.0, 1.0))
+        for new, other in itertools.product(range(12, 18), (*range(10), *range(12, 18))):
+            if new != other:
+                assert np.linalg.norm(colours[new] - colours[other]) > 0.06, (new, other)
