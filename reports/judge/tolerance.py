@@ -10,11 +10,10 @@ A default is a budget by the step and the scene, from the theory of the error::
 ``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration of
 the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
 ``share`` the part that a soft constraint may leave open of an acceleration (s = 0), and so of a
-velocity (s = 1), at every step; k is the number of differentiations, and of what an engine's numbers round more than
-double precision the order of the rate: joints correct a rounded place within a step. ``summed`` is
-the rounding of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`),
-which the mechanism transmits like the driver's motion: the one part that grows with the number of
-steps.
+velocity (s = 1), at every step; k is the number of differentiations, and the order of the rate for
+what single precision rounds, as joints correct a rounded place within a step. ``summed`` is the
+rounding of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which
+the mechanism transmits like the driver's motion: the one part that grows with the number of steps.
 
 For positions and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
 a + omega^2 r at a distance r from the centre of a body: an engine that solves for impulses

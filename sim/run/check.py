@@ -16,6 +16,9 @@ SAME = 1e-9
 """Relative difference that counts as none: rounding of a few operations, far below any error."""
 SHUT = 1e-12
 """Largest loop gap at the start, over the longest link, that counts as assembled."""
+CLOSED = 10.0
+"""Largest turn of a body [rad] where an engine closes a start that is open, over the gap in terms of
+the longest link: the inverse of a fair transmission angle, and of a short link."""
 ROUNDINGS = 16.0
 """Units of the last place of an engine's numbers that both of these allow at least."""
 
@@ -47,7 +50,7 @@ def refuse_other_model(
         *_matter(scene, facts, drive, same),
         *_springs(scene, facts, same),
         *_beams(scene, facts, same),
-        *_state(scene, state, facts, dt_s, drive, same),
+        *_state(scene, state, facts, dt_s, drive, same + CLOSED * open_m / scene.longest_m),
         *_gaps(scene, facts, open_m, max(SHUT, rounding)),
     ]
     if faults:
