@@ -18,7 +18,7 @@ from sim.box2d import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Push, Pushes
 from sim.engine.heavy_driver import HeavyDriverSession
-from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
+from sim.engine.ties import Hinge, RubbingPin, hinges, refuse_driver_angle, refuse_massless
 
 b2: Any = import_module("pyb2d3")  # ships no stubs
 VERSION = version("pyb2d3")
@@ -105,6 +105,18 @@ class Box2dSession(HeavyDriverSession):
                     local_anchor_a=(0.0, 0.0),
                     local_anchor_b=self.bodies.anchor(rider, slide.slider.point),
                 )
+        for rub in self.rubbing:
+            self._rub(rub)
+
+    def _rub(self, rub: RubbingPin) -> None:
+        """Add a motor of speed 0 and limited torque, which holds neither place nor angle."""
+        self.world.create_motor_joint(
+            self.body[rub.first],
+            self.body[rub.second],
+            max_force=0.0,
+            max_torque=rub.size / self.pace**2,
+            correction_factor=0.0,
+        )
 
     def _pin(self, hinge: Hinge, *, driven: bool) -> Any:
         return self.world.create_revolute_joint(
@@ -206,6 +218,7 @@ ENGINE = Engine(
     in_seconds=lambda settings: () if settings["joint_swings"] else ("joint_swings",),
     forces_of="steps",
     applies_loads=True,
+    applies_constant_friction=True,
     applies_springs=True,
     precision=DECLARATION.precision,
     floor=2e-6,

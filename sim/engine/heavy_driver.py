@@ -17,13 +17,15 @@ from models.scene.joints import Frame, less, turned
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Poses, Settings
 from sim.engine.acting import Push, SliderCourse
-from sim.engine.measure import BodyPath, PointPath, centred
+from sim.engine.measure import BodyPath, PointPath, arms, centred
 from sim.engine.momentum_balance import MomentumGain, forces_by_body, joint_pushes
 from sim.engine.stepped import BodySession
-from sim.engine.ties import hinges, slide_of
+from sim.engine.ties import hinges, rubbing_pins, slide_of
 
 HEAVY = 1e9
 """Inertia of a led driver over the mechanism's: nothing that is read has as many digits."""
+STUCK = 1e-4
+"""Rate over the driver's below which a pin with friction may stick, by rounding."""
 SHARE = 0.5
 """Share of its error of place that a motor corrects in a step."""
 
@@ -50,6 +52,10 @@ class HeavyDriverSession(BodySession):
         self.substeps = substeps
         self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
         """Bodies that do not turn."""
+        self.rubbed_pins = list(rubbing_pins(scene))
+        led = {GROUND, self.led}
+        self.rubbing = [one for one in self.rubbed_pins if {one.first, one.second} != led]
+        """Pins whose friction acts on a body that is not led."""
         driver = scene.driver
         self.heavy = HEAVY * pairs.inertia_scale(scene) / scene.driver_arm_m**2
         if self.led:
@@ -125,8 +131,17 @@ class HeavyDriverSession(BodySession):
 
     def joint_forces(self) -> object:
         """Return the numbers before and after the last step, and all actions in it."""
-        acting = self.acting
-        return self.before, self.numbers(), self.pushed.on_bodies, acting.on_blocks, acting.rubbed
+        acting, now = self.acting, self.numbers()
+        rate = {GROUND: 0.0} | dict(zip(self.names, now[:, 5].tolist(), strict=True))
+        turning = {one.pin: rate[one.second] - rate[one.first] for one in self.rubbed_pins}
+        couples = {
+            one.pin: math.nan
+            if abs(turning[one.pin]) <= STUCK * self._pace()
+            else -math.copysign(one.size, turning[one.pin])
+            for one in self.rubbed_pins
+        }
+        rubbed = acting.rubbed | couples
+        return self.before, now, self.pushed.on_bodies, acting.on_blocks, rubbed
 
     def acted(self, rows: Sequence[Any], poses: Poses) -> Forces:
         """Return the forces by the momentum of the bodies, at the middle of each step.
@@ -134,12 +149,17 @@ class HeavyDriverSession(BodySession):
         Impulses of stiff joints in a sub-step, which engines report, repeat the rounding of places.
         """
         before, after = (np.array([row[k] for row in rows]) for k in (0, 1))
-        gains = {}
-        for k, name in enumerate(self.names):
-            given = np.array([row[2][name] for row in rows])
-            gains[name] = self._gain(name, before[:, k], after[:, k], given)
         blocks = {name: np.array([row[3][name] for row in rows]) for name in rows[0][3]}
         rubbed = {n: np.array([row[4].get(n, math.nan) for row in rows]) for n in rows[-1][4]}
+        given = {name: np.array([row[2][name] for row in rows]) for name in self.names}
+        for one in self.rubbed_pins:
+            for name, sign in ((one.first, -1.0), (one.second, 1.0)):
+                if name in given:
+                    given[name][:, 2] += sign * rubbed[one.pin]
+        gains = {
+            name: self._gain(name, before[:, k], after[:, k], given[name])
+            for k, name in enumerate(self.names)
+        }
         tied = [*hinges(self.scene, GROUND)]
         found = joint_pushes(self.scene, tied, gains, driven=self.drive != "free")
         times = poses.time_s + self.dt * (self.shift - 0.5)
@@ -161,6 +181,8 @@ class HeavyDriverSession(BodySession):
         gained = PointPath(end, centre).velocity - PointPath(start, centre).velocity
         place = 0.5 * (PointPath(start, centre).position + PointPath(end, centre).position)
         force = mass * (gained / self.dt - np.array(self.scene.gravity_m_s2)) - given[:, :2]
-        moment = inertia * (after[:, 5] - before[:, 5]) / self.dt - given[:, 2]
         theta = 0.5 * (before[:, 2] + after[:, 2])
+        arm = arms(theta, less(own, centre))  # given moments are about the engine's origin
+        about = given[:, 2] + arm[:, 0] * given[:, 1] - arm[:, 1] * given[:, 0]
+        moment = inertia * (after[:, 5] - before[:, 5]) / self.dt - about
         return MomentumGain(centre, place, theta, force, moment)

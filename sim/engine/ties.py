@@ -11,6 +11,7 @@ from models.scene.joints import (
     Prism,
     Slot,
     block_name,
+    joined_at,
     joints,
     line_ends,
     local_point,
@@ -44,6 +45,33 @@ def slide_of(scene: Scene, slider: str) -> Prism | Slot:
 def block_guides(scene: Scene) -> dict[str, str]:
     """Return the guide of each block without mass, which turns with it, by the block's name."""
     return {block_name(slot.slider): slot.slider.on for slot in joints(scene).slots}
+
+
+@dataclass(frozen=True)
+class RubbingPin:
+    """Constant friction of a pin, a couple [N m] between two bodies, of which none is a block."""
+
+    pin: str
+    first: str
+    second: str
+    size: float
+
+
+def rubbing_pins(scene: Scene) -> Iterator[RubbingPin]:
+    """Yield the pins with constant friction. Raises EngineError for one without exactly two
+    bodies."""
+    guides = block_guides(scene)
+    for pin, law in scene.friction.items():
+        if not isinstance(law, loads.ConstantFriction) or pin in scene.sliders:
+            continue
+        names = joined_at(scene).get(pin, ())
+        if len(names) != 2:
+            raise EngineError(
+                f"{scene.name}: friction.{pin}: {len(names)} bodies meet there, and two rub on "
+                "one another; use a pin of two, or a slider"
+            )
+        first, second = (guides.get(name, name) for name in names)
+        yield RubbingPin(pin, first, second, law.size)
 
 
 def spring_ends(scene: Scene, spring: loads.Spring) -> tuple[End, End]:

@@ -8,13 +8,12 @@ import numpy as np
 import pymunk
 
 from models.array import Array
-from models.errors import EngineError
 from models.scene import GROUND
 from models.scene import joints as pairs
 from models.scene.joints import End, Frame
-from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
+from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from sim.engine.acting import EngineBodies, Pushes
-from sim.engine.ties import block_guides, slide_of, spring_ends
+from sim.engine.ties import rubbing_pins, slide_of, spring_ends
 
 
 def moves_freely(body: pymunk.Body) -> bool:
@@ -76,25 +75,15 @@ class PinFriction:
 
 
 def pin_friction(placed: SpaceBodies) -> tuple[PinFriction, ...]:
-    """Make the constant friction of the pins of a scene. Raises EngineError for a pin without
-    exactly two bodies."""
-    scene, rubs, guides = placed.scene, [], block_guides(placed.scene)
-    for joint, law in scene.friction.items():
-        if not isinstance(law, ConstantFriction) or joint in scene.sliders:
-            continue
-        names = pairs.joined_at(scene).get(joint, ())
-        if len(names) != 2:
-            raise EngineError(
-                f"{scene.name}: friction.{joint}: {len(names)} bodies meet there, and two rub on "
-                "one another; use a pin of two, or a slider"
-            )
-        first, second = (guides.get(name, name) for name in names)
-        ends = placed.body(first), placed.body(second)
+    """Make the constant friction of the pins of a scene. Raises EngineError, as `rubbing_pins`."""
+    rubs = []
+    for rub in rubbing_pins(placed.scene):
+        ends = placed.body(rub.first), placed.body(rub.second)
         motor = None
         if any(map(moves_freely, ends)):
             motor = pymunk.SimpleMotor(*ends, 0.0)
-            motor.max_force = law.size
-        rubs.append(PinFriction(joint, first, second, law.size, motor))
+            motor.max_force = rub.size
+        rubs.append(PinFriction(rub.pin, rub.first, rub.second, rub.size, motor))
     return tuple(rubs)
 
 

@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
-from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from models.scene.joints import Frame, Prism, Slot, less
-from models.scene.loads import ConstantFriction
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Push, Pushes
 from sim.engine.heavy_driver import HeavyDriverSession
@@ -142,21 +140,9 @@ class RapierSession(HeavyDriverSession):
 
     def _rub(self) -> None:
         """Add the constant friction of pins: a motor of speed 0 and limited torque."""
-        scene = self.scene
-        guides = {pairs.block_name(s.slider): s.slider.on for s in pairs.joints(scene).slots}
-        for pin, friction in scene.friction.items():
-            if pin in scene.sliders or not isinstance(friction, ConstantFriction):
-                continue
-            names = pairs.joined_at(scene).get(pin, ())
-            if len(names) != 2:
-                raise EngineError(
-                    f"{scene.name}: friction.{pin}: {len(names)} bodies meet there, and two rub on "
-                    "one another; use a pin of two, or a slider"
-                )
-            first, other = (guides.get(name, name) for name in names)
-            if {first, other} != {GROUND, self.led}:
-                joint = self._joint(NOTHING, (first, other), ((0.0, 0.0), (0.0, 0.0)))
-                self._move(joint, rp.JointAxis.ANG_Z, 0.0, friction.size)
+        for rub in self.rubbing:
+            joint = self._joint(NOTHING, (rub.first, rub.second), ((0.0, 0.0), (0.0, 0.0)))
+            self._move(joint, rp.JointAxis.ANG_Z, 0.0, rub.size)
 
     def _motor(self) -> Any:
         """Return a joint that holds nothing, for the motor of the driver."""

@@ -17,8 +17,8 @@ SAME = 1e-9
 SHUT = 1e-12
 """Largest loop gap at the start, over the longest link, that counts as assembled."""
 CLOSED = 10.0
-"""Largest turn of a body [rad] where an engine closes a start that is open, over the gap in terms of
-the longest link: the inverse of a fair transmission angle, and of a short link."""
+"""Largest turn of a body [rad] where an engine closes an open start, over the gap in terms of the
+longest link: the inverse of a fair transmission angle, and of a short link."""
 ROUNDINGS = 16.0
 """Units of the last place of an engine's numbers that both of these allow at least."""
 
