@@ -64,10 +64,11 @@ report: $(VENV)/crankcheck
 hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
 
+ALL := --engine all --profile tuned --profile as-shipped
 engines: $(VENV)/engines
-	$(BIN)/crankcheck sweep --engine all -o out/engines
-	$(BIN)/crankcheck sweep --engine all --free -o out/engines
-	$(BIN)/crankcheck sweep --engine all --forces -o out/engines
+	$(BIN)/crankcheck sweep $(ALL) --steps-per-turn 45,90,180,360,720,1440 -o out/engines
+	$(BIN)/crankcheck sweep $(ALL) --free --no-timing -o out/engines
+	$(BIN)/crankcheck sweep $(ALL) --forces --steps-per-turn 180,720 --no-timing -o out/engines
 	$(BIN)/crankcheck stability --engine all -o out/engines
 	$(BIN)/crankcheck report out/engines -o out/engines.html
 

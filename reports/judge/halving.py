@@ -13,7 +13,7 @@ from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import Convergence, convergence
 from reports.judge.tolerance import Limit, beyond_engine, limits
 from reports.quantities import named
-from sim.engine import Placing, Run
+from sim.engine import AT_ROUNDING, Placing, Run
 
 ELASTIC = ("segments", "deflection")
 PLACES, FORCES = ("phase", *named("place")), named("force")
@@ -93,7 +93,8 @@ def followed(
     )
     if force is None:
         return Followed(of_places)
-    exact = max(rounding, force.pure_bound)
+    noise = (least - AT_ROUNDING) * (parts[-1] / errors.of_scene.step_rad) ** 2
+    exact = max(rounding, force.pure_bound) + noise
     share = "torque" if force.quantity == "torque" else "reaction"
     of_forces = convergence(
         steps_s, pure(force), f"of the largest {share}", exact, over=over(FORCES, exact)

@@ -271,5 +271,5 @@ ENGINE = Engine(
     applies_loads=True,
     applies_constant_friction=True,
     applies_springs=True,
-    no_forces="its joint reactions are those of no instant, 20 % off and more at every step",
+    forces_of="steps",
 )

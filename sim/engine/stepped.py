@@ -276,7 +276,7 @@ class TreeSession(SteppedSession):
         if driven_by != "free":
             driven, self.sense = driven_freedom(scene, self.tree.limbs)
             self.driven = next(k for k, own in enumerate(self.freedoms) if own.name == driven)
-        self.rubbing = rubs(scene, self.tree.limbs) if self.rubs else []
+        self.rubbing = rubs(scene, self.tree.limbs, sliders=self.rubs)
         self.names = pairs.bodies(scene)
         centre = dict.fromkeys((GROUND, *self.names), (0.0, 0.0))
         self.bodies = EngineBodies(scene, state, centre=centre)

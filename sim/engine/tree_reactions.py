@@ -47,27 +47,28 @@ class Rub:
         return math.nan if stuck else -self.sense * math.copysign(self.size, rate)
 
 
-def rubs(scene: Scene, limbs: Sequence[Limb]) -> list[Rub]:
-    """Return the frictions of constant size; their joints are in the tree
-    (`models.mjcf.forces.planned`)."""
+def rubs(scene: Scene, limbs: Sequence[Limb], *, sliders: bool = True) -> list[Rub]:
+    """Return the frictions of constant size, of pins alone without ``sliders``; their joints are in
+    the tree (`models.mjcf.forces.planned`)."""
     found = []
     freedoms = [(limb, freedom) for limb in limbs for freedom in limb.freedoms]
     guides = block_guides(scene)
     for one in scene.friction.values():
-        if not isinstance(one, ConstantFriction):
+        slides = one.joint in scene.sliders
+        if not isinstance(one, ConstantFriction) or (slides and not sliders):
             continue
         row, limb = next(
             (row, limb)
             for row, (limb, freedom) in enumerate(freedoms)
             if rubbing_freedom(scene, limb, one.joint) is freedom
         )
-        if one.joint in scene.sliders:  # its coordinate is the slider's own
+        if slides:  # its coordinate is the slider's own
             slide = slide_of(scene, one.joint)
             first, second, slowest = slide.slider.on, pairs.riding_body(slide), scene.longest_m
         else:
             first, second = (guides.get(n, n) for n in pairs.joined_at(scene)[one.joint][:2])
             slowest = 1.0
-        sense = 1.0 if one.joint in scene.sliders or limb.body == second else -1.0
+        sense = 1.0 if slides or limb.body == second else -1.0
         bodies = first, second
         found.append(Rub(one.joint, one.size, row, sense, bodies, STUCK * slowest))
     return found

@@ -228,5 +228,5 @@ ENGINE = Engine(
     applies_springs=True,
     precision=DECLARATION.precision,
     floor=2e-6,
-    no_forces="its impulses are those of the last sub-step, in rows made orthogonal",
+    forces_of="steps",
 )
