@@ -9,5 +9,5 @@ DECLARATION = Declaration(
     formulation="constraint impulses",
     apart=True,
     tried="3.2.",
-    wheels="Linux with Python up to 3.11",
+    wheels="Linux, Python up to 3.11",
 )

@@ -9,5 +9,5 @@ DECLARATION = Declaration(
     formulation="constraint impulses",
     apart=True,
     tried="6.20.",
-    wheels="Linux, and others from Python 3.12 on",
+    wheels="Linux; others from Python 3.12 on",
 )

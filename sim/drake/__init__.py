@@ -9,5 +9,5 @@ DECLARATION = Declaration(
     formulation="soft constraints",
     apart=True,
     tried="1.51.",
-    wheels="Linux and macOS",
+    wheels="Linux, macOS",
 )

@@ -181,7 +181,7 @@ def install_command(name: str) -> str:
     """Return the command that installs an engine's package, and the systems that have wheels."""
     own = declaration(name)
     what = f"'crankcheck[{name}]'" if own.extra else own.distribution
-    only = f" ({own.wheels} alone)" if own.wheels else ""
+    only = f" (wheels: {own.wheels})" if own.wheels else ""
     return f"{sys.executable} -m pip install {what}{only}"
 
 

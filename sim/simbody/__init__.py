@@ -9,5 +9,5 @@ DECLARATION = Declaration(
     formulation="constraint equations",
     apart=True,
     tried="4.6",
-    wheels="Python 3.11 to 3.13, but not Linux on arm64",
+    wheels="Python 3.11 to 3.13, not Linux on arm64",
 )

@@ -221,7 +221,7 @@ def test_an_engine_that_is_not_installed_names_the_command_and_its_systems(
 ) -> None:
     own = declaration(name)
     install = f"'crankcheck[{name}]'" if own.extra else own.distribution
-    install += f" ({own.wheels} alone)" if own.wheels else ""
+    install += f" (wheels: {own.wheels})" if own.wheels else ""
     monkeypatch.setitem(sys.modules, own.package, None)
     for module in [each for each in sys.modules if each.startswith(f"sim.{name}.")]:
         monkeypatch.delitem(sys.modules, module)
