@@ -84,7 +84,7 @@ GEOMETRY = Quantity(
             "geometry",
             "All places at the angle that the run's own coordinate has: a linkage that has come "
             "open is told from one whose phase has run away.",
-            "Stiffen the loop (`crankcheck engines --settings`), or shorten the step.",
+            "Stiffen the loop (settings of the engine), or shorten the step.",
             short="geom",
             diagram="geometry at the run's own angle",
             tolerance=Tolerance(

@@ -160,7 +160,7 @@ GAP = quantity.Quantity(
             "pin gap",
             "Two bodies that share a pin or a slider must not come apart: an open loop is "
             "another mechanism, however well the crank turns.",
-            "Stiffen the joint (`crankcheck engines --settings`), or shorten the step.",
+            "Stiffen the joint (settings of the engine), or shorten the step.",
             short="gap",
             diagram="closure: the widest gap",
             tolerance=replace(

@@ -56,7 +56,7 @@ def name_of(field: str) -> str:
 
 
 SceneName = Annotated[str, argument("SCENE", "A shipped name, or a scene file.")]
-Engines = Annotated[Sequence[str], option("Engine; may be repeated.", "--engine")]
+Engines = Annotated[Sequence[str], option("Engine, or all; may be repeated.", "--engine")]
 StepS = Annotated[float | None, option("Time step, such as 1/60.", "--dt SECONDS", parser=seconds)]
 StepsPerTurn = Annotated[float | None, "Steps in a turn, in place of --dt (default 720)."]
 Duration = Annotated[

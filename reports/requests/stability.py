@@ -165,7 +165,8 @@ IN_FOLDER = {"selftest.csv": "--csv", "selftest.json": "--json"}
 @dataclass(frozen=True)
 class SelftestRequest:
     engines: Annotated[
-        Sequence[str], option("Engine; may be repeated; all if none.", "--engine")
+        Sequence[str],
+        option("Engine, or all; may be repeated; the usual ones if none.", "--engine"),
     ] = ()
     faults: Annotated[
         Sequence[str], option("Fault of the table; may be repeated; all if none.", "--fault NAME")

@@ -132,6 +132,11 @@ def in_scene(
     return runner
 
 
+def is_double(name: str) -> bool:
+    """True if an engine has double precision: rounding of others hides what is small."""
+    return engine(name).precision == "double"
+
+
 def integrates(name: str) -> bool:
     """True if an engine integrates its places: a step leaves an error in them, unlike in numbers of
     the reference. Places that joints are solved for may be as exact as these."""

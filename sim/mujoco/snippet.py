@@ -108,7 +108,7 @@ def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
 
 def _alone(complete: Settings, defaults: Settings) -> list[str]:
     """Write the option element for a model of the mechanism alone."""
-    other = {name: value for name, value in complete.items() if value != defaults[name]}
+    other = {name: value for name, value in complete.items() if defaults.get(name, value) != value}
     if "tolerance" in other:
         other["tolerance"] = _short(other["tolerance"])
     row = {name: other[name] for name in ("solver", "iterations", "tolerance") if name in other}

@@ -23,7 +23,7 @@ class ErrorShrinks:
     )
     cure = (
         "A shorter step does not help; change what the engine models: stiffness of joints, sweeps "
-        "(`crankcheck engines --settings`)."
+        "over them (settings of the engine)."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

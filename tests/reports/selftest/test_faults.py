@@ -14,6 +14,7 @@ from reports.selftest import trial
 from reports.selftest.elastic_changes import LOOSE
 from reports.selftest.fault import FOURBAR, INSIDE
 from reports.selftest.trial import FAULTS, FaultTrial, healthy, passed_by, passes, tried
+from tests.worlds.engines import FULL
 from tests.worlds.tiers import few, slow, slowly
 
 ENGINES = ("mujoco", "pymunk")
@@ -172,6 +173,7 @@ THERE = [
     for name, fault in FAULTS.items()
     if fault.kind == "motion" and name not in NO_FAULT_THERE
     for engine in fault.engines
+    if engine in FULL
 ]
 
 
