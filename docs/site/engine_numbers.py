@@ -6,7 +6,6 @@ comments; the page of all engines gets their table.
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,7 +20,7 @@ from reports.stability.matrix import Matrix, read_matrix
 from reports.store.reader import read_store
 from sim.registry import engine
 
-PLACE = re.compile(r"(<!-- measured -->\n).*?(<!-- /measured -->)", re.DOTALL)
+BEGIN, END = "<!-- measured -->", "<!-- /measured -->"
 ROOM = 20_000
 JUDGED = "tuned"
 
@@ -39,9 +38,9 @@ def main(folder: Path) -> None:
     for name, text in texts.items():
         page = ROOT / "docs" / "engines" / f"{name}.md"
         if page.is_file():
-            before = page.read_text(encoding="utf-8")
-            after = PLACE.sub(lambda mark, text=text: f"{mark[1]}\n{text}\n\n{mark[2]}", before)
-            page.write_text(after, encoding="utf-8")
+            head, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+            tail = rest.partition(END)[2]
+            page.write_text(f"{head}{BEGIN}\n\n{text}\n\n{END}{tail}", encoding="utf-8")
 
 
 def _of_engine(row: EngineRow, matrix: Matrix | None) -> Iterator[str]:

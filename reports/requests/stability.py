@@ -166,7 +166,7 @@ IN_FOLDER = {"selftest.csv": "--csv", "selftest.json": "--json"}
 class SelftestRequest:
     engines: Annotated[
         Sequence[str],
-        option("Engine, or all; may be repeated; the usual ones if none.", "--engine"),
+        option("Engine; may be repeated; all if none.", "--engine"),
     ] = ()
     faults: Annotated[
         Sequence[str], option("Fault of the table; may be repeated; all if none.", "--fault NAME")
