@@ -7,6 +7,7 @@ positions, to the second order, unless the engine has it in the frames of the bo
 """
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
@@ -34,7 +35,7 @@ from models.scene.joints import (
     turned,
     whole_turns,
 )
-from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring
+from models.scene.loads import ConstantFriction, Load, PinSpring, SlideSpring, Spring
 from sim.engine import Drive
 from sim.engine.load_magnitudes import ahead, known_ahead
 from sim.engine.ties import Hinge, spring_ends
@@ -159,31 +160,51 @@ class Course(Generic[Value]):
         return (self._values[-1] - self._values[-2]) / self._dt
 
 
-class SliderCourse:
-    """Displacement of a slider [m], and pushes along its line."""
+class FollowedCoordinate(ABC):
+    """A coordinate of the bodies that a load, a spring or friction follows, step by step."""
 
-    def __init__(
-        self, placed: EngineBodies, slide: Prism | Slot, dt_s: float, *, rates: bool = False
-    ) -> None:
-        self._rates, self._slide, slider = rates, slide, slide.slider
+    def __init__(self, start: float, dt_s: float) -> None:
+        self.course = Course(start, dt_s)
+
+    def follow(self, frames: Frames, *, rates: bool) -> None:
+        """Go on to the frames at the end of a step, with ``rates`` to their velocities too."""
+        self.course.go_on(self.value(frames), self.rate(frames) if rates else None)
+
+    @abstractmethod
+    def value(self, frames: Frames) -> float:
+        """Return the coordinate [m or rad]."""
+
+    @abstractmethod
+    def rate(self, frames: Frames) -> float:
+        """Return its rate by the velocities of the frames."""
+
+    @abstractmethod
+    def push(self, size: float, frames: Frames, pushes: Pushes) -> None:
+        """Add a force [N] or a couple [N m] that makes it larger."""
+
+
+class SliderCourse(FollowedCoordinate):
+    """Displacement of a slider; a push acts on the sliding body, and back on its guide."""
+
+    def __init__(self, placed: EngineBodies, slide: Prism | Slot, dt_s: float) -> None:
+        self._slide, slider = slide, slide.slider
         (self._rider, self._anchor), (self._guide, self._start) = placed.line_ends(slide)
         self._along = turned((1.0, 0.0), slider.direction_rad)
-        self.course = Course(placed.state.displacement[slider.name], dt_s)
+        super().__init__(placed.state.displacement[slider.name], dt_s)
 
-    def follow(self, frames: Frames) -> None:
-        """Go on to the positions of the bodies at the end of a step."""
+    def value(self, frames: Frames) -> float:
+        place = frames[self._rider].at(self._anchor)
+        x, y = less(frames[self._guide].into(place), self._start)
+        return x * self._along[0] + y * self._along[1]
+
+    def rate(self, frames: Frames) -> float:
         guide, rider = frames[self._guide], frames[self._rider]
         place = rider.at(self._anchor)
-        x, y = less(guide.into(place), self._start)
-        speed = None
-        if self._rates:
-            drift = less(rider.velocity_at(place), guide.velocity_at(place))
-            u, v = turned(self._along, guide.theta)
-            speed = u * drift[0] + v * drift[1]
-        self.course.go_on(x * self._along[0] + y * self._along[1], speed)
+        drift = less(rider.velocity_at(place), guide.velocity_at(place))
+        u, v = turned(self._along, guide.theta)
+        return u * drift[0] + v * drift[1]
 
     def push(self, size: float, frames: Frames, pushes: Pushes) -> None:
-        """Push the sliding body by so much along the line [N], and the guide back."""
         slider, rider, guide = self._slide.slider, frames[self._rider], frames[self._guide]
         fx, fy = turned((size, 0.0), guide.theta + slider.direction_rad)
         if isinstance(self._slide, Slot):
@@ -193,100 +214,47 @@ class SliderCourse:
         pushes.force(self._guide, guide, place, (-fx, -fy))
 
 
-class SpringSteps:
-    """Springs of a scene, ``but`` those that the engine has itself, by name."""
+class _EndDistance(FollowedCoordinate):
+    """Distance of two places on bodies."""
 
-    def __init__(
-        self,
-        placed: EngineBodies,
-        start: Frames,
-        tracks: Mapping[str, SliderCourse],
-        dt_s: float,
-        but: Collection[str],
-        *,
-        rates: bool,
-    ) -> None:
-        self._steps: list[_OnLine | _InPin | _OnSlide] = []
-        for name, spring in placed.scene.springs.items():
-            if name in but:
-                continue
-            if isinstance(spring, LineSpring):
-                self._steps.append(_OnLine(placed, spring, start, dt_s, rates=rates))
-            elif isinstance(spring, PinSpring):
-                self._steps.append(_InPin(spring, start, dt_s, rates=rates))
-            else:
-                self._steps.append(_OnSlide(spring, tracks[spring.slider]))
-
-    def __bool__(self) -> bool:
-        return bool(self._steps)
-
-    @property
-    def numbers(self) -> dict[str, tuple[float, float, float]]:
-        """Rate, damping and slack length of each spring by name."""
-        springs = (step.spring for step in self._steps)
-        return {one.name: (one.rate, one.damping, one.free) for one in springs}
-
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        """Apply the springs."""
-        for step in self._steps:
-            step.push(frames, pushes)
-
-
-class _OnLine:
-    def __init__(
-        self, placed: EngineBodies, spring: LineSpring, start: Frames, dt_s: float, *, rates: bool
-    ) -> None:
-        self.spring, self._rates = spring, rates
-        first, second = (
-            (body, placed.from_centre(body, place))
-            for body, place in spring_ends(placed.scene, spring)
-        )
+    def __init__(self, first: End, second: End, start: Frames, dt_s: float) -> None:
         self._ends = first, second
-        self._course = Course(self._length(start), dt_s)
+        super().__init__(self.value(start), dt_s)
 
-    def _length(self, frames: Frames) -> float:
+    def value(self, frames: Frames) -> float:
         return math.dist(*(frames[body].at(anchor) for body, anchor in self._ends))
 
-    def _speed(self, frames: Frames, length: float) -> float:
+    def rate(self, frames: Frames) -> float:
         (one, a), (other, b) = self._ends
         here, there = frames[one].at(a), frames[other].at(b)
         drift = less(frames[other].velocity_at(there), frames[one].velocity_at(here))
         way = less(there, here)
-        return (way[0] * drift[0] + way[1] * drift[1]) / (length or math.inf)
+        return (way[0] * drift[0] + way[1] * drift[1]) / (self.value(frames) or math.inf)
 
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        length = self._length(frames)
-        self._course.go_on(length, self._speed(frames, length) if self._rates else None)
-        pushes.pull(*self._ends, frames, self.spring.pull(length, self._course.rate))
+    def push(self, size: float, frames: Frames, pushes: Pushes) -> None:
+        pushes.pull(*self._ends, frames, -size)
 
 
-class _InPin:
-    def __init__(self, spring: PinSpring, start: Frames, dt_s: float, *, rates: bool) -> None:
-        self.spring, self._rates = spring, rates
-        opened = self._opened(start)
-        self._whole = whole_turns(spring, opened)
-        self._course = Course(opened + self._whole, dt_s)
+class _BodyAngle(FollowedCoordinate):
+    """Angle of a body against another, and in the pin of a ``spring`` its whole turns."""
 
-    def _opened(self, frames: Frames) -> float:
-        first, second = self.spring.bodies
-        return frames[second].theta - frames[first].theta
+    def __init__(
+        self, first: str, second: str, start: Frames, dt_s: float, spring: PinSpring | None = None
+    ) -> None:
+        self._first, self._second, self._whole = first, second, 0.0
+        if spring is not None:
+            self._whole = whole_turns(spring, self.value(start))
+        super().__init__(self.value(start), dt_s)
 
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        q = self._opened(frames) + self._whole
-        first, second = self.spring.bodies
-        self._course.go_on(q, frames[second].omega - frames[first].omega if self._rates else None)
-        pull = self.spring.pull(q, self._course.rate)
-        pushes.torque(first, pull)
-        pushes.torque(second, -pull)
+    def value(self, frames: Frames) -> float:
+        return frames[self._second].theta - frames[self._first].theta + self._whole
 
+    def rate(self, frames: Frames) -> float:
+        return frames[self._second].omega - frames[self._first].omega
 
-class _OnSlide:
-    def __init__(self, spring: SlideSpring, track: SliderCourse) -> None:
-        self.spring, self._track = spring, track
-
-    def push(self, frames: Frames, pushes: Pushes) -> None:
-        course = self._track.course
-        self._track.push(-self.spring.pull(course.value, course.rate), frames, pushes)
+    def push(self, size: float, frames: Frames, pushes: Pushes) -> None:
+        pushes.torque(self._second, size)
+        pushes.torque(self._first, -size)
 
 
 class LoadSteps:
@@ -306,22 +274,15 @@ class LoadSteps:
     def __init__(
         self,
         placed: EngineBodies,
-        start: Frames,
         slots: Mapping[str, Slot],
         tracks: Mapping[str, SliderCourse],
+        turning: Mapping[str, FollowedCoordinate],
         dt_s: float,
         drive: Drive,
-        *,
-        rates: bool,
     ) -> None:
-        self._placed, self._dt, self._drive, self._rates = placed, dt_s, drive, rates
+        self._placed, self._dt, self._drive = placed, dt_s, drive
         self._scene = scene = placed.scene
-        self._slots, self._tracks = slots, tracks
-        self._turning = {
-            load.body: Course(start[load.body].theta, dt_s)
-            for load in scene.loads.values()
-            if load.over == "omega"
-        }
+        self._slots, self._tracks, self._turning = slots, tracks, turning
         self._of_strokes: dict[str, Load] = {}
         self._stairs: dict[str, Staircase] = {}
         if drive == "free":
@@ -353,8 +314,6 @@ class LoadSteps:
 
     def push(self, step: int, frames: Frames, pushes: Pushes) -> None:
         """Apply the loads of a step, by its number since the look ahead, from 0 on."""
-        for body, course in self._turning.items():
-            course.go_on(frames[body].theta, frames[body].omega if self._rates else None)
         for name, load in self._scene.loads.items():
             size = (
                 self._known[name][step] if name in self._known else self._size(load, step, frames)
@@ -366,7 +325,7 @@ class LoadSteps:
         sliders = {
             name: (track.course.value, track.course.rate) for name, track in self._tracks.items()
         }
-        omega = self._turning[load.body].rate if load.over == "omega" else 0.0
+        omega = self._turning[load.body].course.rate if load.over == "omega" else 0.0
         now = self._times[step], frames[self._scene.driver.link].theta, sliders, omega
         if load.name in self._of_strokes:
             return self._share_of_stroke(load) * self._of_strokes[load.name].size(*now)
@@ -457,19 +416,29 @@ class Acting:
         rubs: bool = False,
         rates: bool = False,
     ) -> None:
-        scene = bodies.scene
+        scene, self._rates = bodies.scene, rates
         slides = joints(scene).slides
         followed = {load.slider for load in scene.loads.values()}
         followed |= {getattr(one, "slider", None) for one in scene.springs.values()}
         followed |= {*scene.friction}
         self._tracks = {
-            slide.slider.name: SliderCourse(bodies, slide, dt_s, rates=rates)
+            slide.slider.name: SliderCourse(bodies, slide, dt_s)
             for slide in slides
             if slide.slider.name in followed
         }
+        turning = {
+            load.body: _BodyAngle(GROUND, load.body, start, dt_s)
+            for load in scene.loads.values()
+            if load.over == "omega"
+        }
         slots = {block_name(slide.slider): slide for slide in slides if isinstance(slide, Slot)}
-        self._loads = LoadSteps(bodies, start, slots, self._tracks, dt_s, drive, rates=rates)
-        self._springs = SpringSteps(bodies, start, self._tracks, dt_s, but, rates=rates)
+        self._loads = LoadSteps(bodies, slots, self._tracks, turning, dt_s, drive)
+        springs = [own for name, own in scene.springs.items() if name not in but]
+        self._springs = [(own, self._deflection(own, bodies, start, dt_s)) for own in springs]
+        self.springs = {own.name: (own.rate, own.damping, own.free) for own in springs}
+        """The active springs by name: rate, damping and slack length."""
+        coordinates = *self._tracks.values(), *turning.values(), *(q for _, q in self._springs)
+        self._followed = tuple(dict.fromkeys(coordinates))
         self._friction = {} if rubs else slider_friction(scene, drive, engine)
         self._acts = bool(scene.loads or self._springs or self._friction)
         self._bodies = tuple(start)
@@ -482,10 +451,17 @@ class Acting:
     def __bool__(self) -> bool:
         return self._acts
 
-    @property
-    def springs(self) -> dict[str, tuple[float, float, float]]:
-        """The active springs by name: rate, damping and slack length."""
-        return self._springs.numbers
+    def _deflection(
+        self, spring: Spring, bodies: EngineBodies, start: Frames, dt_s: float
+    ) -> FollowedCoordinate:
+        """Return the coordinate of a spring."""
+        if isinstance(spring, SlideSpring):
+            return self._tracks[spring.slider]
+        if isinstance(spring, PinSpring):
+            return _BodyAngle(*spring.bodies, start, dt_s, spring)
+        ends = spring_ends(bodies.scene, spring)
+        first, second = ((body, bodies.from_centre(body, place)) for body, place in ends)
+        return _EndDistance(first, second, start, dt_s)
 
     def look_ahead(self, times: Array) -> None:
         """Compute the known loads of the next steps, which act at these times [s]."""
@@ -498,11 +474,12 @@ class Acting:
     def pushes(self, step: int, frames: Frames) -> Pushes:
         """Return all actions of a step, by its number since the look ahead, from 0 on, with the
         bodies where they are at its instant; it has to be called once for each, in turn."""
-        for track in self._tracks.values():
-            track.follow(frames)
+        for coordinate in self._followed:
+            coordinate.follow(frames, rates=self._rates)
         pushes, self.rubbed = self.none(), {}
         self._loads.push(step, frames, pushes)
-        self._springs.push(frames, pushes)
+        for spring, own in self._springs:
+            own.push(-spring.pull(own.course.value, own.course.rate), frames, pushes)
         for name, size in self._friction.items():
             speed = self._tracks[name].course.rate
             self.rubbed[name] = -math.copysign(size, speed) if speed else 0.0

@@ -97,8 +97,7 @@ class HeavyDriverSession(BodySession):
         driver, frames = self.scene.driver, self.frames(0.0)
         if driver.slider is None:
             return frames[driver.link].theta - frames[driver.base].theta - self.ahead
-        self.track.follow(frames)
-        return self.track.course.value
+        return self.track.value(frames)
 
     def turn(self, place: float | None, speed: float) -> None:
         if self.led is None:
