@@ -12,13 +12,13 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene import joints as pairs
-from models.scene.joints import Frame, Prism, Slot, less, turned
+from models.scene.joints import Frame, Prism, Slot, turned
 from sim.box2d import DECLARATION
 from sim.box2d import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Push, Pushes
 from sim.engine.heavy_driver import HeavyDriverSession
-from sim.engine.ties import Hinge, RubbingPin, hinges, refuse_driver_angle, refuse_massless
+from sim.engine.ties import Hinge, RubbingJoint, hinges, refuse_driver_angle, refuse_massless
 
 b2: Any = import_module("pyb2d3")  # ships no stubs
 VERSION = version("pyb2d3")
@@ -57,15 +57,13 @@ class Box2dSession(HeavyDriverSession):
             self.body[self.led] = self._placed(self.led_frame, *heavy, gravity_scale=0.0)
         self.motor: Any = None
         self._join()
-        self.begin(self.bodies)
+        self.begin()
 
     def _body(self, name: str) -> Any:
-        frame, turns = self.where[name], name not in self.fixed
         mass, inertia = pairs.mass_of(self.scene, name)
-        refuse_massless(self.name, name, mass, inertia, turns=turns)
-        place = frame.at(self.bodies.centre[name])
-        at = Frame(place, frame.theta, frame.velocity_at(place), frame.omega)
-        return self._placed(at, mass, inertia or mass * self.scene.longest_m**2)
+        refuse_massless(self.name, name, mass, inertia, turns=name not in self.fixed)
+        own = inertia or mass * self.scene.longest_m**2
+        return self._placed(self.frame_of(name), mass, own)
 
     def _placed(self, frame: Frame, mass: float, inertia: float, **more: float) -> Any:
         """Add a body with its centre of mass at the origin of its frame."""
@@ -98,17 +96,17 @@ class Box2dSession(HeavyDriverSession):
             if name != driver.slider or not self.led:
                 self._slide(slide, driven=name == driver.slider and has_motor)
             elif isinstance(slide, Slot):
-                rider = pairs.riding_body(slide)
+                (rider, anchor), _ = self.bodies.line_ends(slide)
                 self.world.create_revolute_joint(
                     self.body[self.led],
                     self.body[rider],
                     local_anchor_a=(0.0, 0.0),
-                    local_anchor_b=self.bodies.anchor(rider, slide.slider.point),
+                    local_anchor_b=anchor,
                 )
-        for rub in self.rubbing:
+        for rub in self.braked:
             self._rub(rub)
 
-    def _rub(self, rub: RubbingPin) -> None:
+    def _rub(self, rub: RubbingJoint) -> None:
         """Add a motor of speed 0 and limited torque, which holds neither place nor angle."""
         self.world.create_motor_joint(
             self.body[rub.first],
@@ -119,24 +117,25 @@ class Box2dSession(HeavyDriverSession):
         )
 
     def _pin(self, hinge: Hinge, *, driven: bool) -> Any:
+        (first, here), (other, there) = self.bodies.hinge_ends(hinge)
         return self.world.create_revolute_joint(
-            self.body[hinge.first],
-            self.body[hinge.other],
-            local_anchor_a=self.bodies.anchor(hinge.first, hinge.point),
-            local_anchor_b=self.bodies.anchor(hinge.other, hinge.point),
+            self.body[first],
+            self.body[other],
+            local_anchor_a=here,
+            local_anchor_b=there,
             enable_motor=driven,
             max_motor_torque=float(self.settings["motor_n_m"]) / self.pace**2,
         )
 
     def _slide(self, slide: Prism | Slot, *, driven: bool) -> None:
-        slider, rider = slide.slider, pairs.riding_body(slide)
+        slider, ((rider, tip), (guide, start)) = slide.slider, self.bodies.line_ends(slide)
         ends = {
-            "local_anchor_a": less(slider.through_m, self.bodies.centre[slider.on]),
-            "local_anchor_b": self.bodies.anchor(rider, slider.point),
+            "local_anchor_a": start,
+            "local_anchor_b": tip,
             "local_axis_a": turned((1.0, 0.0), slider.direction_rad),
             "enable_spring": False,
         }
-        bodies = self.body[slider.on], self.body[rider]
+        bodies = self.body[guide], self.body[rider]
         if isinstance(slide, Prism):
             joint = self.world.create_prismatic_joint(
                 *bodies,

@@ -30,8 +30,8 @@ from models.scene.loads import ConstantFriction
 from sim.bullet import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Pushes
-from sim.engine.stepped import TreeSession
 from sim.engine.ties import refuse_driver_angle, refuse_massless
+from sim.engine.tree_session import TreeSession
 
 
 def _imported() -> Any:
@@ -81,7 +81,7 @@ class BulletSession(TreeSession):
         self.multibody = self._build()
         self._set()
         self._close()
-        self.begin(self.bodies)
+        self.begin()
 
     def grown(self) -> Tree:
         """Return the tree, loosened in free motion but for sliders and pins with friction."""

@@ -17,8 +17,8 @@ from models.scene import joints as pairs
 from sim.dart import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Pushes
-from sim.engine.stepped import TreeSession
 from sim.engine.ties import refuse_massless
+from sim.engine.tree_session import TreeSession
 
 dartpy: Any = importlib.import_module("dartpy")  # ships no stubs
 VERSION = version("dartpy")
@@ -68,7 +68,7 @@ class DartSession(TreeSession):
         self.loops = [self._loop(closure) for closure in self.tree.closures]
         for loop in self.loops:
             self.world.getConstraintSolver().addConstraint(loop)
-        self.begin(self.bodies)
+        self.begin()
 
     def _body(self, limb: Limb) -> Any:
         """Add the bodies of a limb, one for each of its joints, and return the last."""

@@ -23,8 +23,8 @@ from models.scene import joints as pairs
 from sim.drake import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Pushes
-from sim.engine.stepped import TreeSession
 from sim.engine.ties import refuse_driver_angle, refuse_massless
+from sim.engine.tree_session import TreeSession
 
 VERSION = version("drake")
 UP = np.array([0.0, 0.0, 1.0])
@@ -75,7 +75,7 @@ class DrakeSession(TreeSession):
             one = plants.ExternallyAppliedSpatialForce()
             one.body_index = self.body[name].index()
             self.given.append(one)
-        self.begin(self.bodies)
+        self.begin()
 
     def _add(self, limb: Limb) -> None:
         scene, name = self.scene, limb.body

@@ -43,8 +43,6 @@ from sim.engine.ties import Hinge, spring_ends
 Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""
 NONE: Push = (0.0, 0.0, 0.0)
-
-
 Frames = Mapping[str, Frame]
 """Frames of the bodies, with the engine's own origins, and of the ground, at the instant of a
 step's forces."""
@@ -259,11 +257,6 @@ class _BodyAngle(FollowedCoordinate):
 
 class LoadSteps:
     """Loads on bodies; ``slots`` are the blocks without mass, by body name.
-
-    With the magnitudes of the end of a step the loads act where the joints do, and the step keeps
-    its order. With those of its start they would be a step late, and of first order: with a force
-    of a sine on the lecture's four-bar at 1440 steps a turn, reactions would be off by 4e-3 of the
-    largest, instead of 3e-5.
 
     In free motion a step's load is also its change of velocity, so that a jump, or the end of a
     stroke, counts with its share of the step about that instant: half of a jump at a sample. In

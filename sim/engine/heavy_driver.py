@@ -4,40 +4,40 @@ a motor."""
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 
 from models.array import Array
-from models.motion import Forces, State
-from models.scene import GROUND, Point, Scene
+from models.motion import State
+from models.scene import GROUND, Scene
 from models.scene import joints as pairs
-from models.scene.joints import Frame, less, turned
+from models.scene.joints import FIXED, Frame, less, turned
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Poses, Settings
-from sim.engine.acting import Push, SliderCourse
+from sim.engine.acting import EngineBodies, Push, SliderCourse, centres
 from sim.engine.measure import BodyPath, PointPath, arms, centred
-from sim.engine.momentum_balance import MomentumGain, forces_by_body, joint_pushes
-from sim.engine.stepped import BodySession
-from sim.engine.ties import hinges, rubbing_pins, slide_of
+from sim.engine.momentum_balance import MomentumGain
+from sim.engine.stepped import SteppedSession, StepSeries
+from sim.engine.ties import RubbingJoint, rubbing_joints, slide_of
 
 HEAVY = 1e9
 """Inertia of a led driver over the mechanism's: nothing that is read has as many digits."""
-STUCK = 1e-4
-"""Rate over the driver's below which a pin with friction may stick, by rounding."""
 SHARE = 0.5
 """Share of its error of place that a motor corrects in a step."""
 
 
-class HeavyDriverSession(BodySession):
+class HeavyDriverSession(SteppedSession):
     """A session with ``substeps`` in a step, each of which adds the forces to the velocities first.
 
-    A body that turns by ``w h`` in a sub-step is turned along the tangent of its rotation, so that
-    ``(w h)^3 / tangent`` is missing.
+    Each body has its origin at its centre of mass, but the heavy one: it is led along the driver's
+    law, with its origin at its pivot. A body that turns by ``w h`` in a sub-step is turned along
+    the tangent of its rotation, so that ``(w h)^3 / tangent`` is missing.
     """
 
     tangent: ClassVar[float]
+    stuck = 1e-4
 
     def __init__(
         self,
@@ -49,17 +49,25 @@ class HeavyDriverSession(BodySession):
         substeps: int,
     ) -> None:
         super().__init__(scene, state, settings, dt_s, driven_by)
+        driver = scene.driver
+        self.led = driver.link if driven_by == "prescribed" and not driver.is_inner else None
+        """The heavy body."""
+        self.where = pairs.frames(scene, state, self.shift * dt_s)
+        centre = centres(scene)
+        if self.led and driver.slider is None:
+            centre[self.led] = pairs.local_point(scene, self.led, scene.driver_pivot)
+        self.bodies = EngineBodies(scene, state, centre=centre)
+        self._angles = np.array([self.where[name].theta for name in self.names])
         self.substeps = substeps
         self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
         """Bodies that do not turn."""
-        self.rubbed_pins = list(rubbing_pins(scene))
+        self.rubbing = list(rubbing_joints(scene, sliders=False))
         led = {GROUND, self.led}
-        self.rubbing = [one for one in self.rubbed_pins if {one.first, one.second} != led]
+        self.braked = [one for one in self.rubbing if {one.first, one.second} != led]
         """Pins whose friction acts on a body that is not led."""
-        driver = scene.driver
         self.heavy = HEAVY * pairs.inertia_scale(scene) / scene.driver_arm_m**2
         if self.led:
-            self.led_centre, self.led_frame = self._led()
+            self.led_frame = self._led(self.led)
         elif driven_by == "free":
             return
         elif driver.slider is not None:
@@ -69,20 +77,23 @@ class HeavyDriverSession(BodySession):
             apart = self.where[driver.link].theta - self.where[driver.base].theta
             self.ahead = math.tau * round((apart - at) / math.tau)
 
-    def _led(self) -> tuple[Point, Frame]:
-        """Return the origin of the heavy body in its link and its frame; a block without mass is a
-        body here too."""
-        name, slider = str(self.led), self.scene.sliders.get(self.scene.driver.slider or "")
-        frame, centre = self.where.get(name), self.bodies.centre.get(name, (0.0, 0.0))
-        if slider is not None and frame is None:
-            state, point = self.state, slider.point
-            frame = Frame(state.position[point], 0.0, state.velocity[point], 0.0)
-        assert frame is not None
+    def _led(self, name: str) -> Frame:
+        """Return the frame of the heavy body; a block without mass is a body here too."""
+        slider, state = self.scene.sliders.get(self.scene.driver.slider or ""), self.state
         if slider is not None:
-            way = turned((self.state.displacement[slider.name], 0.0), slider.direction_rad)
-            self.base = less(frame.at(centre), way)
-        place = frame.at(centre)
-        return centre, Frame(place, frame.theta, frame.velocity_at(place), frame.omega)
+            if name not in self.where:
+                speed = state.velocity[slider.point]
+                self.where[name] = Frame(state.position[slider.point], 0.0, speed, 0.0)
+                self.bodies.centre[name] = (0.0, 0.0)
+            way = turned((state.displacement[slider.name], 0.0), slider.direction_rad)
+            self.base = less(self.frame_of(name).origin, way)
+        return self.frame_of(name)
+
+    def frame_of(self, name: str) -> Frame:
+        """Return the frame of a body in the engine at the start."""
+        own = self.where[name]
+        place = own.at(self.bodies.centre[name])
+        return Frame(place, own.theta, own.velocity_at(place), own.omega)
 
     @abstractmethod
     def lead(self, frame: Frame, push: Push) -> None:
@@ -128,47 +139,46 @@ class HeavyDriverSession(BodySession):
         frame = Frame((x, y), theta, (before * u, before * v), 0.0)
         self.lead(frame, (push * u, push * v, 0.0))
 
-    def joint_forces(self) -> object:
-        """Return the numbers before and after the last step, and all actions in it."""
-        acting, now = self.acting, self.numbers()
-        rate = {GROUND: 0.0} | dict(zip(self.names, now[:, 5].tolist(), strict=True))
-        turning = {one.pin: rate[one.second] - rate[one.first] for one in self.rubbed_pins}
-        couples = {
-            one.pin: math.nan
-            if abs(turning[one.pin]) <= STUCK * self._pace()
-            else -math.copysign(one.size, turning[one.pin])
-            for one in self.rubbed_pins
+    @abstractmethod
+    def look(self) -> Array:
+        """Return x, y, angle (but for whole turns), and their rates, of all bodies, (B, 6)."""
+
+    def numbers(self) -> Array:
+        rows = self.look()
+        behind = np.round((self._angles - rows[:, 2]) / math.tau)
+        rows[:, 2] += math.tau * behind
+        self._angles = rows[:, 2]
+        return rows
+
+    def frames(self, ahead_s: float) -> Mapping[str, Frame]:
+        now = self.numbers()
+        then = (now[:, :3] + ahead_s * now[:, 3:]).tolist()
+        found = {
+            name: Frame((x, y), theta, (0.0, 0.0), 0.0)
+            for name, (x, y, theta) in zip(self.names, then, strict=True)
         }
-        rubbed = acting.rubbed | couples
-        return self.before, now, self.pushed.on_bodies, acting.on_blocks, rubbed
+        return {GROUND: FIXED} | found
 
-    def acted(self, rows: Sequence[Any], poses: Poses) -> Forces:
-        """Return the forces by the momentum of the bodies, at the middle of each step.
-
-        Impulses of stiff joints in a sub-step, which engines report, repeat the rounding of places.
-        """
-        before, after = (np.array([row[k] for row in rows]) for k in (0, 1))
-        blocks = {name: np.array([row[3][name] for row in rows]) for name in rows[0][3]}
-        rubbed = {n: np.array([row[4].get(n, math.nan) for row in rows]) for n in rows[-1][4]}
-        given = {name: np.array([row[2][name] for row in rows]) for name in self.names}
-        for one in self.rubbed_pins:
-            for name, sign in ((one.first, -1.0), (one.second, 1.0)):
-                if name in given:
-                    given[name][:, 2] += sign * rubbed[one.pin]
-        gains = {
-            name: self._gain(name, before[:, k], after[:, k], given[name])
+    def poses(self, rows: Array, time_s: Array) -> Poses:
+        lag, centre = self.shift * self.dt, self.bodies.centre
+        found = {
+            name: centred(rows[:, k, :3], rows[:, k, 3:], None, centre[name], lag)
             for k, name in enumerate(self.names)
         }
-        tied = [*hinges(self.scene, GROUND)]
-        found = joint_pushes(self.scene, tied, gains, driven=self.drive != "free")
-        times = poses.time_s + self.dt * (self.shift - 0.5)
-        forces = forces_by_body(self.scene, found, blocks, rubbed, times)
-        unknown = np.isnan(before).any(axis=(1, 2))  # no step led there
+        return Poses(time_s, found, lag)
 
-        def without(series: Array) -> Array:
-            return np.where(unknown.reshape(-1, *[1] * (series.ndim - 1)), np.nan, series)
+    def rate_in(self, rub: RubbingJoint, numbers: Array) -> float:
+        row = {name: k for k, name in enumerate(self.names)}
+        first, second = (numbers[row[n], 5] if n in row else 0.0 for n in (rub.first, rub.second))
+        return float(second - first)
 
-        return forces.each_series(without)
+    def gains(self, steps: StepSeries) -> Mapping[str, MomentumGain]:
+        """Return the gains at the middle of each step. Impulses of stiff joints in a sub-step,
+        which engines report, repeat the rounding of places."""
+        return {
+            name: self._gain(name, steps.before[:, k], steps.after[:, k], steps.given[name])
+            for k, name in enumerate(self.names)
+        }
 
     def _gain(self, name: str, before: Array, after: Array, given: Array) -> MomentumGain:
         """Return the action of joints and drive on a body in each step."""
@@ -176,10 +186,9 @@ class HeavyDriverSession(BodySession):
         own, centre = self.bodies.centre[name], pairs.centre_of(self.scene, name)
         lag = self.shift * self.dt
         ends = [centred(row[:, :3], row[:, 3:], None, own, lag) for row in (before, after)]
-        start, end = (BodyPath(pose) for pose in ends)
-        gained = PointPath(end, centre).velocity - PointPath(start, centre).velocity
-        place = 0.5 * (PointPath(start, centre).position + PointPath(end, centre).position)
-        force = mass * (gained / self.dt - np.array(self.scene.gravity_m_s2)) - given[:, :2]
+        start, end = (PointPath(BodyPath(pose), centre) for pose in ends)
+        pull = (end.velocity - start.velocity) / self.dt - np.array(self.scene.gravity_m_s2)
+        place, force = 0.5 * (start.position + end.position), mass * pull - given[:, :2]
         theta = 0.5 * (before[:, 2] + after[:, 2])
         arm = arms(theta, less(own, centre))  # given moments are about the engine's origin
         about = given[:, 2] + arm[:, 0] * given[:, 1] - arm[:, 1] * given[:, 0]

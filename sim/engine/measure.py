@@ -145,6 +145,11 @@ def across(vector: Array) -> Array:
     return _pairs(-vector[:, 1], vector[:, 0])
 
 
+def moment(arm: Array, force: Array) -> Array:
+    """Return the moment of forces at these arms, (T, 2) each, (T,)."""
+    return np.asarray(arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])
+
+
 def _pairs(x: Array, y: Array) -> Array:
     """Join components to vectors, (T, 2)."""
     pairs = np.empty((len(x), 2))

@@ -14,6 +14,7 @@ across it: a slider's block without mass is no body here.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from models.array import Array
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
 from models.scene import joints as pairs
-from sim.engine.measure import across, arms, directions
+from sim.engine.measure import across, arms, directions, moment
 from sim.engine.ties import Hinge
 
 OnBlocks = Mapping[str, Array]
@@ -31,6 +32,12 @@ UNDETERMINED = (
     "redundant links share the load by their stiffness and fit: the momentum of rigid bodies "
     "leaves the reactions open, and determines the driving torque alone"
 )
+
+
+def by_name(rows: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    """Return the numbers of steps as one array for each name of the last; NaN for those without."""
+    names = rows[-1] if rows else ()
+    return {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
 
 
 @dataclass(frozen=True)
@@ -68,22 +75,9 @@ class JointPushes:
 def joint_pushes(
     scene: Scene, hinges: Sequence[Hinge], gains: Mapping[str, MomentumGain], *, driven: bool
 ) -> JointPushes:
-    """Compute the forces of the joints, and the torque of the drive, 0 without one.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its sliders, and its driver.
-    hinges : Sequence
-        Hinges of its pins: one less per pin than it has bodies.
-    gains : Mapping
-        Action of joints and drive on each moving body.
-
-    Returns
-    -------
-    JointPushes
-        NaN at samples at which the joints are singular.
-    """
+    """Return the forces of the joints by the ``gains`` of the moving bodies, with these hinges of
+    the pins, and the torque of the drive, 0 without one. They are NaN at samples at which the
+    joints are singular."""
     slides = pairs.joints(scene).slides
     prisms = [slide.slider.name for slide in slides if isinstance(slide, pairs.Prism)]
     system = _System(gains)
@@ -186,7 +180,7 @@ class _System:
     def _push(self, column: Array, body: str, arm: Array, direction: Array) -> None:
         row = self._row[body]
         column[:, row : row + 2] += direction
-        column[:, row + 2] += arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
+        column[:, row + 2] += moment(arm, direction)
 
 
 class PinForces(dict[str, dict[str, Array]]):

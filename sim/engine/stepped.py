@@ -1,43 +1,43 @@
 """Sessions of engines that are stepped from Python: what is done before each step, and the log.
 
 An adapter says how its engine takes one step, where its bodies are, how its driver is turned and
-how a body is pushed; the drive, loads and springs of the scene, whole turns and the log are here.
+how a body is pushed; the drive, loads and springs of the scene, the log, and forces by what a step
+does to the momentum of each body, are here.
 """
 
 import math
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import ClassVar, cast
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
 from models.array import Array
-from models.errors import EngineError
-from models.mjcf.forces import planned
-from models.mjcf.tree import Tree, driven_freedom
 from models.motion import Forces, State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
-from models.scene.joints import FIXED, Frame
-from sim.engine import (
-    BodyPose,
-    Drive,
-    Facts,
-    Log,
-    Poses,
-    Settings,
-    SettingValue,
-    drive,
-    measure,
-    tree_poses,
-)
-from sim.engine.acting import Acting, EngineBodies, Pushes, centres
-from sim.engine.tree_reactions import RateChange, forces_of, rubs
+from models.scene.joints import Frame
+from sim.engine import Drive, Facts, Log, Poses, Settings, SettingValue, drive
+from sim.engine.acting import Acting, EngineBodies, Pushes
+from sim.engine.momentum_balance import MomentumGain, by_name, forces_by_body, joint_pushes
+from sim.engine.ties import RubbingJoint, hinges
 
 TURN_BETWEEN = 1.0
 """Largest turn of a body between two looks at its angle [rad], where an engine counts no turns."""
+
+
+@dataclass(frozen=True)
+class StepSeries:
+    """Steps by the numbers before and after each, (T, ...), the actions on bodies at their origins
+    and on blocks without mass, (T, 3) by name, and the friction by joint, (T,)."""
+
+    before: Array
+    after: Array
+    given: dict[str, Array]
+    on_blocks: dict[str, Array]
+    rubbed: dict[str, Array]
 
 
 class SteppedSession(ABC):
@@ -52,6 +52,12 @@ class SteppedSession(ABC):
     name: ClassVar[str]
     rubs: ClassVar[bool] = False
     knows_rates: ClassVar[bool] = False
+    stuck: ClassVar[float] = 1e-9
+    """Rate over the driver's, in a slider per length of the scene, below which a joint with
+    friction may stick, by rounding."""
+    bodies: EngineBodies
+    rubbing: Sequence[RubbingJoint] = ()
+    """Joints whose friction the engine has itself."""
     shift: float = 0.0
     acts_at: float = 0.0
 
@@ -60,12 +66,11 @@ class SteppedSession(ABC):
     ) -> None:
         self.scene, self.state, self.settings = scene, state, dict(settings)
         self.dt, self.drive, self.start_s, self.done = dt_s, driven_by, state.time_s, 0
-        self.warnings: list[str] = []
+        self.names, self.warnings = pairs.bodies(scene), list[str]()
 
-    def begin(self, placed: EngineBodies) -> None:
-        """Take the first look at the model, whose bodies are ``placed``."""
-        self.placed = placed
-        given = self.name, placed, self.frames(0.0), self.dt, self.drive
+    def begin(self) -> None:
+        """Take the first look at the model."""
+        given = self.name, self.bodies, self.frames(0.0), self.dt, self.drive
         self.acting = Acting(*given, rubs=self.rubs, rates=self.knows_rates)
         self.pushed, self.before = self.acting.none(), np.full_like(self.numbers(), np.nan)
         if self.drive != "free":
@@ -102,13 +107,46 @@ class SteppedSession(ABC):
     def poses(self, rows: Array, time_s: Array) -> Poses:
         """Return the poses of samples of `numbers`, (T, ...)."""
 
-    def acted(self, rows: Sequence[object], poses: Poses) -> Forces:
-        """Return the forces of samples of `joint_forces`."""
-        raise NotImplementedError
+    @abstractmethod
+    def rate_in(self, rub: RubbingJoint, numbers: Array) -> float:
+        """Return the rate of a joint's second body against its first."""
 
-    def joint_forces(self) -> object:
-        """Return the present forces in joints, as the engine has them."""
-        raise NotImplementedError
+    @abstractmethod
+    def gains(self, steps: StepSeries) -> Mapping[str, MomentumGain]:
+        """Return the action of joints and drive on each body in each step."""
+
+    def rub(self, rub: RubbingJoint, steps: StepSeries) -> None:
+        """Add the friction of a joint to the actions on its bodies."""
+        for body, sense in ((rub.first, -1.0), (rub.second, 1.0)):
+            steps.given[body][:, 2] += sense * steps.rubbed[rub.joint]
+
+    def joint_forces(self) -> Any:
+        """Return the present forces in joints, as the engine has them; else the last step, as
+        `StepSeries`, with friction NaN where a joint may stick."""
+        now, rubbed = self.numbers(), dict(self.acting.rubbed)
+        for rub in self.rubbing:
+            rate, size = self.rate_in(rub, now), self.scene.longest_m
+            still = self.stuck * (size if rub.joint in self.scene.sliders else 1.0) * self._pace()
+            rubbed[rub.joint] = math.nan if abs(rate) <= still else -math.copysign(rub.size, rate)
+        return self.before, now, self.pushed.on_bodies, self.acting.on_blocks, rubbed
+
+    def acted(self, rows: Sequence[Any], poses: Poses) -> Forces:
+        """Return the forces of samples of `joint_forces`, by default at the instant of the forces
+        of each step."""
+        before, after, *actions = zip(*rows, strict=True)
+        steps = StepSeries(np.array(before), np.array(after), *map(by_name, actions))
+        for rub in self.rubbing:
+            self.rub(rub, steps)
+        ties, driven = [*hinges(self.scene, GROUND)], self.drive != "free"
+        pushes = joint_pushes(self.scene, ties, self.gains(steps), driven=driven)
+        times = poses.time_s + self.dt * (self.shift - 0.5)
+        forces = forces_by_body(self.scene, pushes, steps.on_blocks, steps.rubbed, times)
+        known = np.isfinite(steps.before).all(axis=(1, 2))  # a step led there
+
+        def with_gaps(series: Array) -> Array:
+            return np.where(known.reshape(-1, *[1] * (series.ndim - 1)), series, np.nan)
+
+        return forces.each_series(with_gaps)
 
     def step(self, steps: int) -> None:
         """Advance without logging."""
@@ -122,7 +160,7 @@ class SteppedSession(ABC):
         """Advance and log, with the forces of each logged step."""
         return self._recorded(steps, every, [self.joint_forces()])
 
-    def _recorded(self, steps: int, every: int, forces: list[object] | None) -> Log:
+    def _recorded(self, steps: int, every: int, forces: list[Any] | None) -> Log:
         at = self.done + every * np.arange(steps // every + 1, dtype=np.float64)
         began = time.perf_counter()
         rows = [self.numbers()]
@@ -136,7 +174,7 @@ class SteppedSession(ABC):
         log = Log(poses, (count - 1) * every, count < len(at), warnings, wall)
         return log if forces is None else replace(log, forces=self.acted(forces[:count], poses))
 
-    def _run(self, steps: int, every: int, rows: list[Array], forces: list[object] | None) -> None:
+    def _run(self, steps: int, every: int, rows: list[Array], forces: list[Any] | None) -> None:
         """Take the steps; add numbers, and forces, after every ``every``-th."""
         turns = self._turns(steps) if self.drive != "free" else []
         if self.acting:
@@ -193,145 +231,3 @@ class SteppedSession(ABC):
             acceleration_shift=0.0,
             springs=self.acting.springs,
         )
-
-
-class BodySession(SteppedSession):
-    """A session of an engine of free bodies, each with its origin at its centre of mass, but a
-    driven body that nothing moves: its origin is its pivot.
-
-    A subclass adds its bodies to ``placed.centre`` in order.
-    """
-
-    def __init__(
-        self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
-    ) -> None:
-        super().__init__(scene, state, settings, dt_s, driven_by)
-        driver = scene.driver
-        self.led = driver.link if driven_by == "prescribed" and not driver.is_inner else None
-        """The body that is led along the driver's law, kinematic in most engines."""
-        self.where = pairs.frames(scene, state, self.shift * dt_s)
-        centre = centres(scene)
-        if self.led and driver.slider is None:
-            centre[self.led] = pairs.local_point(scene, self.led, scene.driver_pivot)
-        self.bodies = EngineBodies(scene, state, centre=centre)
-        self.names = pairs.bodies(scene)
-        self._angles = np.array([self.where[name].theta for name in self.names])
-
-    @abstractmethod
-    def look(self) -> Array:
-        """Return x, y, angle (but for whole turns), and their rates, of all bodies, (B, 6)."""
-
-    def numbers(self) -> Array:
-        rows = self.look()
-        behind = np.round((self._angles - rows[:, 2]) / math.tau)
-        rows[:, 2] += math.tau * behind
-        self._angles = rows[:, 2]
-        return rows
-
-    def frames(self, ahead_s: float) -> Mapping[str, Frame]:
-        now = self.numbers()
-        then = (now[:, :3] + ahead_s * now[:, 3:]).tolist()
-        found = {
-            name: Frame((x, y), theta, (0.0, 0.0), 0.0)
-            for name, (x, y, theta) in zip(self.names, then, strict=True)
-        }
-        return {GROUND: FIXED} | found
-
-    def poses(self, rows: Array, time_s: Array) -> Poses:
-        lag = self.shift * self.dt
-        centre = self.bodies.centre
-        place, rate = rows[:, :, :3], rows[:, :, 3:]
-        found = {
-            name: measure.centred(place[:, k], rate[:, k], None, centre[name], lag)
-            for k, name in enumerate(self.names)
-        }
-        return Poses(time_s, found, lag)
-
-
-def refuse_driver_between(scene: Scene, engine: str, why: str) -> None:
-    """Refuse a driver between two moving bodies. Raises EngineError."""
-    if scene.driver.is_inner:
-        raise EngineError(f"{scene.name}: its driver is {scene.driver.joint}; {engine} {why}")
-
-
-def _frame(pose: BodyPose) -> Frame:
-    """Return the only sample of a pose."""
-    (x, y), (u, v) = pose.origin[0].tolist(), pose.velocity[0].tolist()
-    return Frame((x, y), float(pose.theta[0]), (u, v), float(pose.omega[0]))
-
-
-class TreeSession(SteppedSession):
-    """A session of an engine whose bodies hang on one another by joint coordinates, with loops
-    closed at pins (`models.mjcf.tree`). The frames of its bodies are those of the links."""
-
-    def __init__(
-        self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
-    ) -> None:
-        super().__init__(scene, state, settings, dt_s, driven_by)
-        self.tree = self.grown()
-        self.freedoms = [own for limb in self.tree.limbs for own in limb.freedoms]
-        """The joint coordinates, in the order of the limbs and of each one's joints."""
-        self.driven, self.sense = 0, 1.0
-        """RateChange of the driven coordinate, and its sense against the driver's own."""
-        if driven_by != "free":
-            driven, self.sense = driven_freedom(scene, self.tree.limbs)
-            self.driven = next(k for k, own in enumerate(self.freedoms) if own.name == driven)
-        self.rubbing = rubs(scene, self.tree.limbs, sliders=self.rubs)
-        self.names = pairs.bodies(scene)
-        centre = dict.fromkeys((GROUND, *self.names), (0.0, 0.0))
-        self.bodies = EngineBodies(scene, state, centre=centre)
-
-    def grown(self) -> Tree:
-        """Return the tree, with the rates of its coordinates at the engine's own instant."""
-        return planned(self.scene, self.state, delay_s=self.shift * self.dt)
-
-    def joint_forces(self) -> object:
-        """Return what shows the forces of the last step: the change of the rates in it."""
-        q, rate = self.numbers()[:2]
-        push = (rate - self.before[1]) / self.dt
-        rubbed = {rub.joint: rub.on_second(rate[rub.row], self._pace()) for rub in self.rubbing}
-        acting = self.acting
-        on_bodies, on_blocks = self.pushed.on_bodies, acting.on_blocks
-        return RateChange(np.stack([q, rate, push]), on_bodies, on_blocks, acting.rubbed | rubbed)
-
-    def acted(self, rows: Sequence[object], poses: Poses) -> Forces:
-        return forces_of(
-            self.scene,
-            self.tree.limbs,
-            self.rubbing,
-            cast(Sequence[RateChange], rows),
-            poses.time_s,
-            self.dt,
-            driven=self.drive != "free",
-        )
-
-    @abstractmethod
-    def look(self) -> Array:
-        """Return the joint coordinates, their rates and, where known, accelerations, of `freedoms`,
-        as these count them, (2, n) or (3, n)."""
-
-    def numbers(self) -> Array:
-        return self.look()
-
-    def frames(self, ahead_s: float) -> Mapping[str, Frame]:
-        q, rate, *push = self.look()
-        gained = ahead_s * np.nan_to_num(push[0] if push else np.zeros_like(q))
-        then = (q + ahead_s * (rate + 0.5 * gained))[None], (rate + gained)[None]
-        found = tree_poses.body_poses(self.tree.limbs, *then, np.zeros((1, len(q))))
-        return {GROUND: FIXED} | {name: _frame(pose) for name, pose in found.items()}
-
-    def poses(self, rows: Array, time_s: Array) -> Poses:
-        lag, known = self.shift * self.dt, rows.shape[1] > 2
-        q, rate = rows[:, 0], rows[:, 1]
-        push = rows[:, 2] if known else np.full_like(q, np.nan)
-        found = Poses(time_s, tree_poses.body_poses(self.tree.limbs, q, rate, push, lag), lag)
-        return found if known else found.changed(unpushed)
-
-
-def unpushed(pose: BodyPose) -> BodyPose:
-    """Return the pose without accelerations; a body that only slides would keep its alpha of 0."""
-    return replace(
-        pose,
-        origin_acceleration=np.full_like(pose.origin, np.nan),
-        alpha=np.full_like(pose.theta, np.nan),
-    )

@@ -48,30 +48,36 @@ def block_guides(scene: Scene) -> dict[str, str]:
 
 
 @dataclass(frozen=True)
-class RubbingPin:
-    """Constant friction of a pin, a couple [N m] between two bodies, of which none is a block."""
+class RubbingJoint:
+    """Constant friction: a couple [N m] between the two bodies of a pin, of which none is a block
+    without mass, or a force [N] between the guide and the sliding body of a slider."""
 
-    pin: str
+    joint: str
     first: str
     second: str
     size: float
 
 
-def rubbing_pins(scene: Scene) -> Iterator[RubbingPin]:
-    """Yield the pins with constant friction. Raises EngineError for one without exactly two
-    bodies."""
+def rubbing_joints(scene: Scene, *, sliders: bool) -> Iterator[RubbingJoint]:
+    """Yield the pins with constant friction, and the ``sliders``. Raises EngineError for a pin
+    without exactly two bodies."""
     guides = block_guides(scene)
-    for pin, law in scene.friction.items():
-        if not isinstance(law, loads.ConstantFriction) or pin in scene.sliders:
+    for joint, law in scene.friction.items():
+        slides = joint in scene.sliders
+        if not isinstance(law, loads.ConstantFriction) or (slides and not sliders):
             continue
-        names = joined_at(scene).get(pin, ())
+        if slides:
+            slide = slide_of(scene, joint)
+            yield RubbingJoint(joint, slide.slider.on, riding_body(slide), law.size)
+            continue
+        names = joined_at(scene).get(joint, ())
         if len(names) != 2:
             raise EngineError(
-                f"{scene.name}: friction.{pin}: {len(names)} bodies meet there, and two rub on "
+                f"{scene.name}: friction.{joint}: {len(names)} bodies meet there, and two rub on "
                 "one another; use a pin of two, or a slider"
             )
         first, second = (guides.get(name, name) for name in names)
-        yield RubbingPin(pin, first, second, law.size)
+        yield RubbingJoint(joint, first, second, law.size)
 
 
 def spring_ends(scene: Scene, spring: loads.Spring) -> tuple[End, End]:

@@ -17,7 +17,7 @@ from models.scene.joints import block_name, local_point
 from models.scene.loads import LineSpring, PinSpring, SlideSpring, Spring
 from sim.engine import Poses, momentum_balance, ties
 from sim.engine.measure import PointPath, body_paths, directions
-from sim.engine.tree_reactions import rubs
+from sim.engine.tree_session import rubs
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class TreeReactions:
             if rub.joint == scene.driver.slider:
                 torque = torque - own
             elif rub.joint == scene.driver_pivot and rub.joint not in scene.sliders:
-                torque = torque - own if rub.bodies[1] == scene.driver.link else torque + own
+                torque = torque - own if rub.second == scene.driver.link else torque + own
         ordered = {name: sliders[name] for name in scene.sliders}
         return Forces(self._time_s, self._pins, ordered, torque, friction=friction)
 

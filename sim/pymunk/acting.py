@@ -8,7 +8,9 @@ from sim.pymunk import bodies, space
 
 class SpaceActing:
     """Loads, springs and friction of sliders in a space, with the magnitudes of the end of a step:
-    there they act where the joints do, and the step keeps its order."""
+    there they act where the joints do, and the step keeps its order. With those of its start they
+    would be a step late: with a force of a sine on the lecture's four-bar at 1440 steps a turn,
+    reactions would be off by 4e-3 of the largest, instead of 3e-5."""
 
     def __init__(self, model: space.SpaceModel, dt_s: float, drive: Drive) -> None:
         self._model, self._dt = model, dt_s

@@ -13,7 +13,7 @@ from models.scene import joints as pairs
 from models.scene.joints import End, Frame
 from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from sim.engine.acting import EngineBodies, Pushes
-from sim.engine.ties import rubbing_pins, slide_of, spring_ends
+from sim.engine.ties import rubbing_joints, slide_of, spring_ends
 
 
 def moves_freely(body: pymunk.Body) -> bool:
@@ -75,15 +75,15 @@ class PinFriction:
 
 
 def pin_friction(placed: SpaceBodies) -> tuple[PinFriction, ...]:
-    """Make the constant friction of the pins of a scene. Raises EngineError, as `rubbing_pins`."""
+    """Make the constant friction of the pins of a scene. Raises EngineError: `rubbing_joints`."""
     rubs = []
-    for rub in rubbing_pins(placed.scene):
+    for rub in rubbing_joints(placed.scene, sliders=False):
         ends = placed.body(rub.first), placed.body(rub.second)
         motor = None
         if any(map(moves_freely, ends)):
             motor = pymunk.SimpleMotor(*ends, 0.0)
             motor.max_force = rub.size
-        rubs.append(PinFriction(rub.pin, rub.first, rub.second, rub.size, motor))
+        rubs.append(PinFriction(rub.joint, rub.first, rub.second, rub.size, motor))
     return tuple(rubs)
 
 

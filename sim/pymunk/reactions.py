@@ -12,7 +12,7 @@ the shaper, whose ram is heavy, within ten samples, with 1000 in the second.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +24,13 @@ from models.motion import Forces
 from models.scene.joints import centre_of, mass_of, turned
 from sim.engine.acting import Push, Pushes
 from sim.engine.measure import across, arms
-from sim.engine.momentum_balance import JointPushes, MomentumGain, forces_by_body, joint_pushes
+from sim.engine.momentum_balance import (
+    JointPushes,
+    MomentumGain,
+    by_name,
+    forces_by_body,
+    joint_pushes,
+)
 from sim.pymunk.native import moves_freely
 from sim.pymunk.space import SpaceModel
 
@@ -82,14 +88,14 @@ class Reactions:
         """
         ends = time_s[1:]
         couples = self._couples(before, after[1:])
-        pulled = _by_name(self._pulled[: len(ends)])
+        pulled = by_name(self._pulled[: len(ends)])
         gains = {
             name: self._gain(name, before, after[1:], ends, couples, pulled)
             for name in self._model.bodies
         }
         pushes = joint_pushes(self._scene, [*self._model.hinges], gains, driven=self._driven)
-        on_blocks = _by_name(self._on_blocks[: len(ends)])
-        friction = couples | _by_name(self._rubbed[: len(ends)])
+        on_blocks = by_name(self._on_blocks[: len(ends)])
+        friction = couples | by_name(self._rubbed[: len(ends)])
         forces = forces_by_body(self._scene, pushes, on_blocks, friction, ends)
         forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
         if not len(ends) or pushes.spare:
@@ -184,11 +190,6 @@ def _turning(omega: Array, first: int | None, second: int | None) -> Array:
     """Return the rate of a body against another, (T,), by their rows; None is the ground."""
     one, other = (0.0 if row is None else omega[:, row] for row in (first, second))
     return np.asarray(other - one)
-
-
-def _by_name(rows: Sequence[Mapping[str, Push] | Mapping[str, float]]) -> dict[str, Array]:
-    """Return the numbers of the steps as one array for each name."""
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else {}
 
 
 def _with_start(series: Array) -> Array:

@@ -9,13 +9,13 @@ import numpy as np
 
 from models.array import Array
 from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Scene
 from models.scene import joints as pairs
-from models.scene.joints import Frame, Prism, Slot, less
+from models.scene.joints import End, Frame, Prism, Slot
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Push, Pushes
 from sim.engine.heavy_driver import HeavyDriverSession
-from sim.engine.ties import hinges, refuse_driver_angle, refuse_massless, slide_of
+from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless, slide_of
 from sim.rapier import DECLARATION
 from sim.rapier import settings as own
 
@@ -46,7 +46,7 @@ class RapierSession(HeavyDriverSession):
         self.world = rp.PhysicsWorld(gravity=(*scene.gravity_m_s2, 0.0))
         self._set()
         self.handle = {GROUND: self.world.add_body(rp.RigidBody.fixed())}
-        self.handle |= {n: self._added(n, self.where[n]) for n in self.names if n != self.led}
+        self.handle |= {name: self._added(name) for name in self.names if name != self.led}
         if self.led:
             self.handle[self.led] = self._heavy()
         self.body = {name: self.world.rigid_bodies[one] for name, one in self.handle.items()}
@@ -55,7 +55,7 @@ class RapierSession(HeavyDriverSession):
         self._join()
         self._rub()
         self.motor = self._motor() if driven_by != "free" and self.led is None else None
-        self.begin(self.bodies)
+        self.begin()
 
     def _set(self) -> None:
         held, given = self.world.integration_parameters, self.settings
@@ -65,12 +65,12 @@ class RapierSession(HeavyDriverSession):
         held.num_internal_stabilization_iterations = given[self.of_velocities]
         held.normalized_max_linear_velocity = 1e9
 
-    def _added(self, name: str, frame: Frame) -> Any:
+    def _added(self, name: str) -> Any:
         mass, inertia = pairs.mass_of(self.scene, name)
         turns = name not in self.fixed
         refuse_massless(self.name, name, mass, inertia, turns=turns)
         return self.world.add_body(
-            self._build(frame, self.bodies.centre[name], mass, inertia or mass)
+            self._build(self.frame_of(name), mass, inertia or mass)
             .enabled_translations((True, True, False))
             .enabled_rotations((False, False, turns))
         )
@@ -78,18 +78,17 @@ class RapierSession(HeavyDriverSession):
     def _heavy(self) -> Any:
         slides = self.scene.driver.slider is not None
         return self.world.add_body(
-            self._build(self.led_frame, (0.0, 0.0), self.heavy, self.heavy)
+            self._build(self.led_frame, self.heavy, self.heavy)
             .gravity_scale(0.0)
             .enabled_translations((slides, slides, False))
             .enabled_rotations((False, False, not slides))
         )
 
-    def _build(self, frame: Frame, centre: Point, mass: float, inertia: float) -> Any:
-        place = frame.at(centre)
+    def _build(self, frame: Frame, mass: float, inertia: float) -> Any:
         return (
             rp.RigidBody.dynamic()
-            .position(rp.Isometry3((*place, 0.0), rotation(frame.theta)))
-            .linvel((*frame.velocity_at(place), 0.0))
+            .position(rp.Isometry3((*frame.origin, 0.0), rotation(frame.theta)))
+            .linvel((*frame.velocity, 0.0))
             .angvel((0.0, 0.0, frame.omega))
             .additional_mass_properties(rp.MassProperties((0.0, 0.0, 0.0), mass, (inertia,) * 3))
             .can_sleep(False)
@@ -99,49 +98,37 @@ class RapierSession(HeavyDriverSession):
     def _join(self) -> None:
         scene, driver = self.scene, self.scene.driver
         for hinge in hinges(scene, *((GROUND,) if driver.is_inner else (GROUND, driver.link))):
-            names = hinge.first, hinge.other
-            if not (self.led and set(names) == {GROUND, self.led}):
-                self._pin(X | Y, names, hinge.point)
+            if not (self.led and {hinge.first, hinge.other} == {GROUND, self.led}):
+                self._joint(X | Y, *self.bodies.hinge_ends(hinge))
         for slide in pairs.joints(scene).slides:
             if not self.led or slide.slider.name != driver.slider:
                 turns = isinstance(slide, Slot) or slide.body in self.fixed
                 self._line(Y if turns else Y | TURN, slide)
             elif isinstance(slide, Slot):
-                rider = pairs.riding_body(slide)
-                anchor = self.bodies.anchor(rider, slide.slider.point)
-                self._joint(X | Y, (self.led, rider), ((0.0, 0.0), anchor))
-
-    def _pin(self, held: Any, names: tuple[str, str], point: str) -> Any:
-        first, other = (self.bodies.anchor(name, point) for name in names)
-        return self._joint(held, names, (first, other))
+                rider, _ = self.bodies.line_ends(slide)
+                self._joint(X | Y, (self.led, (0.0, 0.0)), rider)
 
     def _line(self, held: Any, slide: Prism | Slot) -> Any:
-        slider, rider = slide.slider, pairs.riding_body(slide)
-        start = less(slider.through_m, self.bodies.centre[slider.on])
-        tip = self.bodies.anchor(rider, slider.point)
+        slider, (rider, guide) = slide.slider, self.bodies.line_ends(slide)
         lines = slider.direction_rad, slider.direction_rad - pairs.sliding_angle(slider)
-        return self._joint(held, (slider.on, rider), (start, tip), lines)
+        return self._joint(held, guide, rider, lines)
 
     def _joint(
-        self,
-        held: Any,
-        names: tuple[str, str],
-        places: tuple[Point, Point],
-        lines: tuple[float, float] = (0.0, 0.0),
+        self, held: Any, first: End, second: End, lines: tuple[float, float] = (0.0, 0.0)
     ) -> Any:
         """Join places on two bodies, with the joint's x axis at these angles to them."""
         one, other = (
             rp.Isometry3((*place, 0.0), rotation(line))
-            for place, line in zip(places, lines, strict=True)
+            for (_, place), line in zip((first, second), lines, strict=True)
         )
         build = rp.GenericJoint.builder(held).local_frame1(one).local_frame2(other)
-        ends = (self.handle[name] for name in names)
+        ends = (self.handle[name] for name, _ in (first, second))
         return self.world.impulse_joints.insert(*ends, build.build())
 
     def _rub(self) -> None:
         """Add the constant friction of pins: a motor of speed 0 and limited torque."""
-        for rub in self.rubbing:
-            joint = self._joint(NOTHING, (rub.first, rub.second), ((0.0, 0.0), (0.0, 0.0)))
+        for rub in self.braked:
+            joint = self._joint(NOTHING, (rub.first, (0.0, 0.0)), (rub.second, (0.0, 0.0)))
             self._move(joint, rp.JointAxis.ANG_Z, 0.0, rub.size)
 
     def _motor(self) -> Any:
@@ -150,7 +137,8 @@ class RapierSession(HeavyDriverSession):
         self.axis = rp.JointAxis.ANG_Z if driver.slider is None else rp.JointAxis.LIN_X
         if driver.slider is not None:
             return self._line(NOTHING, slide_of(scene, driver.slider))
-        return self._pin(NOTHING, (driver.base, driver.link), scene.driver_pivot)
+        hinge = Hinge(scene.driver_pivot, driver.base, driver.link)
+        return self._joint(NOTHING, *self.bodies.hinge_ends(hinge))
 
     def _move(self, joint: Any, axis: Any, speed: float, most: float | None = None) -> None:
         held = self.world.impulse_joints[joint]

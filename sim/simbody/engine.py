@@ -15,8 +15,8 @@ from models.scene.joints import Frame
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Engine, Facts, Poses, Settings
 from sim.engine.acting import Acting, Pushes
-from sim.engine.stepped import TreeSession
 from sim.engine.ties import refuse_driver_angle, refuse_massless
+from sim.engine.tree_session import TreeSession
 from sim.simbody import model as made
 from sim.simbody import settings as own
 from sim.simbody.reactions import reactions
@@ -56,7 +56,7 @@ class SimbodySession(TreeSession):
         now: Drive = "prescribed" if driven_by == "prescribed" else "servo"
         self.present = Acting(self.name, self.bodies, self.frames(0.0), dt_s, now, rates=True)
         """The loads and springs at the positions themselves, where forces are read."""
-        self.begin(self.bodies)
+        self.begin()
 
     def _extra(self) -> tuple[float, float]:
         """Return the mass at its pivot and the inertia of a prescribed crank that has none."""
