@@ -51,7 +51,6 @@ class HeavyDriverSession(SteppedSession):
         super().__init__(scene, state, settings, dt_s, driven_by)
         driver = scene.driver
         self.led = driver.link if driven_by == "prescribed" and not driver.is_inner else None
-        """The heavy body."""
         self.where = pairs.frames(scene, state, self.shift * dt_s)
         centre = centres(scene)
         if self.led and driver.slider is None:

@@ -23,7 +23,7 @@ from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
 from models.scene import joints as pairs
 from sim.engine.measure import across, arms, directions, moment
-from sim.engine.ties import Hinge
+from sim.engine.ties import Hinge, slide_of
 
 OnBlocks = Mapping[str, Array]
 """Actions on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N] and
@@ -139,8 +139,8 @@ class _System:
         if driver.slider is None:
             self.couple(driver.link, driver.base)
             return
-        slider = scene.sliders[driver.slider]
-        self._push_on(scene, slider, driver.link, self._along(slider))
+        slide = slide_of(scene, driver.slider)
+        self._push_on(scene, slide.slider, pairs.riding_body(slide), self._along(slide.slider))
 
     def solution(self) -> Array:
         """Solve for the unknowns (T, unknowns): NaN where the joints are singular; of least size

@@ -21,6 +21,7 @@ from models.scene import joints as pairs
 from models.scene.joints import Frame
 from sim.engine import Drive, Facts, Log, Poses, Settings, SettingValue, drive
 from sim.engine.acting import Acting, EngineBodies, Pushes
+from sim.engine.measure import across
 from sim.engine.momentum_balance import MomentumGain, by_name, forces_by_body, joint_pushes
 from sim.engine.ties import RubbingJoint, hinges
 
@@ -137,8 +138,10 @@ class SteppedSession(ABC):
         steps = StepSeries(np.array(before), np.array(after), *map(by_name, actions))
         for rub in self.rubbing:
             self.rub(rub, steps)
-        ties, driven = [*hinges(self.scene, GROUND)], self.drive != "free"
-        pushes = joint_pushes(self.scene, ties, self.gains(steps), driven=driven)
+        ties, own = [*hinges(self.scene, GROUND)], self.scene.driver.slider
+        pushes = joint_pushes(self.scene, ties, self.gains(steps), driven=self.drive != "free")
+        if own in steps.on_blocks:  # a block without mass hands the drive's force on to its pin
+            steps.on_blocks[own][:, :2] -= pushes.torque[:, None] * across(pushes.across[own])
         times = poses.time_s + self.dt * (self.shift - 0.5)
         forces = forces_by_body(self.scene, pushes, steps.on_blocks, steps.rubbed, times)
         known = np.isfinite(steps.before).all(axis=(1, 2))  # a step led there

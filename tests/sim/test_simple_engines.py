@@ -11,7 +11,7 @@ from reports.judge.cell import check
 from reports.plan.requirements import chosen_engines
 from sim.registry import ENGINES, apart, available
 from tests.worlds.engines import HERE, SIMPLE
-from tests.worlds.runs import ran
+from tests.worlds.runs import massless, ran
 from tests.worlds.tiers import few, slow
 from tests.worlds.turns import of_turns
 
@@ -36,6 +36,13 @@ def test_the_rocker_of_the_lectures_four_bar_is_where_it_has_to_be(name: str) ->
 @pytest.mark.parametrize("scene", shipped())
 def test_a_tuned_engine_is_within_tolerance_on_a_shipped_scene(name: str, scene: str) -> None:
     found = check(of_turns(scene, name, 720, turns=2))
+    assert found.verdict == "within", found.failures
+
+
+@pytest.mark.parametrize("name", few(SIMPLE, INSTALLS_IN_A_MINUTE, LATER))
+def test_a_driven_block_without_mass_hands_the_drives_force_on_to_its_pin(name: str) -> None:
+    scene = massless(load_scene("slider-crank-by-piston"))
+    found = check(of_turns(scene, name, with_forces=True))
     assert found.verdict == "within", found.failures
 
 
