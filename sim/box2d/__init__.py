@@ -4,9 +4,7 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "pyb2d3",
-    "pyb2d3",
     ("knobs",),
-    extra=True,
     formulation="constraint impulses",
     precision="single",
     apart=True,

@@ -4,8 +4,6 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "pybullet",
-    "pybullet",
-    extra=True,
     formulation="constraint impulses",
     apart=True,
     tried="3.2.",

@@ -4,8 +4,6 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "dartpy",
-    "dartpy",
-    extra=True,
     formulation="constraint impulses",
     apart=True,
     tried="6.20.",

@@ -4,8 +4,7 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "pydrake",
-    "drake",
-    extra=True,
+    pip_name="drake",
     formulation="soft constraints",
     apart=True,
     tried="1.51.",

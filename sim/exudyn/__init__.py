@@ -3,9 +3,5 @@
 from sim.registry import Declaration
 
 DECLARATION = Declaration(
-    "exudyn",
-    "exudyn",
-    ("snippet", "knobs", "remedies", "force_recipe"),
-    extra=True,
-    formulation="constraint equations",
+    "exudyn", ("snippet", "knobs", "remedies", "force_recipe"), formulation="constraint equations"
 )

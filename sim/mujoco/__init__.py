@@ -4,7 +4,7 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "mujoco",
-    "mujoco",
     ("snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"),
+    extra=False,
     formulation="soft constraints",
 )

@@ -4,7 +4,7 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "pymunk",
-    "pymunk",
     ("snippet", "knobs", "remedies", "spoiler", "force_recipe"),
+    extra=False,
     formulation="constraint impulses",
 )

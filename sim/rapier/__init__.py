@@ -4,9 +4,7 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "rapier3d",
-    "rapier3d",
     ("knobs",),
-    extra=True,
     formulation="constraint impulses",
     precision="single",
     apart=True,

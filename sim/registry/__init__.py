@@ -42,27 +42,32 @@ class BrokenEngineError(EngineError):
 class Declaration:
     """Content of an engine's folder; its ``__init__`` has it as ``DECLARATION``.
 
-    ``package`` is the name for Python's import, ``distribution`` for pip; an ``extra`` is no part
-    of a plain install of crankcheck, and runs only by name. The adapter is the value ``ENGINE`` of
-    the file ``engine``; each capability in ``offers`` has a file of its name too, with a value of
-    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer`,
-    `Reader` or `ForceRecipe`. An engine that runs ``apart`` may end its process: it gets one of its
-    own. ``tried`` starts every version that was compared with the reference, ``wheels`` says for
-    which systems there are any, where not for all.
+    ``package`` is the name for Python's import, and for pip unless that has a ``pip_name``; an
+    ``extra`` is no part of a plain install of crankcheck, and runs only by name. The adapter is the
+    value ``ENGINE`` of the file ``engine``; each capability in ``offers`` has a file of its name
+    too, with a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`,
+    `Spoiler`, `Viewer`, `Reader` or `ForceRecipe`. An engine that runs ``apart`` may end its
+    process: it gets one of its own. ``tried`` starts every version that was compared with the
+    reference, ``wheels`` says for which systems there are any, where not for all.
     """
 
     package: str
-    distribution: str
     offers: tuple[Capability, ...] = ()
-    extra: bool = False
+    extra: bool = True
     formulation: Formulation = "own"
     precision: Precision = "double"
     apart: bool = False
     tried: str = ""
     wheels: str = ""
+    pip_name: str = ""
+
+    @property
+    def distribution(self) -> str:
+        """The name for pip."""
+        return self.pip_name or self.package
 
 
-OWN = Declaration("", "", extra=True)
+OWN = Declaration("")
 """Declaration of a user's own engine."""
 
 

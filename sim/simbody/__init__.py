@@ -4,8 +4,6 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "opensim",
-    "opensim",
-    extra=True,
     formulation="constraint equations",
     apart=True,
     tried="4.6",

@@ -55,7 +55,7 @@ ENGINE = replace(
 '''
 DECLARATION = """
 from sim.registry import Declaration
-DECLARATION = Declaration("mujoco", "mujoco")
+DECLARATION = Declaration("mujoco", extra=False)
 """
 KNOWN = "from sim import registry\nregistry.ENGINES['bad'] = 'bad_engine'\n"
 EXPECTED = {

@@ -62,7 +62,7 @@ def package(folder: Path, name: str, needs: str, text: str) -> Path:
     own = folder / name
     own.mkdir()
     declared = (
-        f"from sim.registry import Declaration\nDECLARATION = Declaration({needs!r}, {needs!r})\n"
+        f"from sim.registry import Declaration\nDECLARATION = Declaration({needs!r}, extra=False)\n"
     )
     (own / "__init__.py").write_text(declared)
     (own / "engine.py").write_text(text)

@@ -2,4 +2,4 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("numpy", "numpy")
+DECLARATION = Declaration("numpy", extra=False)
