@@ -112,11 +112,11 @@ $(VENV)/test: $(VENV)/crankcheck
 	$(PIP) install --constraint constraints.txt --group test
 	touch $@
 
-# An engine without a wheel for this system is left out, and `--engine all` says so. Each is asked for by
-# itself, so that one that is not there does not keep the others away.
+# Each by itself: one without a wheel for this system does not keep the others away; `--engine all` names it.
 $(VENV)/engines: $(VENV)/crankcheck
-	for extra in engines bullet drake; do \
-		$(PIP) install --constraint constraints.txt --only-binary pybullet --editable ".[$$extra]" || true; \
+	for extra in box2d dart exudyn rapier simbody drake bullet; do \
+		$(PIP) install --constraint constraints.txt --only-binary :all: --no-binary crankcheck \
+			--editable ".[$$extra]" || echo "crankcheck[$$extra] could not be installed"; \
 	done
 	touch $@
 

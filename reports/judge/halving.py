@@ -11,9 +11,9 @@ from reports.compare.errors import Error, Errors, largest
 from reports.compare.whole_errors import force_rows
 from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import Convergence, convergence
-from reports.judge.tolerance import Limit, beyond_engine, limits
+from reports.judge.tolerance import Limit, beyond_engine, limits, shaken_by_rounding
 from reports.quantities import named
-from sim.engine import AT_ROUNDING, Placing, Run
+from sim.engine import Placing, Run
 
 ELASTIC = ("segments", "deflection")
 PLACES, FORCES = ("phase", *named("place")), named("force")
@@ -66,11 +66,12 @@ def followed(
         same = [_largest_total(rows, [followed.quantity]) for rows, _ in finer]
         return [followed.pure, *(row.pure if row else math.nan for row in same)]
 
-    def over(quantities: Sequence[str], rounding: float) -> list[str]:
+    def over(quantities: Sequence[str], rounding: float, rate: int = 0) -> list[str]:
         numbered = zip(parts[1:], finer, strict=True)
         texts = (
-            _over(truth.scene, dt_s, errors, before, tolerance, p, rows, quantities, rounding)
+            _over(truth.scene, dt_s, errors, before, tolerance, p, rows, quantities, hidden)
             for p, (rows, _) in numbered
+            for hidden in [max(rounding, shaken_by_rounding(errors, rate, p))]
         )
         return [text for text in texts if text]
 
@@ -93,11 +94,12 @@ def followed(
     )
     if force is None:
         return Followed(of_places)
-    noise = (least - AT_ROUNDING) * (parts[-1] / errors.of_scene.step_rad) ** 2
-    exact = max(rounding, force.pure_bound) + noise
+    exact = max(rounding, force.pure_bound)
     share = "torque" if force.quantity == "torque" else "reaction"
+    noise = [shaken_by_rounding(errors, 2, p) for p in parts]
+    shown = [0.0 if e <= off else e for e, off in zip(pure(force), noise, strict=True)]
     of_forces = convergence(
-        steps_s, pure(force), f"of the largest {share}", exact, over=over(FORCES, exact)
+        steps_s, shown, f"of the largest {share}", exact, over=over(FORCES, exact, 2)
     )
     return Followed(of_places, of_forces)
 

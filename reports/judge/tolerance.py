@@ -10,10 +10,10 @@ A default is a budget by the step and the scene, from the theory of the error::
 ``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration of
 the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
 ``share`` the part that a soft constraint may leave open of an acceleration (s = 0), and so of a
-velocity (s = 1), at every step; k is the number of differentiations, and the order of the rate for
-what single precision rounds, as joints correct a rounded place within a step. ``summed`` is the
-rounding of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which
-the mechanism transmits like the driver's motion: the one part that grows with the number of steps.
+velocity (s = 1), at every step; k is the number of differentiations. ``summed`` is the rounding
+of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which the
+mechanism transmits like the driver's motion: the one part that grows with the number of steps.
+What single precision rounds is added before the cap (`shaken_by_rounding`).
 
 For positions and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
 a + omega^2 r at a distance r from the centre of a body: an engine that solves for impulses
@@ -106,10 +106,19 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     budget += _felt(tolerance, errors)
     if tolerance.bends:
         budget = links.deflecting(budget, step)
+    budget += shaken_by_rounding(errors, max(tolerance.rate, tolerance.differenced))
     budget = min(float(budget), tolerance.cap)
-    rounded = AT_ROUNDING / step**tolerance.differenced
-    rounded += (scene.floor - AT_ROUNDING) / step ** max(tolerance.rate, tolerance.differenced)
-    return float(budget + tolerance.floor + rounded)
+    return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
+
+
+def shaken_by_rounding(errors: Errors, rate: int, parts: int = 1) -> float:
+    """Return the error of a rate of this order by what an engine rounds more than double precision,
+    with the step divided into ``parts``: joints correct a rounded place within a step."""
+    scene = errors.of_scene
+    shaken = (scene.floor - AT_ROUNDING) * (parts / scene.step_rad) ** rate
+    if rate and shaken:
+        shaken *= scene.curvature / max(scene.conditioning, 1e-12)
+    return float(shaken)
 
 
 def _felt(tolerance: Tolerance, errors: Errors) -> float:
