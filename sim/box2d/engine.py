@@ -220,5 +220,5 @@ ENGINE = Engine(
     applies_constant_friction=True,
     applies_springs=True,
     precision=DECLARATION.precision,
-    floor=2e-6,
+    floor=9e-7,
 )

@@ -24,6 +24,7 @@ FOURBAR = load_scene("fourbar-lecture-1")
 REFUSED = {
     ("mujoco", "EC86"): ("slotted-lever",),
     ("dart", "EC86"): ("slotted-lever",),
+    ("bullet", "EC86"): ("slotted-lever",),
     ("drake", "EC86"): SCENES,
 }
 """Scenes that an engine refuses in one clause alone: friction in the pin that closes its loop, or

@@ -368,6 +368,16 @@ def _elsewhere(spring: Spring) -> Spring:
     return replace(spring, points=("A", spring.points[1]))
 
 
+def _left_out_when_free(name: str, **left_out: Any) -> Fault:
+    """Its forces are right, as if from the change of momentum, and it moves without their cause."""
+
+    def freed(asked: Asked) -> Asked:
+        scene = replace(asked.scene, **left_out)
+        return asked._replace(scene=scene) if asked.drive == "free" else asked
+
+    return lambda _: meddled(engine(name), freed)
+
+
 def _weightless_loads(_: Engine) -> Engine:
     """It reports no forces, says that it takes loads, and leaves them out."""
     plain = meddled(engine("pymunk"), _with_scene(_without_loads))
@@ -520,7 +530,11 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
         of_loads(lambda load: replace(load, frame="ground"))),
     "load late": ("EC85", "steps after its time", of_loads(_late_load)),
     "loads not felt": ("EC85", "free, loads like its weight", _weightless_loads),
+    "loads not pushed": (
+        "EC85", "free, loads like its weight", _left_out_when_free("exudyn", loads={})),
     "rubs less": ("EC86", "friction in C", of_exudyn(_with_scene(_rubbing_less))),
+    "rubs nothing": (
+        "EC86", "friction in C: free, it takes", _left_out_when_free("mujoco", friction={})),
     "springs unsaid": (
         "EC91", "a spring in a pin: the engine does not hold rod: springs.pin is not there",
         of_exudyn(facts_=lambda _, facts: replace(facts, springs={}))),

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -15,11 +16,16 @@ from models.scene.joints import blocks, bodies, centre_of, joined_at, mass_of
 from models.scene.loads import ConstantFriction, Load
 from reports.contract.clauses.reactions import LATE, OFF, START, STEPS, largest, late_by, named
 from reports.contract.subject import NotTriedError, Subject, clause, numbers
+from sim.engine import Poses
+from sim.engine.measure import energy, motion
 
 SHARE = 0.98
 """Share of all samples that have to be within `OFF`: where a joint turns back friction jumps, and
 its value there depends on rounding."""
-FALL_STEPS = 60
+BRAKED, BRAKE_OFF = 0.3, 0.05
+"""Kinetic energy that friction takes from a free motion, over that of the start, and its largest
+error, over it."""
+FREE_STEPS = 60
 CENTRE = "centre of mass"
 """A point that no scene has, as names hold no space."""
 
@@ -29,7 +35,8 @@ CENTRE = "centre of mass"
     "loads are felt as the scene has them, where they are said to be applied",
     "A load that is left out, or late, or in another frame, is another machine.",
     "Apply each load of scene.loads at every step, at its point, in its frame, as large as "
-    "load_magnitudes says at the time that forces belong to; or leave applies_loads False.",
+    "load_magnitudes says at the time that forces belong to, in free motion too; or leave "
+    "applies_loads False.",
 )
 def _loads(subject: Subject) -> Iterator[str]:
     engine, scene = subject.engine, subject.scene
@@ -38,6 +45,9 @@ def _loads(subject: Subject) -> Iterator[str]:
     if engine.forces_of == "nothing":
         yield from _as_weight(subject)
         return
+    # Forces that come from the change of momentum have all loads, pushed or not.
+    with suppress(NotTriedError):
+        yield from _as_weight(subject)
     moving = [
         (n, p) for n, each in scene.links.items() for p in each.points if p not in scene.ground
     ]
@@ -56,23 +66,19 @@ def _loads(subject: Subject) -> Iterator[str]:
             yield f"{words} on {link}: {text}"
 
 
+def _freed(subject: Subject) -> Poses:
+    """Return a short free motion from the start. Raises NotTriedError."""
+    return subject.opened(drive="free").record(FREE_STEPS, 1).poses
+
+
 def _as_weight(subject: Subject) -> Iterator[str]:
     """Yield faults where, free, loads like the weights move bodies otherwise than gravity."""
-    scene, fall_s = subject.scene, FALL_STEPS * subject.dt_s()
+    scene, fall_s = subject.scene, FREE_STEPS * subject.dt_s()
     pull = 0.4 * scene.longest_m / fall_s**2
     heavy = replace(scene, gravity_m_s2=(0.6 * pull, -0.8 * pull))
     light = replace(scene, gravity_m_s2=(0.0, 0.0))
     ways = [heavy, _weighed(light, pull, math.atan2(-0.8, 0.6)), light]
-    fallen = [
-        numbers(
-            subject.in_scene(way)
-            .opened(drive="free", start=subject.start)
-            .record(FALL_STEPS, 1)
-            .poses,
-            bodies(scene),
-        )[-1]
-        for way in ways
-    ]
+    fallen = [numbers(_freed(subject.in_scene(way)), bodies(scene))[-1] for way in ways]
     off, whole = (float(np.abs(fallen[0] - other).max()) for other in fallen[1:])
     if not off <= OFF * whole:
         yield f"free, loads like its weight move it otherwise than gravity: {off / whole:.2g} apart"
@@ -116,6 +122,35 @@ def _friction(subject: Subject) -> Iterator[str]:
         changed = replace(scene, friction={joint: ConstantFriction(joint, most)})
         for text in _unfelt(subject, plain, changed, SHARE):
             yield f"friction in {joint}: {text}"
+        # Forces that come from the change of momentum have all friction, felt or not.
+        with suppress(NotTriedError):
+            for text in _unbraked(subject, joint):
+                yield f"friction in {joint}: {text}"
+
+
+def _unbraked(subject: Subject, joint: str) -> Iterator[str]:
+    """Yield a fault where friction takes another energy from a free motion than its work."""
+    light = replace(subject.scene, gravity_m_s2=(0.0, 0.0), loads={}, springs={}, friction={})
+    plain = _freed(subject.in_scene(light))
+    energy_j = energy(light, plain).kinetic_j
+    size = BRAKED * float(energy_j[0]) / _way(light, joint, plain)
+    rubbing = replace(light, friction={joint: ConstantFriction(joint, size)})
+    braked = _freed(subject.in_scene(rubbing))
+    taken_j = float(energy_j[-1] - energy(rubbing, braked).kinetic_j[-1])
+    work_j = size * _way(light, joint, braked)
+    if not abs(taken_j - work_j) <= BRAKE_OFF * work_j:
+        yield f"free, it takes {taken_j:.2g} J of the motion, and its work is {work_j:.2g} J"
+
+
+def _way(scene: Scene, joint: str, poses: Poses) -> float:
+    """Return the way that two bodies rub along in a joint [rad or m]."""
+    seen = motion(scene, poses)
+    if joint in scene.sliders:
+        place = seen.sliders[joint].displacement
+    else:
+        angles = [seen.links[n].theta if n in seen.links else 0.0 for n in joined_at(scene)[joint]]
+        place = np.asarray(angles[1] - angles[0])
+    return float(np.abs(np.diff(place)).sum())
 
 
 def _size(scene: Scene) -> float:
