@@ -30,12 +30,12 @@ class Score:
     """A cell of the table: a number as text, and a remark, which is the reason where there is no
     number."""
 
-    told: str = NONE
+    number: str = NONE
     remark: str = "not run"
 
     @property
     def words(self) -> str:
-        return f"{self.told} ({self.remark})" if self.remark else self.told
+        return f"{self.number} ({self.remark})" if self.remark else self.number
 
 
 @dataclass(frozen=True)

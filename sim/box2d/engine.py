@@ -42,12 +42,12 @@ class Box2dSession(HeavyDriverSession):
         self.shift = -0.5 / substeps if driven_by == "free" else 0.0
         self.acts_at = 0.5 - 0.5 / substeps
         super().__init__(scene, state, settings, dt_s, driven_by, substeps)
-        self.pace = 1.0
+        self.time_unit = 1.0
         """Unit of time here over the world's: what gives its joints another rate than 60 Hz."""
         if swings := float(settings["joint_swings"]):
-            self.pace = 2.0 ** round(math.log2(swings / (JOINT_HZ * dt_s)))
+            self.time_unit = 2.0 ** round(math.log2(swings / (JOINT_HZ * dt_s)))
         gx, gy = scene.gravity_m_s2
-        self.world = b2.World(gravity=(gx / self.pace**2, gy / self.pace**2))
+        self.world = b2.World(gravity=(gx / self.time_unit**2, gy / self.time_unit**2))
         self.world.sleeping_enabled = False
         self.world.continuous_enabled = False
         self.body: dict[str, Any] = {GROUND: self.world.create_static_body()}
@@ -60,8 +60,8 @@ class Box2dSession(HeavyDriverSession):
         self.begin()
 
     def _body(self, name: str) -> Any:
+        refuse_massless(self.scene, self.name, name, turns=name not in self.fixed)
         mass, inertia = pairs.mass_of(self.scene, name)
-        refuse_massless(self.name, name, mass, inertia, turns=name not in self.fixed)
         own = inertia or mass * self.scene.longest_m**2
         return self._placed(self.frame_of(name), mass, own)
 
@@ -77,8 +77,8 @@ class Box2dSession(HeavyDriverSession):
     def _set(self, body: Any, frame: Frame) -> None:
         body.set_transform(frame.origin, rotation(frame.theta))
         u, v = frame.velocity
-        body.linear_velocity = u / self.pace, v / self.pace
-        body.angular_velocity = frame.omega / self.pace
+        body.linear_velocity = u / self.time_unit, v / self.time_unit
+        body.angular_velocity = frame.omega / self.time_unit
 
     def _join(self) -> None:
         scene, driver = self.scene, self.scene.driver
@@ -112,7 +112,7 @@ class Box2dSession(HeavyDriverSession):
             self.body[rub.first],
             self.body[rub.second],
             max_force=0.0,
-            max_torque=rub.size / self.pace**2,
+            max_torque=rub.size / self.time_unit**2,
             correction_factor=0.0,
         )
 
@@ -124,7 +124,7 @@ class Box2dSession(HeavyDriverSession):
             local_anchor_a=here,
             local_anchor_b=there,
             enable_motor=driven,
-            max_motor_torque=float(self.settings["motor_n_m"]) / self.pace**2,
+            max_motor_torque=float(self.settings["motor_n_m"]) / self.time_unit**2,
         )
 
     def _slide(self, slide: Prism | Slot, *, driven: bool) -> None:
@@ -144,23 +144,24 @@ class Box2dSession(HeavyDriverSession):
                     rotation(pairs.sliding_angle(slider)), rotation(0.0)
                 ),
                 enable_motor=driven,
-                max_motor_force=float(self.settings["motor_n_m"]) / self.pace**2,
+                max_motor_force=float(self.settings["motor_n_m"]) / self.time_unit**2,
             )
             if driven:
                 self.motor, self.sense = joint, 1.0
         elif driven:
             raise EngineError(
                 f"{self.scene.name}: its driver is the slider {slider.name}, a block without mass; "
-                "box2d moves no point along a line by a motor; give the block a mass"
+                "box2d moves no point along a line by a motor; give the block a mass, or "
+                "drive it prescribed"
             )
         else:
             self.world.create_wheel_joint(*bodies, **ends)
 
     def once(self) -> None:
-        self.world.step(self.pace * self.dt, self.substeps)
+        self.world.step(self.time_unit * self.dt, self.substeps)
 
     def run_motor(self, speed: float) -> None:
-        self.motor.motor_speed = self.sense * speed / self.pace
+        self.motor.motor_speed = self.sense * speed / self.time_unit
 
     def lead(self, frame: Frame, push: Push) -> None:
         self._set(self.body[str(self.led)], frame)
@@ -172,19 +173,20 @@ class Box2dSession(HeavyDriverSession):
 
     def _push(self, name: str, push: Push) -> None:
         """Act on a body in the next step alone."""
-        fx, fy, moment = (each / self.pace**2 for each in push)
+        fx, fy, moment = (each / self.time_unit**2 for each in push)
         self.body[name].apply_force_to_center((fx, fy))
         self.body[name].apply_torque(moment)
 
     def look(self) -> Array:
-        rows = np.empty((len(self.names), 6))
-        for row, name in zip(rows, self.names, strict=True):
+        rows = []
+        for name in self.names:
             body = self.body[name]
-            row[:2], turned_by = body.position, body.rotation
-            row[2] = math.atan2(turned_by.s, turned_by.c)
-            row[3:5], row[5] = body.linear_velocity, body.angular_velocity
-        rows[:, 3:] *= self.pace
-        return rows
+            place, turned_by, moves = body.position, body.rotation, body.linear_velocity
+            angle = math.atan2(turned_by.s, turned_by.c)
+            rows.append((place.x, place.y, angle, moves.x, moves.y, body.angular_velocity))
+        found = np.array(rows, dtype=np.float64)
+        found[:, 3:] *= self.time_unit
+        return found
 
     def facts(self) -> Facts:
         matter = {}
@@ -195,8 +197,12 @@ class Box2dSession(HeavyDriverSession):
                 matter[name] = own_mass.mass, inertia
         centre = {name: self.bodies.centre[name] for name in matter}
         gravity = self.world.gravity
-        return self.told(
-            VERSION, matter, centre, (self.pace**2 * gravity[0], self.pace**2 * gravity[1]), {}
+        return self.facts_of(
+            VERSION,
+            matter,
+            centre,
+            (self.time_unit**2 * gravity[0], self.time_unit**2 * gravity[1]),
+            {},
         )
 
 

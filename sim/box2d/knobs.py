@@ -2,8 +2,8 @@
 
 from models.motion import State
 from models.scene import Scene
-from models.scene.joints import joints
 from sim.engine import Settings
+from sim.engine.ties import joint_count
 from sim.registry.offers import Knob, SearchSpace, Work
 
 STEP_US, JOINT_US = 7.0, 0.09
@@ -12,8 +12,7 @@ STEP_US, JOINT_US = 7.0, 0.09
 
 def work(scene: Scene, start: State) -> Work:
     """Return the cost of a step: a part for itself, and the joints once per sub-step."""
-    ties = joints(scene)
-    count = sum(len(pin.bodies) - 1 for pin in ties.pins) + len(ties.slides)
+    count = joint_count(scene)
 
     def us(settings: Settings) -> float:
         return STEP_US + JOINT_US * count * float(settings["substeps"])

@@ -1,7 +1,7 @@
 """Box2D's settings: the two profiles."""
 
-from sim.engine import Profile, Setting
-from sim.engine.settings import checker
+from sim.engine import Profile, Setting, Settings
+from sim.engine.settings import SettingError, check_ranges
 
 SHIPPED = {
     "substeps": Setting(4, "default of its examples: in each, joints are solved twice"),
@@ -32,6 +32,15 @@ TUNED = Profile(
         ),
     },
 )
-checked = checker(
-    {}, {"substeps": (1, 1000), "joint_swings": (0.0, 1000.0), "motor_n_m": (0.0, 1e12)}
-)
+RANGES = {"substeps": (1, 1000), "joint_swings": (0.0, 1000.0), "motor_n_m": (0.0, 1e12)}
+LEAST_SWINGS = 1e-3
+
+
+def checked(settings: Settings) -> None:
+    """Refuse a number outside its range. Raises SettingError."""
+    check_ranges(settings, RANGES)
+    if 0.0 < float(settings["joint_swings"]) < LEAST_SWINGS:
+        raise SettingError(
+            f"setting joint_swings: found {settings['joint_swings']:g}; it takes 0, or "
+            f"{LEAST_SWINGS:g} to 1000"
+        )

@@ -2,8 +2,8 @@
 
 A step takes velocities from forces at the positions before it, corrects them by impulses, and moves
 positions with them: velocities belong half a step before the positions. Terms that follow from
-velocities in joint coordinates are taken with those, of first order in free motion; so bodies that
-are let go have the coordinates of their centres of mass, which have no such terms (`loosened`).
+velocities in joint coordinates are taken with those, of first order in free motion; so bodies in
+free motion have the coordinates of their centres of mass, which have no such terms (`loosened`).
 Forces are not read: those of joints of a chain of links are off by 60 % at any step.
 """
 
@@ -153,11 +153,12 @@ class BulletSession(TreeSession):
         for limb in self.tree.limbs:
             row = self.link[limb.body]
             mass, inertia = pairs.mass_of(scene, limb.body)
+            turns = any(freedom.kind == "hinge" for freedom in limb.freedoms)
             if limb.body == self.led:
                 flywheel = float(chosen["flywheel_ratio"]) * pairs.inertia_scale(scene)
                 mass, inertia = mass + flywheel / scene.longest_m**2, inertia + flywheel
-            turns = any(freedom.kind == "hinge" for freedom in limb.freedoms)
-            refuse_massless(self.name, limb.body, mass, inertia, turns=turns)
+            else:
+                refuse_massless(scene, self.name, limb.body, turns=turns)
             self._call("changeDynamics", made, row, mass=mass, **still)
             self._call("changeDynamics", made, row, localInertiaDiagonal=(inertia,) * 3)
             for k, freedom in enumerate(limb.freedoms, row + 1 - len(limb.freedoms)):
@@ -235,7 +236,7 @@ class BulletSession(TreeSession):
         world = self._call("getPhysicsEngineParameters")
         gravity = world["gravityAccelerationX"], world["gravityAccelerationY"]
         held = {"timestep_s": world["fixedTimeStep"], "iterations": world["numSolverIterations"]}
-        return self.told(VERSION, matter, centres, gravity, held)
+        return self.facts_of(VERSION, matter, centres, gravity, held)
 
 
 def loosened(scene: Scene, where: Mapping[str, Frame], tree: Tree, *but: str) -> Tree:

@@ -75,7 +75,7 @@ class DartSession(TreeSession):
         mass, inertia = pairs.mass_of(self.scene, limb.body)
         if self.drive != "prescribed" or limb.body != self.scene.driver.link:
             turns = limb.slider is None or len(limb.freedoms) > 1
-            refuse_massless(self.name, limb.body, mass, inertia, turns=turns)
+            refuse_massless(self.scene, self.name, limb.body, turns=turns)
         body, place = self.body[limb.parent], placed(limb.offset, limb.angle_rad)
         for freedom in limb.freedoms:
             joint, body = self._joint(freedom, body, place)
@@ -191,7 +191,7 @@ class DartSession(TreeSession):
             x, y, _ = body.getLocalCOM()
             centre[name] = float(x), float(y)
         x, y, _ = self.world.getGravity()
-        return self.told(VERSION, found, centre, (float(x), float(y)), self._held())
+        return self.facts_of(VERSION, found, centre, (float(x), float(y)), self._held())
 
     def _held(self) -> Mapping[str, float]:
         """Return the settings as DART holds them."""

@@ -26,7 +26,7 @@ TUNED = Profile(
         "coriolis": Setting(
             "middle",
             "rates at the positions: the difference of its own Coriolis forces is given as joint "
-            "forces; let go, errors fall as dt^2 in place of dt (double pendulum, 2 s: "
+            "forces; in free motion, errors fall as dt^2 in place of dt (double pendulum, 2 s: "
             "2.3e-6 in place of 5.8e-4 of the sensitivity)",
         ),
     },

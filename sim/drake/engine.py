@@ -1,5 +1,6 @@
 """Drake: a plant of joints in a tree, with loops closed by ball constraints."""
 
+import math
 import warnings
 from importlib.metadata import version
 from typing import Any
@@ -23,10 +24,12 @@ from models.scene import joints as pairs
 from sim.drake import settings as own
 from sim.engine import Drive, Engine, Facts, Settings
 from sim.engine.acting import Pushes
-from sim.engine.ties import refuse_driver_angle, refuse_massless
+from sim.engine.ties import refuse_driver_angle, refuse_massless, refuse_pin_friction
 from sim.engine.tree_session import TreeSession
 
 VERSION = version("drake")
+TRIFLE = 1e-30
+"""Mass [kg] and inertia [kg m^2] of a prescribed crank without: Drake takes no 0."""
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -43,11 +46,7 @@ class DrakeSession(TreeSession):
     ) -> None:
         own.checked(settings)
         refuse_driver_angle(scene, self.name)
-        rubbing = ", ".join(f"friction.{n}" for n in scene.friction if n not in scene.sliders)
-        if rubbing:
-            raise EngineError(
-                f"{scene.name}: {rubbing}: joints of Drake have no dry friction; take it out"
-            )
+        refuse_pin_friction(scene, self.name)
         super().__init__(scene, state, settings, dt_s, driven_by)
         self.plant: Any = plants.MultibodyPlant(dt_s)
         self.plant.SetUseSampledOutputPorts(False)
@@ -79,9 +78,9 @@ class DrakeSession(TreeSession):
 
     def _add(self, limb: Limb) -> None:
         scene, name = self.scene, limb.body
-        mass, inertia = pairs.mass_of(scene, name)
         if name != scene.driver.link or self.drive != "prescribed":
-            refuse_massless(self.name, name, mass, inertia, turns=False)
+            refuse_massless(scene, self.name, name, turns=self._bare(limb))
+        mass, inertia = (max(each, TRIFLE) for each in pairs.mass_of(scene, name))
         x, y = pairs.centre_of(scene, name)
         about = trees.RotationalInertia(inertia, inertia, inertia)
         matter = trees.SpatialInertia.MakeFromCentralInertia(mass, [x, y, 0.0], about)
@@ -108,6 +107,12 @@ class DrakeSession(TreeSession):
                 joint = trees.PrismaticJoint(freedom.name, first, other, space(freedom.axis))
             self.joints.append(self.plant.AddJoint(joint))
             place, angle = (0.0, 0.0), 0.0
+
+    def _bare(self, limb: Limb) -> bool:
+        """Return whether nothing but its own inertia holds a body up in its hinge."""
+        hinge, centre = limb.freedoms[-1], pairs.centre_of(self.scene, limb.body)
+        carries = any(other.parent == limb.body for other in self.tree.limbs)
+        return hinge.kind == "hinge" and not carries and hinge.anchor == centre
 
     def _close(self, closure: LoopPin) -> None:
         """Close a loop. A constraint of the world itself ends the process (Drake 1.51.1)."""
@@ -189,10 +194,20 @@ class DrakeSession(TreeSession):
             own_matter = self.body[name].CalcSpatialInertiaInBodyFrame(self.context)
             at = own_matter.get_com()
             inertia = own_matter.Shift(at).CalcRotationalInertia().get_moments()[2]
-            matter[name] = own_matter.get_mass(), float(inertia)
+            if own_matter.get_mass() > TRIFLE:
+                held = float(inertia)
+                matter[name] = own_matter.get_mass(), held if held > TRIFLE else math.inf
             centre[name] = float(at[0]), float(at[1])
         x, y, _ = self.plant.gravity_field().gravity_vector()
-        return self.told(VERSION, matter, centre, (float(x), float(y)), {})
+        return self.facts_of(VERSION, matter, centre, (float(x), float(y)), {})
+
+
+def opened(*given: Any) -> DrakeSession:
+    """Open a session. Raises EngineError where Drake would end the process."""
+    try:
+        return DrakeSession(*given)
+    except SystemExit as fault:
+        raise EngineError(f"{given[0].name}: Drake refuses its plant: {fault}") from fault
 
 
 def space(place: Point) -> Array:
@@ -205,8 +220,9 @@ ENGINE = Engine(
     {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
     version=lambda: VERSION,
     check=own.checked,
-    open=DrakeSession,
+    open=opened,
     reports_accelerations=False,
+    in_seconds=lambda settings: (),
     forces_of="steps",
     applies_loads=True,
     applies_constant_friction=True,

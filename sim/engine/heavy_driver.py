@@ -24,6 +24,8 @@ from sim.engine.ties import RubbingJoint, rubbing_joints, slide_of
 
 HEAVY = 1e9
 """Inertia of a led driver over the mechanism's: nothing that is read has as many digits."""
+TURN_BETWEEN = 0.25
+"""Turn between two looks at an angle, by the rates at the first [rad]: bodies may be faster."""
 SHARE = 0.5
 """Share of its error of place that a motor corrects in a step."""
 
@@ -57,6 +59,7 @@ class HeavyDriverSession(SteppedSession):
             centre[self.led] = pairs.local_point(scene, self.led, scene.driver_pivot)
         self.bodies = EngineBodies(scene, state, centre=centre)
         self._angles = np.array([self.where[name].theta for name in self.names])
+        self._slowest = max(self._pace(), 1e-9)  # of the bodies, between two looks at their angles
         self.substeps = substeps
         self.fixed = {p.body for p in pairs.joints(scene).prisms if p.slider.on == GROUND}
         """Bodies that do not turn."""
@@ -147,6 +150,8 @@ class HeavyDriverSession(SteppedSession):
         behind = np.round((self._angles - rows[:, 2]) / math.tau)
         rows[:, 2] += math.tau * behind
         self._angles = rows[:, 2]
+        fastest = float(np.fmax.reduce(np.abs(rows[:, 5]), initial=self._slowest))
+        self.next_look = self.done + max(1, int(TURN_BETWEEN / (fastest * self.dt)))
         return rows
 
     def frames(self, ahead_s: float) -> Mapping[str, Frame]:

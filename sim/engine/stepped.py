@@ -25,9 +25,6 @@ from sim.engine.measure import across
 from sim.engine.momentum_balance import MomentumGain, by_name, forces_by_body, joint_pushes
 from sim.engine.ties import RubbingJoint, hinges
 
-TURN_BETWEEN = 1.0
-"""Largest turn of a body between two looks at its angle [rad], where an engine counts no turns."""
-
 
 @dataclass(frozen=True)
 class StepSeries:
@@ -61,6 +58,8 @@ class SteppedSession(ABC):
     """Joints whose friction the engine has itself."""
     shift: float = 0.0
     acts_at: float = 0.0
+    next_look: float = math.inf
+    """Steps until which `numbers` has to count the turns of bodies."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
@@ -77,8 +76,6 @@ class SteppedSession(ABC):
         if self.drive != "free":
             law = self.scene.driver.law
             self.turn(None, drive.start_speed(law, self.start_s, self.dt, self.shift))
-        fastest = max(abs(omega) for omega in (*self.state.omega.values(), self._pace()))
-        self._look_every = max(1, int(TURN_BETWEEN / max(fastest * self.dt, 1e-9)))
 
     def _pace(self) -> float:
         return drive.pace(self.scene, self.state, self.drive)
@@ -197,7 +194,7 @@ class SteppedSession(ABC):
                 rows.append(self.numbers())
                 if forces is not None:
                     forces.append(self.joint_forces())
-            elif self.done % self._look_every == 0:
+            elif self.done >= self.next_look:
                 self.numbers()  # not to lose a turn
 
     def _turns(self, steps: int) -> list[tuple[float, float]]:
@@ -212,7 +209,7 @@ class SteppedSession(ABC):
         now = np.array([self.start_s + self.dt * self.done])
         return self.poses(self.numbers()[None], now)
 
-    def told(
+    def facts_of(
         self,
         version: str,
         matter: Mapping[str, tuple[float, float]],

@@ -15,6 +15,7 @@ from models.scene.joints import (
     joints,
     line_ends,
     local_point,
+    mass_of,
     riding_body,
 )
 
@@ -35,6 +36,11 @@ def hinges(scene: Scene, *firm: str) -> Iterator[Hinge]:
         first, *others = sorted(pin.bodies, key=lambda name: (*firm, name).index(name))
         for other in others:
             yield Hinge(pin.point, first, other)
+
+
+def joint_count(scene: Scene) -> int:
+    """Return the number of hinges and slides."""
+    return len([*hinges(scene)]) + len(joints(scene).slides)
 
 
 def slide_of(scene: Scene, slider: str) -> Prism | Slot:
@@ -103,12 +109,20 @@ def refuse_driver_angle(scene: Scene, engine: str) -> None:
         )
 
 
-def refuse_massless(
-    engine: str, name: str, mass_kg: float, inertia_kg_m2: float, *, turns: bool
-) -> None:
-    """Refuse a body that a force would move at no cost. Raises EngineError."""
-    if mass_kg <= 0.0 or (inertia_kg_m2 <= 0.0 and turns):
+def refuse_pin_friction(scene: Scene, engine: str) -> None:
+    """Refuse friction in pins. Raises EngineError."""
+    if names := ", ".join(f"friction.{n}" for n in scene.friction if n not in scene.sliders):
         raise EngineError(
-            f"{name}: mass_kg {mass_kg:g}, inertia_kg_m2 {inertia_kg_m2:g}; {engine} moves no body "
-            "without both, give them"
+            f"{scene.name}: {names}: friction in pins of {engine} is not offered by crankcheck; "
+            "take it out"
+        )
+
+
+def refuse_massless(scene: Scene, engine: str, body: str, *, turns: bool) -> None:
+    """Refuse a body that a force would move at no cost. Raises EngineError."""
+    mass, inertia = mass_of(scene, body)
+    if mass <= 0.0 or (inertia <= 0.0 and turns):
+        raise EngineError(
+            f"{scene.name}: {body}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; {engine} moves no "
+            "body without both, give them"
         )

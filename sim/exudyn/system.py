@@ -220,7 +220,7 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
             add_node(made, name, place, rates)
             continue
         if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
-            refuse_massless("exudyn", name, mass, inertia, turns=name not in held)
+            refuse_massless(scene, "exudyn", name, turns=name not in held)
         node = made.add("NodeRigidBody2D", referenceCoordinates=place, initialVelocities=rates)
         body = made.add("ObjectRigidBody2D", mass=mass, inertia=inertia, nodeNumber=node)
         made.node[name], made.body[name] = node, body

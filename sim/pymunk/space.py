@@ -190,8 +190,8 @@ def _check_drive(scene: Scene, drive: Drive) -> None:
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
     if kinematic:
         return pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    refuse_massless(scene, "pymunk", name, turns=not fixed_angle)
     mass, inertia = pairs.mass_of(scene, name)
-    refuse_massless("pymunk", name, mass, inertia, turns=not fixed_angle)
     return pymunk.Body(mass, math.inf if fixed_angle else inertia)
 
 

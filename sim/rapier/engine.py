@@ -58,17 +58,17 @@ class RapierSession(HeavyDriverSession):
         self.begin()
 
     def _set(self) -> None:
-        held, given = self.world.integration_parameters, self.settings
-        held.dt = self.dt
-        held.num_solver_iterations = given[self.of_substeps]
-        held.num_internal_pgs_iterations = given["sweeps"]
-        held.num_internal_stabilization_iterations = given[self.of_velocities]
-        held.normalized_max_linear_velocity = 1e9
+        parameters, given = self.world.integration_parameters, self.settings
+        parameters.dt = self.dt
+        parameters.num_solver_iterations = given[self.of_substeps]
+        parameters.num_internal_pgs_iterations = given["sweeps"]
+        parameters.num_internal_stabilization_iterations = given[self.of_velocities]
+        parameters.normalized_max_linear_velocity = 1e9
 
     def _added(self, name: str) -> Any:
         mass, inertia = pairs.mass_of(self.scene, name)
         turns = name not in self.fixed
-        refuse_massless(self.name, name, mass, inertia, turns=turns)
+        refuse_massless(self.scene, self.name, name, turns=turns)
         return self.world.add_body(
             self._build(self.frame_of(name), mass, inertia or mass)
             .enabled_translations((True, True, False))
@@ -185,17 +185,17 @@ class RapierSession(HeavyDriverSession):
     def facts(self) -> Facts:
         matter = {}
         for name in (name for name in self.names if name != self.led):
-            held = self.body[name].mass_properties
-            inertia = math.inf if name in self.fixed else held.principal_inertia.z
-            matter[name] = held.mass, inertia
+            own_mass = self.body[name].mass_properties
+            inertia = math.inf if name in self.fixed else own_mass.principal_inertia.z
+            matter[name] = own_mass.mass, inertia
         centre = {name: self.bodies.centre[name] for name in matter}
-        down, held = self.world.gravity, self.world.integration_parameters
+        down, parameters = self.world.gravity, self.world.integration_parameters
         found = {
-            self.of_substeps: held.num_solver_iterations,
-            "sweeps": held.num_internal_pgs_iterations,
-            self.of_velocities: held.num_internal_stabilization_iterations,
+            self.of_substeps: parameters.num_solver_iterations,
+            "sweeps": parameters.num_internal_pgs_iterations,
+            self.of_velocities: parameters.num_internal_stabilization_iterations,
         }
-        return self.told(VERSION, matter, centre, (down.x, down.y), found)
+        return self.facts_of(VERSION, matter, centre, (down.x, down.y), found)
 
 
 def rotation(angle: float) -> Any:
@@ -211,6 +211,7 @@ ENGINE = Engine(
     check=own.checked,
     open=RapierSession,
     reports_accelerations=False,
+    in_seconds=lambda settings: (),
     applies_loads=True,
     applies_constant_friction=True,
     applies_springs=True,

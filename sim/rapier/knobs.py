@@ -2,8 +2,8 @@
 
 from models.motion import State
 from models.scene import Scene
-from models.scene.joints import joints
 from sim.engine import Settings
+from sim.engine.ties import joint_count
 from sim.registry.offers import Knob, SearchSpace, Work
 
 STEP_US, SUBSTEP_US, JOINT_US = 12.0, 2.0, 0.025
@@ -13,8 +13,7 @@ STEP_US, SUBSTEP_US, JOINT_US = 12.0, 2.0, 0.025
 def work(scene: Scene, start: State) -> Work:
     """Return the cost of a step: a part for itself and each sub-step, and the joints once
     per sweep."""
-    ties = joints(scene)
-    count = sum(len(pin.bodies) - 1 for pin in ties.pins) + len(ties.slides)
+    count = joint_count(scene)
 
     def us(settings: Settings) -> float:
         sweeps = float(settings["sweeps"]) + float(settings["velocity_sweeps"])

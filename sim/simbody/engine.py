@@ -15,14 +15,14 @@ from models.scene.joints import Frame
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Engine, Facts, Poses, Settings
 from sim.engine.acting import Acting, Pushes
-from sim.engine.ties import refuse_driver_angle, refuse_massless
+from sim.engine.ties import refuse_driver_angle, refuse_massless, refuse_pin_friction
 from sim.engine.tree_session import TreeSession
 from sim.simbody import model as made
 from sim.simbody import settings as own
 from sim.simbody.reactions import reactions
 
 AHEAD = 1000
-"""Steps that the course of a driver with a changing speed is told ahead at first."""
+"""Steps that the course of a driver with a changing speed is given ahead at first."""
 MARGIN = 40
 """Steps of that course beyond its ends, where a spline is less accurate."""
 
@@ -40,6 +40,7 @@ class SimbodySession(TreeSession):
         own.checked(settings)
         if driven_by != "prescribed":
             refuse_driver_angle(scene, self.name)
+        refuse_pin_friction(scene, self.name)
         super().__init__(scene, state, settings, dt_s, driven_by)
         self.steady = driven_by == "free" or isinstance(scene.driver.law, ConstantSpeed)
         self.gain = float(settings["servo_gain"]) * pairs.inertia_scale(scene) * scene.pace_rad_s
@@ -48,7 +49,8 @@ class SimbodySession(TreeSession):
         places = [math.hypot(*place) for place in state.position.values()]
         self.size = max(1.0, scene.longest_m, *places)
         self.known_until = AHEAD
-        self.restarts = driven_by == "servo" and bool(scene.loads or scene.springs)
+        self._acts = bool(scene.loads or scene.springs or scene.friction)
+        self.restarts = driven_by == "servo" and self._acts
         self._open(
             np.array([freedom.ref for freedom in self.freedoms]),
             np.array([freedom.rate for freedom in self.freedoms]),
@@ -66,7 +68,7 @@ class SimbodySession(TreeSession):
             mass, inertia = pairs.mass_of(scene, name)
             led = self.drive == "prescribed" and scene.driver.is_crank and name == scene.driver.link
             if not led:
-                refuse_massless(self.name, name, mass, inertia, turns=name not in held)
+                refuse_massless(scene, self.name, name, turns=name not in held)
             elif not (mass and inertia):
                 free = 0.0 if mass else 1.0, pairs.inertia_scale(scene) or 1.0
         return free
@@ -79,7 +81,7 @@ class SimbodySession(TreeSession):
             self.made.prescribe(self.driven, self._course(0))
         elif self.drive == "servo":
             self.made.add_motor(self.driven, self.gain, self._course(1))
-        if scene.loads or scene.springs:
+        if self._acts:
             self.made.add_pushers()
         state, self.column = self.made.opened()
         self._place(state, q, rate)
@@ -128,6 +130,7 @@ class SimbodySession(TreeSession):
         try:
             self.manager.integrate(ends_s)
         except RuntimeError:  # no step is short enough to reach a singular position: pass it
+            self.warnings.append("passed a singular position with a step of fixed size")
             state = self.manager.getState()
             self._place(state, *before)
             self._set_off(state, fixed=True)
@@ -178,12 +181,12 @@ class SimbodySession(TreeSession):
         self._act_now()
         state = self.manager.getState()
         self.made.model.realizeAcceleration(state)
-        return np.array([*self.made.forces(state), *self.present.on_blocks.values()])
+        rubbed = [(size, 0.0, 0.0) for size in self.present.rubbed.values()]
+        return np.array([*self.made.forces(state), *self.present.on_blocks.values(), *rubbed])
 
     def acted(self, rows: Sequence[object], poses: Poses) -> Forces:
-        return reactions(
-            self.scene, self.tree, poses, np.array(rows), self.extra, [*self.present.on_blocks]
-        )
+        names = [*self.present.on_blocks], [*self.present.rubbed]
+        return reactions(self.scene, self.tree, poses, np.array(rows), self.extra, *names)
 
     def facts(self) -> Facts:
         matter, centre = {}, {}
@@ -194,7 +197,7 @@ class SimbodySession(TreeSession):
                 matter[name] = body.getMass(), body.getInertia().getMoments().get(2)
                 centre[name] = place.get(0), place.get(1)
         gravity = self.made.model.getGravity()
-        return self.told(made.VERSION, matter, centre, (gravity.get(0), gravity.get(1)), {})
+        return self.facts_of(made.VERSION, matter, centre, (gravity.get(0), gravity.get(1)), {})
 
 
 ENGINE = Engine(
@@ -205,7 +208,9 @@ ENGINE = Engine(
     open=SimbodySession,
     placing=own.placing,
     order=4,
+    in_seconds=lambda settings: (),
     forces_of="states",
     applies_loads=True,
+    applies_constant_friction=True,
     applies_springs=True,
 )

@@ -112,11 +112,7 @@ class TreeModel:
         for name, body in self.body.items():
             if name != GROUND:
                 own = body.getName()
-                x, y, torque = (
-                    osim.PointActuator(own),
-                    osim.PointActuator(own),
-                    osim.TorqueActuator(),
-                )
+                x, y, torque = *(osim.PointActuator(own) for _ in "xy"), osim.TorqueActuator()
                 for pusher, way in ((x, vector(1.0, 0.0)), (y, vector(0.0, 1.0))):
                     pusher.set_direction(way)
                     pusher.set_point(vector())

@@ -70,9 +70,8 @@ class _Reactions:
         if isinstance(slide, Prism):
             place = self._place(limb.body, (0.0, 0.0)) - self._point(rider, slider.point)
             moment = row[:, 2] if rides else -row[:, 2]
-            self.moments[slider.name] = (
-                moment + place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0]
-            )
+            about = place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0]
+            self.moments[slider.name] = moment + about
         elif rider != pairs.riding_body(slide):  # the pin's force goes on to the body that rides
             self.hinges[Hinge(slider.point, pairs.riding_body(slide), rider)] = force
 
@@ -118,13 +117,17 @@ def reactions(
     rows: Array,
     extra: tuple[float, float],
     blocks: Sequence[str],
+    rubbing: Sequence[str],
 ) -> Forces:
-    """Return the forces at the samples of ``rows``, whose last are the actions on ``blocks``.
+    """Return the forces at the samples of ``rows``, whose last are the actions on ``blocks``, and
+    friction of the sliders ``rubbing``.
 
     The crank's pin carries the weight of its ``extra`` mass, and the drive turns its inertia.
     """
-    found = _Reactions(scene, tree, poses, rows[:, : rows.shape[1] - len(blocks)])
-    on_blocks = {name: rows[:, k - len(blocks)] for k, name in enumerate(blocks)}
+    given = len(blocks) + len(rubbing)
+    found = _Reactions(scene, tree, poses, rows[:, : rows.shape[1] - given])
+    on_blocks = {name: rows[:, k - given] for k, name in enumerate(blocks)}
+    friction = {name: rows[:, k - len(rubbing), 0] for k, name in enumerate(rubbing)}
     driver, ties = scene.driver, pairs.joints(scene)
     if driver.slider in on_blocks:  # a block without mass hands the drive's force on to its pin
         along = found.torque[:, None] * directions(found.line(driver.slider))
@@ -144,4 +147,4 @@ def reactions(
         torque,
         spare=max(unknown - 3 * len(poses.bodies), 0),
     )
-    return forces_by_body(scene, pushes, on_blocks, {}, poses.time_s)
+    return forces_by_body(scene, pushes, on_blocks, friction, poses.time_s)

@@ -26,6 +26,7 @@ REFUSED = {
     ("dart", "EC86"): ("slotted-lever",),
     ("bullet", "EC86"): ("slotted-lever",),
     ("drake", "EC86"): SCENES,
+    ("simbody", "EC86"): SCENES,
 }
 """Scenes that an engine refuses in one clause alone: friction in the pin that closes its loop, or
 in all pins."""

@@ -34,6 +34,8 @@ that or the engine's floor."""
 SPEEDS = {"fifty times as fast": 50.0, "a thousandth as fast": 1e-3, "backwards": -1.0}
 FINE, FAR = 2880, 4.0
 """Small steps, at which the floor is at most this many times the error."""
+TURN = 400
+"""Steps in a turn in which errors of two runs are compared."""
 FALL_STEPS = 60
 FALL = 0.2
 """Fall of a body without joints meanwhile, over the longest link."""
@@ -158,12 +160,12 @@ def _speed(subject: Subject) -> Iterator[str]:
     plain = pure_errors(subject)
     for words, factor in SPEEDS.items():
         other = subject.driven_by(replace(law, speed_rad_s=factor * law.speed_rad_s))
-        yield from unlike(plain, pure_errors(other), words, subject.beyond(NONE))
+        yield from unlike(plain, pure_errors(other), words, subject)
 
 
 def pure_errors(subject: Subject) -> Mapping[str, float]:
     """Return the largest reported error of each quantity, over 1.5 turns, after the start."""
-    done = subject.ran(400, 1.5)
+    done = subject.ran(TURN, 1.5)
     errors = subject.errors(done)
     if errors is None or done.status != "ok":
         return {"run": math.inf}
@@ -173,13 +175,16 @@ def pure_errors(subject: Subject) -> Mapping[str, float]:
 
 
 def unlike(
-    plain: Mapping[str, float], other: Mapping[str, float], words: str, none: float
+    plain: Mapping[str, float], other: Mapping[str, float], words: str, subject: Subject
 ) -> Iterator[str]:
-    """Yield errors that differ, by more than ``none``, in a scene that is equivalent as a
-    mechanism."""
+    """Yield errors that differ in a scene that is equivalent as a mechanism. None are those of
+    places below the engine's floor, and of rates below that in a step."""
+    none = subject.beyond(NONE)
+    rough = max(NONE, subject.engine.floor * TURN / math.tau)
     for name in plain.keys() | other.keys():
         one, two = plain.get(name, math.inf), other.get(name, math.inf)
-        if not (one <= TWICE * two + none and two <= TWICE * one + none):
+        least = none if name in PLACES else rough
+        if not (one <= TWICE * two + least and two <= TWICE * one + least):
             yield f"{words}, {name} is off by {two:.2g}, and {one:.2g} as it is"
 
 
@@ -268,6 +273,6 @@ def _elsewhere(subject: Subject) -> Iterator[str]:
     for words, change in CHANGES.items():
         try:
             other = pure_errors(subject.in_scene(change(subject.scene)))
-            yield from unlike(plain, other, words, subject.beyond(NONE))
+            yield from unlike(plain, other, words, subject)
         except NotTriedError as refused:
             yield f"{words}, it is refused: {refused}"

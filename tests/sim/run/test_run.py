@@ -159,7 +159,7 @@ def test_a_link_without_mass_is_unsupported_and_named_unless_it_is_driven(
     scene = replace(FOURBAR, links={**FOURBAR.links, link: bare})
     result = ran(scene, name, drive=drive)
     assert result.status == "unsupported"
-    assert result.reason.startswith(f"{link}: mass_kg 0")
+    assert f"{link}: mass_kg 0" in result.reason
     if drive == "servo" and name != "mujoco":  # which moves no body without
         assert ran(scene, name, steps=100).status == "ok"
 
