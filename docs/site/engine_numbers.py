@@ -46,7 +46,7 @@ def main(folder: Path) -> None:
 def _of_engine(row: EngineRow, matrix: Matrix | None) -> Iterator[str]:
     """Yield the scores of an engine, the hard cases that it loses, and its settings."""
     scores = [
-        (f"{group}: {head}", row.scores[name].told, row.scores[name].remark)
+        (f"{group}: {head}", row.scores[name].number, row.scores[name].remark)
         for group, own in COLUMNS.items()
         for name, head in own.items()
     ]
