@@ -67,7 +67,7 @@ hard: $(VENV)/crankcheck
 ALL := --engine all --profile tuned --profile as-shipped
 engines: $(VENV)/engines
 	$(BIN)/crankcheck sweep $(ALL) --steps-per-turn 45,90,180,360,720,1440 -o out/engines
-	$(BIN)/crankcheck sweep $(ALL) --free --no-timing -o out/engines
+	$(BIN)/crankcheck sweep $(ALL) --free --dt 1e-3,5e-4,2.5e-4 --no-timing -o out/engines
 	$(BIN)/crankcheck sweep $(ALL) --forces --steps-per-turn 180,720 --no-timing -o out/engines
 	$(BIN)/crankcheck stability --engine all -o out/engines
 	$(BIN)/crankcheck report out/engines -o out/engines.html

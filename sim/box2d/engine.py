@@ -226,5 +226,5 @@ ENGINE = Engine(
     applies_constant_friction=True,
     applies_springs=True,
     precision=DECLARATION.precision,
-    floor=9e-7,
+    floor=1.4e-6,
 )

@@ -216,6 +216,6 @@ ENGINE = Engine(
     applies_constant_friction=True,
     applies_springs=True,
     precision=DECLARATION.precision,
-    floor=9e-7,
+    floor=2e-6,
     forces_of="steps",
 )

@@ -32,7 +32,7 @@ TWICE, NONE = 2.0, 1e-9
 """Errors of two runs that should be equal differ by less than this factor, or are negligible: by
 that or the engine's floor."""
 SPEEDS = {"fifty times as fast": 50.0, "a thousandth as fast": 1e-3, "backwards": -1.0}
-FINE, FAR = 2880, 4.0
+FINE, FAR = 2880, 6.0
 """Small steps, at which the floor is at most this many times the error."""
 TURN = 400
 """Steps in a turn in which errors of two runs are compared."""
