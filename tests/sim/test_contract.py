@@ -13,7 +13,7 @@ from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, put_to
 from reports.contract.subject import Subject, numbers
 from sim.engine import BodyPose, Facts
-from sim.registry import engine
+from sim.registry import FIRST, engine
 from sim.run.check import refuse_other_model
 from tests.worlds.engines import FULL, HERE
 from tests.worlds.runs import opened, start_of
@@ -32,8 +32,8 @@ REFUSED = {
 in all pins."""
 DECLARED = "placing", "in_seconds", "floor", "forces_of", "applies_constant_friction"
 """Declarations by which a clause does not apply."""
-SHARING = "rapier", "box2d", "dart"
-"""Engines with loads, springs and logs of `sim.engine.stepped`, that install in a minute."""
+QUICK = (*FULL, "rapier", "box2d", "dart")
+"""Engines that install in a minute."""
 AT_LENGTH = ("EC37", "EC53", "EC54", "EC55", "EC61", "EC85", "EC86", "EC92", "EC93", "EC94")
 """Clauses that take long in these, on what they share or what others show too."""
 
@@ -42,7 +42,7 @@ def _cases() -> Iterator[object]:
     """Yield engine, clause and scenes. The shaper has pins, a block on a line that moves, and a
     link that slides."""
     for name, clause in itertools.product(HERE, CLAUSES):
-        if name in FULL or (name in SHARING and clause not in AT_LENGTH):
+        if name == FIRST or (name in QUICK and clause not in AT_LENGTH):
             yield pytest.param(name, clause, ("shaper",))
         yield slowly(name, clause, SCENES, reason="joints of one kind are alike, and engines share")
 

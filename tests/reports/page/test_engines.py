@@ -56,7 +56,7 @@ def test_the_table_of_engines_is_on_top_and_in_the_comment(nine: Stored, matrix:
 
 def test_hard_cases_held_are_counted(matrix: Matrix) -> None:
     assert held(None, "mujoco").remark == held(matrix, "dart").remark == "not run"
-    assert held(matrix, "mujoco").told == "100 %"
+    assert held(matrix, "mujoco").number == "100 %"
     assert held(matrix, "mujoco").remark == "3 of 3 cases throughout"
     first = next(run for run in matrix.runs if (run.engine, run.profile) == ("mujoco", "tuned"))
     runs = {
