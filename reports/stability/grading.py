@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, EngineError
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare import compare, whole_errors
@@ -94,7 +94,9 @@ def _graded(
             open_m=trial.open_m,
             with_forces=forces,
         )
-    except settings.SettingError as error:
+    except EngineError as error:
+        if trial.start is None and not isinstance(error, settings.SettingError):
+            raise  # of a faulty start an engine may make another one, which is no fault of its model
         return replace(blank, outcome="unsupported", reason=str(error)), None
     if done.motion is None or done.status == "unsupported":
         lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"
