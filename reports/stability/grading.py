@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from models.array import Array
-from models.errors import CrankcheckError, EngineError
+from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare import compare, whole_errors
@@ -22,6 +22,7 @@ from reports.stability.matrix import Graded, Outcome, Picture, label
 from sim.engine import Run, settings
 from sim.registry import engine as engine_of
 from sim.run import run
+from sim.run.check import OtherModelError
 
 YARDSTICKS = yardsticks()
 GROUPS = {
@@ -94,9 +95,7 @@ def _graded(
             open_m=trial.open_m,
             with_forces=forces,
         )
-    except EngineError as error:
-        if trial.start is None and not isinstance(error, settings.SettingError):
-            raise  # of a faulty start an engine may make another one, which is no fault of its model
+    except (settings.SettingError, OtherModelError) as error:
         return replace(blank, outcome="unsupported", reason=str(error)), None
     if done.motion is None or done.status == "unsupported":
         lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"

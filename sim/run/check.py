@@ -23,6 +23,10 @@ ROUNDINGS = 16.0
 """Units of the last place of an engine's numbers that both of these allow at least."""
 
 
+class OtherModelError(EngineError):
+    """An engine that holds another model or start than was requested."""
+
+
 def rounding_of(precision: Precision) -> float:
     """Return the relative difference of numbers of an engine that rounding explains."""
     return ROUNDINGS * EPSILON[precision]
@@ -37,7 +41,7 @@ def refuse_other_model(
     open_m: float = 0.0,
     precision: Precision = "double",
 ) -> None:
-    """Refuse a model that differs from the scene. Raises EngineError with all differences.
+    """Refuse a model that differs from the scene. Raises OtherModelError with all differences.
 
     Compared are mass, inertia, gravity, springs, beams, position and angle of every body, loop
     gaps, and the velocities at the engine's own instant. A prescribed crank need not have a mass,
@@ -54,7 +58,7 @@ def refuse_other_model(
         *_gaps(scene, facts, open_m, max(SHUT, rounding)),
     ]
     if faults:
-        raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
+        raise OtherModelError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
 
 
 def refuse_unknown_forces(
