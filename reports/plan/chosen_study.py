@@ -40,7 +40,7 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
     with all its profiles. Raises CrankcheckError for an unknown engine or profile, and for an
     engine of which another study has no variant.
     """
-    engines = chosen_engines(choice.engines)
+    engines = chosen_engines(choice.engines, notes=bool(choice.engines))
     variants = [_by_name(variant) for variant in study.variants]
     if choice.engines and is_shipped:
         there = {variant.engine for variant in variants}
@@ -64,6 +64,8 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
         raise CrankcheckError(
             f"--engine {', '.join(lost)}: the study has no variant of it; add --profile"
         )
+    if not choice.engines:  # once it is known which of the study's own run
+        chosen_engines([variant.engine for variant in variants])
     return study.model_copy(
         update={
             "variants": variants,
@@ -111,7 +113,7 @@ def _free_lines(study: Study, choice: StudyChoice) -> dict[str, object]:
 def study_engines(study: Study, named: Sequence[str]) -> list[str]:
     """Return the named engines, or else the usual ones and the study's own."""
     own = [] if named else [_by_name(variant).engine for variant in study.variants]
-    return list(dict.fromkeys([*chosen_engines(named), *own]))
+    return list(dict.fromkeys([*chosen_engines(named, notes=False), *own]))
 
 
 def _by_name(variant: Variant) -> Variant:

@@ -13,7 +13,7 @@ from models.files.reading import names_of_scenes, scene_texts, shipped
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
-from reports.plan.requirements import chosen_engines, refuse_rigid, scenes_of
+from reports.plan.requirements import refuse_rigid, scenes_of
 from reports.plan.singular import gives_forces
 from reports.plan.study import UNITS, Study, Variant
 from reports.protocol.length import GivenAs, Planned
@@ -66,9 +66,8 @@ def grid(study: Study) -> Grid:
     texts = scene_texts(study.scenes)
     refuse_rigid(scenes, study.segments or None, study.springs or None)
     variants = [one for variant in study.variants for one in variant.each()]
-    versions = {
-        name: engine(name).version() for name in chosen_engines([v.engine for v in variants])
-    }
+    adapters = [engine(name) for name in dict.fromkeys(variant.engine for variant in variants)]
+    versions = {adapter.name: adapter.version() for adapter in adapters}
     complete = [(v, _complete(v)) for v in variants]
     _refuse_twins(complete)
     tasks: dict[str, Task] = {}

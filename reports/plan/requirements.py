@@ -98,20 +98,22 @@ def refuse_unfollowed(scene: Scene) -> None:
     solve(scene, turn, points=(), sliders=(), bound=False)
 
 
-def chosen_engines(names: str | Sequence[str]) -> list[str]:
+def chosen_engines(names: str | Sequence[str], *, notes: bool = True) -> list[str]:
     """Return the names of the engines, each once, all installed; the usual ones where none is
-    named, for `all` every installed one. An engine given as module and attribute is known by its
-    own name from here on."""
+    named, for `all` every installed one; with ``notes`` on those that are not, and on versions that
+    were never tried. An engine given as module and attribute is known by its own name from here
+    on."""
     asked = list(names_in(names, "engines")) or usual()
     if EVERY_ENGINE in asked:
         here = available()
-        tell([f"engine {each.name}: {each.absence}" for each in here if not each.version])
+        lacking = [f"engine {each.name}: {each.absence}" for each in here if not each.version]
+        tell(lacking * notes)
         there = [each.name for each in here if each.version]
         asked = [one for name in asked for one in (there if name == EVERY_ENGINE else [name])]
     engines = {each.name: each for each in map(engine, asked)}
     for each in engines.values():
         each.version()
-    tell([note for name in engines if (note := other_version(name))])
+    tell([note for name in engines if notes and (note := other_version(name))])
     return list(engines)
 
 
