@@ -12,7 +12,7 @@ from pathlib import Path
 
 from docs.site.staging import ROOT
 from reports.output.formats import table
-from reports.page.sections.engines import COLUMNS, complete, in_markdown
+from reports.page.sections.engines import COLUMNS, JUDGED, complete, in_markdown
 from reports.page.sections.section import PageReport
 from reports.results.engine_table import EngineRow
 from reports.results.overview import made, versions
@@ -22,7 +22,6 @@ from sim.registry import engine
 
 BEGIN, END = "<!-- measured -->", "<!-- /measured -->"
 ROOM = 20_000
-JUDGED = "tuned"
 
 
 def main(folder: Path) -> None:

@@ -17,7 +17,7 @@ from models.scene.joints import FIXED, Frame, less, turned
 from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Poses, Settings
 from sim.engine.acting import EngineBodies, Push, SliderCourse, centres
-from sim.engine.measure import BodyPath, PointPath, arms, centred
+from sim.engine.measure import BodyPath, PointPath, arms, centred, moment
 from sim.engine.momentum_balance import MomentumGain
 from sim.engine.stepped import SteppedSession, StepSeries
 from sim.engine.ties import RubbingJoint, rubbing_joints, slide_of
@@ -195,6 +195,6 @@ class HeavyDriverSession(SteppedSession):
         place, force = 0.5 * (start.position + end.position), mass * pull - given[:, :2]
         theta = 0.5 * (before[:, 2] + after[:, 2])
         arm = arms(theta, less(own, centre))  # given moments are about the engine's origin
-        about = given[:, 2] + arm[:, 0] * given[:, 1] - arm[:, 1] * given[:, 0]
-        moment = inertia * (after[:, 5] - before[:, 5]) / self.dt - about
-        return MomentumGain(centre, place, theta, force, moment)
+        about = given[:, 2] + moment(arm, given[:, :2])
+        couple = inertia * (after[:, 5] - before[:, 5]) / self.dt - about
+        return MomentumGain(centre, place, theta, force, couple)
