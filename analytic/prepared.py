@@ -21,10 +21,18 @@ from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import AngleError, Real
 from analytic.dyads.redundant import BridgeStep
 from analytic.dyads.riding import PlacedBodies
-from analytic.dyads.steps import DYAD_STEPS, FollowedStep, Step, stretched
+from analytic.dyads.steps import (
+    DYAD_STEPS,
+    FollowedStep,
+    PeriodicStep,
+    Step,
+    common_period,
+    stretched,
+)
 from analytic.result import MotionArrays, Selection
 from analytic.structure.groups import Bridge, Triad
 from analytic.structure.mobility import Structure, analyse
+from analytic.structure.trains import Train
 from models.array import Array, Mask
 from models.errors import ReachError
 from models.files.body_table import MOST_ASSEMBLIES
@@ -78,15 +86,17 @@ class Prepared:
     @property
     def looked_turns(self) -> int:
         """Turns of the driver over which its range is looked for (`ranges`): a followed group is
-        back after as many as it has assemblies, or ends."""
-        return MOST_ASSEMBLIES if self.followed and self.scene.driver.slider is None else 1
+        back after as many as it has assemblies, or ends; one on gears with theirs."""
+        if self.scene.driver.slider is not None:
+            return 1
+        own = [step.period(self.passages) for step in self.steps if isinstance(step, PeriodicStep)]
+        longest = max((one or math.tau for one in own), default=math.tau)
+        return MOST_ASSEMBLIES if self.followed else round(longest / math.tau)
 
     @property
     def period(self) -> float:
         """Driver angle [rad] after which the positions repeat."""
-        periods = [passage.period for passage in self.passages.values()]
-        periods += [step.period(self.passages) or math.tau for step in self.followed]
-        return max(periods, default=math.tau)
+        return common_period(self.steps, self.passages)
 
     def stretched(self, theta: Array) -> Chunk:
         return stretched(self.scene, self.steps, theta, self.passages)
@@ -285,6 +295,11 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
         placed = PlacedBodies(scene, structure, frozenset(known))
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
+        elif isinstance(part, Train):
+            from analytic.dyads.train_step import TrainStep  # few scenes need it
+
+            leads = not isinstance(structure.order[-1], Train)
+            steps.append(TrainStep(placed, part, steps, leads=leads))
         elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
             from analytic.assur.mounting import Mounting  # few scenes need it
             from analytic.assur.step import AssurStep

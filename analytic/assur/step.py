@@ -23,7 +23,7 @@ from analytic.change_points.sign import AT_START, HALVES, Interpolant, whole_tur
 from analytic.dyads.chunk import Chunk, DrivenCoordinate, Passage, driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
 from analytic.dyads.plane import EPS, AngleError, BodyKinematics, PointError, PointKinematics, Vec
-from analytic.dyads.steps import FollowedStep, Step, uncertain_chunk
+from analytic.dyads.steps import FollowedStep, Step, common_period, uncertain_chunk
 from analytic.structure.groups import Group
 from models.array import Array, Mask
 from models.errors import CrankcheckError, ReachError, StructureError
@@ -236,10 +236,7 @@ class AssurStep(FollowedStep):
             )
         repeats = None
         if scene.driver.slider is None:
-            periods = [one.period for one in passages.values()]  # type: ignore[attr-defined]
-            followed = (one for one in self.steps_before if isinstance(one, AssurStep))
-            periods += [one.period(passages) or math.tau for one in followed]
-            repeats = max(periods, default=math.tau)
+            repeats = common_period(self.steps_before, passages)
         return AssemblyTrack(rows, pose, self.mounting.size_m, repeats)
 
     def period(self, passages: Mapping[str, Passage]) -> float | None:

@@ -27,7 +27,7 @@ from analytic.change_points.sign import AT_START, SIDE, ChangePoints, whole_turn
 from analytic.dyads.chunk import driver_scale, told
 from analytic.dyads.parts import CLOSED
 from analytic.dyads.plane import Real
-from analytic.dyads.steps import FollowedStep, Step, stretched
+from analytic.dyads.steps import PeriodicStep, Step, stretched
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Crossing
@@ -62,7 +62,7 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
     theta = _grid(start, period)
     chunk = stretched(scene, steps, theta)
     for k, step in enumerate(steps):
-        if isinstance(step, FollowedStep):
+        if isinstance(step, PeriodicStep):
             period = max(period, step.period(passing) or math.tau)
             theta = _grid(start, period)
             chunk = stretched(scene, steps, theta, passing)

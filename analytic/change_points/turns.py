@@ -211,7 +211,9 @@ class CellSolver:
         angles: dict[str, Array] = {}
         spread, is_open = np.zeros(middle.shape), np.zeros(middle.shape, dtype=bool)
         for name in self.scene.links:
-            body = chunk.bodies[name]
+            body = chunk.bodies.get(name)
+            if body is None:  # placed by later steps
+                continue
             if body.theta is None and body.error is not None:
                 angle = np.arctan2(body.turn.y, body.turn.x)
                 angles[name] = np.nan_to_num(np.broadcast_to(angle, middle.shape))

@@ -20,6 +20,10 @@ from models.scene.joints import local_point, sliding_angle
 class Passage(Protocol):
     """Change points that a dyad goes through (`analytic.change_points.sign`)."""
 
+    @property
+    def period(self) -> float:
+        """Driver angle after which the signs repeat [rad]."""
+
     def sign(self, theta: Array) -> Array:
         """Return the factor of the scene's branch at driver angles [rad], (T,)."""
 

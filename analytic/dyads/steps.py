@@ -1,7 +1,8 @@
 """Closed-form steps of structural groups: geometry prepared once, solved per chunk."""
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol
 
@@ -28,8 +29,8 @@ class Step(Protocol):
         """Add the group's bodies and sliders to the chunk. Raises OpenError."""
 
 
-class FollowedStep(ABC):
-    """Step of a group that has no closed form: its assembly is followed along the driver."""
+class PeriodicStep(ABC):
+    """Step whose bodies may come back after more turns of the driver than those before it."""
 
     key: str
 
@@ -38,7 +39,19 @@ class FollowedStep(ABC):
 
     @abstractmethod
     def period(self, passages: Mapping[str, Passage]) -> float | None:
-        """Return the driver angle after which the assembly comes back [rad]; None where it ends."""
+        """Return the driver angle after which the bodies come back [rad], a multiple of that of the
+        steps before; None where they end."""
+
+
+def common_period(steps: Iterable[Step], passages: Mapping[str, Passage]) -> float:
+    """Return the driver angle [rad] after which positions repeat, with the known change points."""
+    periods = [passage.period for passage in passages.values()]
+    own = [step.period(passages) for step in steps if isinstance(step, PeriodicStep)]
+    return max([*periods, *(one or math.tau for one in own)], default=math.tau)
+
+
+class FollowedStep(PeriodicStep):
+    """Step of a group that has no closed form: its assembly is followed along the driver."""
 
     @abstractmethod
     def passed(

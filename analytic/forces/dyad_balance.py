@@ -12,10 +12,13 @@ that in its outer pin; E and M the other forces on a body, with moments about th
 
 from collections.abc import Callable, Mapping
 
-from analytic.forces.bounded import Bounded, BoundedVec
+from analytic.dyads.plane import EPS
+from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
 from analytic.forces.central_balance import balance_central
 from analytic.forces.free_body import Balance, PrismaticPair
 from analytic.structure.groups import Bridge, Group, Triad
+from analytic.structure.trains import Train
+from models.scene import GROUND
 
 
 def torque_of(on: Balance) -> Bounded:
@@ -25,6 +28,9 @@ def torque_of(on: Balance) -> Bounded:
     inner = set() if compound is None else {compound.name}
     for part in reversed(on.structure.order):
         if isinstance(part, Bridge):
+            continue
+        if isinstance(part, Train):
+            _train(on, part)
             continue
         central = inner.intersection(part.bodies)
         on.standing.difference_update(part.bodies)
@@ -112,6 +118,28 @@ def _crossing(
     """Return the force with these components along two lines."""
     inverse = line1.along.cross(line2.along).inverse()
     return line1.across * (along2 * inverse) - line2.across * (along1 * inverse)
+
+
+def _train(on: Balance, train: Train) -> None:
+    """Solve moments about the pins for the factor of each gear's relation, whose coefficients times
+    it are the couples on the bodies; pins only take over forces.
+
+    So does an engine's relation of angles. The forces of teeth press on the pins as well, and are
+    left to `analytic.gears`.
+    """
+    moments: dict[str, Bounded] = {}
+    for body, pin in reversed([*zip(train.bodies, train.pins, strict=True)]):
+        moments[body] = on.moment(body, pin)
+        on.standing.discard(body)
+        on.hold(pin, body, -on.free[body].force)
+    for k, gear in enumerate(train.gears):
+        factor = NOUGHT
+        for body, row in zip(train.bodies, train.inverse, strict=True):
+            factor = factor - moments[body] * Bounded(float(row[k]), EPS * abs(float(row[k])))
+        for body in train.known:
+            if body != GROUND and (share := gear.relation.get(body, 0)):
+                own = on.free[body]
+                own.moment = own.moment + factor * Bounded(float(share))
 
 
 _BALANCES: Mapping[str, Callable[[Balance, Group], None]] = {

@@ -12,10 +12,12 @@ r"""Assur groups and redundant links of a mechanism, in solving order.
     two links, three pairs            four links, six pairs
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from analytic.structure.trains import Hanging, Train, trains
 from models.scene import Scene
+from models.scene.pairs import Gear
 
 JointKey = tuple[str, str]
 """Letter R or P, and the name of the pin or the slider."""
@@ -107,7 +109,7 @@ class Bridge:
         return (self.link,)
 
 
-Part = Group | Triad | Bridge
+Part = Group | Triad | Bridge | Train
 
 
 class Pairs:
@@ -137,24 +139,33 @@ class Pairs:
         free = (self._ends[pair] for pair in self._of.get(body, ()))
         return {name for ends in free if known.isdisjoint(ends) for name in ends} - {body}
 
+    def hanging(self, bodies: Iterable[str]) -> Hanging:
+        """Return the pairs of bodies, each with all bodies that share it."""
+        return {
+            body: [(name if kind == "R" else "", self._ends[kind, name]) for kind, name in pairs]
+            for body in bodies
+            if (pairs := self._of.get(body)) is not None
+        }
+
     def neighbours(self, body: str) -> set[str]:
         """Return the bodies that share a pair with a body."""
         return {name for pair in self._of[body] for name in self._ends[pair]} - {body}
 
 
 def decompose(
-    bodies: tuple[str, ...], known: frozenset[str], pairs: Pairs
+    bodies: tuple[str, ...], known: frozenset[str], pairs: Pairs, gears: Sequence[Gear] = ()
 ) -> tuple[tuple[Part, ...], list[str]]:
     """Return the groups and redundant links, each after its supports, and the unplaced bodies.
 
-    The smallest groups come first; a link counts as redundant only where no further group can be
-    placed. ``known`` are the bodies placed by the driver and the ground.
+    Trains of ``gears`` come first, then the smallest groups; a link counts as redundant only where
+    no further group can be placed. ``known`` are the bodies placed by the driver and the ground.
     """
     placed = set(known)
     outer = {body: pairs.outer(body, placed) for body in bodies if body not in placed}
     order: list[Part] = []
     while (
-        part := next(_dyads(outer, placed, pairs), None)
+        part := next(trains(gears, pairs.hanging(outer)), None)
+        or next(_dyads(outer, placed, pairs), None)
         or next(_triads(outer, placed, pairs), None)
         or next(_bridges(outer), None)
     ):

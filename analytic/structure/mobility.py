@@ -1,8 +1,8 @@
 """Structure of a mechanism: mobility, and its driver and Assur groups in solving order.
 
 Mobility by Kutzbach-Gruebler, W = 3 n - 2 p5 - p4, with n moving bodies (links and slider blocks),
-p5 pairs of one freedom (pins, prismatic pairs) and p4 pairs of two (none: a point on a line is a
-block with a pin and a prismatic pair). Source: I. I. Artobolevskii, Theory of Mechanisms; the
+p5 pairs of one freedom (pins, prismatic pairs) and p4 pairs of two (gears and cams; a point on a
+line is a block with a pin and a prismatic pair). Source: I. I. Artobolevskii, Theory of Mechanisms; the
 class II groups are those with two links and three pairs.
 
 A link that is pinned at two or more points to bodies that move without it is redundant: it takes
@@ -35,7 +35,7 @@ class Structure:
 
     ``order`` holds the groups and the redundant links, each after its supports. Where the driver
     moves two moving bodies against each other, one of the groups has the two as one link of
-    changing shape: the ``compound``.
+    changing shape: the ``compound``. ``higher`` pairs, gears and cams, take one freedom each.
     """
 
     bodies: tuple[str, ...]
@@ -43,6 +43,7 @@ class Structure:
     prismatics: Mapping[str, tuple[str, str]]
     order: tuple[Part, ...]
     compound: Compound | None = None
+    higher: int = 0
 
     @property
     def groups(self) -> tuple[Group, ...]:
@@ -62,7 +63,7 @@ class Structure:
     @property
     def count(self) -> int:
         """Mobility by count, W: with redundant links it is less than the real one."""
-        return 3 * len(self.bodies) - 2 * self.pairs
+        return 3 * len(self.bodies) - 2 * self.pairs - self.higher
 
     @property
     def mobility(self) -> int:
@@ -104,11 +105,12 @@ def analyse(scene: Scene) -> Structure:
     compound = compound_of(scene)
     if compound is None:
         known = {scene.driver.base, scene.driver.link, GROUND}
-        order, left = decompose(bodies, frozenset(known), Pairs(pins, prismatics))
+        higher = (*scene.gears.values(),)
+        order, left = decompose(bodies, frozenset(known), Pairs(pins, prismatics), higher)
     else:
         units = compound.units(bodies)
         order, left = decompose(units, frozenset({GROUND}), compound.pairs(pins, prismatics))
-    structure = Structure(bodies, pins, prismatics, order, compound)
+    structure = Structure(bodies, pins, prismatics, order, compound, len(scene.gears))
     _check_driver(scene, structure)
     if left or structure.mobility != 1:
         raise StructureError(f"{scene.name}: {_fault(structure, left)}")
@@ -129,7 +131,7 @@ def _fault(structure: Structure, left: list[str]) -> str:
     if mobility == 1:
         return unsolved(structure, left)
     n, p5 = len(structure.bodies), structure.pairs
-    count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {structure.count}"
+    count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - {structure.higher} = {structure.count}"
     if structure.redundant:
         count += f", but {mobility} where redundant links ({structure.spare}) are not counted"
     cure = "Remove a link or a pin that holds the mechanism rigid."

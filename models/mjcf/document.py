@@ -16,7 +16,7 @@ tendons (`models.mjcf.forces`).
 from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError
-from models.mjcf import forces, options
+from models.mjcf import forces, gears, options
 from models.mjcf.options import AttributeRow, Attributes, Writing, attributes
 from models.mjcf.tree import Limb, Tree, driven_freedom
 from models.motion import State
@@ -51,8 +51,8 @@ def build(
         *_options(scene, writing),
         *_defaults(scene, writing),
         *_world(scene, tree, writing),
-        *_equality(tree),
-        *forces.tendon_lines(scene, forces.spring_tendons(scene, state, tree)),
+        *_equality(scene, tree),
+        *_tendons(scene, state, tree),
         *_actuator(scene, tree, writing),
         *_keyframe(scene, state, tree, writing),
         "</mujoco>",
@@ -175,7 +175,7 @@ def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
     return [f"{pad}<site{attributes(row)}/>" for row in [*rows, *forces.load_sites(scene, body)]]
 
 
-def _equality(tree: Tree) -> list[str]:
+def _equality(scene: Scene, tree: Tree) -> list[str]:
     rows = [
         {"name": f"{c.point}: {c.bodies[0]} to {c.bodies[1]}"}
         | {f"site{i}": f"{body}.{c.point}" for i, body in enumerate(c.bodies, start=1)}
@@ -185,7 +185,14 @@ def _equality(tree: Tree) -> list[str]:
     why = (
         "    <!-- Each loop is closed at one pin, by the copies of the point on its two bodies. -->"
     )
-    return ["  <equality>", why, *lines, "  </equality>"] if lines else []
+    lines = [*([why] if lines else []), *lines, *gears.gear_equalities(scene)]
+    return ["  <equality>", *lines, "  </equality>"] if lines else []
+
+
+def _tendons(scene: Scene, state: State, tree: Tree) -> list[str]:
+    springs = forces.spring_lines(scene, forces.spring_tendons(scene, state, tree))
+    lines = [*springs, *gears.gear_tendons(scene, tree)]
+    return ["  <tendon>", *lines, "  </tendon>"] if lines else []
 
 
 def _actuator(scene: Scene, tree: Tree, writing: Writing) -> list[str]:

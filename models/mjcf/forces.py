@@ -166,7 +166,7 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
     if isinstance(spring, LineSpring):
         return SpringTendon(spring)
     if isinstance(spring, PinSpring):
-        (first, before), (second, after) = (_turning(tree, body) for body in spring.bodies)
+        (first, before), (second, after) = (turning(tree, body) for body in spring.bodies)
         signs = {name: 1 for name in second if name not in first}
         signs |= {name: -1 for name in first if name not in second}
         start, end = (0.0 if b == GROUND else state.theta[b] for b in spring.bodies)
@@ -181,7 +181,7 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
     return SpringTendon(spring, signed, shift, sense)
 
 
-def _turning(tree: Tree, body: str) -> tuple[list[str], float]:
+def turning(tree: Tree, body: str) -> tuple[list[str], float]:
     """Return the hinges whose coordinates add up to the angle of a body, and the angle [rad] that
     bodies without a hinge add to them."""
     limbs = {limb.body: limb for limb in tree.limbs}
@@ -212,17 +212,14 @@ def spring_points(scene: Scene, body: str) -> list[str]:
     ]
 
 
-def tendon_lines(scene: Scene, tendons: tuple[SpringTendon, ...]) -> list[str]:
-    """Write the section of the tendons; none for a scene without springs."""
-    if not tendons:
-        return []
+def spring_lines(scene: Scene, tendons: tuple[SpringTendon, ...]) -> list[str]:
+    """Write the tendons of springs; none for a scene without."""
     lines = [
-        "  <tendon>",
         "    <!-- Springs: each pulls with stiffness (length - springlength) + damping rate. -->",
     ]
     for tendon in tendons:
         lines += _tendon_lines(scene, tendon)
-    return [*lines, "  </tendon>"]
+    return lines if tendons else []
 
 
 def _tendon_lines(scene: Scene, tendon: SpringTendon) -> list[str]:

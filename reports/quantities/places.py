@@ -131,12 +131,13 @@ POSITION = _place(
 
 
 def _gap(kind: quantity.BodyKind, column: str) -> quantity.Measure:
-    """Return the measure of the gap at a shared pin or slider, which is 0 in the reference."""
+    """Return the measure of the gap at a shared pin or slider, or of the slip of gears, which is 0
+    in the reference."""
 
     def truth(scene: Scene, reference: Motion) -> quantity.Series:
-        shared = (*(pin.point for pin in joints(scene).pins), *scene.sliders)
-        chosen = (name for name in shared if (name in scene.sliders) == (kind == "slider"))
-        return dict.fromkeys(chosen, np.zeros_like(reference.time_s))
+        every = {"slider": scene.sliders, "gear": scene.gears}
+        pins = [pin.point for pin in joints(scene).pins if pin.point not in scene.sliders]
+        return dict.fromkeys(every.get(kind, pins), np.zeros_like(reference.time_s))
 
     return quantity.Measure(
         body_kind=kind,
@@ -153,7 +154,11 @@ GAP = quantity.Quantity(
     name="gap",
     role="closure",
     head="gap\n/ L",
-    measures=(_gap("point", "pin_gap_m"), _gap("slider", "slider_gap_m")),
+    measures=(
+        _gap("point", "pin_gap_m"),
+        _gap("slider", "slider_gap_m"),
+        _gap("gear", "gear_slip_m"),
+    ),
     criteria=(
         quantity.Criterion(
             "CC105",

@@ -213,11 +213,12 @@ def at_velocities(poses: Poses) -> Poses:
 
 @np.errstate(all="ignore")
 def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """Return the openings of joints between their bodies (T,) [m], by pin and by slider.
+    """Return the openings of joints between their bodies (T,) [m], by pin, slider and gear.
 
     For a pin: the largest distance between two bodies' copies of the point. For a slider: the
     distance of its point from the line, plus, for a body that must not turn against the line, the
-    error of its angle times the longest length of the scene.
+    error of its angle times the longest length of the scene. For two gears: the slip of their pitch
+    circles.
     """
     tracks = _tracks(scene, poses)
     openings = {}
@@ -235,6 +236,11 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
             turn = body.theta - guide.theta - pairs.sliding_angle(slider)
             off = off + np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi) * scene.longest_m
         openings[name] = np.maximum(off, openings[name]) if name in openings else off
+    for gear in scene.gears.values():
+        slip = -gear.constant_rad
+        for name, factor in gear.relation.items():
+            slip = slip + factor * poses.bodies[name].theta if name != GROUND else slip
+        openings[gear.name] = np.abs(slip) * gear.slip_m(scene.points_of)
     return openings
 
 

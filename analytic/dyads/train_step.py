@@ -1,0 +1,120 @@
+"""Step of a gear train: the angles of its links, constant shares of known angles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+
+from analytic.change_points.turns import CellSolver, Counter, Turns
+from analytic.dyads.chunk import SINES, Chunk, Passage, driver_scale
+from analytic.dyads.plane import EPS, STEADY, AngleError, BodyKinematics, Real, Vec
+from analytic.dyads.riding import PlacedBodies
+from analytic.dyads.steps import PeriodicStep, Step, common_period, stretched
+from analytic.structure.trains import Train
+from models.array import Array
+from models.errors import CrankcheckError
+
+MOST_TURNS = 128
+"""Most turns of the driver after which a linkage behind gears may come back."""
+
+
+class TrainStep(PeriodicStep):
+    """Links on known pins, at angles that are shares of known ones.
+
+    ``before`` are the steps of the bodies before it; with ``leads`` other groups hang on it.
+    """
+
+    def __init__(
+        self, placed: PlacedBodies, train: Train, before: Sequence[Step], *, leads: bool
+    ) -> None:
+        self.train, self.leads, self.before = train, leads, tuple(before)
+        self.key = f"gears {', '.join(gear.name for gear in train.gears)}"
+        self.scene = placed.scene
+        known = placed.known
+        self.links: list[tuple[str, str, str, Mapping[str, float], float]] = []
+        for body, pin in zip(train.bodies, train.pins, strict=True):
+            holder = PlacedBodies(placed.scene, placed.structure, known).holder(pin)
+            shares = {name: float(share) for name, share in train.shares(body).items() if share}
+            self.links.append((body, pin, holder, shares, train.phase_rad(body)))
+            known |= {body}
+
+    def advance(self, chunk: Chunk) -> None:
+        angles = {name: self._angle(chunk, name) for name in self.train.known}
+        for body, pin, holder, shares, phase in self.links:
+            anchor = chunk.point(holder, pin)
+            local = self.scene.links[body].points[pin]
+            theta: Real = phase
+            omega: Real = 0.0
+            alpha: Real = STEADY
+            error = AngleError(SINES + EPS * abs(phase), 0.0, 0.0)
+            for name, share in shares.items():
+                own = chunk.bodies[name]
+                theta = theta + share * angles[name]
+                omega = omega + share * own.omega
+                if own.alpha is not STEADY:
+                    alpha = alpha + share * own.alpha
+                if own.error is not None:
+                    error = _more(error, own, abs(share), angles[name])
+            turn = Vec(np.cos(theta), np.sin(theta))
+            bound = error if chunk.certified else None
+            chunk.bodies[body] = BodyKinematics(local, anchor, turn, omega, alpha, bound, theta)
+        chunk.sines[self.key] = np.ones_like(chunk.theta)
+
+    def _angle(self, chunk: Chunk, name: str) -> Real:
+        """Return the angle of a known body [rad], whole turns counted from time 0 on."""
+        body = chunk.bodies[name]
+        if body.theta is not None:
+            return body.theta
+        angle = np.broadcast_to(np.arctan2(body.turn.y, body.turn.x), chunk.theta.shape).copy()
+        Counter(self._turns(chunk.passages), chunk.theta).count(name, angle)
+        return angle
+
+    def _turns(self, passages: Mapping[str, Passage]) -> Turns:
+        """Return the whole turns of the bodies before the train."""
+        if self._counted is None:
+            own = {step.key: passages[step.key] for step in self.before if step.key in passages}
+            look = CellSolver(self.scene, self.before, own)
+            self._counted = Turns.of(look, self._start, common_period(self.before, own))
+        return self._counted
+
+    _counted: Turns | None = None
+
+    @cached_property
+    def _start(self) -> float:
+        law = self.scene.driver.law
+        return float(law.at(np.zeros(1))[0][0]) / driver_scale(self.scene)
+
+    def period(self, passages: Mapping[str, Passage]) -> float | None:
+        """Return the driver angle after which its links stand as at first [rad]; that of the known
+        bodies where nothing hangs on it. Raises CrankcheckError for more than `MOST_TURNS`."""
+        own = {step.key: passages[step.key] for step in self.before if step.key in passages}
+        base = common_period(self.before, own)
+        if not self.leads or self.scene.driver.slider is not None:
+            return base
+        ends: Array = np.array([self._start, self._start + base])
+        chunk = stretched(self.scene, (*self.before, self), ends, own)
+        turns = [np.ptp(np.broadcast_to(chunk.bodies[b].theta, (2,))) for b in self.train.bodies]
+        gains = [Fraction(float(one) / math.tau).limit_denominator(10**6) for one in turns]
+        back = math.lcm(*(gain.denominator for gain in gains)) * base
+        if back > (MOST_TURNS + 0.5) * math.tau:
+            raise CrankcheckError(
+                f"{self.scene.name}: the links on its gears come back after "
+                f"{back / math.tau:.0f} turns of the driver; a linkage that hangs on gears is "
+                f"solved where it comes back after at most {MOST_TURNS}: choose numbers of teeth "
+                "with a simpler ratio"
+            )
+        return back
+
+
+def _more(error: AngleError, own: BodyKinematics, share: float, angle: Real) -> AngleError:
+    """Return the bounds of a sum with a share of a known angle and its rates added."""
+    assert own.error is not None
+    return AngleError(
+        error.theta + share * own.error.theta + 2 * EPS * share * np.abs(angle),
+        error.omega + share * own.error.omega + 2 * EPS * share * np.abs(own.omega),
+        error.alpha + share * own.error.alpha + 2 * EPS * share * np.abs(own.alpha),
+    )
