@@ -28,6 +28,7 @@ from models.scene.joints import Prism, Slot, turned
 from sim.engine import Drive
 from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 from sim.pymunk import native
+from sim.pymunk.meshes import mesh
 
 
 @dataclass(frozen=True)
@@ -130,6 +131,7 @@ def build(
         if isinstance(slide, Prism) and slide.slider.on != GROUND:
             gears[name] = _gear(placed, slide)
         _add(placed, lines[name], gears.get(name))
+    _add(placed, *(mesh(placed, gear) for gear in scene.gears.values()))
     rubs = native.pin_friction(placed)
     springs = native.native_springs(placed, _reach(scene)) if with_springs else {}
     _add(placed, *(one.motor for one in rubs), *(one.constraint for one in springs.values()))
