@@ -12,6 +12,7 @@ from models.motion import State
 from models.scene import Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings, measure
 from sim.exudyn import acting, crank_drive, system
+from sim.exudyn.meshes import add_mesh
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 
@@ -88,6 +89,8 @@ class ExudynSession:
         with system.quiet(self._heard):
             self._model = system.build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
+            for gear in scene.gears.values():
+                add_mesh(self._model, gear)
             self._looked = dict(self._model.looked)
             self._applied = acting.Applied(self._model)
             acting.apply_loads(self._applied, state.time_s, drive, dt_s)
@@ -199,8 +202,9 @@ class ExudynSession:
     def read(self) -> Poses:
         """Read the current state."""
         state = self._system.systemData
-        ends = np.cumsum([4 if name in self._looked else 3 for name in self._model.node])[:-1]
-        levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
+        ends = np.cumsum([4 if name in self._looked else 3 for name in self._model.node])
+        every = [np.array(getattr(state, f"GetODE2{level}")()) for level in LEVELS]
+        levels = [np.split(one, ends)[:-1] for one in every]  # those of gears stand last
         of_nodes = [own[None] for node in zip(*levels, strict=True) for own in node]
         angles = beam_angles(self._model, self._looked, of_nodes)
         now = np.array([self._start_s + self._dt * self._done])

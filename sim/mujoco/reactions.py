@@ -64,7 +64,8 @@ class JointForces(NamedTuple):
     about ``centres`` (B, 2), the centre of mass of its tree. The crank's is without the flywheel,
     which is no body. ``loops`` (neq, 2) are the forces of the connects on their first bodies,
     ``friction`` (nv,) acts along the coordinates, ``controls`` (nu,) end with the sizes of the
-    loads, ``pulls`` (tendons,) shorten the tendons.
+    loads, ``pulls`` (tendons,) shorten the tendons; ``turning`` (nv,) are the couples of gears
+    along the coordinates.
     """
 
     wrenches: Array
@@ -73,15 +74,20 @@ class JointForces(NamedTuple):
     friction: Array
     controls: Array
     pulls: Array
+    turning: Array
 
 
 def joint_forces(model: Any, data: Any) -> JointForces:
     """Read the forces of a state, after `mj_forward`."""
     mujoco.mj_rnePostConstraint(model, data)
     loops, friction = np.zeros((model.neq, 3)), np.zeros(model.nv)
-    # Equalities come first among the rows of constraints, with three for each connect, in the frame
-    # of the world; an inactive one has none. Friction follows, a row for each joint that has some.
-    loops[data.efc_id[: data.ne : 3]] = data.efc_force[: data.ne].reshape(-1, 3)
+    # Equalities come first among the rows of constraints, in the order of the file: three for each
+    # connect, in the frame of the world, then one for each gear; an inactive one has none. Friction
+    # follows, a row for each joint that has some.
+    kinds = model.eq_type[data.efc_id[: data.ne]]
+    gears = np.flatnonzero(kinds == mujoco.mjtEq.mjEQ_TENDON)
+    pins = data.ne - len(gears)
+    loops[data.efc_id[:pins:3]] = data.efc_force[:pins].reshape(-1, 3)
     rubbing = slice(data.ne, data.ne + data.nf)
     friction[data.efc_id[rubbing]] = data.efc_force[rubbing]
     longer = data.ten_length - model.tendon_lengthspring[:, 0]
@@ -92,7 +98,17 @@ def joint_forces(model: Any, data: Any) -> JointForces:
         friction=friction,
         controls=data.ctrl.copy(),
         pulls=model.tendon_stiffness * longer + model.tendon_damping * data.ten_velocity,
+        turning=_along_coordinates(model, data, gears),
     )
+
+
+def _along_coordinates(model: Any, data: Any, rows: Array) -> Array:
+    """Return the forces of rows of constraints along the coordinates, (nv,)."""
+    alone, found = np.zeros(data.nefc), np.zeros(model.nv)
+    alone[rows] = data.efc_force[rows]
+    if rows.size:
+        mujoco.mj_mulJacTVec(model, data, found, alone)
+    return found
 
 
 class TreeReactions:
@@ -122,14 +138,18 @@ class TreeReactions:
         scene, limbs = self._scene, self._tree.limbs
         driven, sense = driven_freedom(scene, limbs)
         sliders, torque = dict[str, SliderForces](), np.full(len(self._time_s), np.nan)
+        row = 0
         for k, limb in enumerate(limbs):
             wrench, slider = self._from_parent(k, limb), limb.slider
             if slider is None:
                 self._pins.add(limb.point, limb.parent, limb.body, wrench.force)
                 if limb.freedoms[0].name == driven:
-                    torque = sense * wrench.moment_about(self._place(limb.body, limb.point))
+                    moment = wrench.moment_about(self._place(limb.body, limb.point))
+                    torque = sense * (moment - self._given.turning[:, row])
+                row += 1
                 continue
             sliders[slider.name], along = self._slide(limb, slider, wrench)
+            row += len(limb.freedoms)
             if slider.name == scene.driver.slider:
                 torque = along
         for k, closure in enumerate(self._tree.closures):
