@@ -9,7 +9,8 @@ together are one linear system for each sample::
 
 It is square where the joints leave the mechanism one freedom, which the drive takes. A pin of k
 bodies counts as the k - 1 hinges that the engine has made of it, and a point on a line as a force
-across it: a slider's block without mass is no body here.
+across it: a slider's block without mass is no body here. Gears are couples on their bodies, in the
+ratio of their relation: the forces of teeth that an engine may have count to those of the pins.
 """
 
 from collections.abc import Mapping, Sequence
@@ -86,12 +87,14 @@ def joint_pushes(
     lines = {slide.slider.name: system.carry(scene, slide) for slide in slides}
     for slide in slides:
         if isinstance(slide, pairs.Prism):
-            system.couple(slide.body, slide.slider.on)
+            system.couple({slide.body: 1.0, slide.slider.on: -1.0})
+    for gear in scene.gears.values():
+        system.couple(gear.relation)
     if driven:
         system.drive(scene)
     found = system.solution()
-    ends = np.cumsum([2 * len(hinges), len(slides), len(prisms)])
-    on_hinges, normals, moments, torque = np.split(found, ends, axis=1)
+    ends = np.cumsum([2 * len(hinges), len(slides), len(prisms), len(scene.gears)])
+    on_hinges, normals, moments, _, torque = np.split(found, ends, axis=1)
     return JointPushes(
         {hinge: on_hinges[:, 2 * k : 2 * k + 2] for k, hinge in enumerate(hinges)},
         lines,
@@ -126,18 +129,18 @@ class _System:
         self._push_on(scene, slide.slider, pairs.riding_body(slide), direction)
         return direction
 
-    def couple(self, body: str, against: str) -> None:
-        """Add a torque on a body, and the opposite on another."""
+    def couple(self, shares: Mapping[str, float]) -> None:
+        """Add torques on bodies in these ratios."""
         column = self._column()
-        for name, sense in ((body, 1.0), (against, -1.0)):
+        for name, share in shares.items():
             if name != GROUND:
-                column[:, self._row[name] + 2] += sense
+                column[:, self._row[name] + 2] += share
 
     def drive(self, scene: Scene) -> None:
         """Add the driver: a torque between its bodies, or a force along its slider's line."""
         driver = scene.driver
         if driver.slider is None:
-            self.couple(driver.link, driver.base)
+            self.couple({driver.link: 1.0, driver.base: -1.0})
             return
         slide = slide_of(scene, driver.slider)
         self._push_on(scene, slide.slider, pairs.riding_body(slide), self._along(slide.slider))

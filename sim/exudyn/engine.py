@@ -245,5 +245,6 @@ ENGINE = Engine(
     applies_loads=True,
     applies_constant_friction=True,
     applies_springs=True,
+    applies_gears=True,
     applies_beams=True,
 )

@@ -169,4 +169,5 @@ ENGINE = Engine(
     applies_loads=True,
     applies_constant_friction=True,
     applies_springs=True,
+    applies_gears=True,
 )

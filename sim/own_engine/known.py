@@ -26,6 +26,7 @@ SAYS = (
     "applies_loads",
     "applies_constant_friction",
     "applies_springs",
+    "applies_gears",
     "applies_beams",
 )
 """Attributes that are true or false."""

@@ -21,6 +21,7 @@ import pymunk.batch
 
 from models.array import Array
 from models.motion import Forces
+from models.scene import GROUND
 from models.scene.joints import centre_of, mass_of, turned
 from sim.engine.acting import Push, Pushes
 from sim.engine.measure import across, arms
@@ -98,7 +99,8 @@ class Reactions:
         friction = couples | by_name(self._rubbed[: len(ends)])
         forces = forces_by_body(self._scene, pushes, on_blocks, friction, ends)
         forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
-        if not len(ends) or pushes.spare:
+        rolling = any(gear.carrier != GROUND for gear in self._scene.gears.values())
+        if not len(ends) or pushes.spare or rolling:  # teeth press on pins (`sim.pymunk.meshes`)
             return replace(forces, time_s=time_s)
         turn = float(np.nanmax(np.abs(after[:, :, 5]))) * self._dt if self._bent else 0.0
         against = tuple(self._contradictions(pushes, ends, SAME + turn**2))
