@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import Field, StrictInt, StringConstraints
 
 from models.errors import SceneError
-from models.files import body_table, elastic_table, schema, spring_table
+from models.files import body_table, elastic_table, gear_table, schema, spring_table
 from models.files.driver_table import DriverTable, driver_of, driver_table, faults_of_driver
 from models.files.load_table import LoadTable, faults_of_loads, load_of, load_table
 from models.files.schema import MOST_BODIES, Coordinates, Name, Text
@@ -44,6 +44,7 @@ class SceneTable(schema.Table):
     elastic: dict[Name, elastic_table.ElasticTable] = Field(
         default_factory=dict, max_length=MOST_BODIES
     )
+    gears: dict[Name, gear_table.GearTable] = Field(default_factory=dict, max_length=MOST_BODIES)
 
 
 FAULTS_OF_NAMES = {
@@ -53,6 +54,7 @@ FAULTS_OF_NAMES = {
     "loads": faults_of_loads,
     "friction": spring_table.faults_of_friction,
     "springs": spring_table.faults_of_springs,
+    "gears": gear_table.faults_of_gears,
     "start": elastic_table.faults_of_start,
     "elastic": elastic_table.faults_of_elastic,
     "branch": body_table.faults_of_branch,
@@ -118,10 +120,12 @@ def scene_from_table(
         springs={n: each.spring(n, ground, links) for n, each in table.springs.items()},
         start=table.start.start(),
         elastic={name: each.elastic_link(name) for name, each in table.elastic.items()},
+        gears={name: each.gear(name) for name, each in table.gears.items()},
     )
     if impossible := [
         *elastic_table.faults_of_free_motion(scene),
         *elastic_table.faults_of_beams(scene),
+        *gear_table.faults_of_meshes(scene),
     ]:
         raise SceneError(place, impossible)
     return scene
@@ -152,6 +156,8 @@ def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str,
         yield f"loads.{name}", load_table(load)
     for name, spring in scene.springs.items():
         yield f"springs.{name}", spring_table.spring_table(spring)
+    for name, gear in scene.gears.items():
+        yield f"gears.{name}", gear_table.gear_table(gear)
     if scene.start:
         yield "start", elastic_table.start_table(scene.start)
     for name, own in scene.elastic.items():

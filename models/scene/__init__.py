@@ -24,6 +24,7 @@ from typing import NoReturn, TypeVar
 from models.scene.elastic import Beam, ElasticLink, Shape
 from models.scene.laws import Law
 from models.scene.loads import CoulombFriction, Friction, Load, Spring
+from models.scene.pairs import Gear
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -180,7 +181,7 @@ class Scene:
     ``loads`` act from outside, ``friction`` in joints of two bodies, ``springs`` between bodies.
     ``start`` completes the start of free motion beyond the driver. ``elastic`` are the links that
     bend or stretch, by name; the others are rigid. ``beams`` are these links as an engine with
-    nodes has them (`models.scene.cut_scenes`).
+    nodes has them (`models.scene.cut_scenes`). ``gears`` are the pairs in mesh.
     """
 
     name: str
@@ -199,10 +200,11 @@ class Scene:
     start: Start = field(default_factory=Start)
     elastic: Mapping[str, ElasticLink] = field(default_factory=dict)
     beams: Mapping[str, Beam] = field(default_factory=dict)
+    gears: Mapping[str, Gear] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         _fix(self, "ground", "links", "sliders", "branch", "tolerance", "loads", "friction",
-             "springs", "elastic", "beams")  # fmt: skip
+             "springs", "elastic", "beams", "gears")  # fmt: skip
 
     @cached_property
     def pins(self) -> Mapping[str, tuple[str, ...]]:
@@ -212,6 +214,11 @@ class Scene:
             for point in link.points:
                 bodies.setdefault(point, []).append(link.name)
         return FixedMapping({point: tuple(names) for point, names in bodies.items()})
+
+    @property
+    def points_of(self) -> Mapping[str, Mapping[str, Point]]:
+        """Points of each body in its own frame, the ground's first."""
+        return {GROUND: self.ground, **{name: link.points for name, link in self.links.items()}}
 
     @cached_property  # read at every step of a search
     def longest_m(self) -> float:

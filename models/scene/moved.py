@@ -13,6 +13,7 @@ from models.scene.driver import Released
 from models.scene.joints import turned
 from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.scene.loads import CoulombFriction, Friction, Load, PinSpring, Spring
+from models.scene.pairs import Gear
 
 
 def with_link(scene: Scene, name: str, **changes: Any) -> Scene:
@@ -164,7 +165,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
     Masses grow with the factor, inertias with its cube; gravity with the factor, so that the motion
     stays similar at the same speed. Forces are masses times accelerations: loads and friction grow
     with its square, torques with its cube; a load over a displacement is stretched, and the radii
-    of pins with friction grow.
+    of pins with friction and modules of gears grow.
     """
 
     def grow(p: Point) -> Point:
@@ -203,6 +204,9 @@ def scaled(scene: Scene, factor: float) -> Scene:
         rate, damping = old.rate * factor, old.damping * factor
         return replace(old, rate=rate, damping=damping, free=old.free * factor)
 
+    def gear(old: Gear) -> Gear:
+        return replace(old, module_m=None if old.module_m is None else old.module_m * factor)
+
     grown = {name: factor * by for name, by in scene.start.displacements_m.items()}
     quick = {name: factor * speed for name, speed in scene.start.speeds_m_s.items()}
     return replace(
@@ -215,4 +219,5 @@ def scaled(scene: Scene, factor: float) -> Scene:
         friction={name: rubbing(old) for name, old in scene.friction.items()},
         springs={name: spring(old) for name, old in scene.springs.items()},
         start=replace(scene.start, displacements_m=grown, speeds_m_s=quick),
+        gears={name: gear(old) for name, old in scene.gears.items()},
     )
