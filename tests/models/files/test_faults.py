@@ -8,6 +8,7 @@ from tests.models.files.test_files import GOOD
 from tests.models.scene.test_elastic import GOOD as ELASTIC
 from tests.models.scene.test_elastic import SECTION
 from tests.models.scene.test_free_scenes import FREE
+from tests.models.scene.test_gears import PLANETARY
 from tests.models.scene.test_loads import PRESS, RUBBING
 
 FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
@@ -102,6 +103,24 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
         "no joint": ("friction.B", "friction.Q", "friction.Q: no joint of two bodies has that name; use one of A, B, C, piston"),
         "torque in a slider": ("force_n = 3.0", "torque_n_m = 3.0", "friction.piston.torque_n_m: belongs to a pin"),
         "a pin of three": ("[sliders", 'door = { bar = ["B", "E"], length_m = 0.3 }\n[sliders', "friction.B: 3 bodies meet at B"),
+    }),
+    "gears": (PLANETARY, {
+        "unknown body": ('["sun", "planet"]', '["sun", "plant"]', "gears.inner.bodies: found plant; use one of ground, sun, arm, planet"),
+        "unknown carrier": ('carrier = "arm"', 'carrier = "arms"', "gears.inner.carrier: found arms; use one of ground, sun, arm, planet"),
+        "one body twice": ('["sun", "planet"]', '["sun", "sun"]', "gears.inner.bodies: found sun twice; name two bodies"),
+        "carrier that is a gear": ('carrier = "arm"', 'carrier = "sun"', "gears.inner.carrier: sun is one of the two gears; name the body that carries both centres"),
+        "gears on the ground": ('carrier = "arm"\ninternal', "internal", "gears.outer.carrier: ground is one of the two gears"),
+        "no teeth": ("teeth = [20, 40]", "", "gears.inner.teeth: missing"),
+        "part of a tooth": ("[20, 40]", "[20, 40.5]", "gears.inner.teeth.1: found 40.5; input should be a valid integer"),
+        "no tooth": ("[20, 40]", "[0, 40]", "gears.inner.teeth.0: found 0; input should be greater than or equal to 1"),
+        "gear that is not pinned": ("planet]\npoints = { P", "planet]\npoints = { R", "gears.inner: planet shares no point with its carrier arm; a gear turns on its carrier about one point"),
+        "gear fixed to its carrier": ("Q = [0.04, 0.0]", "O = [-0.06, 0.0]", "gears.inner: planet shares P and O with its carrier arm"),
+        "small ring": ("[40, 100]", "[40, 40]", "gears.outer: teeth are 40 and 40; the second of an internal pair is the ring, which has more teeth"),
+        "module that does not fit": ("module_m = 0.002", "module_m = 0.0025", "gears.inner.module_m: 0.0025 with 20 and 40 teeth asks for a centre distance of 0.075 m, found 0.06 m; use 0.002,"),
+        "gains power": ("efficiency = 0.98", "efficiency = 1.02", "gears.inner.efficiency: found 1.02; use a number of at most 1"),
+        "steep": ("= 25.0", "= 60.0", "gears.outer.pressure_angle_deg: found 60.0; use a number of at most 45"),
+        "unknown key": ("module_m", "module_mm", "gears.inner.module_mm: unknown key; did you mean module_m"),
+        "elastic carrier": ("[driver]", "[elastic.arm]\nflexural_n_m2 = 1.0\n[driver]", "gears.inner: arm is elastic, and gears and carriers are rigid here"),
     }),
 }  # fmt: skip
 """Texts of scenes without a fault, by kind; and by name of a fault what is replaced, what by, and the
