@@ -29,7 +29,7 @@ from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell, examined
 from reports.plan.requirements import SPRINGS, held_steps
 from reports.protocol.length import Springs
-from sim.registry import applying_beams, usual
+from sim.registry import applying, usual
 
 COUNTS, ELEMENTS = (4, 8, 16, 32), (2, 4, 8, 16)
 RATIOS = (10.5, 5.5)
@@ -98,7 +98,7 @@ def main() -> int:
     counts = COUNTS[:-1] if "--few" in sys.argv else COUNTS
     chains = () if "--beams" in sys.argv else (s for s in SPRINGS if s != "beam")
     lines: list[Line] = [(e, s, finer) for s in chains for finer in (1, 2) for e in usual()]
-    able = applying_beams()
+    able = applying("beams")
     beams: list[Line] = [(e, "beam", finer) for e in able for finer in (1, 4)]
     missed = False
     for scene in (*map(at_ratio, RATIOS), load_scene("slider-crank-elastic")):

@@ -339,7 +339,7 @@ class _Own:
     """Substitute of a passage while its own pieces are made: the dyad from its formulas."""
 
     def __init__(self, passage: ChangePoints) -> None:
-        self.sign = passage.sign
+        self.sign, self.period = passage.sign, passage.period
         self.unknowns: tuple[Unknown, Unknown]
 
     def mend(self, _: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:

@@ -34,6 +34,8 @@ class TrainStep(PeriodicStep):
         self.train, self.leads, self.before = train, leads, tuple(before)
         self.key = f"gears {', '.join(gear.name for gear in train.gears)}"
         self.scene = placed.scene
+        self._counted: dict[tuple[str, ...], Turns] = {}
+        """By the keys of the change points that were known."""
         known = placed.known
         self.links: list[tuple[str, str, str, Mapping[str, float], float]] = []
         for body, pin in zip(train.bodies, train.pins, strict=True):
@@ -75,13 +77,12 @@ class TrainStep(PeriodicStep):
 
     def _turns(self, passages: Mapping[str, Passage]) -> Turns:
         """Return the whole turns of the bodies before the train."""
-        if self._counted is None:
-            own = {step.key: passages[step.key] for step in self.before if step.key in passages}
+        own = {step.key: passages[step.key] for step in self.before if step.key in passages}
+        if (found := self._counted.get(tuple(own))) is None:
             look = CellSolver(self.scene, self.before, own)
-            self._counted = Turns.of(look, self._start, common_period(self.before, own))
-        return self._counted
-
-    _counted: Turns | None = None
+            found = Turns.of(look, self._start, common_period(self.before, own))
+            self._counted[tuple(own)] = found
+        return found
 
     @cached_property
     def _start(self) -> float:
@@ -97,8 +98,11 @@ class TrainStep(PeriodicStep):
             return base
         ends: Array = np.array([self._start, self._start + base])
         chunk = stretched(self.scene, (*self.before, self), ends, own)
-        turns = [np.ptp(np.broadcast_to(chunk.bodies[b].theta, (2,))) for b in self.train.bodies]
-        gains = [Fraction(float(one) / math.tau).limit_denominator(10**6) for one in turns]
+        gains = []
+        for body in self.train.bodies:
+            theta: Real = chunk.bodies[body].theta
+            turned = float(np.ptp(np.broadcast_to(theta, ends.shape))) / math.tau
+            gains.append(Fraction(turned).limit_denominator(10**6))
         back = math.lcm(*(gain.denominator for gain in gains)) * base
         if back > (MOST_TURNS + 0.5) * math.tau:
             raise CrankcheckError(

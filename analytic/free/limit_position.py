@@ -19,6 +19,7 @@ is taken as u times its quotient by u, a smooth function. In u = 0 the formulas 
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -170,6 +171,8 @@ def _over_argument(series: Array, low: float, high: float) -> Array:
 class _Bare:
     """Substitute of a passage while its piece is made: the dyad from its formulas."""
 
+    period = math.tau  # of the mechanism on one side of it
+
     def __init__(self, u: Array) -> None:
         self.u = u
         self.unknowns: tuple[Unknown, Unknown]
@@ -193,6 +196,7 @@ class _Passing:
     limit: LimitPosition
     u: Array
     rates: Rates
+    period: ClassVar[float] = math.tau  # of the mechanism on one side of it
 
     def sign(self, _: Array) -> Array:
         return np.where(self.u < 0.0, -1.0, 1.0)

@@ -2,8 +2,8 @@
 
 Mobility by Kutzbach-Gruebler, W = 3 n - 2 p5 - p4, with n moving bodies (links and slider blocks),
 p5 pairs of one freedom (pins, prismatic pairs) and p4 pairs of two (gears and cams; a point on a
-line is a block with a pin and a prismatic pair). Source: I. I. Artobolevskii, Theory of Mechanisms; the
-class II groups are those with two links and three pairs.
+line is a block with a pin and a prismatic pair). Source: I. I. Artobolevskii, Theory of Mechanisms;
+the class II groups are those with two links and three pairs.
 
 A link that is pinned at two or more points to bodies that move without it is redundant: it takes
 2 k - 3 freedoms from the count, k its pins, and none from the mechanism, if its length fits.
@@ -131,7 +131,9 @@ def _fault(structure: Structure, left: list[str]) -> str:
     if mobility == 1:
         return unsolved(structure, left)
     n, p5 = len(structure.bodies), structure.pairs
-    count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - {structure.higher} = {structure.count}"
+    count = (
+        f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - {structure.higher} = {structure.count}"
+    )
     if structure.redundant:
         count += f", but {mobility} where redundant links ({structure.spare}) are not counted"
     cure = "Remove a link or a pin that holds the mechanism rigid."
@@ -182,6 +184,11 @@ def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | No
         raise CrankcheckError(
             f"{scene.name}: {what} takes a driver that is a link pinned to the ground, and this "
             f"scene's is {scene.driver.joint}"
+        )
+    if scene.gears:
+        raise CrankcheckError(
+            f"{scene.name}: {what} takes class II groups alone, and this scene has gears "
+            f"({', '.join(scene.gears)})"
         )
     triads = ", ".join(triad.central for triad in structure.triads) if structure else ""
     if triads:

@@ -55,11 +55,11 @@ class Train:
     def shares(self, body: str) -> Mapping[str, Fraction]:
         """Return the part of each known link's angle in that of a link of the train."""
         row = self.inverse[self.bodies.index(body)]
+        pairs = [*zip(row, self.gears, strict=True)]
         return {
-            known: -sum((r * g.relation.get(known, 0) for r, g in zip(row, self.gears, strict=True)),
-                        Fraction(0))
+            known: -sum((r * g.relation.get(known, 0) for r, g in pairs), Fraction(0))
             for known in self.known
-        }  # fmt: skip
+        }
 
     def phase_rad(self, body: str) -> float:
         """Return the constant part of a link's angle [rad]."""
@@ -67,9 +67,7 @@ class Train:
         return sum(float(r) * g.constant_rad for r, g in zip(row, self.gears, strict=True))
 
 
-def trains(
-    gears: Sequence[Gear], hanging: Hanging
-) -> Iterator[Train]:
+def trains(gears: Sequence[Gear], hanging: Hanging) -> Iterator[Train]:
     """Yield the trains that can be placed next, those of the fewest gears first."""
     open_gears = [gear for gear in gears if _unknown(gear, hanging)]
     for size in range(1, len(open_gears) + 1):
@@ -86,9 +84,7 @@ def _unknown(gear: Gear, hanging: Mapping[str, object]) -> list[str]:
     return [body for body, factor in gear.relation.items() if factor and body in hanging]
 
 
-def _placing(
-    bodies: Sequence[str], hanging: Hanging
-) -> dict[str, str] | None:
+def _placing(bodies: Sequence[str], hanging: Hanging) -> dict[str, str] | None:
     """Return the links in the order of placing, each with its pin; None where one does not hang on
     exactly one pin."""
     placing: dict[str, str] = {}

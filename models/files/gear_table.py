@@ -30,6 +30,7 @@ class GearTable(schema.Table):
     module_m: schema.Positive | None = None
     pressure_angle_deg: Annotated[schema.Positive, Field(le=STEEPEST_DEG)] = 20.0
     efficiency: Annotated[schema.Positive, Field(le=1.0)] = 1.0
+    phase_deg: schema.Degrees = 0.0
 
     @model_validator(mode="after")
     def _ring_has_more_teeth(self) -> GearTable:
@@ -51,6 +52,7 @@ class GearTable(schema.Table):
             module_m=self.module_m,
             pressure_angle_rad=math.radians(self.pressure_angle_deg),
             efficiency=self.efficiency,
+            phase_rad=math.radians(self.phase_deg),
         )
 
 
@@ -64,6 +66,7 @@ def gear_table(gear: Gear) -> Mapping[str, object]:
         **({} if gear.module_m is None else {"module_m": gear.module_m}),
         "pressure_angle_deg": schema.in_degrees(gear.pressure_angle_rad),
         "efficiency": gear.efficiency,
+        "phase_deg": schema.in_degrees(gear.phase_rad),
     }
 
 

@@ -62,6 +62,11 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
         by = angle_rad if old.bodies[0] == GROUND else -angle_rad
         return replace(old, free=old.free + by)
 
+    def gear(old: Gear) -> Gear:
+        return replace(
+            old, phase_rad=old.phase_rad - angle_rad * old.relation.get(GROUND, 0) / old.second
+        )
+
     # A link that slides on the ground turns with it: its angle is kept against the line.
     return replace(
         scene,
@@ -75,6 +80,7 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             scene.start,
             angles_rad={n: angle + angle_rad for n, angle in scene.start.angles_rad.items()},
         ),
+        gears={name: gear(old) for name, old in scene.gears.items()},
     )
 
 
@@ -142,6 +148,7 @@ def mirrored(scene: Scene, sides: Iterable[str]) -> Scene:
             angles_rad={name: -angle for name, angle in scene.start.angles_rad.items()},
             rates_rad_s={name: -rate for name, rate in scene.start.rates_rad_s.items()},
         ),
+        gears={n: replace(old, phase_rad=-old.phase_rad) for n, old in scene.gears.items()},
     )
 
 

@@ -237,9 +237,10 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
             off = off + np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi) * scene.longest_m
         openings[name] = np.maximum(off, openings[name]) if name in openings else off
     for gear in scene.gears.values():
-        slip = -gear.constant_rad
+        slip = np.full(len(poses.time_s), -gear.constant_rad)
         for name, factor in gear.relation.items():
-            slip = slip + factor * poses.bodies[name].theta if name != GROUND else slip
+            if name != GROUND:
+                slip += factor * poses.bodies[name].theta
         openings[gear.name] = np.abs(slip) * gear.slip_m(scene.points_of)
     return openings
 

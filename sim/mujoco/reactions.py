@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
+from numpy.typing import NDArray
 
 from models.array import Array
 from models.mjcf.forces import SpringTendon, point_of_application
@@ -102,7 +103,7 @@ def joint_forces(model: Any, data: Any) -> JointForces:
     )
 
 
-def _along_coordinates(model: Any, data: Any, rows: Array) -> Array:
+def _along_coordinates(model: Any, data: Any, rows: NDArray[np.intp]) -> Array:
     """Return the forces of rows of constraints along the coordinates, (nv,)."""
     alone, found = np.zeros(data.nefc), np.zeros(model.nv)
     alone[rows] = data.efc_force[rows]

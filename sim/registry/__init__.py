@@ -206,9 +206,10 @@ def available() -> tuple[Availability, ...]:
     return tuple(_available(name, install_command(name), BrokenEngineError) for name in ENGINES)
 
 
-def applying_beams() -> list[str]:
-    """List the installed shipped engines with beams of their own."""
-    return [one.name for one in available() if one.version and engine(one.name).applies_beams]
+def applying(what: str) -> list[str]:
+    """List the installed shipped engines that have "beams" of their own, or "gears"."""
+    flag = f"applies_{what}"
+    return [one.name for one in available() if one.version and getattr(engine(one.name), flag)]
 
 
 def brought() -> tuple[Availability, ...]:

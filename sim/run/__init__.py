@@ -35,7 +35,7 @@ from sim.engine.drive import pace, period
 from sim.engine.measure import energy, gaps, motion
 from sim.engine.settings import SettingError, profile_of, resolved
 from sim.own_engine.watched import BrokenContractError
-from sim.registry import applying_beams
+from sim.registry import applying
 from sim.registry import engine as engine_of
 from sim.run.check import refuse_other_model, refuse_unknown_forces
 
@@ -203,7 +203,7 @@ def run(
             "segments for it: `models.scene.cut_scenes.SegmentedScene(scene, count).rigid`"
         )
     try:
-        refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying_beams=applying_beams)
+        refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying=applying)
         session = chosen.open(scene, state, told.asked, dt_s, drive)
     except (SettingError, BrokenContractError):
         raise
@@ -317,7 +317,7 @@ def time_run(
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     asked = resolved(profile_of(chosen, profile), settings)
     check_steps(scene, period(scene, state, drive), dt_s, steps, max(every, 1))
-    refuse_unknown_forces(scene, chosen, with_forces=False, applying_beams=applying_beams)
+    refuse_unknown_forces(scene, chosen, with_forces=False, applying=applying)
     walls = []
     collecting = gc.isenabled()
     gc.disable()

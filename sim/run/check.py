@@ -1,7 +1,7 @@
 """Comparison of the model in the engine with the requested scene, before the first step."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 import numpy as np
 
@@ -66,11 +66,12 @@ def refuse_unknown_forces(
     engine: Engine,
     *,
     with_forces: bool,
-    applying_beams: Callable[[], Iterable[str]] = tuple,
+    applying: Callable[[str], Iterable[str]] = lambda what: (),
 ) -> None:
     """Refuse loads, springs or friction that an engine would silently leave out, and forces of an
-    engine that reports none; for beams the message names the engines of ``applying_beams``. Raises
-    EngineError."""
+    engine that reports none; for beams and gears the message names the engines ``applying`` them.
+    Raises EngineError."""
+    given: Collection[str]
     for what, given, applied in (
         ("loads", scene.loads, engine.applies_loads),
         ("springs", scene.springs, engine.applies_springs),
@@ -81,13 +82,17 @@ def refuse_unknown_forces(
                 f"{scene.name}: {engine.name} is given no {what} ({names}); take them out to run "
                 "it, or use the reference alone"
             )
-    if scene.beams and not engine.applies_beams:
-        able = " or ".join(applying_beams()) or "no engine here"
-        raise EngineError(
-            f"{scene.name}: beams ({', '.join(scene.beams)}) in {engine.name} are not offered by "
-            f"crankcheck, but in {able}; it may be given links that do not stretch as rigid "
-            "segments with springs between them (--springs plain)"
-        )
+    segments = "links that do not stretch as rigid segments with springs (--springs plain)"
+    for what, given, applied, cure in (
+        ("beams", scene.beams, engine.applies_beams, f"give it {segments}"),
+        ("gears", scene.gears, engine.applies_gears, "run one of those"),
+    ):
+        if given and not applied:
+            able = " or ".join(applying(what)) or "no engine here"
+            raise EngineError(
+                f"{scene.name}: {what} ({', '.join(given)}) in {engine.name} are not offered by "
+                f"crankcheck, but in {able}; {cure}"
+            )
     if isinstance(scene.driver.law, driver.Controlled):
         raise EngineError(
             f"{scene.name}: its driver is controlled, and {engine.name} is given none that gives "

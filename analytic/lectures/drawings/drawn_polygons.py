@@ -27,7 +27,7 @@ from analytic.lectures.drawings.polygon import (
     PlacedMechanism,
     quarter_turn,
 )
-from analytic.structure.groups import Bridge, Group, Triad
+from analytic.structure.groups import Bridge, Group
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.scene import GROUND, Scene
@@ -70,7 +70,7 @@ def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
     undetermined = [
         said
         for part in placement.structure.order
-        if not isinstance(part, Triad) and (said := table.draw(part))
+        if isinstance(part, Group | Bridge) and (said := table.draw(part))
     ]
     velocity, acceleration = (
         polygon.Polygon(

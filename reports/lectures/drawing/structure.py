@@ -14,6 +14,7 @@ from analytic.lectures.chains.assur_groups import ClassedGroup, by_drivers, clas
 from analytic.lectures.drawings.polygon import DriverState, PlacedMechanism
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
+from analytic.structure.trains import Train
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files.body_table import MOST_ASSEMBLIES
 from models.files.reading import find_scene, load_scene
@@ -159,8 +160,9 @@ def _count_in_words(structure: Structure) -> str:
     sliders = len(structure.prismatics)
     return (
         f"{n} moving links ({', '.join(structure.bodies)}); {p} joints of class 5: "
-        f"{p - sliders} pins, {sliders} sliders; none of class 4\n"
-        f"W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p} - 0 = {structure.count}; {structure.words}"
+        f"{p - sliders} pins, {sliders} sliders; {structure.higher or 'none'} of class 4\n"
+        f"W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p} - {structure.higher} = {structure.count}; "
+        f"{structure.words}"
     )
 
 
@@ -170,6 +172,9 @@ def _show_groups(console: Console, structure: Structure) -> None:
     for part in structure.order:
         if isinstance(part, Bridge):
             rows.append(("redundant", part.link, "", ""))
+            continue
+        if isinstance(part, Train):
+            rows.append((part.kind, ", ".join(part.bodies), "", ""))
             continue
         group = classed(part)
         highest = max(highest, group.class_number)
