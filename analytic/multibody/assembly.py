@@ -210,7 +210,17 @@ class JointEquations:
         self._turning = np.array([assembly.frames[sliding_body(s)] for s in sliders], dtype=int)
         self._guide = np.array([assembly.guides[s.name] for s in sliders], dtype=int)
         self._lean = np.array([sliding_angle(s) - s.direction_rad for s in sliders])
-        self.count = 2 * len(pairs) + 2 * len(sliders)
+        gears = list(assembly.scene.gears.values())
+        self._turns = np.zeros((len(gears), 1 + max([*assembly.frames.values(), 0])))
+        """Factor of the angle of each marker in the relation of each pair of gears, and their
+        constants [rad]."""
+        for row, gear in zip(self._turns, gears, strict=True):
+            for body, factor in gear.relation.items():
+                if body != GROUND:
+                    row[assembly.frames[body]] += factor / gear.teeth[0]
+        self._constants = np.array([gear.constant_rad / gear.teeth[0] for gear in gears])
+        self._slid = slice(2 * len(pairs), 2 * len(pairs) + 2 * len(sliders))
+        self.count = self._slid.stop + len(gears)
 
     def pin_pairs(self) -> Iterator[tuple[str, str, str]]:
         """Yield the point and the two bodies of every two equations of pins, in their order."""
@@ -229,8 +239,10 @@ class JointEquations:
         if len(self._tip):
             _, across, away = self._lines(now)
             lean = place[:, self._turning, 2] - place[:, self._guide, 2] - self._lean
-            rows[:, pinned::2] = _dot(across, away)
-            rows[:, pinned + 1 :: 2] = lean - math.tau * np.round(lean / math.tau)
+            rows[:, self._slid][:, ::2] = _dot(across, away)
+            rows[:, self._slid][:, 1::2] = lean - math.tau * np.round(lean / math.tau)
+        if len(self._constants):
+            rows[:, self._slid.stop :] = self._summed(place[:, :, 2]) - self._constants
         return rows
 
     def jacobian(self, now: Configuration) -> Array:
@@ -245,8 +257,10 @@ class JointEquations:
             guide = gradient[:, self._guide]
             drawn = gradient[:, self._tip, :2] - guide[:, :, :2]
             turned = _dot(along, away)[:, :, None] * guide[:, :, 2]
-            rows[:, pinned::2] = np.einsum("tsk,tskn->tsn", across, drawn) - turned
-            rows[:, pinned + 1 :: 2] = gradient[:, self._turning, 2] - guide[:, :, 2]
+            rows[:, self._slid][:, ::2] = np.einsum("tsk,tskn->tsn", across, drawn) - turned
+            rows[:, self._slid][:, 1::2] = gradient[:, self._turning, 2] - guide[:, :, 2]
+        if len(self._constants):
+            rows[:, self._slid.stop :] = self._summed(gradient[:, :, 2])
         return rows
 
     def gamma(self, now: Configuration) -> Array:
@@ -263,9 +277,17 @@ class JointEquations:
             drawn = velocity[:, self._tip, :2] - velocity[:, self._guide, :2]
             bent = _dot(across, drift[:, self._tip, :2] - guide[:, :, :2])
             turned = 2.0 * omega * _dot(along, drawn) + omega**2 * _dot(across, away)
-            rows[:, pinned::2] = turned + guide[:, :, 2] * _dot(along, away) - bent
-            rows[:, pinned + 1 :: 2] = guide[:, :, 2] - drift[:, self._turning, 2]
+            rows[:, self._slid][:, ::2] = turned + guide[:, :, 2] * _dot(along, away) - bent
+            rows[:, self._slid][:, 1::2] = guide[:, :, 2] - drift[:, self._turning, 2]
+        if len(self._constants):
+            rows[:, self._slid.stop :] = -self._summed(drift[:, :, 2])
         return rows
+
+    def _summed(self, of_markers: Array) -> Array:
+        """Return the sum over markers of (T, markers, ...) in the relations of gears."""
+        return np.einsum(
+            "gk,tk...->tg...", self._turns, of_markers[:, : self._turns.shape[1]]
+        )
 
     def _lines(self, now: Configuration) -> tuple[Array, Array, Array]:
         """Vectors along and across the line of every slider, and from guide to tip (T, S, 2)."""
