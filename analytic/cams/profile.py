@@ -1,0 +1,180 @@
+"""Profile of a cam: pitch curve, contact point, pressure angle, radius of curvature.
+
+Vectors are complex numbers, x + iy. In the frame of the ground, with sigma the sense,
+
+    tip P:   e + i (s0 + s)     or   d - l exp(-i psi),    psi = psi0 + s
+    face:    normal N = i       or   i exp(-i psi),  its distance h from the cam's centre
+             h = r_b + s        or   d sin(psi) + f
+
+The frame of the cam turns by sigma phi (inversion): there the tip is at exp(-i sigma phi) P, which
+traces the pitch curve, and the face envelopes the profile with h as its support function.
+
+Sources: R. L. Norton, Design of Machinery, 5th ed. 2012, ch. 8 (pressure angle, radius of
+curvature); F. L. Litvin, A. Fuentes, Gear Geometry and Applied Theory, 2nd ed. 2004, ch. 6
+(envelopes). The oscillating follower is derived here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.scene.cam_laws import CamLift
+from models.scene.cams import Cam, OscillatingFollower
+
+Plane = NDArray[np.complex128]
+SAMPLES = 48
+"""Samples of a law between two knots; local extremes between them are refined."""
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class CamContact:
+    """Contact of cam and follower at angles ``phi`` (T,), in the frame of the ground.
+
+    ``lift`` is the law's; ``contact`` and ``normal`` (from the cam to the follower, unit) are
+    complex (T,), ``pitch`` is the centre of the roller, or None of a flat face.
+    ``pressure_rad`` is the signed angle from the velocity of a rising follower to the normal.
+    ``pitch_radius_m`` and ``radius_m`` are radii of curvature of pitch curve and profile, positive
+    where convex; of a flat face both are the profile's. ``lever`` is the speed of the contact along
+    the normal over that of the lift: cos(alpha), or a length [m] for an oscillating follower.
+    """
+
+    phi: Array
+    sense: int
+    lift: CamLift
+    contact: Plane
+    normal: Plane
+    pitch: Plane | None
+    pressure_rad: Array
+    pitch_radius_m: Array
+    radius_m: Array
+    lever: Array
+
+    def on_cam(self, points: Plane) -> Plane:
+        """Return points (T,) of the ground in the frame of the cam."""
+        return np.asarray(points * np.exp(-1j * self.sense * self.phi))
+
+
+def touch(cam: Cam, phi: Array) -> CamContact:
+    """Return the contact at angles of the cam (T,) [rad]; in a knot that after it.
+
+    Raises CrankcheckError where an oscillating flat face turns as fast as the cam, against it, or
+    the follower swings through its dead position. Accurate to rounding over sin(psi).
+    """
+    lift = cam.law.at(phi)
+    if isinstance(cam.follower, OscillatingFollower):
+        _refuse_dead(cam, lift.value)
+    return (_touch_face if cam.follower.is_flat else _touch_tip)(cam, phi, lift)
+
+
+def _touch_tip(cam: Cam, phi: Array, lift: CamLift) -> CamContact:
+    """Contact of a knife edge or roller, by the derivatives of the pitch curve."""
+    follower, sense = cam.follower, cam.sense
+    s = cam.start + lift.value
+    if isinstance(follower, OscillatingFollower):
+        arm = follower.arm_m * np.exp(-1j * s)
+        tip, first = follower.pivot_m - arm, 1j * arm * lift.first
+        second = arm * (1j * lift.second + lift.first**2)
+        along, length = 1j * np.exp(-1j * s), follower.arm_m
+    else:
+        tip, first, second = follower.offset_m + 1j * s, 1j * lift.first, 1j * lift.second
+        along, length = np.full(s.shape, 1j), 1.0
+    # Derivatives of exp(-i sigma phi) P, turned back into the ground's frame.
+    tangent = first - 1j * sense * tip
+    bent = second - 2j * sense * first - tip
+    speed = np.abs(tangent)
+    normal = 1j * sense * tangent / speed
+    # Clockwise round a counter-clockwise cam: its curvature is counted positive where convex.
+    curvature = -sense * (tangent.conj() * bent).imag / speed**3
+    with np.errstate(divide="ignore"):
+        radius = 1.0 / curvature
+    cosine = (normal * along.conj()).real
+    pressure = np.arctan2((normal * along.conj()).imag, cosine)
+    contact = tip - follower.roller_m * normal
+    return CamContact(
+        phi, sense, lift, contact, normal, tip, pressure, radius,
+        radius - follower.roller_m, length * cosine,
+    )  # fmt: skip
+
+
+def _touch_face(cam: Cam, phi: Array, lift: CamLift) -> CamContact:
+    """Contact of a flat face, by the derivatives of its support function h(beta)."""
+    follower, sense = cam.follower, cam.sense
+    s, (_, first, second, _) = cam.start + lift.value, lift
+    if not isinstance(follower, OscillatingFollower):
+        # beta = pi/2 - sigma phi: dh/dbeta = -sigma s', and the same again.
+        normal, flat = np.full(s.shape, 1j), np.zeros_like(s)
+        contact, radius = normal * (s - 1j * sense * first), s + second
+        return CamContact(
+            phi, sense, lift, contact, normal, None, flat, radius, radius, np.ones_like(s)
+        )
+    d, f = follower.pivot_m, follower.face_m
+    turn = 1.0 + sense * first  # rate of the face against the cam, beta' = -sigma turn
+    if turn.min() <= 0.0:
+        raise CrankcheckError(
+            f"the flat face turns by {abs(first).max():.6g} of the cam's speed, with it: the "
+            "contact runs to infinity at 1; give the motion a longer span"
+        )
+    normal = 1j * np.exp(-1j * s)
+    lever = d * np.cos(s) / turn  # from the pivot's foot on the face to the contact
+    contact = d + f * normal + 1j * normal * lever
+    radius = f + d * np.sin(s) * (1.0 + 2.0 * sense * first) / turn**2
+    radius += d * np.cos(s) * second / turn**3
+    pressure = np.arctan2(f, lever)
+    return CamContact(phi, sense, lift, contact, normal, None, pressure, radius, radius, lever)
+
+
+def _refuse_dead(cam: Cam, lift: Array) -> None:
+    """Refuse psi beyond 0 and 180 degrees, or 90 of a flat face, where a lift has no force."""
+    psi, limit = cam.start + lift, 0.5 * np.pi if cam.follower.is_flat else np.pi
+    if psi.min() <= -limit * cam.follower.is_flat or psi.max() >= limit:
+        low, high = np.degrees([psi.min(), psi.max()])
+        raise CrankcheckError(
+            f"psi of the follower goes from {low:.6g} to {high:.6g} deg; its dead positions are at "
+            f"{'-90 and 90' if cam.follower.is_flat else '0 and 180'}: give another base radius, "
+            "arm or stroke"
+        )
+
+
+def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple[float, float]:
+    """Return the largest value of a quantity of one argument, and that argument.
+
+    The quantity is smooth between the knots (n,), and takes limits from both sides there. Extremes
+    are refined by golden sections until the value stands still: accurate to rounding, where no two
+    of them stand between neighbouring samples.
+    """
+    ends = np.asarray(knots)
+    first, last = ends[:-1, None], np.nextafter(ends[1:, None], ends[0])
+    grid = first + (last - first) * np.linspace(0.0, 1.0, SAMPLES)
+    grid = np.minimum(grid, last)
+    values = quantity(grid.ravel()).reshape(grid.shape)
+    best = int(np.argmax(values))
+    found = float(values.flat[best]), float(grid.flat[best])
+    middle = values[:, 1:-1]
+    # Only those that may exceed the best: by a parabola less than the fall to their neighbours.
+    fall = 2.0 * middle - values[:, :-2] - values[:, 2:]
+    peak = (middle >= values[:, :-2]) & (middle >= values[:, 2:]) & (middle + fall >= found[0])
+    row, column = np.nonzero(peak)
+    low, high = grid[row, column], grid[row, column + 2]
+    if not len(low) or not np.any(fall[peak]):
+        return found
+    for _ in range(44):  # 0.618^44 of two samples: below the root of rounding
+        step = GOLDEN * (high - low)
+        left, right = high - step, low + step
+        up = quantity(left) < quantity(right)
+        low, high = np.where(up, left, low), np.where(up, high, right)
+    refined = quantity(0.5 * (low + high))
+    k = int(np.argmax(refined))
+    return max(found, (float(refined[k]), float(0.5 * (low[k] + high[k]))))
+
+
+def turn_of(cam: Cam) -> tuple[float, ...]:
+    """Return the knots of its law over one turn, both ends with them [rad]."""
+    return (*cam.law.knots_rad, math.tau)

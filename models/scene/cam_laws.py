@@ -1,0 +1,321 @@
+"""Laws of motion of a cam: lift of its follower over the cam's angle, with three derivatives.
+
+A law is a list of segments over one turn: rises, dwells, returns. All kinds are pieces of one form,
+a polynomial and a sine about the middle of the piece, so that values are exact to rounding at both
+ends, and limits from either side of a knot are at hand.
+
+Source: R. L. Norton, Design of Machinery, 5th ed. 2012, ch. 8 (kinds, and peak factors: table 8-3).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.array import Array
+
+ORDERS = (1, 3, 5, 7)
+"""Degrees of the spline of a table whose knots are its rows."""
+SLACK = 1e-9
+"""Rounding in the sum of spans over a turn, of lifts over the stroke, in a jump over its peak."""
+PI = math.pi
+
+
+class CamLift(NamedTuple):
+    """Lift [m or rad] and its first three derivatives by the cam's angle [1/rad each], (T,)."""
+
+    value: Array
+    first: Array
+    second: Array
+    third: Array
+
+
+class Jump(NamedTuple):
+    """Knot [rad] of a law, and by how much lift and its three derivatives by the cam's angle change
+    there: 0 where continuous."""
+
+    angle_rad: float
+    lift: float
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+class Peaks(NamedTuple):
+    """Largest magnitudes of the first three derivatives by the cam's angle; infinite where the
+    derivative before jumps."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """y = sum of c_k t^k + size sin(rate t + phase), t from -1 at ``start`` to 1 at ``end``."""
+
+    start: float
+    end: float
+    coefficients: tuple[float, ...]
+    size: float = 0.0
+    rate: float = 0.0
+    phase: float = 0.0
+
+
+@dataclass(frozen=True)
+class CamSegment:
+    """A rise, dwell or return: its kind, span [rad], and change of lift [m or rad].
+
+    A table lists ``points`` (angle, lift) from the segment's start, (0, 0), to its end. The spline
+    of degree ``order`` through them is periodic over a whole turn; otherwise its first (order - 1)
+    / 2 derivatives are 0 at both ends, as dwells beside it need. Raises ValueError.
+    """
+
+    kind: str
+    span_rad: float
+    lift: float = 0.0
+    points: tuple[tuple[float, float], ...] = ()
+    order: int = 5
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise ValueError(f"no kind of motion {self.kind!r:.60}; there are {', '.join(KINDS)}")
+        if not (math.isfinite(self.lift) and 0.0 < self.span_rad < math.inf):
+            raise ValueError(
+                f"found a {self.kind} of span {self.span_rad!r:.60} rad and lift "
+                f"{self.lift!r:.60}; give a span above 0 and finite numbers"
+            )
+        if self.kind != "table" and (self.kind == "dwell") != (self.lift == 0.0):
+            raise ValueError(f"lift of a {self.kind}: {self.lift:g}; 0 is a dwell, others are not")
+        if (self.kind == "table") != bool(self.points):
+            raise ValueError(f"found {len(self.points)} points of a {self.kind}; a table has them")
+        if self.points:
+            self._check_table()
+
+    def _check_table(self) -> None:
+        if self.order not in ORDERS:
+            raise ValueError(f"order of a table: {self.order}; there are 1, 3, 5, 7")
+        rows = np.array(self.points, dtype=np.float64)
+        # A periodic spline of degree k needs k + 1 points besides the repeated one.
+        need = self.order + 2 if self.is_whole_turn and self.order > 1 else 2
+        if len(rows) < need or not (np.isfinite(rows).all() and np.diff(rows[:, 0]).min() > 0.0):
+            raise ValueError(
+                f"found {len(rows)} points; a table of order {self.order} over "
+                f"{math.degrees(self.span_rad):.6g} deg has {need} or more, finite, and their "
+                "angles increase"
+            )
+        ends = np.array([(0.0, 0.0), (self.span_rad, self.lift)])
+        if (np.abs(rows[[0, -1]] - ends) > SLACK * np.abs(rows).max(axis=0)).any():
+            raise ValueError(
+                f"found a table from {self.points[0]} to {self.points[-1]}; it begins in (0, 0) "
+                f"and ends at its span and lift, ({self.span_rad:g}, {self.lift:g})"
+            )
+
+    @property
+    def is_whole_turn(self) -> bool:
+        return self.span_rad > math.tau * (1.0 - SLACK)
+
+
+def _spline(table: CamSegment) -> list[_Piece]:
+    """The spline of a table as Taylor polynomials about the middles between its points."""
+    from scipy.interpolate import make_interp_spline  # type: ignore[import-untyped]  # no stubs
+
+    share, lift = np.array(table.points).T
+    share, k = share / share[-1], table.order
+    conditions: object = [(order, 0.0) for order in range(1, (k + 1) // 2)]
+    conditions = (conditions, conditions) if k > 1 else None
+    if table.is_whole_turn and k > 1:
+        lift, conditions = np.append(lift[:-1], lift[0]), "periodic"
+    spline = make_interp_spline(share, lift, k, bc_type=conditions)
+    middle, half = 0.5 * (share[1:] + share[:-1]), 0.5 * np.diff(share)
+    terms = np.array([spline(middle, n) * half**n / math.factorial(n) for n in range(k + 1)]).T
+    return [
+        _Piece(float(a), float(b), tuple(c.tolist()))
+        for a, b, c in zip(share[:-1], share[1:], terms, strict=True)
+    ]
+
+
+def _integrated(*parts: tuple[float, float, float, float]) -> list[_Piece]:
+    """Return the pieces of a law by its acceleration, from rest at 0: each part has its end, the
+    acceleration's size, rate and phase, size sin(rate (u - start) + phase); rate 0: constant."""
+    found, start, lift, speed = [], 0.0, 0.0, 0.0
+    for end, size, rate, phase in parts:
+        w = 0.5 * (end - start)
+        a, b, f = (size, 0.0, 0.0) if rate == 0.0 else (0.0, -size / rate**2, rate * w)
+        # Speed and lift of the polynomial at the middle, such that the whole continues the last.
+        middle_speed = speed + a * w - (b / w * f * math.cos(phase) if f else 0.0)
+        middle_lift = lift + middle_speed * w - 0.5 * a * w**2 - b * math.sin(phase)
+        terms = (middle_lift, middle_speed * w, 0.5 * a * w**2)
+        found.append(_Piece(start, end, terms, b, f, phase + f))
+        lift = sum(terms) + b * math.sin(phase + 2.0 * f)
+        speed = middle_speed + a * w + (b / w * f * math.cos(phase + 2.0 * f) if f else 0.0)
+        start = end
+    return found
+
+
+def _modified_trapezoid() -> list[_Piece]:
+    """Sines of a quarter wave over 1/8 of the span each, constant parts of 1/4 between them."""
+    top, rate = 8.0 * PI / (PI + 2.0), 4.0 * PI
+    return _integrated(
+        (1 / 8, top, rate, 0.0),
+        (3 / 8, top, 0.0, 0.0),
+        (5 / 8, top, rate, PI / 2),
+        (7 / 8, -top, 0.0, 0.0),
+        (1.0, -top, rate, PI / 2),
+    )
+
+
+def _modified_sine() -> list[_Piece]:
+    """Quarter waves over 1/8 of the span at both ends, half a slow wave between them."""
+    top, rate, late = 4.0 * PI**2 / (PI + 4.0), 4.0 * PI, PI / 2
+    return _integrated((1 / 8, top, rate, 0.0), (7 / 8, top, rate / 3, late), (1, -top, rate, late))
+
+
+UNIT: Mapping[str, Callable[[], list[_Piece]]] = {
+    "dwell": lambda: [_Piece(0.0, 1.0, (0.0,))],
+    "uniform": lambda: [_Piece(0.0, 1.0, (0.5, 0.5))],
+    "parabolic": lambda: _integrated((0.5, 4.0, 0.0, 0.0), (1.0, -4.0, 0.0, 0.0)),
+    "harmonic": lambda: [_Piece(0.0, 1.0, (0.5,), 0.5, PI / 2, 0.0)],
+    "cycloidal": lambda: [_Piece(0.0, 1.0, (0.5, 0.5), 0.5 / PI, PI, 0.0)],
+    # dy/dt = 15/16 (1 - t^2)^2 and 35/32 (1 - t^2)^3: odd about the middle.
+    "3-4-5": lambda: [_Piece(0.0, 1.0, (0.5, 15 / 16, 0.0, -10 / 16, 0.0, 3 / 16))],
+    "4-5-6-7": lambda: [
+        _Piece(0.0, 1.0, (0.5, 35 / 32, 0.0, -35 / 32, 0.0, 21 / 32, 0.0, -5 / 32))
+    ],
+    "modified-trapezoid": _modified_trapezoid,
+    "modified-sine": _modified_sine,
+}
+"""Rises of unit lift over unit span."""
+KINDS = (*UNIT, "table")
+
+
+@dataclass(frozen=True)
+class CamLaw:
+    """Segments in their order over a turn of the cam, counted from angle 0.
+
+    The lift is 0 in the lowest knot between two segments. Raises ValueError for spans that are not
+    a turn together, and for lifts that do not sum to 0.
+    """
+
+    segments: tuple[CamSegment, ...]
+
+    def __post_init__(self) -> None:
+        turn = math.fsum(one.span_rad for one in self.segments)
+        if not abs(turn - math.tau) <= SLACK * math.tau:
+            off = math.degrees(turn - math.tau)
+            raise ValueError(
+                f"the spans of {len(self.segments)} segments are {math.degrees(turn):.9g} deg, "
+                f"{abs(off):.6g} {'over' if off > 0.0 else 'short of'} 360; make them one turn"
+            )
+        left = math.fsum(one.lift for one in self.segments)
+        if not abs(left) <= SLACK * max(abs(one.lift) for one in self.segments):
+            raise ValueError(
+                f"the law does not close: after a turn its lift is {left:.6g} from where it began; "
+                "give rises and returns that sum to 0"
+            )
+
+    @cached_property  # once for all evaluations
+    def _pieces(self) -> tuple[Array, Array, Array, Array]:
+        """Ends (n + 1,) [rad] of the pieces, coefficients (8, n), sines, half widths."""
+        spans = np.array([one.span_rad for one in self.segments])
+        angles = np.append(0.0, np.cumsum(spans)) * (math.tau / math.fsum(spans))
+        lifts = np.append(0.0, np.cumsum([one.lift for one in self.segments[:-1]]))
+        lifts -= lifts.min()
+        ends, columns, sines = [], [], []
+        for k, each in enumerate(self.segments):
+            table, span = each.kind == "table", angles[k + 1] - angles[k]
+            lift = 1.0 if table else each.lift
+            for one in _spline(each) if table else UNIT[each.kind]():
+                ends.append(angles[k] + span * one.start)
+                column = lift * np.array(one.coefficients + (0.0,) * (8 - len(one.coefficients)))
+                column[0] += lifts[k]
+                columns.append(column)
+                sines.append((lift * one.size, one.rate, one.phase))
+        ends.append(math.tau)
+        return np.array(ends), np.array(columns).T, np.array(sines).T, 0.5 * np.diff(ends)
+
+    def at(self, phi: Array) -> CamLift:
+        """Return lift and derivatives at angles (T,) [rad] of any turn; in a knot those after it.
+        Accurate to rounding of the stroke, over the span to the power of the derivative."""
+        ends, _, _, half = self._pieces
+        folded = np.mod(np.asarray(phi, dtype=np.float64), math.tau)
+        k = np.clip(np.searchsorted(ends, folded, side="right") - 1, 0, len(half) - 1)
+        t = np.clip((folded - ends[k]) / half[k] - 1.0, -1.0, 1.0)
+        return CamLift(*(self._derivative(n, k, t) for n in range(4)))
+
+    def _derivative(self, order: int, k: NDArray[np.intp], t: Array) -> Array:
+        """A derivative in pieces ``k`` at their own ``t``, between -1 and 1."""
+        _, terms, (size, rate, phase), half = self._pieces
+        total = np.zeros_like(t)
+        for power in range(len(terms) - 1, order - 1, -1):
+            total = total * t + math.perm(power, order) * terms[power, k]
+        wave = (np.sin, np.cos)[order % 2](rate[k] * t + phase[k])
+        signed = (1.0, 1.0, -1.0, -1.0)[order] * size[k] * rate[k] ** order
+        return np.asarray((total + signed * wave) / half[k] ** order)
+
+    @property
+    def knots_rad(self) -> tuple[float, ...]:
+        """Angles at which the formula changes, from 0 on."""
+        return tuple(self._pieces[0][:-1].tolist())
+
+    @cached_property
+    def jumps(self) -> tuple[Jump, ...]:
+        """Knots at which lift, velocity, acceleration or jerk jump, and by how much."""
+        ends, terms, _, half = self._pieces
+        count, size = np.arange(len(half)), np.abs(terms).max()
+        steps = []
+        for order in range(4):
+            end, begin = (self._derivative(order, count, np.full(len(half), t)) for t in (1, -1))
+            step = begin - np.roll(end, 1)
+            rounding = 64 * np.finfo(float).eps * size / np.minimum(half, np.roll(half, 1)) ** order
+            largest = max(abs(x) for x in self.extremes(order))
+            steps.append(np.where(np.abs(step) > np.maximum(SLACK * largest, rounding), step, 0.0))
+        rows = np.array([ends[:-1], *steps]).T.tolist()
+        return tuple(Jump(*row) for row in rows if any(row[1:]))
+
+    @property
+    def continuous(self) -> int:
+        """Number of the derivatives without a jump, in their order: 3 to the jerk, -1 for none."""
+        return min((k for one in self.jumps for k in range(4) if one[1 + k]), default=4) - 1
+
+    def extremes(self, order: int) -> tuple[float, float]:
+        """Return the least and largest value of a derivative, exactly; 0 is the lift itself."""
+        _, terms, (size, rate, phase), half = self._pieces
+        found = []
+        for k in range(len(half)):
+            turning = [-1.0, 1.0]
+            if size[k] == 0.0:
+                slope = np.polynomial.Polynomial(terms[:, k]).deriv(order + 1)
+                roots = slope.trim().roots() if np.any(slope.coef) else np.zeros(0)
+                turning += [r.real for r in np.atleast_1d(roots) if abs(r.imag) < 1e-7]
+            else:  # the sine's own; the polynomial beside it is straight, but in lift and velocity
+                quarter = 0.5 * PI * (order + 1)
+                waves = range(math.floor(-rate[k] / PI) - 4, math.ceil(rate[k] / PI) + 5)
+                turning += [(n * PI - phase[k] - quarter) / rate[k] for n in waves]
+            inside = np.array([t for t in turning if abs(t) <= 1.0])
+            found.append(self._derivative(order, np.full(len(inside), k), inside))
+        return float(min(map(np.min, found))), float(max(map(np.max, found)))
+
+    @property
+    def stroke(self) -> float:
+        """Difference of the largest and the least lift [m or rad]."""
+        return -float(np.subtract(*self.extremes(0)))
+
+    def peaks(self) -> Peaks:
+        """Return the peaks over a turn."""
+        smooth = self.continuous
+        return Peaks(
+            *(max(map(abs, self.extremes(n))) if smooth >= n - 1 else math.inf for n in (1, 2, 3))
+        )
+
+
+def peak_factors(kind: str) -> Peaks:
+    """Return C_v, C_a, C_j: the peaks of a rise of unit lift over unit span, between dwells."""
+    rest = CamSegment("dwell", PI - 1.0)
+    return CamLaw((CamSegment(kind, 1.0, 1.0), rest, CamSegment(kind, 1.0, -1.0), rest)).peaks()
