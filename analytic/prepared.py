@@ -30,7 +30,7 @@ from analytic.dyads.steps import (
     stretched,
 )
 from analytic.result import MotionArrays, Selection
-from analytic.structure.groups import Bridge, Triad
+from analytic.structure.groups import Bridge, Following, Triad
 from analytic.structure.mobility import Structure, analyse
 from analytic.structure.trains import Train
 from models.array import Array, Mask
@@ -300,6 +300,10 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
 
             leads = not isinstance(structure.order[-1], Train)
             steps.append(TrainStep(placed, part, steps, leads=leads))
+        elif isinstance(part, Following):
+            from analytic.dyads.follower_step import FollowerStep  # few scenes need it
+
+            steps.append(FollowerStep(placed, part))
         elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
             from analytic.assur.mounting import Mounting  # few scenes need it
             from analytic.assur.step import AssurStep

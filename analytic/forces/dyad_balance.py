@@ -12,13 +12,19 @@ that in its outer pin; E and M the other forces on a body, with moments about th
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
+from analytic.dyads.follower_step import lift_at
 from analytic.dyads.plane import EPS
 from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
 from analytic.forces.central_balance import balance_central
 from analytic.forces.free_body import Balance, PrismaticPair
-from analytic.structure.groups import Bridge, Group, Triad
+from analytic.structure.groups import Bridge, Following, Group, Triad
 from analytic.structure.trains import Train
+from models.array import Array
 from models.scene import GROUND
+from models.scene.cam_laws import CamLift
+from models.scene.pairs import CamPair
 
 
 def torque_of(on: Balance) -> Bounded:
@@ -31,6 +37,10 @@ def torque_of(on: Balance) -> Bounded:
             continue
         if isinstance(part, Train):
             _train(on, part)
+            continue
+        if isinstance(part, Following):
+            on.standing.discard(part.body)
+            _following(on, part)
             continue
         central = inner.intersection(part.bodies)
         on.standing.difference_update(part.bodies)
@@ -140,6 +150,37 @@ def _train(on: Balance, train: Train) -> None:
             if body != GROUND and (share := gear.relation.get(body, 0)):
                 own = on.free[body]
                 own.moment = own.moment + factor * Bounded(float(share))
+
+
+def _following(on: Balance, part: Following) -> None:
+    """Solve for the force of a cam along the way of its follower, or its moment; the couple on the
+    cam has the same power. So does an engine's relation; the contact force is in `analytic.cams`.
+    """
+    pair, own = part.pair, on.free[part.body]
+    cam, carrier = on.free[pair.cam], on.free[pair.carrier]
+    lift = lift_at(pair, cam.body, carrier.body)
+    ratio = Bounded(lift.first, None if own.body.error is None else _rounding(pair, lift))
+    if pair.slider:
+        line = on.pair(pair.slider)
+        push = -line.along.dot(own.force)
+        on.rest(pair.slider, part.body)
+        if pair.carrier != GROUND:
+            carrier.push(line.arms[pair.carrier], -(line.along * push))
+    else:
+        push = -on.moment(part.body, part.joint[1])
+        on.hold(part.joint[1], part.body, -own.force)
+        if pair.carrier != GROUND:
+            carrier.moment = carrier.moment - push
+    couple = push * ratio
+    cam.moment = cam.moment - couple
+    if pair.carrier != GROUND:
+        carrier.moment = carrier.moment + couple
+
+
+def _rounding(pair: CamPair, lift: CamLift) -> Array:
+    """Return a bound of the first derivative of a lift beside the rounding of the cam's angle."""
+    law = pair.profile.law
+    return 64 * EPS * (np.abs(lift.first) + max(map(abs, law.extremes(2))) + law.stroke)
 
 
 _BALANCES: Mapping[str, Callable[[Balance, Group], None]] = {

@@ -285,9 +285,8 @@ class JointEquations:
 
     def _summed(self, of_markers: Array) -> Array:
         """Return the sum over markers of (T, markers, ...) in the relations of gears."""
-        return np.einsum(
-            "gk,tk...->tg...", self._turns, of_markers[:, : self._turns.shape[1]]
-        )
+        own = of_markers[:, : self._turns.shape[1]]
+        return np.asarray(np.einsum("gk,tk...->tg...", self._turns, own))
 
     def _lines(self, now: Configuration) -> tuple[Array, Array, Array]:
         """Vectors along and across the line of every slider, and from guide to tip (T, S, 2)."""

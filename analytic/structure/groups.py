@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 from analytic.structure.trains import Hanging, Train, trains
 from models.scene import Scene
-from models.scene.pairs import Gear
+from models.scene.pairs import CamPair, Gear
 
 JointKey = tuple[str, str]
 """Letter R or P, and the name of the pin or the slider."""
@@ -109,7 +109,23 @@ class Bridge:
         return (self.link,)
 
 
-Part = Group | Triad | Bridge | Train
+@dataclass(frozen=True)
+class Following:
+    """Follower of a cam, ``body``, on the ``joint`` to its carrier."""
+
+    body: str
+    joint: JointKey
+    pair: CamPair
+
+    kind = "follower"
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Bodies placed with it."""
+        return (self.body,)
+
+
+Part = Group | Triad | Bridge | Train | Following
 
 
 class Pairs:
@@ -153,18 +169,24 @@ class Pairs:
 
 
 def decompose(
-    bodies: tuple[str, ...], known: frozenset[str], pairs: Pairs, gears: Sequence[Gear] = ()
+    bodies: tuple[str, ...],
+    known: frozenset[str],
+    pairs: Pairs,
+    gears: Sequence[Gear] = (),
+    cams: Sequence[CamPair] = (),
 ) -> tuple[tuple[Part, ...], list[str]]:
     """Return the groups and redundant links, each after its supports, and the unplaced bodies.
 
-    Trains of ``gears`` come first, then the smallest groups; a link counts as redundant only where
-    no further group can be placed. ``known`` are the bodies placed by the driver and the ground.
+    Trains of ``gears`` and followers of ``cams`` come first, then the smallest groups; a link
+    counts as redundant only where no further group can be placed. ``known`` are the bodies placed
+    by the driver and the ground.
     """
     placed = set(known)
     outer = {body: pairs.outer(body, placed) for body in bodies if body not in placed}
     order: list[Part] = []
     while (
         part := next(trains(gears, pairs.hanging(outer)), None)
+        or next(_followers(cams, outer, placed), None)
         or next(_dyads(outer, placed, pairs), None)
         or next(_triads(outer, placed, pairs), None)
         or next(_bridges(outer), None)
@@ -176,6 +198,16 @@ def decompose(
         for body in outer.keys() & {b for one in part.bodies for b in pairs.neighbours(one)}:
             outer[body] = pairs.outer(body, placed)
     return tuple(order), list(outer)
+
+
+def _followers(
+    cams: Sequence[CamPair], outer: Mapping[str, list[JointKey]], known: set[str]
+) -> Iterator[Following]:
+    """Yield the followers that can be placed next."""
+    for pair in cams:
+        body = pair.follower
+        if body in outer and {pair.cam, pair.carrier} <= known and len(outer[body]) == 1:
+            yield Following(body, outer[body][0], pair)
 
 
 def _dyads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -> Iterator[Group]:

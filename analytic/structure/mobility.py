@@ -105,12 +105,13 @@ def analyse(scene: Scene) -> Structure:
     compound = compound_of(scene)
     if compound is None:
         known = {scene.driver.base, scene.driver.link, GROUND}
-        higher = (*scene.gears.values(),)
-        order, left = decompose(bodies, frozenset(known), Pairs(pins, prismatics), higher)
+        higher = [*scene.gears.values()], [*scene.cams.values()]
+        order, left = decompose(bodies, frozenset(known), Pairs(pins, prismatics), *higher)
     else:
         units = compound.units(bodies)
         order, left = decompose(units, frozenset({GROUND}), compound.pairs(pins, prismatics))
-    structure = Structure(bodies, pins, prismatics, order, compound, len(scene.gears))
+    count = len(scene.gears) + len(scene.cams)
+    structure = Structure(bodies, pins, prismatics, order, compound, count)
     _check_driver(scene, structure)
     if left or structure.mobility != 1:
         raise StructureError(f"{scene.name}: {_fault(structure, left)}")
@@ -185,10 +186,10 @@ def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | No
             f"{scene.name}: {what} takes a driver that is a link pinned to the ground, and this "
             f"scene's is {scene.driver.joint}"
         )
-    if scene.gears:
+    if higher := [*scene.gears, *scene.cams]:
         raise CrankcheckError(
-            f"{scene.name}: {what} takes class II groups alone, and this scene has gears "
-            f"({', '.join(scene.gears)})"
+            f"{scene.name}: {what} takes class II groups alone, and this scene has gears or cams "
+            f"({', '.join(higher)})"
         )
     triads = ", ".join(triad.central for triad in structure.triads) if structure else ""
     if triads:

@@ -24,7 +24,7 @@ from typing import NoReturn, TypeVar
 from models.scene.elastic import Beam, ElasticLink, Shape
 from models.scene.laws import Law
 from models.scene.loads import CoulombFriction, Friction, Load, Spring
-from models.scene.pairs import Gear
+from models.scene.pairs import CamPair, Gear
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -181,7 +181,8 @@ class Scene:
     ``loads`` act from outside, ``friction`` in joints of two bodies, ``springs`` between bodies.
     ``start`` completes the start of free motion beyond the driver. ``elastic`` are the links that
     bend or stretch, by name; the others are rigid. ``beams`` are these links as an engine with
-    nodes has them (`models.scene.cut_scenes`). ``gears`` are the pairs in mesh.
+    nodes has them (`models.scene.cut_scenes`). ``gears`` are the pairs in mesh,
+    ``cams`` those of cam and follower.
     """
 
     name: str
@@ -201,10 +202,11 @@ class Scene:
     elastic: Mapping[str, ElasticLink] = field(default_factory=dict)
     beams: Mapping[str, Beam] = field(default_factory=dict)
     gears: Mapping[str, Gear] = field(default_factory=dict)
+    cams: Mapping[str, CamPair] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         _fix(self, "ground", "links", "sliders", "branch", "tolerance", "loads", "friction",
-             "springs", "elastic", "beams", "gears")  # fmt: skip
+             "springs", "elastic", "beams", "gears", "cams")  # fmt: skip
 
     @cached_property
     def pins(self) -> Mapping[str, tuple[str, ...]]:

@@ -220,6 +220,9 @@ class CamLaw:
                 "give rises and returns that sum to 0"
             )
 
+    def __reduce__(self) -> tuple[type[CamLaw], tuple[tuple[CamSegment, ...]]]:
+        return CamLaw, (self.segments,)  # without what is computed from it
+
     @cached_property  # once for all evaluations
     def _pieces(self) -> tuple[Array, Array, Array, Array]:
         """Ends (n + 1,) [rad] of the pieces, coefficients (8, n), sines, half widths."""

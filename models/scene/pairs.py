@@ -1,4 +1,4 @@
-"""Higher pairs of a scene: gears in mesh, rolling on their pitch circles.
+"""Higher pairs of a scene: gears in mesh, rolling on their pitch circles; cams with a follower.
 
 ::
 
@@ -13,8 +13,94 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from models.array import Array
+from models.scene.cams import Cam
 
 Points = Mapping[str, tuple[float, float]]
+
+
+class Slides(Protocol):
+    """Line of a slider in the frame of its guide."""
+
+    @property
+    def through_m(self) -> tuple[float, float]: ...
+
+    @property
+    def direction_rad(self) -> float: ...
+
+
+def _shared(points: Mapping[str, Points], body: str, carrier: str) -> str:
+    """Return the point that a body shares with its carrier. Raises ValueError unless it is one."""
+    shared = [point for point in points[body] if point in points[carrier]]
+    if len(shared) != 1:
+        raise ValueError(
+            f"{body} shares {' and '.join(shared) or 'no point'} with its carrier {carrier}; it "
+            "turns on its carrier about one point: list that, its centre, in both"
+        )
+    return shared[0]
+
+
+@dataclass(frozen=True)
+class CamPair:
+    """A cam, ``cam``, a link that turns about a point of the ``carrier``, and its follower.
+
+    A translating ``follower`` is the body of ``slider``, whose guide is the carrier; an oscillating
+    one is a link pinned to the carrier, and ``tip`` the centre of its roller, or a point on the
+    parallel of its face through the pivot. The tip lies to the right of the line from the pivot to
+    the cam with ``side`` +1, and lifts turn it further. The law of ``profile`` begins at the angle
+    ``start_rad`` of the cam against the carrier.
+    """
+
+    name: str
+    cam: str
+    follower: str
+    carrier: str
+    profile: Cam
+    slider: str = ""
+    tip: str = ""
+    side: int = 1
+    start_rad: float = 0.0
+
+    @property
+    def sense(self) -> int:
+        """Sense in which its law counts the angle of the cam, +1 counter-clockwise."""
+        return self.profile.sense * (1 if self.slider else self.side)
+
+    def law_angle(self, cam_rad: Array, carrier_rad: Array) -> Array:
+        """Return the angle of its law (T,) [rad] at angles of cam and carrier."""
+        return np.asarray(self.sense * (cam_rad - carrier_rad - self.start_rad))
+
+    def pivots(self, points: Mapping[str, Points]) -> tuple[str, str]:
+        """Return the names of the cam's centre and, of an oscillating follower, its pivot, else
+        "". Raises ValueError where they are not shared with the carrier, or several."""
+        centre = _shared(points, self.cam, self.carrier)
+        return centre, "" if self.slider else _shared(points, self.follower, self.carrier)
+
+    def lowest(self, points: Mapping[str, Points], sliders: Mapping[str, Slides]) -> float:
+        """Return the follower's coordinate at lift 0: the displacement of its slider [m], or the
+        angle of its link against the carrier [rad]. Raises ValueError as `pivots`."""
+        centre, pivot = self.pivots(points)
+        ox, oy = points[self.carrier][centre]
+        if self.slider:
+            line = sliders[self.slider]
+            (tx, ty), angle = line.through_m, line.direction_rad
+            foot = (ox - tx) * math.cos(angle) + (oy - ty) * math.sin(angle)
+            return foot + self.profile.start
+        px, py = points[self.carrier][pivot]
+        (ax, ay), (bx, by) = (points[self.follower][name] for name in (pivot, self.tip))
+        towards = math.atan2(oy - py, ox - px)
+        return towards - self.side * self.profile.start - math.atan2(by - ay, bx - ax)
+
+    @property
+    def way(self) -> int:
+        """Sense of the follower's coordinate over its lift."""
+        return 1 if self.slider else -self.side
+
+
 FITS = 1e-6
 """Largest difference between the centre distance and that of module and teeth, over it."""
 
@@ -65,17 +151,8 @@ class Gear:
     def pivots(self, points: Mapping[str, Points]) -> tuple[str, str]:
         """Return the names of the two centres, which a gear and the carrier share; ``points`` are
         those of all bodies, the ground's too. Raises ValueError where there is none, or several."""
-        centres = []
-        for body in self.bodies:
-            shared = [point for point in points[body] if point in points[self.carrier]]
-            if len(shared) != 1:
-                raise ValueError(
-                    f"{body} shares {' and '.join(shared) or 'no point'} with its carrier "
-                    f"{self.carrier}; a gear turns on its carrier about one point: list that, "
-                    "its centre, in both"
-                )
-            centres.append(shared[0])
-        return centres[0], centres[1]
+        first, second = (_shared(points, body, self.carrier) for body in self.bodies)
+        return first, second
 
     def distance_m(self, points: Mapping[str, Points]) -> float:
         """Return the centre distance. Raises ValueError as `pivots`."""
