@@ -10,7 +10,14 @@ from typing import Annotated
 from pydantic import Field, StrictInt, StringConstraints
 
 from models.errors import SceneError
-from models.files import body_table, elastic_table, gear_table, schema, spring_table
+from models.files import (
+    body_table,
+    cam_table,
+    elastic_table,
+    gear_table,
+    schema,
+    spring_table,
+)
 from models.files.driver_table import DriverTable, driver_of, driver_table, faults_of_driver
 from models.files.load_table import LoadTable, faults_of_loads, load_of, load_table
 from models.files.schema import MOST_BODIES, Coordinates, Name, Text
@@ -44,6 +51,7 @@ class SceneTable(schema.Table):
     elastic: dict[Name, elastic_table.ElasticTable] = Field(
         default_factory=dict, max_length=MOST_BODIES
     )
+    cams: dict[Name, cam_table.CamTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     gears: dict[Name, gear_table.GearTable] = Field(default_factory=dict, max_length=MOST_BODIES)
 
 
@@ -55,6 +63,7 @@ FAULTS_OF_NAMES = {
     "friction": spring_table.faults_of_friction,
     "springs": spring_table.faults_of_springs,
     "gears": gear_table.faults_of_gears,
+    "cams": cam_table.faults_of_cams,
     "start": elastic_table.faults_of_start,
     "elastic": elastic_table.faults_of_elastic,
     "branch": body_table.faults_of_branch,
@@ -98,6 +107,12 @@ def scene_from_table(
         driven = driver_of(driver, ground, links, sliders)
     except ValueError as error:
         faults.append(f"driver: {error}")
+    cams = {}
+    for name, one in table.cams.items():
+        try:
+            cams[name] = one.pair(name, {GROUND: ground, **points}, sliders)
+        except ValueError as error:
+            faults.append(f"cams.{name}: {error}")
     if longest == 0.0:
         faults.append("links: no link has two points, so the scene has no length; add a point")
     else:
@@ -121,11 +136,13 @@ def scene_from_table(
         start=table.start.start(),
         elastic={name: each.elastic_link(name) for name, each in table.elastic.items()},
         gears={name: each.gear(name) for name, each in table.gears.items()},
+        cams=cams,
     )
     if impossible := [
         *elastic_table.faults_of_free_motion(scene),
         *elastic_table.faults_of_beams(scene),
         *gear_table.faults_of_meshes(scene),
+        *cam_table.faults_of_guides(scene),
     ]:
         raise SceneError(place, impossible)
     return scene
@@ -158,6 +175,8 @@ def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str,
         yield f"springs.{name}", spring_table.spring_table(spring)
     for name, gear in scene.gears.items():
         yield f"gears.{name}", gear_table.gear_table(gear)
+    for name, pair in scene.cams.items():
+        yield f"cams.{name}", cam_table.cam_table(pair)
     if scene.start:
         yield "start", elastic_table.start_table(scene.start)
     for name, own in scene.elastic.items():

@@ -33,7 +33,7 @@ class Slides(Protocol):
     def direction_rad(self) -> float: ...
 
 
-def _shared(points: Mapping[str, Points], body: str, carrier: str) -> str:
+def shared_point(points: Mapping[str, Points], body: str, carrier: str) -> str:
     """Return the point that a body shares with its carrier. Raises ValueError unless it is one."""
     shared = [point for point in points[body] if point in points[carrier]]
     if len(shared) != 1:
@@ -77,8 +77,8 @@ class CamPair:
     def pivots(self, points: Mapping[str, Points]) -> tuple[str, str]:
         """Return the names of the cam's centre and, of an oscillating follower, its pivot, else
         "". Raises ValueError where they are not shared with the carrier, or several."""
-        centre = _shared(points, self.cam, self.carrier)
-        return centre, "" if self.slider else _shared(points, self.follower, self.carrier)
+        centre = shared_point(points, self.cam, self.carrier)
+        return centre, "" if self.slider else shared_point(points, self.follower, self.carrier)
 
     def lowest(self, points: Mapping[str, Points], sliders: Mapping[str, Slides]) -> float:
         """Return the follower's coordinate at lift 0: the displacement of its slider [m], or the
@@ -151,7 +151,7 @@ class Gear:
     def pivots(self, points: Mapping[str, Points]) -> tuple[str, str]:
         """Return the names of the two centres, which a gear and the carrier share; ``points`` are
         those of all bodies, the ground's too. Raises ValueError where there is none, or several."""
-        first, second = (_shared(points, body, self.carrier) for body in self.bodies)
+        first, second = (shared_point(points, body, self.carrier) for body in self.bodies)
         return first, second
 
     def distance_m(self, points: Mapping[str, Points]) -> float:

@@ -1,0 +1,193 @@
+"""Tables `[cams.NAME]` of a scene file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Literal
+
+from pydantic import Field, StrictBool, model_validator
+
+from models.errors import cut, few
+from models.files import schema
+from models.files.schema import LISTED, Name
+from models.scene import GROUND, Point, Scene, Slider
+from models.scene.cam_laws import CamLaw, CamSegment
+from models.scene.cams import Cam, OscillatingFollower, TranslatingFollower
+from models.scene.joints import less, sliding_body, turned
+from models.scene.pairs import CamPair, shared_point
+
+MOST_SEGMENTS, MOST_ROWS = 100, 100_000
+
+
+class SegmentTable(schema.Table):
+    """A part of a law of motion: its kind, the turn of the cam, and the change of lift; for a table
+    the ``points`` (angle, lift) from (0, 0) on, and the ``order`` of its spline."""
+
+    motion: str
+    span_deg: Annotated[schema.Positive, Field(le=360.0)]
+    lift_m: schema.Number = 0.0
+    lift_deg: schema.Degrees = 0.0
+    points: Annotated[list[schema.Coordinates], Field(max_length=MOST_ROWS)] = Field(
+        default_factory=list
+    )
+    order: Literal[1, 3, 5, 7] = 5
+
+    def segment(self, *, turns: bool) -> CamSegment:
+        """Make the segment, of a lift in rad where the follower ``turns``. Raises ValueError."""
+        if (self.lift_m if turns else self.lift_deg) != 0.0:
+            wanted = ("lift_deg", "oscillates") if turns else ("lift_m", "translates")
+            raise ValueError(f"its follower {wanted[1]}: give {wanted[0]}")
+        by = math.radians(1.0) if turns else 1.0
+        rows = tuple((math.radians(angle), by * lift) for angle, lift in self.points)
+        lift = math.radians(self.lift_deg) if turns else self.lift_m
+        return CamSegment(self.motion, math.radians(self.span_deg), lift, rows, self.order)
+
+
+def law_of(segments: Sequence[SegmentTable], *, turns: bool) -> CamLaw:
+    """Make the law of a cam, lifts in rad where its follower ``turns``. Raises ValueError."""
+    made = []
+    for number, one in enumerate(segments, 1):
+        try:
+            made.append(one.segment(turns=turns))
+        except ValueError as error:
+            raise ValueError(f"segment {number}: {error}") from None
+    return CamLaw(tuple(made))
+
+
+class CamTable(schema.Table):
+    """A cam and its follower: the body of a ``slider``, or a ``follower`` that is pinned to the
+    ``carrier`` and has its roller, or its face, at the point ``tip``, to the right of the line from
+    its pivot to the cam, or to the ``left``."""
+
+    cam: Name
+    slider: Name | None = None
+    follower: Name | None = None
+    tip: Name | None = None
+    carrier: Name = GROUND
+    contact: Literal["knife", "roller", "flat"] = "roller"
+    base_radius_m: schema.Positive
+    roller_radius_m: schema.NonNegative = 0.0
+    face_m: schema.Number = 0.0
+    clockwise: StrictBool = False
+    start_deg: schema.Degrees = 0.0
+    left: StrictBool = False
+    segments: Annotated[list[SegmentTable], Field(min_length=1, max_length=MOST_SEGMENTS)]
+
+    @model_validator(mode="after")
+    def _is_of_one_kind(self) -> CamTable:
+        if (self.slider is None) == (self.follower is None):
+            raise ValueError("name what follows: slider = ..., or follower = ... and tip = ...")
+        if (self.tip is None) != (self.follower is None):
+            raise ValueError("tip is the point of a follower at its cam: give both, or a slider")
+        return self
+
+    def pair(
+        self,
+        name: str,
+        points: Mapping[str, Mapping[str, Point]],
+        sliders: Mapping[str, Slider],
+    ) -> CamPair:
+        """Make the pair of a scene without faults of names (`faults_of_cams`); ``points`` are those
+        of all bodies. Raises ValueError for a law or a geometry without a cam."""
+        turns, side = self.slider is None, -1 if self.left else 1
+        body = self.follower or sliding_body(sliders[self.slider or ""])
+        profile = Cam(
+            law_of(self.segments, turns=turns),
+            self.base_radius_m,
+            self._oscillating(points) if turns else self._translating(points, sliders),
+            (-1 if self.clockwise else 1) * (side if turns else 1),
+        )
+        joint = self.slider or "", self.tip or ""
+        start = math.radians(self.start_deg)
+        return CamPair(name, self.cam, body, self.carrier, profile, *joint, side, start)
+
+    def _translating(
+        self, points: Mapping[str, Mapping[str, Point]], sliders: Mapping[str, Slider]
+    ) -> TranslatingFollower:
+        """Return a follower whose offset is that of its line from the cam's centre."""
+        line = sliders[self.slider or ""]
+        centre = points[self.carrier][shared_point(points, self.cam, self.carrier)]
+        away = turned(less(line.through_m, centre), 0.5 * math.pi - line.direction_rad)
+        offset = 0.0 if self.contact == "flat" else away[0]
+        return TranslatingFollower(self.contact, self.roller_radius_m, offset)
+
+    def _oscillating(self, points: Mapping[str, Mapping[str, Point]]) -> OscillatingFollower:
+        """Return a follower whose arm is that of its tip, and its pivot that of its link."""
+        follower, tip = self.follower or "", self.tip or ""
+        own, base = points[follower], points[self.carrier]
+        if tip not in own:
+            raise ValueError(f"tip: {follower} has no point {tip}; use one of {few(own, LISTED)}")
+        pivot = shared_point(points, follower, self.carrier)
+        apart = math.dist(base[shared_point(points, self.cam, self.carrier)], base[pivot])
+        if self.contact == "flat":
+            return OscillatingFollower("flat", pivot_m=apart, face_m=self.face_m)
+        arm = math.dist(own[pivot], own[tip])
+        return OscillatingFollower(self.contact, self.roller_radius_m, apart, arm)
+
+
+def cam_table(pair: CamPair) -> Mapping[str, object]:
+    """Write the table of a cam."""
+    law, follower, turns = pair.profile.law, pair.profile.follower, not pair.slider
+    body = {"follower": pair.follower, "tip": pair.tip, "left": pair.side < 0}
+    face = {"face_m": getattr(follower, "face_m", 0.0)}
+    return {
+        "cam": pair.cam,
+        **(body if turns else {"slider": pair.slider}),
+        "carrier": pair.carrier,
+        "contact": follower.contact,
+        "base_radius_m": pair.profile.base_m,
+        "roller_radius_m": follower.roller_m,
+        **(face if any(face.values()) else {}),
+        "clockwise": pair.sense < 0,
+        "start_deg": schema.in_degrees(pair.start_rad),
+        "segments": [segment_table(one, turns=turns) for one in law.segments],
+    }
+
+
+def segment_table(segment: CamSegment, *, turns: bool) -> Mapping[str, object]:
+    """Write a segment of a law, of a lift in rad where the follower ``turns``."""
+
+    def lift(value: float) -> float:
+        return schema.in_degrees(value) if turns else value
+
+    rows = [[schema.in_degrees(angle), lift(value)] for angle, value in segment.points]
+    table = {"points": rows, "order": segment.order} if rows else {}
+    return {
+        "motion": segment.kind,
+        "span_deg": schema.in_degrees(segment.span_rad),
+        "lift_deg" if turns else "lift_m": lift(segment.lift),
+        **table,
+    }
+
+
+def faults_of_cams(cams: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:
+    """Yield one line per raw table whose bodies or slider are missing, or are one body."""
+    known = [GROUND, *names.points]
+    for key, _, table in schema.each_of(cams, "cams"):
+        for place in ("cam", "follower", "carrier"):
+            body = table.get(place)
+            have = known if place == "carrier" else known[1:]
+            if isinstance(body, str) and body not in have:
+                yield f"{key}.{place}: found {cut(body)}; {schema.use_one_of(have)}"
+        slider = table.get("slider")
+        if isinstance(slider, str) and slider not in names.sliders:
+            yield f"{key}.slider: found {cut(slider)}; {schema.use_one_of(names.sliders)}"
+        bodies = [table.get("cam"), table.get("follower"), table.get("carrier", GROUND)]
+        twice = next((one for one in bodies if one is not None and bodies.count(one) > 1), None)
+        if isinstance(twice, str):
+            yield f"{key}: found {cut(twice)} twice; cam, follower and carrier are three bodies"
+
+
+def faults_of_guides(scene: Scene) -> Iterator[str]:
+    """Yield one line per cam whose follower slides on another body than its carrier, or with a body
+    that is elastic."""
+    for name, pair in scene.cams.items():
+        if pair.slider and (on := scene.sliders[pair.slider].on) != pair.carrier:
+            yield (
+                f"cams.{name}.slider: {pair.slider} slides on {on}, and the carrier is "
+                f"{pair.carrier}; name the body that carries both cam and follower"
+            )
+        for body in (pair.cam, pair.follower, pair.carrier):
+            if body in scene.elastic:
+                yield f"cams.{name}: {body} is elastic, and cams and followers are rigid here"
