@@ -16,7 +16,7 @@ tendons (`models.mjcf.forces`).
 from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError
-from models.mjcf import forces, gears, options
+from models.mjcf import forces, higher_pairs, options
 from models.mjcf.options import AttributeRow, Attributes, Writing, attributes
 from models.mjcf.tree import Limb, Tree, driven_freedom
 from models.motion import State
@@ -185,13 +185,13 @@ def _equality(scene: Scene, tree: Tree) -> list[str]:
     why = (
         "    <!-- Each loop is closed at one pin, by the copies of the point on its two bodies. -->"
     )
-    lines = [*([why] if lines else []), *lines, *gears.gear_equalities(scene)]
+    lines = [*([why] if lines else []), *lines, *higher_pairs.equalities(scene, tree)]
     return ["  <equality>", *lines, "  </equality>"] if lines else []
 
 
 def _tendons(scene: Scene, state: State, tree: Tree) -> list[str]:
     springs = forces.spring_lines(scene, forces.spring_tendons(scene, state, tree))
-    lines = [*springs, *gears.gear_tendons(scene, tree)]
+    lines = [*springs, *higher_pairs.gear_tendons(scene, tree)]
     return ["  <tendon>", *lines, "  </tendon>"] if lines else []
 
 

@@ -4,8 +4,10 @@ The crank is driven by its armature, or an actuator (`models.mjcf.options`, `mod
 whose control comes from `sim.engine.drive`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +23,7 @@ from sim.engine import drive as drives
 from sim.engine.settings import SettingError
 from sim.engine.tree_poses import body_poses
 from sim.mujoco import settings as own
+from sim.mujoco.cam_relations import CamRelations
 from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import JointForces, TreeReactions, joint_forces
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
@@ -45,7 +48,8 @@ class MujocoSession(SteppedModel):
         self._controlled = options.has_control(scene, chosen)
         staged = dt_s if chosen.free and own.integrator(settings, drive) == "RK4" else 0.0
         self._loading = Loading(scene, model, self._tree.limbs, drive, state.time_s, staged)
-        self._following = self._loading.following
+        self._cams = CamRelations(scene, self._tree, model, dt_s)
+        self._following = self._follow
         self._tendons = spring_tendons(scene, state, self._tree)
         driven, sense = driven_freedom(scene, self._tree.limbs)
         self._crank = int(model.joint(driven).dofadr[0])
@@ -54,6 +58,14 @@ class MujocoSession(SteppedModel):
             self._data.qvel[self._crank] = sense * start
         self._pushes = np.empty(0)
         self._forward()
+
+    @contextmanager
+    def _follow(self) -> Iterator[None]:
+        with self._loading.following(), self._cams.following():
+            yield
+
+    def _relate(self, data: Any) -> None:
+        self._cams.set(self._model, data)
 
     def facts(self) -> Facts:
         """Read the model as MuJoCo holds it now."""
@@ -170,4 +182,5 @@ ENGINE = Engine(
     applies_constant_friction=True,
     applies_springs=True,
     applies_gears=True,
+    applies_cams=True,
 )

@@ -83,10 +83,10 @@ def joint_forces(model: Any, data: Any) -> JointForces:
     mujoco.mj_rnePostConstraint(model, data)
     loops, friction = np.zeros((model.neq, 3)), np.zeros(model.nv)
     # Equalities come first among the rows of constraints, in the order of the file: three for each
-    # connect, in the frame of the world, then one for each gear; an inactive one has none. Friction
-    # follows, a row for each joint that has some.
+    # connect, in the frame of the world, then one for each gear and cam; an inactive one has none.
+    # Friction follows, a row for each joint that has some.
     kinds = model.eq_type[data.efc_id[: data.ne]]
-    gears = np.flatnonzero(kinds == mujoco.mjtEq.mjEQ_TENDON)
+    gears = np.flatnonzero(kinds != mujoco.mjtEq.mjEQ_CONNECT)
     pins = data.ne - len(gears)
     loops[data.efc_id[:pins:3]] = data.efc_force[:pins].reshape(-1, 3)
     rubbing = slice(data.ne, data.ne + data.nf)

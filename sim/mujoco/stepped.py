@@ -64,6 +64,9 @@ class SteppedModel(ABC):
         """Return the bodies from joint coordinates (T, nq), and their rates and accelerations
         (T, nv); the rates belong to ``lag_s`` later."""
 
+    def _relate(self, data: Any) -> None:
+        """Set what the model holds for one state alone."""
+
     def _controls(self, steps: int) -> Array:
         """Return the controls of each of the next steps, (steps, nu)."""
         return np.tile(self._data.ctrl, (steps, 1))
@@ -133,6 +136,7 @@ class SteppedModel(ABC):
         push, control = np.empty((len(states), model.nv)), self._control_at(at) if model.nu else ()
         for k, state in enumerate(states):
             mujoco.mj_setState(model, data, state, FULL)
+            self._relate(data)
             if model.nu:
                 data.ctrl[:] = control[k]
             mujoco.mj_forward(model, data)

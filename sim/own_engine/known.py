@@ -27,6 +27,7 @@ SAYS = (
     "applies_constant_friction",
     "applies_springs",
     "applies_gears",
+    "applies_cams",
     "applies_beams",
 )
 """Attributes that are true or false."""

@@ -86,6 +86,7 @@ def refuse_unknown_forces(
     for what, given, applied, cure in (
         ("beams", scene.beams, engine.applies_beams, f"give it {segments}"),
         ("gears", scene.gears, engine.applies_gears, "run one of those"),
+        ("cams", scene.cams, engine.applies_cams, "run one of those"),
     ):
         if given and not applied:
             able = " or ".join(applying(what)) or "no engine here"

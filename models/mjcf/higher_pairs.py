@@ -1,0 +1,97 @@
+"""Gears and cams of a scene in its MJCF text, as relations of joint coordinates.
+
+A pair of gears is a fixed tendon over hinges, kept at its length: an ``equality/joint`` couples two
+coordinates, a pair on a moving carrier has three bodies, and an angle is the sum of the hinges on
+the way to a body (`models.mjcf.forces`). Its length is the slip of the pitch circles [m], so that a
+loop and a mesh are alike in softness.
+
+A cam is an ``equality/joint``: a parabola through its law about the angle of the assembled state.
+The parabola is for that angle alone; a program has to set it anew at each step.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from models.errors import EngineError
+from models.mjcf.forces import sliding_joint, turning
+from models.mjcf.options import AttributeRow, attributes
+from models.mjcf.tree import Limb, Tree
+from models.scene import Scene
+from models.scene.pairs import CamPair, Gear
+
+
+def tendon_name(gear: Gear) -> str:
+    """Return the name of its tendon; a scene's own names hold no space."""
+    return f"gear {gear.name}"
+
+
+def gear_tendons(scene: Scene, tree: Tree) -> Iterator[str]:
+    """Write the tendons of the gears."""
+    for gear in scene.gears.values():
+        factors: dict[str, int] = {}
+        for body, factor in gear.relation.items():
+            for hinge in turning(tree, body)[0]:
+                factors[hinge] = factors.get(hinge, 0) + factor
+        arm = gear.slip_m(scene.points_of)
+        yield f"    <fixed{attributes({'name': tendon_name(gear)})}>"
+        for hinge, factor in factors.items():
+            if factor:
+                row: AttributeRow = {"joint": hinge, "coef": arm * factor}
+                yield f"      <joint{attributes(row)}/>"
+        yield "    </fixed>"
+
+
+def equalities(scene: Scene, tree: Tree) -> Iterator[str]:
+    """Write the equalities of cams, and those that keep the tendons of gears at their length.
+    Raises EngineError for a cam or a follower that does not hang on its carrier in the tree."""
+    for gear in scene.gears.values():
+        name = tendon_name(gear)
+        yield f"    <tendon{attributes({'name': name, 'tendon1': name})}/>"
+    for pair in scene.cams.values():
+        relation = CamRelation(scene, tree, pair)
+        row: AttributeRow = {"name": f"cam {pair.name}"}
+        row |= {"joint1": relation.follower, "joint2": relation.cam}
+        row["polycoef"] = relation.coefficients(relation.cam_ref)
+        yield f"    <joint{attributes(row)}/>"
+
+
+class CamRelation:
+    """Relation of the joints of ``cam`` and ``follower``, by name; the coordinates at which MuJoCo
+    counts both from 0 are ``cam_ref`` and ``follower_ref``."""
+
+    def __init__(self, scene: Scene, tree: Tree, pair: CamPair) -> None:
+        self.pair, points = pair, scene.points_of
+        centre, pivot = pair.pivots(points)
+        self.lowest = pair.lowest(points, scene.sliders)
+        self.cam = _hinge(tree.limbs, pair.cam, centre, pair.carrier)
+        self.follower = (
+            sliding_joint(tree.limbs, pair.slider)
+            if pair.slider
+            else _hinge(tree.limbs, pair.follower, pivot, pair.carrier)
+        )
+        refs = {own.name: own.ref for limb in tree.limbs for own in limb.freedoms}
+        self.cam_ref, self.follower_ref = refs[self.cam], refs[self.follower]
+
+    def coefficients(self, at: float, ahead: float = 0.0) -> tuple[float, ...]:
+        """Return MuJoCo's five coefficients of the parabola about a coordinate ``at`` of the cam;
+        the follower is to be ``ahead`` by so many times the second derivative."""
+        pair = self.pair
+        lift = pair.profile.law.at(pair.law_angle(np.array([at]), np.zeros(1)))
+        value, first, second = (
+            pair.way * pair.sense**n * float(one[0]) for n, one in enumerate(lift[:3])
+        )
+        x = self.cam_ref - at
+        constant = self.lowest + value - self.follower_ref + first * x + 0.5 * second * x * x
+        return constant + ahead * second, first + second * x, 0.5 * second, 0.0, 0.0
+
+
+def _hinge(limbs: tuple[Limb, ...], body: str, point: str, carrier: str) -> str:
+    """Return the joint of a body that hangs on its carrier in the tree."""
+    for limb in limbs:
+        if limb.body == body and limb.parent == carrier and limb.point == point:
+            return limb.freedoms[0].name
+    raise EngineError(
+        f"{body}: its pin {point} to {carrier} closes a loop here, and a cam needs it as a joint; "
+        "close the loop at another pin (close = ...)"
+    )
