@@ -31,6 +31,7 @@ class SceneFacts:
     samples is near a change point. ``uneven`` is the departure of bodies from even motion with the
     driver, ``uneven_rates`` those of them whose rates depart too (`reports.compare.hardness`).
     ``floor`` is the pure error that rounding leaves in the engine (`sim.engine.Engine`).
+    ``law_jumps`` are the largest jumps of acceleration and jerk in the laws of cams, pure.
     """
 
     curvature: float
@@ -45,6 +46,13 @@ class SceneFacts:
     uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
     floor: float = AT_ROUNDING
+    law_jumps: tuple[float, float] = (0.0, 0.0)
+
+    def jumping(self, rate: int) -> float:
+        """Return the pure error of a rate of this order in and beside the jumps of laws of cams: a
+        step over one has some of each side."""
+        acceleration, jerk = self.law_jumps
+        return (acceleration + 0.5 * jerk * self.step_rad) * self.step_rad ** (2 - rate)
 
 
 @dataclass(frozen=True)

@@ -187,6 +187,22 @@ def curvature(scene: Scene, reference: Motion) -> float:
     return max(float(np.max(each, where=np.isfinite(each), initial=1.0)) for each in sizes)
 
 
+@shared
+def law_jumps(scene: Scene, reference: Motion) -> tuple[float, float]:
+    """Return the largest jumps of acceleration and jerk in the laws of cams, pure."""
+    found = [(0.0, 0.0)]
+    for pair in scene.cams.values():
+        turning = reference.links.get(pair.cam)
+        speed = 1.0 if turning is None else _largest(np.abs(turning.omega)) / scene.pace_rad_s
+        arm = scene.longest_m if pair.slider else 1.0
+        found += [
+            (abs(jump.acceleration) * speed**2 / arm, abs(jump.jerk) * speed**3 / arm)
+            for jump in pair.profile.law.jumps
+        ]
+    accelerations, jerks = zip(*found, strict=True)
+    return max(accelerations), max(jerks)
+
+
 WINDOW_RAD = 0.5
 """Window of driver angles on both sides of a change point."""
 
@@ -250,7 +266,8 @@ def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[Bod
     A body that moves evenly with the driver is right to rounding in any integrator: a link that
     turns with it, a link of a parallelogram, a point on either. All others have the truncation
     error of a step, which grows with the departure from even motion: from the driver's angle times
-    a number for links and sliders, from the ellipse that its pin could draw for points.
+    a number for links and sliders, from the ellipse that its pin could draw for points. So is the
+    follower of a cam where an engine has the chord of its law over a step.
     """
     if driver_rad.size < LEAST_SAMPLES or np.ptp(driver_rad) < LEAST_TURN_RAD:
         return {}
@@ -267,6 +284,11 @@ def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[Bod
         **_departures(straight, np.stack([ones, driver_rad - np.mean(driver_rad)], axis=-1)),
         **_departures(round_, np.stack([ones, turn, turn.conj()], axis=-1)),
     }
+    for pair in scene.cams.values():
+        link = scene.links.get(pair.follower)
+        points = link.points if link else (scene.sliders[pair.slider].point,)
+        led = [("link", pair.follower), ("slider", pair.slider), *(("point", p) for p in points)]
+        far = {body: size for body, size in far.items() if body not in led}
     return {body: min(size, 1.0) for body, size in far.items() if size > EVEN}
 
 

@@ -18,6 +18,7 @@ from reports.compare.compare import Beside
 from reports.compare.hardness import (
     curvature,
     inertia_share,
+    law_jumps,
     load_slopes,
     shared,
     unevenly_turned,
@@ -247,6 +248,7 @@ def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) 
             uneven={body: size / growth for body, size in parts.far.items()},
             uneven_rates=unevenly_turned(scene, parts.far),
             floor=run.floor,
+            law_jumps=law_jumps(scene, beside.whole),
         ),
         of_forces=borne.facts,
         of_motion=parts.motion,

@@ -32,6 +32,10 @@ sensitivity does not grow as fast: with a motor that keeps the speed. Where the 
 the start, in which engines open them by the arc of a step, they take a share of the energy: this
 adds ``opening`` of that to the phase error.
 
+Where the law of a cam jumps in acceleration or jerk, a step over the jump has some of either side:
+accelerations are off by up to that of the acceleration, and by half of what the jerk's changes in
+a step.
+
 The energy itself is off by ``arc`` times the possible effect of the arcs of steps on its means, and
 ``late`` times the possible loss by impulses that come a step late
 (`analytic.forces.late_impulses`), weighed with the masses, as no acceleration of a light link
@@ -106,6 +110,7 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     budget += _felt(tolerance, errors)
     if tolerance.bends:
         budget = links.deflecting(budget, step)
+    budget += scene.jumping(max(tolerance.rate, tolerance.differenced))
     budget += shaken_by_rounding(errors, max(tolerance.rate, tolerance.differenced))
     budget = min(float(budget), tolerance.cap)
     return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)

@@ -131,11 +131,11 @@ POSITION = _place(
 
 
 def _gap(kind: quantity.BodyKind, column: str) -> quantity.Measure:
-    """Return the measure of the gap at a shared pin or slider, or of the slip of gears, which is 0
-    in the reference."""
+    """Return the measure of the gap at a shared pin or slider, or of gears or a cam; the reference
+    has none."""
 
     def truth(scene: Scene, reference: Motion) -> quantity.Series:
-        every = {"slider": scene.sliders, "gear": scene.gears}
+        every = {"slider": scene.sliders, "gear": scene.gears, "cam": scene.cams}
         pins = [pin.point for pin in joints(scene).pins if pin.point not in scene.sliders]
         return dict.fromkeys(every.get(kind, pins), np.zeros_like(reference.time_s))
 
@@ -158,6 +158,7 @@ GAP = quantity.Quantity(
         _gap("point", "pin_gap_m"),
         _gap("slider", "slider_gap_m"),
         _gap("gear", "gear_slip_m"),
+        _gap("cam", "cam_gap_m"),
     ),
     criteria=(
         quantity.Criterion(

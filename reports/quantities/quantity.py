@@ -10,7 +10,7 @@ from models.motion import Bound, Motion, Order
 from models.scene import Scene
 from sim.engine import Run
 
-BodyKind = Literal["driver", "link", "slider", "point", "gear", "mechanism"]
+BodyKind = Literal["driver", "link", "slider", "point", "gear", "cam", "mechanism"]
 Source = Literal["reported", "differenced"]
 Role = Literal["drive", "place", "closure", "derived", "force", "free", "elastic"]
 """Convergence, geometric errors and differences are computed for role "place". Derived quantities

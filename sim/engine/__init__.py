@@ -200,10 +200,10 @@ class Engine:
     of a scene that they leave out with a drive; else ``no_forces`` says why, after "NAME reports no
     forces: ". Without ``applies_loads`` scenes with loads are unsupported, without
     ``applies_constant_friction`` scenes with constant friction, without ``applies_springs`` scenes
-    with springs, without ``applies_gears`` and ``applies_cams`` scenes with these; with springs `Facts.springs` has
-    each. Without ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has
-    the beams. ``precision`` is that of the engine's numbers, ``floor`` the pure error of places
-    that it leaves at any step.
+    with springs, without ``applies_gears`` and ``applies_cams`` scenes with these; with springs
+    `Facts.springs` has each. Without ``applies_beams`` elastic links come only as segments; with it
+    `Facts.beams` has the beams. ``precision`` is that of the engine's numbers, ``floor`` the pure
+    error of places that it leaves at any step.
     """
 
     name: str

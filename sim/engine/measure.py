@@ -10,6 +10,8 @@ from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, KEPT, Point, Same, Scene, Slider, loads
 from models.scene import joints as pairs
+from models.scene.cams import OscillatingFollower
+from models.scene.pairs import CamPair
 from sim.engine import BodyPose, Energy, Poses
 
 
@@ -218,7 +220,7 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     For a pin: the largest distance between two bodies' copies of the point. For a slider: the
     distance of its point from the line, plus, for a body that must not turn against the line, the
     error of its angle times the longest length of the scene. For two gears: the slip of their pitch
-    circles.
+    circles; for a cam: the way of its follower beside its law.
     """
     tracks = _tracks(scene, poses)
     openings = {}
@@ -242,7 +244,27 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
             if name != GROUND:
                 slip += factor * poses.bodies[name].theta
         openings[gear.name] = np.abs(slip) * gear.slip_m(scene.points_of)
+    for cam in scene.cams.values():
+        openings[cam.name] = np.abs(lifted(scene, poses, cam))
     return openings
+
+
+def lifted(scene: Scene, poses: Poses, cam: CamPair) -> Array:
+    """Return the way (T,) [m] of a follower beyond its law, away from the cam; of its tip, where it
+    oscillates."""
+    theta = {GROUND: np.zeros(len(poses.time_s))}
+    theta |= {name: pose.theta for name, pose in poses.bodies.items()}
+    lift = cam.profile.law.at(cam.law_angle(theta[cam.cam], theta[cam.carrier]))
+    lowest = cam.lowest(scene.points_of, scene.sliders)
+    follower = cam.profile.follower
+    if isinstance(follower, OscillatingFollower):
+        turned = cam.way * (theta[cam.follower] - theta[cam.carrier] - lowest)
+        beyond = np.remainder(turned - lift.value + np.pi, 2 * np.pi) - np.pi
+        return np.asarray(beyond * (follower.arm_m or follower.pivot_m))
+    slider = scene.sliders[cam.slider]
+    track = _tracks(scene, poses)[slider.point][_rider(scene, slider)]
+    place = _Seen(slider, _guide(slider, poses), track).position[:, 0]
+    return np.asarray(place - lowest - lift.value)
 
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:

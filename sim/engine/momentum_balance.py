@@ -10,7 +10,8 @@ together are one linear system for each sample::
 It is square where the joints leave the mechanism one freedom, which the drive takes. A pin of k
 bodies counts as the k - 1 hinges that the engine has made of it, and a point on a line as a force
 across it: a slider's block without mass is no body here. Gears are couples on their bodies, in the
-ratio of their relation: the forces of teeth that an engine may have count to those of the pins.
+ratio of their relation: the forces of teeth that an engine may have count to those of the pins. A
+cam is the force along its follower's way: one beside the line of a slider counts to its moment.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +24,7 @@ from models.array import Array
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
 from models.scene import joints as pairs
+from models.scene.pairs import CamPair
 from sim.engine.measure import across, arms, directions, moment
 from sim.engine.ties import Hinge, slide_of
 
@@ -90,10 +92,14 @@ def joint_pushes(
             system.couple({slide.body: 1.0, slide.slider.on: -1.0})
     for gear in scene.gears.values():
         system.couple(gear.relation)
+    for cam in scene.cams.values():
+        system.lift(scene, cam)
     if driven:
         system.drive(scene)
     found = system.solution()
-    ends = np.cumsum([2 * len(hinges), len(slides), len(prisms), len(scene.gears)])
+    ends = np.cumsum(
+        [2 * len(hinges), len(slides), len(prisms), len(scene.gears) + len(scene.cams)]
+    )
     on_hinges, normals, moments, _, torque = np.split(found, ends, axis=1)
     return JointPushes(
         {hinge: on_hinges[:, 2 * k : 2 * k + 2] for k, hinge in enumerate(hinges)},
@@ -135,6 +141,23 @@ class _System:
         for name, share in shares.items():
             if name != GROUND:
                 column[:, self._row[name] + 2] += share
+
+    def lift(self, scene: Scene, cam: CamPair) -> None:
+        """Add a cam: a force along the way of its follower, or a moment, and the couple on the cam
+        that has its power."""
+        if cam.slider:
+            slide = slide_of(scene, cam.slider)
+            self._push_on(scene, slide.slider, pairs.riding_body(slide), self._along(slide.slider))
+        else:
+            self.couple({cam.follower: 1.0, cam.carrier: -1.0})
+        none = np.zeros(self._samples)
+        turned, base = (
+            self._gains[body].theta if body != GROUND else none for body in (cam.cam, cam.carrier)
+        )
+        ratio = cam.way * cam.sense * cam.profile.law.at(cam.law_angle(turned, base)).first
+        for name, sense in ((cam.cam, -1.0), (cam.carrier, 1.0)):
+            if name != GROUND:
+                self._columns[-1][:, self._row[name] + 2] += sense * ratio
 
     def drive(self, scene: Scene) -> None:
         """Add the driver: a torque between its bodies, or a force along its slider's line."""

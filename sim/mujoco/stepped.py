@@ -65,7 +65,8 @@ class SteppedModel(ABC):
         (T, nv); the rates belong to ``lag_s`` later."""
 
     def _relate(self, data: Any) -> None:
-        """Set what the model holds for one state alone."""
+        """Set what the model holds for one state alone; nothing here."""
+        del data
 
     def _controls(self, steps: int) -> Array:
         """Return the controls of each of the next steps, (steps, nu)."""

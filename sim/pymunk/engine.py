@@ -48,6 +48,7 @@ class PymunkSession:
             exact_lines=settings["lines"] == "exact",
             with_springs=settings["springs"] == "native",
             delay_s=VELOCITY_SHIFT * dt_s,
+            dt_s=dt_s,
         )
         self._space = self._model.space
         self._iterations = iterations(settings, self._model)
@@ -237,4 +238,5 @@ ENGINE = Engine(
     applies_constant_friction=True,
     applies_springs=True,
     applies_gears=True,
+    applies_cams=True,
 )

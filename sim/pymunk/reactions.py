@@ -99,8 +99,9 @@ class Reactions:
         friction = couples | by_name(self._rubbed[: len(ends)])
         forces = forces_by_body(self._scene, pushes, on_blocks, friction, ends)
         forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
-        rolling = any(gear.carrier != GROUND for gear in self._scene.gears.values())
-        if not len(ends) or pushes.spare or rolling:  # teeth press on pins (`sim.pymunk.meshes`)
+        scene = self._scene
+        rolling = scene.cams or any(gear.carrier != GROUND for gear in scene.gears.values())
+        if not len(ends) or pushes.spare or rolling:  # which press on pins (`sim.pymunk.meshes`)
             return replace(forces, time_s=time_s)
         turn = float(np.nanmax(np.abs(after[:, :, 5]))) * self._dt if self._bent else 0.0
         against = tuple(self._contradictions(pushes, ends, SAME + turn**2))

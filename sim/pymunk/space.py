@@ -28,6 +28,7 @@ from models.scene.joints import Prism, Slot, turned
 from sim.engine import Drive
 from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 from sim.pymunk import native
+from sim.pymunk.cam_lines import CamLine
 from sim.pymunk.meshes import mesh
 
 
@@ -100,13 +101,14 @@ def build(
     exact_lines: bool = True,
     with_springs: bool = False,
     delay_s: float = 0.0,
+    dt_s: float = 0.0,
 ) -> SpaceModel:
     """Build the space of ``scene`` at ``state``.
 
     A crank that is not prescribed is dynamic: with a motor under a servo, free without one. Points
     on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove is in
     error. ``with_springs`` the space has the scene's springs. Velocities belong to ``delay_s``
-    later (see `models.scene.joints.frames`).
+    later (see `models.scene.joints.frames`). Cams are set for steps of ``dt_s``.
 
     Raises EngineError for a link without mass that has to move freely, and for a massless block
     that no body carries.
@@ -132,6 +134,7 @@ def build(
             gears[name] = _gear(placed, slide)
         _add(placed, lines[name], gears.get(name))
     _add(placed, *(mesh(placed, gear) for gear in scene.gears.values()))
+    _add(placed, *(CamLine(scene, placed, cam, dt_s).joint() for cam in scene.cams.values()))
     rubs = native.pin_friction(placed)
     springs = native.native_springs(placed, _reach(scene)) if with_springs else {}
     _add(placed, *(one.motor for one in rubs), *(one.constraint for one in springs.values()))

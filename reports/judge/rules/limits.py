@@ -163,6 +163,7 @@ def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -
     if numbers.parts:
         parting = scene.curvature * scene.mass_ratio / max(scene.conditioning, 1e-12)
         changing = CHANGE * scene.step_rad * scene.curvature**1.5 if placing == "solved" else 0.0
+        changing += scene.jumping(2)
         if not numbers.makes_up:
             return min(OPEN * parting + changing, CAP) + pushed
         own = min(ARM * (OPEN * parting + changing), CAP) + ROOM * 0.5 * errors.of_forces.start_load

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from analytic.lectures.chains.assur_groups import ClassedGroup, by_drivers, classed
 from analytic.lectures.drawings.polygon import DriverState, PlacedMechanism
-from analytic.structure.groups import Bridge
+from analytic.structure.groups import Bridge, Following
 from analytic.structure.mobility import Structure, analyse
 from analytic.structure.trains import Train
 from models.errors import CrankcheckError, ReachError, StructureError
@@ -173,7 +173,7 @@ def _show_groups(console: Console, structure: Structure) -> None:
         if isinstance(part, Bridge):
             rows.append(("redundant", part.link, "", ""))
             continue
-        if isinstance(part, Train):
+        if isinstance(part, Train | Following):
             rows.append((part.kind, ", ".join(part.bodies), "", ""))
             continue
         group = classed(part)
