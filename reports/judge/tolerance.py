@@ -85,6 +85,8 @@ from sim.engine import AT_ROUNDING
 
 CLOSED_BY_A_MOTOR = 0.1
 """Share of the budget of positions that a motor between two moving bodies may leave open."""
+BORNE = 2.5
+"""Share of a largest force by which a jump of all accelerations by their scale is borne."""
 FORCES = frozenset(named("force"))
 
 
@@ -110,7 +112,8 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     budget += _felt(tolerance, errors)
     if tolerance.bends:
         budget = links.deflecting(budget, step)
-    budget += scene.jumping(max(tolerance.rate, tolerance.differenced))
+    jumping = scene.jumping(max(tolerance.rate, tolerance.differenced))
+    budget += jumping * (BORNE if tolerance.makes_up else 1.0)
     budget += shaken_by_rounding(errors, max(tolerance.rate, tolerance.differenced))
     budget = min(float(budget), tolerance.cap)
     return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
