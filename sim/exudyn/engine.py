@@ -12,6 +12,7 @@ from models.motion import State
 from models.scene import Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings, measure
 from sim.exudyn import acting, crank_drive, system
+from sim.exudyn.cam_relations import add_cam
 from sim.exudyn.meshes import add_mesh
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
@@ -91,6 +92,8 @@ class ExudynSession:
             self._system = self._model.system
             for gear in scene.gears.values():
                 add_mesh(self._model, gear)
+            for cam in scene.cams.values():
+                add_cam(self._model, cam)
             self._looked = dict(self._model.looked)
             self._applied = acting.Applied(self._model)
             acting.apply_loads(self._applied, state.time_s, drive, dt_s)
@@ -246,5 +249,6 @@ ENGINE = Engine(
     applies_constant_friction=True,
     applies_springs=True,
     applies_gears=True,
+    applies_cams=True,
     applies_beams=True,
 )
