@@ -38,7 +38,7 @@ def test_speeds_torques_and_forces_are_those_of_willis_and_of_radii(scene: Path)
 
 
 def test_tables_and_a_file_of_the_members(scene: Path, tmp_path: Path) -> None:
-    said = told("gears", scene, *"--speed sun=6 --torque arm=-6 -o".split(), tmp_path / "gears.csv")
+    said = told("gears --speed sun=6 --torque arm=-6", scene, "-o", tmp_path / "gears.csv")
     assert "planetary: gear train of mobility 1, efficiency 0.983333" in said
     assert "inner: sun 20 40 37.5877 44 35 3.14159 1.63519" in " ".join(said.split())
     frame = pd.read_csv(tmp_path / "gears.csv", comment="#")
