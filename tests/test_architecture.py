@@ -55,7 +55,7 @@ FLOORS: Mapping[str, str] = {
         result
         change_points
         dyads
-        structure multibody cams
+        structure multibody cams gears
     """,
     "sim": f"""
         {" ".join(ENGINES)}

@@ -73,6 +73,10 @@ textbooks approximate it, and the speed over the cycle with it and without."""),
     "equilibria": ("lectures.machine.equilibria:EquilibriaRequest", """
 Show where a scene rests under its weights, springs and loads, stable or not, in each of its
 circuits, with the frequency of small oscillations; a driven one as if it were let go."""),
+    "gears": ("lectures.machine.gears:GearsRequest", """
+Show the gear train of a scene: ratios, speeds, torques and tooth forces for given loads,
+efficiency with the losses of its teeth, their circles and contact ratio, and how many equal
+planets fit."""),
     "chains": ("lectures.drawing.sheet_requests:ChainsRequest", """
 List and draw the distinct kinematic chains of so many links: number synthesis, their
 inversions with the class of each, and their types with sliders."""),

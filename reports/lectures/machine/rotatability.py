@@ -249,7 +249,7 @@ def _cell(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else ""
     if isinstance(value, list):
-        return ", ".join(dict.fromkeys(value))
+        return ", ".join(map(str, dict.fromkeys(value)))
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {_cell(each)}" for name, each in value.items())
     if isinstance(value, float):

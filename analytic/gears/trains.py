@@ -1,0 +1,165 @@
+"""Speeds of a gear train from the relations of its pairs, in exact fractions.
+
+Each pair relates the speeds of its gears and of their carrier (`models.scene.pairs.Gear`):
+
+    z0 omega0 + s z1 omega1 - (z0 + s z1) omega_c = 0
+
+With the ground at rest the mobility is the number of moving bodies less the rank of these rows; the
+null space has the ratios. Source: Willis, Principles of Mechanism (1841), as rows of one
+matrix; Mueller, Epicyclic Drive Trains (1982).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from models.errors import CrankcheckError, few
+from models.scene import GROUND
+from models.scene.pairs import Gear
+
+LISTED = 12
+"""Names that a message lists."""
+
+
+@dataclass(frozen=True)
+class Train:
+    """The gear pairs of a train. Raises CrankcheckError for none, and for pairs that lock each
+    other: an over-constrained train."""
+
+    gears: tuple[Gear, ...]
+
+    def __post_init__(self) -> None:
+        if not self.gears:
+            raise CrankcheckError("a gear train has one pair of gears or more; found none")
+        if locked := self._locked():
+            names = few((gear.name for gear in locked), LISTED)
+            moves = "" if self.mobility else ", and the train does not move"
+            raise CrankcheckError(
+                f"gears {names}: an over-constrained train{moves}; their relations contradict "
+                "each other unless all their bodies turn as one: leave one of them out, or release "
+                "a body (one that is the ground, or another carrier)"
+            )
+
+    @cached_property
+    def bodies(self) -> tuple[str, ...]:
+        """Moving bodies, in the order of the pairs."""
+        named = (body for gear in self.gears for body in (*gear.bodies, gear.carrier))
+        return tuple(body for body in dict.fromkeys(named) if body != GROUND)
+
+    @cached_property
+    def mobility(self) -> int:
+        """Number of independent inputs: 1 of most trains, 2 of a differential."""
+        return len(self.bodies) - _rank(self.gears, self.bodies)
+
+    @property
+    def passive(self) -> int:
+        """Number of dependent relations: those of all equal planets but one."""
+        return len(self.gears) - len(self.bodies) + self.mobility
+
+    def influence(self, inputs: Sequence[str]) -> Mapping[str, tuple[Fraction, ...]]:
+        """Return the speed of each body as a sum over the speeds of the inputs: its coefficients,
+        by body, the inputs and the ground included.
+
+        Raises CrankcheckError for inputs that the train lacks, that depend on each other, or that
+        leave bodies open.
+        """
+        for body in inputs:
+            if body not in self.bodies:
+                raise CrankcheckError(f"{body}: no body of the train; use {self._listed()}")
+        others = [body for body in self.bodies if body not in inputs]
+        rows, pivots = reduced(_rows(self.gears, (*others, *inputs)))
+        if pivots and pivots[-1] >= len(others):
+            parts = zip(inputs, rows[-1][len(others) :], strict=True)
+            tie = " ".join(f"{'-' if x < 0 else '+'} {abs(x)} omega_{b}" for b, x in parts if x)
+            raise CrankcheckError(
+                f"speeds of {' and '.join(inputs)}: not independent, as {tie} = 0 in this train "
+                f"of mobility {self.mobility}; give fewer, or those of others"
+            )
+        if len(inputs) < self.mobility:
+            alone = [sum(map(bool, row[: len(others)])) == 1 for row in rows]
+            settled = {n for n, one in zip(pivots, alone, strict=True) if one}
+            hidden = [body for n, body in enumerate(others) if n not in settled]
+            raise CrankcheckError(
+                f"speeds of {' and '.join(inputs) or 'no body'}: the train has mobility "
+                f"{self.mobility}, and they leave {few(hidden, LISTED)} open; give "
+                f"{self.mobility - len(inputs)} more"
+            )
+        own = {body: tuple(-x for x in rows[n][len(others) :]) for n, body in enumerate(others)}
+        unit = {
+            body: tuple(Fraction(body == other) for other in inputs) for body in (GROUND, *inputs)
+        }
+        return {body: (own | unit)[body] for body in (GROUND, *self.bodies)}
+
+    def ratio(self, body: str, source: str, held: Sequence[str] = ()) -> Fraction:
+        """Return the speed of a body over that of the input ``source``, other inputs ``held`` at
+        rest. Raises CrankcheckError as `influence`."""
+        coefficients = self.influence((source, *held))
+        if body not in coefficients:
+            raise CrankcheckError(f"{body}: no body of the train; use {self._listed()}")
+        return coefficients[body][0]
+
+    def speeds(self, inputs: Mapping[str, float]) -> dict[str, float]:
+        """Return the speeds of all bodies, the ground's 0 first [rad/s], for those of the inputs.
+        Raises CrankcheckError as `influence`."""
+        coefficients = self.influence(tuple(inputs))
+        given = [Fraction(speed) for speed in inputs.values()]
+        return {
+            body: float(sum(x * u for x, u in zip(row, given, strict=True)))
+            for body, row in coefficients.items()
+        }
+
+    def _locked(self) -> list[Gear]:
+        """Return pairs that lock each other, as few as do: without any one of them they move.
+
+        A pair is locked where every motion of the train, the ground free to turn too, turns it as
+        one body: then its gear's speed less its carrier's is a combination of the rows.
+        """
+        for gear in self.gears:
+            one = next(body for body in gear.bodies if body != gear.carrier)
+            if _locks(self.gears, one, gear.carrier):
+                least = list(self.gears)
+                for other in self.gears:
+                    without = [each for each in least if each is not other]
+                    if _locks(without, one, gear.carrier):
+                        least = without
+                return least
+        return []
+
+    def _listed(self) -> str:
+        return few(self.bodies, LISTED)
+
+
+def _locks(gears: Sequence[Gear], first: str, second: str) -> bool:
+    """True if the relations of the pairs leave two bodies no other motion than as one."""
+    bodies = tuple(dict.fromkeys((first, second, *(b for g in gears for b in g.relation))))
+    apart = [Fraction((body == first) - (body == second)) for body in bodies]
+    rows = _rows(gears, bodies)
+    return len(reduced([*rows, apart])[1]) == len(reduced(rows)[1])
+
+
+def _rows(gears: Iterable[Gear], bodies: Collection[str]) -> list[list[Fraction]]:
+    return [[Fraction(gear.relation.get(body, 0)) for body in bodies] for gear in gears]
+
+
+def _rank(gears: Iterable[Gear], bodies: Collection[str]) -> int:
+    return len(reduced(_rows(gears, bodies))[1])
+
+
+def reduced(rows: Sequence[Sequence[Fraction]]) -> tuple[list[list[Fraction]], list[int]]:
+    """Return the reduced echelon form of rows, without those of zeros, and its pivot columns."""
+    left, done, pivots = [list(row) for row in rows], list[list[Fraction]](), list[int]()
+    for column in range(len(left[0]) if left else 0):
+        at = next((n for n, row in enumerate(left) if row[column]), None)
+        if at is None:
+            continue
+        pivot = left.pop(at)
+        pivot = [x / pivot[column] for x in pivot]
+        for row in (*done, *left):
+            if factor := row[column]:
+                row[:] = [x - factor * y for x, y in zip(row, pivot, strict=True)]
+        done.append(pivot)
+        pivots.append(column)
+    return done, pivots

@@ -1,0 +1,253 @@
+"""`crankcheck gears`: ratios, speeds, torques and teeth of the gear train of a scene."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from rich.console import Console
+
+from analytic.gears.assembly import PlanetStage, check_planets, planet_stages
+from analytic.gears.involute import TeethPair
+from analytic.gears.torques import TrainTorques, torques
+from analytic.gears.trains import Train
+from analytic.gears.willis import elementary_trains
+from models.errors import CrankcheckError, few, shown
+from models.files.reading import find_scene, load_scene
+from models.scene import Scene
+from models.scene.characteristics import Constant
+from reports.lectures.machine.rotatability import show_rows
+from reports.output.console import say, say_each, say_whole
+from reports.output.formats import ENDINGS, write_frame
+from reports.output.write import check_file, write
+from reports.requests.options import SceneName, option, output_option
+
+NUMBERS = ".json"
+Row = dict[str, object]
+COLUMNS = {
+    "members": "body speed_rad_s ratio torque_n_m power_w",
+    "elementary_trains": "carrier gears basic_ratio of to",
+    "meshes": "gear tangential_n radial_n rolling_w loss_w module_mm pressure_angle_deg",
+    "teeth": "gear teeth pitch_mm base_mm tip_mm root_mm thickness_mm contact_ratio",
+    "planets": "planet numbers clearance_mm",
+}
+
+
+@dataclass(frozen=True)
+class GearsRequest:
+    """Arguments of `gears`, as given."""
+
+    scene: SceneName
+    speed: Annotated[
+        Sequence[str],
+        option("Speed of a body; repeatable (default: the driver's).", "BODY=RAD_S"),
+    ] = ()
+    torque: Annotated[
+        Sequence[str],
+        option("Torque on a body; repeatable (default: constant ones of the scene).", "BODY=N_M"),
+    ] = ()
+    shift: Annotated[
+        Sequence[str],
+        option("Profile shift of a body's teeth, in modules; repeatable.", "BODY=X"),
+    ] = ()
+    planets: Annotated[int | None, "Check that so many equal planets can be assembled."] = None
+    output: Annotated[
+        Path | None, output_option("Write all as .json, or members as .csv, .parquet or .xlsx.")
+    ] = None
+    json: Annotated[bool, "As JSON, not as tables."] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show or write the train. Raises CrankcheckError for a faulty request or train."""
+        if self.output is not None:
+            inputs = [find_scene(self.scene)]
+            check_file(self.output, "-o", (*ENDINGS, NUMBERS), inputs=inputs)
+        scene = load_scene(self.scene)
+        document = _document(scene, self)
+        if self.output is not None:
+            _write(self.output, scene, document)
+            say_whole(console, f"{self.output}: the gear train of {scene.name}")
+        if self.json:
+            say_whole(console, json.dumps(document, indent=1))
+            return 0
+        lost, mobility = document["efficiency"], document["mobility"]
+        share = f", efficiency {lost:.6g}" if isinstance(lost, float) else ""
+        say(console, f"{scene.name}: gear train of mobility {mobility}{share}")
+        for key, columns in COLUMNS.items():
+            rows = document[key]
+            if isinstance(rows, list) and rows:
+                show_rows(console, rows, columns.split())
+        say_each(console, document["notes"] if isinstance(document["notes"], list) else ())
+        return 0
+
+
+def _document(scene: Scene, request: GearsRequest) -> dict[str, object]:
+    """The whole answer, as JSON has it."""
+    if not scene.gears:
+        raise CrankcheckError(f"{scene.name}: no gears; give the scene a [gears.NAME] table")
+    train = Train(tuple(scene.gears.values()))
+    stages = planet_stages(train.gears, scene.points_of)
+    check_planets(stages)
+    if request.planets is not None and not stages:
+        raise CrankcheckError("--planets: no planet of the scene meshes with two central gears")
+    for stage in stages if request.planets is not None else ():
+        stage.check(request.planets or 0)
+    teeth = [row for each in _pairs(scene, request.shift) for row in _teeth(each)]
+    inputs = _inputs(scene, train, _values(request.speed, "--speed", train.bodies))
+    loads = _values(request.torque, "--torque", train.bodies) or _constant_loads(
+        scene, train, inputs
+    )
+    found = torques(train, inputs, loads)
+    source = next((body for body, speed in inputs.items() if speed), next(iter(inputs)))
+    ratios = train.influence((source, *(body for body in inputs if body != source)))
+    return {
+        "scene": scene.name,
+        "mobility": train.mobility,
+        "inputs_rad_s": inputs,
+        "ratio_to": source,
+        "efficiency": found.efficiency if loads else None,
+        "members": [
+            {
+                "body": body,
+                "speed_rad_s": speed,
+                "ratio": str(ratios[body][0]),
+                "torque_n_m": found.torques_n_m[body],
+                "power_w": found.powers_w[body],
+            }
+            for body, speed in found.speeds_rad_s.items()
+        ],
+        "elementary_trains": [
+            {
+                "carrier": one.carrier,
+                "gears": list(one.gears),
+                "basic_ratio": str(one.value(last, first)),
+                "of": last,
+                "to": first,
+            }
+            for one in elementary_trains(train.gears)
+            for first, last in [(next(iter(one.values)), list(one.values)[-1])]
+        ],
+        "meshes": _meshes(scene, found) if loads else [],
+        "teeth": teeth,
+        "planets": [_planet(stage, request.planets) for stage in stages],
+        "notes": [*_notes(train, found, source, bool(loads)), *_shared(request.planets)],
+    }
+
+
+def _values(texts: Sequence[str], name: str, bodies: Sequence[str]) -> dict[str, float]:
+    """Parse BODY=NUMBER. Raises CrankcheckError for other text, a body twice or unknown."""
+    found: dict[str, float] = {}
+    for text in texts:
+        body, equals, number = text.partition("=")
+        try:
+            value = float(number)
+        except ValueError:
+            value = math.nan
+        if not equals or not math.isfinite(value):
+            raise CrankcheckError(f"{name} {shown(text)}: give BODY=NUMBER, such as {bodies[0]}=10")
+        if body not in bodies:
+            raise CrankcheckError(f"{name} {shown(text)}: no such body; use {few(bodies, 12)}")
+        if body in found:
+            raise CrankcheckError(f"{name} {shown(text)}: {body} is given twice; give it once")
+        found[body] = value
+    return found
+
+
+def _inputs(scene: Scene, train: Train, given: dict[str, float]) -> dict[str, float]:
+    """Add the driver's speed, where one is missing: that of its law at time 0, else its largest."""
+    driver = scene.driver
+    turns = driver.is_crank and driver.link in train.bodies and driver.link not in given
+    if turns and len(given) < train.mobility:
+        start = float(driver.law.at(np.zeros(1))[1][0])
+        return {driver.link: start or driver.law.peak_speed_rad_s or 1.0, **given}
+    return given
+
+
+def _constant_loads(scene: Scene, train: Train, inputs: Mapping[str, float]) -> dict[str, float]:
+    """Sum constant torques of the scene by body; the inputs close the balance."""
+    found: dict[str, float] = {}
+    for load in scene.loads.values():
+        plain = load.point is None and isinstance(load.characteristic, Constant)
+        if plain and load.body in train.bodies and load.body not in inputs:
+            size = float(load.magnitude(np.zeros(1))[0])
+            found[load.body] = found.get(load.body, 0.0) + size
+    return found
+
+
+def _pairs(scene: Scene, shift: Sequence[str]) -> list[TeethPair]:
+    """Check and return the teeth of pairs that have a module. Raises CrankcheckError."""
+    toothed = [gear for gear in scene.gears.values() if gear.module_m is not None]
+    bodies = list(dict.fromkeys(body for gear in toothed for body in gear.bodies))
+    if shift and not bodies:
+        raise CrankcheckError("--shift: no gears of the scene have a module; give module_m")
+    shifts = _values(shift, "--shift", bodies)
+    pairs = []
+    for gear in toothed:
+        first, second = (shifts.get(body, 0.0) for body in gear.bodies)
+        pairs.append(TeethPair(gear, gear.module_m or 0.0, (first, second)))
+        pairs[-1].check(gear.distance_m(scene.points_of))
+    return pairs
+
+
+def _teeth(pair: TeethPair) -> list[Row]:
+    return [
+        {
+            "gear": f"{pair.pair.name}: {body}",
+            "teeth": pair.pair.teeth[n],
+            "pitch_mm": 2e3 * pair.pitch_radii_m[n],
+            "base_mm": 2e3 * pair.base_radii_m[n],
+            "tip_mm": 2e3 * pair.tip_radii_m[n],
+            "root_mm": 2e3 * pair.root_radii_m[n],
+            "thickness_mm": 1e3 * pair.thicknesses_m[n],
+            "contact_ratio": pair.contact_ratio,
+        }
+        for n, body in enumerate(pair.pair.bodies)
+    ]
+
+
+def _meshes(scene: Scene, found: TrainTorques) -> list[Row]:
+    rows: list[Row] = []
+    for mesh in found.meshes:
+        row: Row = {"gear": mesh.gear.name, "rolling_w": mesh.rolling_w, "loss_w": mesh.loss_w}
+        if module := mesh.gear.module(scene.points_of):
+            force, angle = mesh.tangential_n(module), mesh.gear.pressure_angle_rad
+            row |= {"tangential_n": force, "radial_n": force * math.tan(angle)}
+            row |= {"module_mm": 1e3 * module, "pressure_angle_deg": math.degrees(angle)}
+        rows.append(row)
+    return rows
+
+
+def _planet(stage: PlanetStage, count: int | None) -> Row:
+    gap = None if count is None or count < 2 else 1e3 * stage.clearance_m(count)
+    return {"planet": stage.planet, "numbers": stage.counts(),
+            "clearance_mm": gap}  # fmt: skip
+
+
+def _notes(train: Train, found: TrainTorques, source: str, loaded: bool) -> list[str]:
+    notes = [f"ratios are those to {source}, other inputs at rest"] * (train.mobility > 1)
+    if train.passive:
+        notes.append(f"{train.passive} relations are passive: equal planets share their loads")
+    if not loaded:
+        notes.append("no torques: give --torque BODY=N_M; the inputs close the balance")
+    for name, times in found.circulating.items():
+        notes.append(f"power circulates: {times:.4g} times the input power rolls through {name}")
+    return notes
+
+
+def _shared(count: int | None) -> list[str]:
+    """Say that the scene's one planet stands for several."""
+    several = f"{count} planets share the loads of each mesh that is listed for one"
+    return [several] * (count is not None and count > 1)
+
+
+def _write(path: Path, scene: Scene, document: Mapping[str, object]) -> None:
+    if path.suffix.lower() == NUMBERS:
+        write(path, json.dumps(document, indent=1))
+        return
+    import pandas as pd
+
+    members = document["members"]
+    frame = pd.DataFrame(members if isinstance(members, list) else [])
+    write_frame(path, frame, "members", {"scene": scene.name, "source": scene.source})
