@@ -19,7 +19,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.cams import Cam, OscillatingFollower
 
-LADDER = 120
+LADDER = 40
 """Number of base radii that are tried before the smallest one is refined."""
 Margin = Callable[[Cam], float]
 """Distance of a cam from a limit: above 0 where it keeps it."""

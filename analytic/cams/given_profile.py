@@ -23,7 +23,7 @@ from models.scene.cam_laws import CamLaw, CamSegment
 from models.scene.cams import Cam, Follower, OscillatingFollower
 
 ProfileCurve = Callable[[Array], tuple[Plane, Plane]]
-"""Points x + iy [m] and tangents, by a parameter from 0 to 1 round the cam (T,)."""
+"""Points x + iy [m], and tangents of any length, by a parameter from 0 to 1 round the cam (T,)."""
 PARTS = 4096
 FEWEST = 24
 
@@ -133,9 +133,10 @@ class GivenProfile:
         step = 1e-5
 
         def concave(u: Array) -> Array:
-            (_, tangent), (_, after), (_, before) = (self.curve(u + x) for x in (0.0, step, -step))
-            bent = (after - before) / (2.0 * step)
-            return np.asarray(-sign * (tangent.conj() * bent).imag / np.abs(tangent) ** 3)
+            (first, before), (last, after) = (self.curve(u + x) for x in (-step, step))
+            # Turning of the tangent over the arc; where the contact rests it has none.
+            arc, turning = np.abs(last - first), np.angle(after * before.conj())
+            return np.asarray(-sign * turning / np.where(arc > 0.0, arc, math.inf))
 
         most, u = largest(np.linspace(0.0, 1.0, 65).tolist(), concave)
         # Rounding of the differences: a straight part is no fault.

@@ -31,7 +31,6 @@ from models.scene.cams import Cam, OscillatingFollower
 Plane = NDArray[np.complex128]
 SAMPLES = 48
 """Samples of a law between two knots; local extremes between them are refined."""
-GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +146,8 @@ def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple
     """Return the largest value of a quantity of one argument, and that argument.
 
     The quantity is smooth between the knots (n,), and takes limits from both sides there. Extremes
-    are refined by golden sections until the value stands still: accurate to rounding, where no two
-    of them stand between neighbouring samples.
+    are refined until the value stands still: accurate to rounding, where no two of them stand
+    between neighbouring samples.
     """
     ends = np.asarray(knots)
     first, last = ends[:-1, None], np.nextafter(ends[1:, None], ends[0])
@@ -157,22 +156,25 @@ def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple
     values = quantity(grid.ravel()).reshape(grid.shape)
     best = int(np.argmax(values))
     found = float(values.flat[best]), float(grid.flat[best])
-    middle = values[:, 1:-1]
-    # Only those that may exceed the best: by a parabola less than the fall to their neighbours.
-    fall = 2.0 * middle - values[:, :-2] - values[:, 2:]
-    peak = (middle >= values[:, :-2]) & (middle >= values[:, 2:]) & (middle + fall >= found[0])
+    # A sample above its neighbours may hide more beside it, but no more than the row bends.
+    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-math.inf)
+    bend = np.abs(np.diff(values, 2, axis=1)).max(axis=1, keepdims=True)
+    peak = (values > padded[:, :-2]) & (values >= padded[:, 2:]) & (values + bend >= found[0])
     row, column = np.nonzero(peak)
-    low, high = grid[row, column], grid[row, column + 2]
-    if not len(low) or not np.any(fall[peak]):
-        return found
-    for _ in range(44):  # 0.618^44 of two samples: below the root of rounding
-        step = GOLDEN * (high - low)
-        left, right = high - step, low + step
-        up = quantity(left) < quantity(right)
-        low, high = np.where(up, left, low), np.where(up, high, right)
-    refined = quantity(0.5 * (low + high))
-    k = int(np.argmax(refined))
-    return max(found, (float(refined[k]), float(0.5 * (low[k] + high[k]))))
+    low = grid[row, np.maximum(column - 1, 0)]
+    high = grid[row, np.minimum(column + 1, SAMPLES - 1)]
+    shares = np.linspace(0.0, 1.0, 33)[:, None]
+    for _ in range(8):  # 16^-8 of two samples: below the root of rounding
+        fine = low + (high - low) * shares
+        values = quantity(fine.ravel()).reshape(fine.shape)
+        best = int(np.argmax(values))
+        found = max(found, (float(values.flat[best]), float(fine.flat[best])))
+        centre, step = np.argmax(values, axis=0), (high - low) / 32
+        low, high = (
+            np.maximum(low + (centre - 1) * step, low),
+            np.minimum(low + (centre + 1) * step, high),
+        )
+    return found
 
 
 def turn_of(cam: Cam) -> tuple[float, ...]:

@@ -94,6 +94,11 @@ Find the mechanisms that do a task: their scenes, defects, figure, and proof in 
 
 Exit code 1: no solution without a defect, or with --prove one that an engine does not lead
 through what is asked."""),
+    "cam": ("lectures.cams.cam_request:CamRequest", """
+Design a cam from its task: profile as DXF, SVG and CSV, pressure angle, curvature, contact
+force, the speed at which the follower leaves, drawings.
+
+Exit code 1: the cam exceeds a limit of its task."""),
     "vibration": ("lectures.machine.vibration:VibrationRequest", """
 Show how elastic links vibrate at the driver's speed, or over speeds: natural frequencies,
 deflection, stability, resonances.

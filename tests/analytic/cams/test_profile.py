@@ -101,7 +101,7 @@ def curve_differences(cam: Cam, contact: CamContact, step: float) -> tuple[Plane
 def test_normals_curvature_and_pressure_angles_are_those_of_differences(
     motion: str, contact: str
 ) -> None:
-    for cam in designs(motion, contact, 12):
+    for cam in designs(motion, contact, 6):
         found = touch(cam, PHI)
         step = 1e-3
         first, second = curve_differences(cam, found, step)

@@ -1,0 +1,1 @@
+"""Cams: from a task to profile, checks and drawings."""
