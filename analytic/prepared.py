@@ -296,12 +296,12 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
         elif isinstance(part, Train):
-            from analytic.dyads.train_step import TrainStep  # few scenes need it
+            from analytic.higher_pairs.train_step import TrainStep  # few scenes need it
 
             leads = not isinstance(structure.order[-1], Train)
             steps.append(TrainStep(placed, part, steps, leads=leads))
         elif isinstance(part, Following):
-            from analytic.dyads.follower_step import FollowerStep  # few scenes need it
+            from analytic.higher_pairs.follower_step import FollowerStep  # few scenes need it
 
             steps.append(FollowerStep(placed, part))
         elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):

@@ -51,7 +51,7 @@ FLOORS: Mapping[str, str] = {
         mechanism forces
         kinematics
         prepared
-        assur
+        assur higher_pairs
         result
         change_points
         dyads

@@ -14,11 +14,11 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from analytic.dyads.follower_step import lift_at
 from analytic.dyads.plane import EPS
 from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
 from analytic.forces.central_balance import balance_central
 from analytic.forces.free_body import Balance, PrismaticPair
+from analytic.higher_pairs.follower_step import lift_at
 from analytic.structure.groups import Bridge, Following, Group, Triad
 from analytic.structure.trains import Train
 from models.array import Array

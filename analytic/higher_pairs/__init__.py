@@ -1,0 +1,1 @@
+"""Higher pairs among the steps of a mechanism: gear trains, followers of cams."""
