@@ -30,9 +30,9 @@ from analytic.dyads.steps import (
     stretched,
 )
 from analytic.result import MotionArrays, Selection
+from analytic.structure.gear_groups import GearGroup
 from analytic.structure.groups import Bridge, Following, Triad
 from analytic.structure.mobility import Structure, analyse
-from analytic.structure.trains import Train
 from models.array import Array, Mask
 from models.errors import ReachError
 from models.files.body_table import MOST_ASSEMBLIES
@@ -295,11 +295,11 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
         placed = PlacedBodies(scene, structure, frozenset(known))
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
-        elif isinstance(part, Train):
-            from analytic.higher_pairs.train_step import TrainStep  # few scenes need it
+        elif isinstance(part, GearGroup):
+            from analytic.higher_pairs.gear_step import GearStep  # few scenes need it
 
-            leads = not isinstance(structure.order[-1], Train)
-            steps.append(TrainStep(placed, part, steps, leads=leads))
+            leads = not isinstance(structure.order[-1], GearGroup)
+            steps.append(GearStep(placed, part, steps, leads=leads))
         elif isinstance(part, Following):
             from analytic.higher_pairs.follower_step import FollowerStep  # few scenes need it
 

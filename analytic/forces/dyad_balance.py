@@ -19,8 +19,8 @@ from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
 from analytic.forces.central_balance import balance_central
 from analytic.forces.free_body import Balance, PrismaticPair
 from analytic.higher_pairs.follower_step import lift_at
+from analytic.structure.gear_groups import GearGroup
 from analytic.structure.groups import Bridge, Following, Group, Triad
-from analytic.structure.trains import Train
 from models.array import Array
 from models.scene import GROUND
 from models.scene.cam_laws import CamLift
@@ -35,7 +35,7 @@ def torque_of(on: Balance) -> Bounded:
     for part in reversed(on.structure.order):
         if isinstance(part, Bridge):
             continue
-        if isinstance(part, Train):
+        if isinstance(part, GearGroup):
             _train(on, part)
             continue
         if isinstance(part, Following):
@@ -130,7 +130,7 @@ def _crossing(
     return line1.across * (along2 * inverse) - line2.across * (along1 * inverse)
 
 
-def _train(on: Balance, train: Train) -> None:
+def _train(on: Balance, train: GearGroup) -> None:
     """Solve moments about the pins for the factor of each gear's relation, whose coefficients times
     it are the couples on the bodies; pins only take over forces.
 

@@ -12,9 +12,9 @@ from rich.console import Console
 
 from analytic.lectures.chains.assur_groups import ClassedGroup, by_drivers, classed
 from analytic.lectures.drawings.polygon import DriverState, PlacedMechanism
+from analytic.structure.gear_groups import GearGroup
 from analytic.structure.groups import Bridge, Following
 from analytic.structure.mobility import Structure, analyse
-from analytic.structure.trains import Train
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files.body_table import MOST_ASSEMBLIES
 from models.files.reading import find_scene, load_scene
@@ -173,7 +173,7 @@ def _show_groups(console: Console, structure: Structure) -> None:
         if isinstance(part, Bridge):
             rows.append(("redundant", part.link, "", ""))
             continue
-        if isinstance(part, Train | Following):
+        if isinstance(part, GearGroup | Following):
             rows.append((part.kind, ", ".join(part.bodies), "", ""))
             continue
         group = classed(part)

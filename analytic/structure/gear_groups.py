@@ -29,7 +29,7 @@ Hanging = Mapping[str, Sequence[tuple[str, Sequence[str]]]]
 
 
 @dataclass(frozen=True)
-class Train:
+class GearGroup:
     """Links placed by gears, each after the link that carries its pin.
 
     ``pins`` names the pin of each, ``gears`` the relations, ``inverse`` is C^-1, a row for each
@@ -67,7 +67,7 @@ class Train:
         return sum(float(r) * g.constant_rad for r, g in zip(row, self.gears, strict=True))
 
 
-def trains(gears: Sequence[Gear], hanging: Hanging) -> Iterator[Train]:
+def gear_groups(gears: Sequence[Gear], hanging: Hanging) -> Iterator[GearGroup]:
     """Yield the trains that can be placed next, those of the fewest gears first."""
     open_gears = [gear for gear in gears if _unknown(gear, hanging)]
     for size in range(1, len(open_gears) + 1):
@@ -77,7 +77,7 @@ def trains(gears: Sequence[Gear], hanging: Hanging) -> Iterator[Train]:
                 continue
             inverse = _inverse([[gear.relation.get(b, 0) for b in placing] for gear in chosen])
             if inverse is not None:
-                yield Train(tuple(placing), tuple(placing.values()), chosen, inverse)
+                yield GearGroup(tuple(placing), tuple(placing.values()), chosen, inverse)
 
 
 def _unknown(gear: Gear, hanging: Mapping[str, object]) -> list[str]:

@@ -14,7 +14,7 @@ from analytic.dyads.chunk import SINES, Chunk, Passage, driver_scale
 from analytic.dyads.plane import EPS, STEADY, AngleError, BodyKinematics, Real, Vec
 from analytic.dyads.riding import PlacedBodies
 from analytic.dyads.steps import PeriodicStep, Step, common_period, stretched
-from analytic.structure.trains import Train
+from analytic.structure.gear_groups import GearGroup
 from models.array import Array
 from models.errors import CrankcheckError
 
@@ -22,14 +22,14 @@ MOST_TURNS = 128
 """Most turns of the driver after which a linkage behind gears may come back."""
 
 
-class TrainStep(PeriodicStep):
+class GearStep(PeriodicStep):
     """Links on known pins, at angles that are shares of known ones.
 
     ``before`` are the steps of the bodies before it; with ``leads`` other groups hang on it.
     """
 
     def __init__(
-        self, placed: PlacedBodies, train: Train, before: Sequence[Step], *, leads: bool
+        self, placed: PlacedBodies, train: GearGroup, before: Sequence[Step], *, leads: bool
     ) -> None:
         self.train, self.leads, self.before = train, leads, tuple(before)
         self.key = f"gears {', '.join(gear.name for gear in train.gears)}"
