@@ -30,7 +30,7 @@ def _outlined(scene: Scene, pair: CamPair, facets: int | None) -> CamPair:
         refuse_undercut(pair.profile)
     except CrankcheckError as error:
         raise CrankcheckError(f"{scene.name}: cams.{pair.name} by contact: {error}") from None
-    phi = np.arange(count) * (2.0 * np.pi / count)
+    phi = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     contact = touch(pair.profile, phi)
     points = contact.on_cam(contact.contact)
     own = scene.points_of

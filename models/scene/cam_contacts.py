@@ -19,7 +19,7 @@ from models.scene.cams import OscillatingFollower
 from models.scene.joints import bodies, less, local_point, sliding_angle, turned
 from models.scene.pairs import CamPair
 
-SKIN = 0.5
+SKIN = 0.02
 """Share of the roller's radius, or of that of the base circle, that the skin has."""
 
 
