@@ -99,7 +99,7 @@ def double_parallelogram(name: str, *, source: str) -> Scene:
     return _scene(name, source, "A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.0]", rods)
 
 
-def sprung_cam(name: str, *, source: str, speed_rad_s: float, facets: int) -> Scene:
+def sprung_cam(name: str, *, source: str, facets: int) -> Scene:
     """An eccentric circle that lifts a flat face of half a kilogram by 20 mm, along y, against a
     spring of 400 N/m that presses with 36 N at lift 0; held by contact."""
     half = "motion = 'harmonic', span_deg = 180.0, lift_m"
@@ -122,7 +122,7 @@ base_radius_m = 0.04
 facets = {facets}
 segments = [{{ {half} = 0.02 }}, {{ {half} = -0.02 }}]
 """
-    return _scene(name, source, "A = [0.0, 0.0]", bodies, _turning(0.0, speed_rad_s))
+    return _scene(name, source, "A = [0.0, 0.0]", bodies, _turning(0.0))
 
 
 def _fourbar(

@@ -207,8 +207,8 @@ def available() -> tuple[Availability, ...]:
 
 
 def applying(what: str) -> list[str]:
-    """List the installed shipped engines that have "beams" of their own, or "gears"."""
-    flag = f"applies_{what}"
+    """List the installed shipped engines that have "beams" of their own, "gears", or "cams"."""
+    flag = f"applies_{what.replace(' ', '_')}"
     return [one.name for one in available() if one.version and getattr(engine(one.name), flag)]
 
 

@@ -23,10 +23,6 @@ ROUNDINGS = 16.0
 """Units of the last place of an engine's numbers that both of these allow at least."""
 
 
-KEYS = {"cams by contact": "touching_cams"}
-"""Keys of engines' properties, where they are not the words."""
-
-
 class OtherModelError(EngineError):
     """An engine that holds another model or start than was requested."""
 
@@ -92,10 +88,10 @@ def refuse_unknown_forces(
         ("beams", scene.beams, engine.applies_beams, f"give it {segments}"),
         ("gears", scene.gears, engine.applies_gears, "run one of those"),
         ("cams", scene.cams, engine.applies_cams, "run one of those"),
-        ("cams by contact", touching, engine.applies_touching_cams, "give it facets = 0"),
+        ("cams by contact", touching, engine.applies_cams_by_contact, "give it facets = 0"),
     ):
         if given and not applied:
-            able = " or ".join(applying(KEYS.get(what, what))) or "no engine here"
+            able = " or ".join(applying(what)) or "no engine here"
             raise EngineError(
                 f"{scene.name}: {what} ({', '.join(given)}) in {engine.name} are not offered by "
                 f"crankcheck, but in {able}; {cure}"
