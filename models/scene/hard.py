@@ -106,14 +106,10 @@ def sprung_cam(name: str, *, source: str, facets: int) -> Scene:
     lifter = "points = { C = [0.0, 0.0], D = [0.0, 0.1] }, mass_kg = 0.5"
     bodies = _rods(crank=("AB", 0.05), lifter=lifter)
     bodies += f"""
-[sliders.C]
-link = "lifter"
-on = "ground"
-direction_deg = 90.0
-[springs.C]
-slider = "C"
-rate_n_m = 400.0
-free_m = -0.05
+[sliders]
+C = {{ link = "lifter", on = "ground", direction_deg = 90.0 }}
+[springs]
+C = {{ slider = "C", rate_n_m = 400.0, free_m = -0.05 }}
 [cams.C]
 cam = "crank"
 slider = "C"
