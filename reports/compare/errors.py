@@ -31,7 +31,8 @@ class SceneFacts:
     samples is near a change point. ``uneven`` is the departure of bodies from even motion with the
     driver, ``uneven_rates`` those of them whose rates depart too (`reports.compare.hardness`).
     ``floor`` is the pure error that rounding leaves in the engine (`sim.engine.Engine`).
-    ``law_jumps`` are the largest jumps of acceleration and jerk in the laws of cams, pure.
+    ``law_jumps`` are the largest jumps of acceleration and jerk in the laws of cams, pure, and
+    ``parting`` is the acceleration with which loads would part its gears and cams at the start.
     """
 
     curvature: float
@@ -47,6 +48,7 @@ class SceneFacts:
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
     floor: float = AT_ROUNDING
     law_jumps: tuple[float, float] = (0.0, 0.0)
+    parting: float = 0.0
 
     def jumping(self, rate: int) -> float:
         """Return the pure error of a rate of this order in and beside the jumps of laws of cams: a

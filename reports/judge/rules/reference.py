@@ -178,7 +178,7 @@ def _the_same(errors: Errors) -> Iterator[Error]:
     borne = largest(row for row in errors.rows if row.quantity in FORCES)
     moved = errors.worst("acceleration")
     off = moved.pure if moved and moved.pure > UNROUNDED else 0.0
-    least = max(ROUNDING, LEAST * off * errors.of_forces.inertia_share)
+    least = max(ROUNDING, LEAST * off * min(errors.of_forces.inertia_share, 1.0))
     if borne and errors.of_scene.uneven and borne.pure <= least:
         yield borne
     rates: dict[tuple[BodyKind, str], list[Error]] = {}
