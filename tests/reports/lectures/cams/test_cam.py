@@ -37,6 +37,9 @@ def test_tasks_are_listed_and_their_numbers_are_those_of_closed_forms() -> None:
     assert found["convex_radius_m"] == pytest.approx(0.008, rel=1e-9)
     # There the spring holds 40 + 72 N, and s'' is 2 h: omega*^2 = 112 / (0.15 * 0.024).
     assert found["lift_off_rad_s"] == pytest.approx(math.sqrt(112 / (0.15 * 0.024)), rel=1e-12)
+    # C_v = pi/2 of the harmonic law, at 60 rad/s over pi/2.
+    assert found["peak_velocity_m_s"] == pytest.approx(0.012 * 60.0, rel=1e-12)
+    assert found["peak_jerk_m_s3"] == "infinite"
     found = json.loads(told("cam rocker-arm --json"))["numbers"]
     assert found["pressure_rise_deg"] == pytest.approx(35.0, rel=1e-9)
 
@@ -76,7 +79,9 @@ def test_files_hold_the_profile_and_sheets_are_drawn(name: str, tmp_path: Path) 
     places = np.array([p.split(",") for p in drawn.attrib["points"].split()], dtype=float)
     assert np.allclose(places * (1.0, -1.0), 1e3 * points, rtol=0, atol=1e-5)
     assert svg.attrib["width"] == f"{svg.attrib['viewBox'].split()[2]}mm"
-    for sheet in SHEETS:
+    flat_face = name == "flat-tappet"  # without a pressure angle
+    assert (tmp_path / "pressure.svg").exists() != flat_face
+    for sheet in SHEETS[: len(SHEETS) - flat_face]:
         Xml.fromstring((tmp_path / f"{sheet}.svg").read_text(encoding="utf-8"))
         assert (tmp_path / f"{sheet}.pdf").read_bytes().startswith(b"%PDF")
     # The law that is found back from the file is that of the task.
