@@ -86,7 +86,7 @@ class BaseCircleTable(Table):
         return self
 
 
-class LoadTable(Table):
+class FollowerLoadTable(Table):
     """Inertia, spring and weight of the follower: kg, N/m and N, or, of one that oscillates, kg
     m^2, N m/rad and N m about its pivot."""
 
@@ -108,7 +108,7 @@ class CamTask(Table):
     follower: FollowerTable
     base: BaseCircleTable
     segments: Annotated[list[SegmentTable], Field(min_length=1, max_length=MOST_SEGMENTS)]
-    load: LoadTable | None = None
+    load: FollowerLoadTable | None = None
 
     @model_validator(mode="after")
     def _closes(self) -> CamTask:

@@ -38,8 +38,9 @@ def drawings(name: str, source: str, found: ExaminedCam, paper: str) -> Mapping[
         figures = {
             "diagrams": draw_diagrams(name, note, found),
             "checks": draw_checks(name, note, found),
-            "pressure": draw_pressure(name, note, found),
         }
+        if found.rise_pressure[0] or found.return_pressure[0]:
+            figures["pressure"] = draw_pressure(name, note, found)
         sheets = {
             "cam": draw_cam(name, note, found, size),
             "construction": draw_construction(name, note, found, size),

@@ -17,7 +17,7 @@ from analytic.cams.contact_force import FollowerLoad
 from analytic.cams.given_profile import GivenProfile, interpolated
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files.inputs import UnreadableError, regular_text
+from models.files.inputs import UnreadableError, regular_bytes
 from models.lectures.shipped_tables import shipped_in
 from models.lectures.tasks import TASKS
 from models.lectures.tasks.cams import CamTask, load_cam_task
@@ -27,6 +27,9 @@ from reports.lectures.cams.profile_files import ProfileFiles
 from reports.output.console import grid, say, say_whole
 from reports.output.write import check_folder, write
 from reports.requests.options import PaperSize, argument, option
+
+MOST_BYTES = 50_000_000
+"""Largest file of points."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +115,7 @@ def read_back(task: CamTask, path: Path) -> Cam:
 def read_points(path: Path) -> Array:
     """Return points (N, 2) [m] of a CSV file with columns x_m and y_m. Raises CrankcheckError."""
     try:
-        heads, *lines = regular_text(path).splitlines()
+        heads, *lines = regular_bytes(path, MOST_BYTES).decode("utf-8-sig").splitlines()
         names = [name.strip() for name in heads.split(",")]
         columns = [names.index("x_m"), names.index("y_m")]
         cells = [line.split(",") for line in lines if line.strip()]

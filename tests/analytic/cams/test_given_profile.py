@@ -14,8 +14,8 @@ from models.scene.cam_laws import CamLaw, CamSegment
 from models.scene.cams import Cam, OscillatingFollower, TranslatingFollower
 from tests.analytic.cams.designs import FOLLOWERS, designs
 
+DEG = math.pi / 180.0
 PHI = np.linspace(0.0, math.tau, 333, endpoint=False)
-GIVEN = [each for each in FOLLOWERS if each[1] != "flat"] + [("translating", "flat")]
 
 
 def without_jumps(cam: Cam, kind: str = "4-5-6-7") -> Cam:
@@ -51,14 +51,19 @@ def test_the_law_is_found_back_from_a_profile_given_as_a_function(
 @pytest.mark.parametrize(("motion", "contact"), FOLLOWERS)
 def test_the_law_is_found_back_from_points_of_a_profile(motion: str, contact: str) -> None:
     turn = np.linspace(0.0, math.tau, 3600, endpoint=False)
-    for cam in map(without_jumps, designs(motion, contact, 2, seed=9)):
+    for number, design in enumerate(designs(motion, contact, 4, seed=9)):
+        cam = without_jumps(design) if number < 2 else design
         points = profile_points(cam, turn)
         given = GivenProfile(
             interpolated(np.array([points.real, points.imag]).T), cam.follower, cam.sense
         )
-        off = given.lift(PHI) - cam.law.at(PHI).value
-        assert np.abs(off).max() < 1e-6 * cam.law.stroke
-        assert given.base_m == pytest.approx(cam.base_m, rel=1e-7)
+        off = np.abs(given.lift(PHI) - cam.law.at(PHI).value)
+        # A spline rings beside a jump of the acceleration, which the curvature repeats.
+        jumps = np.array([one.angle_rad for one in cam.law.jumps if one.acceleration])
+        near = np.abs(np.angle(np.exp(1j * (PHI[:, None] - jumps)))).min(axis=1, initial=1.0) < DEG
+        assert off[~near].max() < (1e-6 if number >= 2 else 1e-10) * cam.law.stroke
+        assert off.max() < 1e-3 * cam.law.stroke
+        assert given.base_m == pytest.approx(cam.base_m, rel=1e-5)
 
 
 def test_the_law_of_a_circle_off_its_centre_is_that_of_its_geometry() -> None:
