@@ -74,6 +74,14 @@ class CamPair:
         """Return the angle of its law (T,) [rad] at angles of cam and carrier."""
         return np.asarray(self.sense * (cam_rad - carrier_rad - self.start_rad))
 
+    def lift(self, turned_rad: float) -> tuple[float, float, float]:
+        """Return the follower's coordinate beyond its lowest, and its first two derivatives by the
+        angle of the cam against the carrier, at one such angle."""
+        value, first, second, _ = self.profile.law.at_one(
+            self.sense * (turned_rad - self.start_rad)
+        )
+        return self.way * value, self.way * self.sense * first, self.way * second
+
     def pivots(self, points: Mapping[str, Points]) -> tuple[str, str]:
         """Return the names of the cam's centre and, of an oscillating follower, its pivot, else
         "". Raises ValueError where they are not shared with the carrier, or several."""
