@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -237,6 +237,19 @@ class CamLaw:
 
     def __reduce__(self) -> tuple[type[CamLaw], tuple[tuple[CamSegment, ...]]]:
         return CamLaw, (self.segments,)  # without what is computed from it
+
+    def scaled(self, factor: float) -> CamLaw:
+        """Return the law with every lift times a factor."""
+        return CamLaw(
+            tuple(
+                replace(
+                    one,
+                    lift=factor * one.lift,
+                    points=tuple((angle, factor * lift) for angle, lift in one.points),
+                )
+                for one in self.segments
+            )
+        )
 
     @cached_property  # once for all evaluations
     def _pieces(self) -> tuple[Array, Array, Array, Array]:

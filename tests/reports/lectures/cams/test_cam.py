@@ -96,7 +96,7 @@ def test_files_hold_the_profile_and_sheets_are_drawn(name: str, tmp_path: Path) 
 
 def test_faulty_tasks_are_refused_in_one_message(tmp_path: Path) -> None:
     for old, new, said in (
-        ("lift = -0.02", "lift = -0.019", "does not close: after a turn its lift is 0.001"),
+        ("lift_m = -0.02", "lift_m = -0.019", "does not close: after a turn its lift is 0.001"),
         ("span_deg = 60.0", "span_deg = 150.0", "540 deg, 180 over 360"),
         ("radius_m = 0.04\n", "radius_m = 0.005\n", "from a base radius of"),
         ("roller_m = 0.01", "roller_m = 0.3", "the roller's 0.3 m; from a base radius of"),
