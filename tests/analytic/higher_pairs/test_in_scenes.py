@@ -121,7 +121,7 @@ def test_two_inputs_make_two_freedoms_of_free_motion() -> None:
     gears = {name: gear for name, gear in scene.gears.items() if name in ("inner", "outer")}
     links = {name: link for name, link in scene.links.items() if name != "lay"}
     bare = replace(scene, gears=gears, links=links, loads={})
-    with pytest.raises(StructureError, match="2 pairs|mobility"):
+    with pytest.raises(StructureError, match="mobility"):
         analyse(bare)
 
 
@@ -167,5 +167,5 @@ def test_trains_that_do_not_move_are_refused() -> None:
     with pytest.raises(StructureError, match="mobility"):
         analyse(_with(planetary, extra=extra))
     five = load_scene("geared-five-bar")
-    with pytest.raises(CrankcheckError, match="comes? back after 199 turns"):
+    with pytest.raises(CrankcheckError, match="back after 199 turns"):
         solve(_with(five, pair=replace(five.gears["pair"], teeth=(40, 199))), TIMES)
